@@ -1,0 +1,22 @@
+// Constants and small helpers that every folder uses.
+#ifndef BOUGH_CORE_BASE_H
+#define BOUGH_CORE_BASE_H
+
+#include <assert.h>
+#include <stdbool.h>
+#include <stddef.h>
+
+#define BOUGH_PI 3.14159265358979323846
+
+// Doubles per SIMD lane group; arrays over vertices and segments are padded to a multiple of it.
+enum { BOUGH_LANES = 8 };
+
+static inline int bough_padded(int n) {
+    return (n + BOUGH_LANES - 1) / BOUGH_LANES * BOUGH_LANES;
+}
+
+static inline double bough_clamp(double x, double low, double high) {
+    return x < low ? low : x > high ? high : x;
+}
+
+#endif

@@ -1,0 +1,33 @@
+#include "core/status.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+bough_status bough_ok(void) {
+    bough_status status;
+    status.code = BOUGH_OK;
+    status.message[0] = '\0';
+    return status;
+}
+
+bough_status bough_fail(bough_code code, const char *format, ...) {
+    bough_status status = {.code = code};
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(status.message, sizeof status.message, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+int bough_exit_code(bough_code code) {
+    switch (code) {
+    case BOUGH_OK: return 0;
+    case BOUGH_INVALID: return 2;
+    case BOUGH_RETRY:
+    case BOUGH_FAILED: return 3;
+    case BOUGH_INTERRUPTED: return 130;
+    case BOUGH_IO:
+    case BOUGH_OUT_OF_MEMORY: break;
+    }
+    return 1;
+}
