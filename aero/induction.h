@@ -1,0 +1,42 @@
+// Blade element momentum at one station: the inflow angle at which blade forces and momentum
+// agree, by Ning's single residual, which always has a bracketed root.
+//
+// S. A. Ning, "A simple solution method for the blade element momentum equations with guaranteed
+// convergence", Wind Energy 17 (2014). High thrust: M. L. Buhl, NREL/TP-500-36834 (2005).
+#ifndef BOUGH_AERO_INDUCTION_H
+#define BOUGH_AERO_INDUCTION_H
+
+#include "aero/polar.h"
+
+#include <stdbool.h>
+
+typedef struct bough_induction_options {
+    bool tip_loss, hub_loss;    // Prandtl
+    bool tangential;            // a' at all
+    bool axial_drag;            // drag in the axial induction
+    bool tangential_drag;       // drag in the tangential induction
+} bough_induction_options;
+
+// Everything on.
+bough_induction_options bough_induction_options_default(void);
+
+// One station. x is along the rotor axis (downwind), y tangential against the rotation.
+typedef struct bough_element {
+    const bough_polar *polar;
+    double solidity;              // B c / (2 π r) [-]
+    double tip_factor, hub_factor; // B (R − r)/(2 r), B (r − R_hub)/(2 R_hub) [-]
+    double twist;                 // angle of the chord from the rotor plane [rad]
+    double inflow_x, inflow_y;    // relative to the blade, without induction [m/s]
+} bough_element;
+
+typedef struct bough_induction {
+    double phi;               // inflow angle [rad]
+    double axial, tangential; // a, a' [-]
+    bool converged;           // false: no induction is meaningful and none is applied
+} bough_induction;
+
+// The induction at an element; `warm` is a guess of φ, which changes the cost and not the result.
+bough_induction bough_induction_solve(const bough_induction_options *options,
+                                      const bough_element *element, double warm);
+
+#endif

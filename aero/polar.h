@@ -1,0 +1,34 @@
+// Airfoil coefficients: tables over the angle of attack, periodic over a full turn, interpolated
+// linearly as the field's reference codes do.
+#ifndef BOUGH_AERO_POLAR_H
+#define BOUGH_AERO_POLAR_H
+
+#include "core/arena.h"
+#include "core/status.h"
+
+// Rows of (α [deg], Cl, Cd, Cm) with α strictly increasing over at most 360°. Between the last
+// row and the first, one turn later, the interpolation goes on.
+typedef struct bough_polar_def {
+    const char *name; // for messages
+    int n;
+    const double *row; // (n × 4)
+} bough_polar_def;
+
+typedef struct bough_coefficients {
+    double lift, drag, moment; // Cl, Cd, Cm about the aerodynamic centre, positive nose up [-]
+} bough_coefficients;
+
+typedef struct bough_polar {
+    int n;             // knots, both ends of the turn included
+    const double *row; // (n × 8): α [rad], Cl, Cd, Cm, their slopes to the next knot, unused
+    int n_bin;
+    double bin_per_rad;
+    const int *bin; // (n_bin): last knot at or below the bin's start
+} bough_polar;
+
+bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar);
+
+// The coefficients at any finite angle of attack [rad].
+bough_coefficients bough_polar_at(const bough_polar *polar, double alpha);
+
+#endif

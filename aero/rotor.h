@@ -1,0 +1,110 @@
+// Aerodynamic loads on the deformed, moving blades of a rotor: blade element momentum theory at
+// the aero stations, mapped to the vertices of the structural mesh conserving force and moment.
+//
+// Axes. Ground: x downwind, z up. Blade root: z along the span, x flapwise (downwind at zero
+// pitch), y edgewise (towards the trailing edge). The rotor turns about +shaft (downwind), that
+// is clockwise seen from upwind. The rotor is sampled at one time; holding and ramping the loads
+// between samples is the caller's.
+#ifndef BOUGH_AERO_ROTOR_H
+#define BOUGH_AERO_ROTOR_H
+
+#include "aero/induction.h"
+#include "aero/polar.h"
+#include "aero/tower.h"
+#include "aero/wind.h"
+#include "core/arena.h"
+#include "core/status.h"
+#include "core/vec3.h"
+
+// One row of the aerodynamic blade table (undeformed blade).
+typedef struct bough_station_def {
+    double span;         // along the reference axis from the root [m]
+    double chord;        // [m]
+    double twist;        // positive: leading edge into the wind [rad]
+    double centre_x;     // aerodynamic centre in blade-root axes, flapwise [m]
+    double centre_y;     //   and edgewise [m]; its z is that of the reference axis at `span`
+    int polar;           // index into the rotor's polars
+} bough_station_def;
+
+typedef struct bough_rotor_def {
+    int n_blade;
+    double density;      // of air [kg/m³]
+    double hub_radius;   // from the shaft axis to the blade roots [m]
+    bool pitching_moment;
+    bool skew;           // Pitt–Peters correction of the axial induction
+    bough_induction_options induction;
+    bough_wind_def wind;
+    bough_tower_def tower;
+
+    int n_polar;
+    const bough_polar_def *polar; // (n_polar)
+    int n_station;
+    const bough_station_def *station; // (n_station) increasing in span, the last one is the tip
+
+    // The structural mesh of one blade, undeformed, in blade-root axes. Sections may or may not
+    // include the structural twist; the aero twist is counted from the root axes.
+    int n_vertex;
+    const double *vertex_span;         // (n_vertex) along the reference axis, increasing [m]
+    const bough_vec3 *vertex_position; // (n_vertex) [m]
+    const bough_mat3 *vertex_rotation; // (n_vertex) columns: section axes
+} bough_rotor_def;
+
+// 3 blades, 1.225 kg/m³, every correction on, no tower, no wind; tables left empty.
+bough_rotor_def bough_rotor_def_default(void);
+
+// The motion at a sample, in ground axes. Blade b's vertex i is at index b·n_vertex + i.
+typedef struct bough_rotor_motion {
+    double time;                         // [s]
+    bough_vec3 hub;                      // where the blade-root axes meet the shaft [m]
+    bough_vec3 shaft;                    // unit vector, downwind
+    const bough_vec3 *position;          // (n_blade × n_vertex) [m]
+    const bough_mat3 *rotation;          // (n_blade × n_vertex) columns: section axes
+    const bough_vec3 *velocity;          // (n_blade × n_vertex) [m/s]
+    const bough_vec3 *angular_velocity;  // (n_blade × n_vertex) [rad/s]
+} bough_rotor_motion;
+
+// What a station reports. x is normal to the rotor plane, y tangential against the rotation.
+typedef struct bough_station {
+    double radius;                   // from the shaft axis [m]
+    double inflow_x, inflow_y;       // relative to the station, without induction [m/s]
+    double axial, tangential;        // a, a' after the skew correction [-]
+    double alpha, phi;               // angle of attack, inflow angle [rad]
+    double speed;                    // relative, with induction [m/s]
+    bough_coefficients coefficients; // Cl, Cd, Cm
+    double force_x, force_y;         // line force [N/m]
+} bough_station;
+
+typedef struct bough_rotor bough_rotor; // the constant model
+
+typedef struct bough_rotor_data {
+    // computed by bough_rotor_sample
+    bough_vec3 *force;      // (n_blade × n_vertex) on each vertex, ground axes [N]
+    bough_vec3 *moment;     // (n_blade × n_vertex) about each vertex, ground axes [N m]
+    bough_station *station; // (n_blade × n_station)
+    double thrust;          // along the shaft [N]
+    double torque;          // about the shaft [N m]
+    bough_vec3 disk_wind;   // mean of the disturbed wind over all stations [m/s]
+    // memory: a copy of it repeats a sample to the bit; zeros are a valid start
+    int n_memory;
+    double *memory; // (n_memory) warm starts of the inflow angle [rad]
+    void *scratch;
+} bough_rotor_data;
+
+// Builds the model; the def and all it points to may be released afterwards.
+bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
+                               const bough_rotor **rotor);
+
+// Takes the memory of a data struct; its loads are zero. The only other allocation.
+bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor,
+                                    bough_rotor_data *data);
+
+// Evaluates the loads at the given motion. Results are finite for any finite motion.
+void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
+                        bough_rotor_data *data);
+
+// The number of blades, stations per blade and vertices per blade.
+int bough_rotor_n_blade(const bough_rotor *rotor);
+int bough_rotor_n_station(const bough_rotor *rotor);
+int bough_rotor_n_vertex(const bough_rotor *rotor);
+
+#endif
