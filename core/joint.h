@@ -1,0 +1,59 @@
+// Joints: how a body moves against its parent. The body frame coincides with the joint frame where
+// all coordinates are zero (quaternion: one); speeds are components of the relative twist in body
+// axes, so that every motion subspace S is constant there.
+//
+// kind       coordinates q                       speeds v
+// fixed      –                                   –
+// revolute   angle [rad]                         q̇ [rad/s]
+// prismatic  displacement [m]                    q̇ [m/s]
+// spherical  quaternion (w, x, y, z)             Ω in body axes [rad/s]
+// free       position in joint axes [m], quat.   velocity, Ω, both in body axes [m/s, rad/s]
+#ifndef BOUGH_CORE_JOINT_H
+#define BOUGH_CORE_JOINT_H
+
+#include "core/spatial.h"
+
+typedef enum bough_joint_kind {
+    BOUGH_JOINT_FIXED,
+    BOUGH_JOINT_REVOLUTE,
+    BOUGH_JOINT_PRISMATIC,
+    BOUGH_JOINT_SPHERICAL,
+    BOUGH_JOINT_FREE,
+} bough_joint_kind;
+
+enum { BOUGH_JOINT_COORDINATES = 7, BOUGH_JOINT_SPEEDS = 6 }; // the most any joint has
+
+typedef struct bough_joint {
+    bough_joint_kind kind;
+    bough_transform placement; // of the joint frame in the parent's frame
+    bough_vec3 axis;           // unit vector in joint axes; revolute and prismatic
+} bough_joint;
+
+// The kind's name in scenes ("revolute"), and its numbers of coordinates and of speeds.
+const char *bough_joint_name(bough_joint_kind kind);
+int bough_joint_n_coordinates(bough_joint_kind kind);
+int bough_joint_n_speeds(bough_joint_kind kind);
+
+// The placement of the body frame in the parent's frame. A quaternion is used as q/|q|.
+bough_transform bough_joint_pose(const bough_joint *joint, const double *q);
+
+// S v: the relative twist in body axes.
+bough_twist bough_joint_twist(const bough_joint *joint, const double *v);
+
+// Sᵀ f: the generalised force (n_speeds) of a wrench in body axes at the body's origin.
+void bough_joint_force(const bough_joint *joint, bough_wrench f, double *force);
+
+// q̇ = N(q) v. It keeps |p| of any quaternion.
+void bough_joint_rate(const bough_joint *joint, const double *q, const double *v, double *rate);
+
+// N⁺(q) δq: the speeds (n_speeds) that belong to a change of the coordinates; a quaternion's change
+// along itself is no motion.
+void bough_joint_speed(const bough_joint *joint, const double *q, const double *change, double *v);
+
+// Scales the quaternion, if there is one, to |p| = 1.
+void bough_joint_normalise(const bough_joint *joint, double *q);
+
+// | |p| − 1 |; 0 without a quaternion.
+double bough_joint_drift(const bough_joint *joint, const double *q);
+
+#endif
