@@ -1,0 +1,242 @@
+// A scene as the user said it: plain structs in SI units and radians, names resolved to indices,
+// every value checked. Read from a YAML file by one table (scene_schema.c); apps/scene/build makes
+// the model of it. Examples of every form: tests/scenes/example-*.yaml.
+//
+// All memory belongs to the arena given to bough_scene_read. A part that the file may leave out
+// has `node == NULL` when it is absent; its other fields then hold the defaults.
+//
+// Axes: ground z up. A placement is a list of steps, each in the frame reached so far. Section
+// quantities are in the section's axes, whose z is the tangent of the reference axis, and about the
+// reference axis; strains in the order shear x, shear y, axial, bend about x, bend about y, twist.
+#ifndef BOUGH_APPS_SCENE_SCENE_H
+#define BOUGH_APPS_SCENE_SCENE_H
+
+#include "apps/scene/text.h"
+#include "core/arena.h"
+#include "core/status.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+enum { BOUGH_SCENE_GROUND = -1 }; // parent index of a body that hangs on the ground
+
+typedef enum bough_scene_scheme {
+    BOUGH_SCENE_FROZEN,
+    BOUGH_SCENE_GAUSS_SEIDEL,
+    BOUGH_SCENE_EXTRAPOLATED,
+    BOUGH_SCENE_RAMP,
+    BOUGH_SCENE_MONOLITHIC,
+} bough_scene_scheme;
+
+typedef struct bough_scene_coupling {
+    int scheme;   // bough_scene_scheme
+    int order;    // degree of the extrapolation, 0..2
+    double theta; // share of the new value in the ramp, 0.5..1; 0: chosen by the scheme ("auto")
+} bough_scene_coupling;
+
+typedef enum bough_scene_master_kind { BOUGH_SCENE_IDA } bough_scene_master_kind;
+typedef enum bough_scene_micro_kind { BOUGH_SCENE_CVODE_BDF } bough_scene_micro_kind;
+
+typedef struct bough_scene_solver {
+    int solver;  // bough_scene_master_kind or bough_scene_micro_kind
+    double rtol; // [-]
+} bough_scene_solver;
+
+typedef struct bough_scene_simulation {
+    const bough_node *node;
+    double duration;   // [s], a multiple of the macro step
+    double macro_step; // [s]
+    bough_scene_coupling coupling;
+    bough_scene_solver master, micro;
+    int threads;
+    double output_interval; // [s], a multiple of the macro step
+} bough_scene_simulation;
+
+typedef enum bough_scene_axis { BOUGH_SCENE_X, BOUGH_SCENE_Y, BOUGH_SCENE_Z } bough_scene_axis;
+
+typedef struct bough_scene_step {
+    bool rotate;   // a rotation about the axis, else a translation along it
+    int axis;      // bough_scene_axis
+    double amount; // [rad] or [m]
+} bough_scene_step;
+
+typedef enum bough_scene_joint_kind {
+    BOUGH_SCENE_FIXED,
+    BOUGH_SCENE_REVOLUTE,
+    BOUGH_SCENE_PRISMATIC,
+    BOUGH_SCENE_SPHERICAL,
+    BOUGH_SCENE_FREE,
+} bough_scene_joint_kind;
+
+// The joint that carries a body: placement from the parent's frame to the joint's frame, which is
+// the body's frame at zero joint displacement.
+typedef struct bough_scene_joint {
+    const bough_node *node;
+    int kind;                // bough_scene_joint_kind
+    const char *parent_name; // as written
+    int parent;              // index of a body, or BOUGH_SCENE_GROUND
+    int n_placement;
+    bough_scene_step *placement; // (n_placement)
+    int axis;                    // bough_scene_axis of revolute and prismatic
+    double position;             // initial angle [rad] of revolute, displacement [m] of prismatic
+    double speed;                // initial, [rad/s] of revolute, [m/s] of prismatic
+    double velocity[3];          // initial [m/s] of free, in the joint's frame
+    double angular_velocity[3];  // initial [rad/s] of spherical and free, in the joint's frame
+} bough_scene_joint;
+
+// A section of a rod. Between stations everything is linear in span.
+typedef struct bough_scene_station {
+    const bough_node *node;
+    double position[3];    // point of the reference axis in the body's frame [m]; [2] is the span
+    double twist;          // [rad]: the section's axes are turned by −twist about the tangent
+    double stiffness[36];  // symmetric, row by row [N, N m, N m²]
+    double mass;           // per length [kg/m]
+    double mass_centre[2]; // offset from the reference axis, x and y in section axes [m]
+    double inertia[4];     // Ixx Iyy Ixy Izz: entries of the inertia matrix per length about the
+                           // reference axis [kg m]; Ixy = −∫xy
+} bough_scene_station;
+
+typedef struct bough_scene_rod {
+    const bough_node *node; // NULL: the body has no rod
+    const char *source;     // where the data come from; NULL: not said
+    const char *table;      // name of the file as written; NULL: given in the scene
+    int n_segments;
+    double length;               // extent along z [m]
+    double damping[6];           // stress = stiffness (strain + damping · strain rate) [s]
+    int n_station;               // 1: uniform, that station holds for all of [0, length]
+    bough_scene_station *station; // (n_station), spans strictly increasing from 0 to length;
+                                 // the same pointer for bodies that name the same table
+} bough_scene_rod;
+
+typedef enum bough_scene_fidelity { BOUGH_SCENE_RIGID, BOUGH_SCENE_ROD } bough_scene_fidelity;
+
+typedef struct bough_scene_body {
+    const bough_node *node;
+    const char *name;
+    int fidelity; // bough_scene_fidelity
+    bough_scene_joint joint;
+    double pitch;             // [rad]: last rotation of the placement, about z by −pitch
+    double mass;              // [kg]; rigid bodies without a rod
+    double centre_of_mass[3]; // [m] body axes
+    double inertia[6];        // Ixx Iyy Izz Ixy Ixz Iyz about the centre of mass [kg m²]: entries
+                              // of the inertia matrix, Ixy = −∫xy
+    bough_scene_rod rod;      // fidelity rod, or rigid: integrated to a rigid body
+} bough_scene_body;
+
+// Factor in time: 0 before ramp[0], 1 after ramp[1], linear between; {0, 0}: always 1.
+typedef struct bough_scene_load {
+    const bough_node *node;
+    const char *joint_name;
+    int joint;      // index of the body that the joint carries
+    double amount;  // torque [N m] of a revolute joint, force [N] of a prismatic one
+    double ramp[2]; // [s]
+} bough_scene_load;
+
+typedef struct bough_scene_turbine {
+    const bough_node *node; // NULL: no turbine
+    const char *rotor_name;
+    int rotor; // index of the body on the rotor's revolute joint
+    int n_blade;
+    const char **blade_name; // (n_blade)
+    int *blade;              // (n_blade) indices of bodies with a rod
+} bough_scene_turbine;
+
+typedef struct bough_scene_aero_station {
+    const bough_node *node;
+    double span;  // along z from the root [m]
+    double ac[2]; // aerodynamic centre x, y in blade-root axes, from the pitch axis [m]
+    double twist; // [rad], as in bough_scene_station
+    double chord; // [m]
+    const char *polar_name;
+    int polar; // index
+} bough_scene_aero_station;
+
+typedef struct bough_scene_aero_blade {
+    const bough_node *node;
+    const char *source;
+    int n_station;
+    bough_scene_aero_station *station; // (n_station), spans strictly increasing from 0
+} bough_scene_aero_blade;
+
+typedef struct bough_scene_polar_row {
+    const bough_node *node;
+    double alpha; // [rad]
+    double cl, cd, cm;
+} bough_scene_polar_row;
+
+typedef struct bough_scene_polar {
+    const bough_node *node;
+    const char *name;
+    int n_row;
+    bough_scene_polar_row *row; // (n_row), alpha strictly increasing from −π to π
+} bough_scene_polar;
+
+typedef struct bough_scene_polars {
+    const bough_node *node;
+    const char *source;
+    int n_polar;
+    bough_scene_polar *polar; // (n_polar), at least two rows each
+} bough_scene_polars;
+
+typedef enum bough_scene_hold { BOUGH_SCENE_LINEAR, BOUGH_SCENE_CONSTANT } bough_scene_hold;
+typedef enum bough_scene_skew { BOUGH_SCENE_SKEW_NONE, BOUGH_SCENE_PITT_PETERS } bough_scene_skew;
+typedef enum bough_scene_wind_kind { BOUGH_SCENE_WIND_UNIFORM } bough_scene_wind_kind;
+typedef enum bough_scene_influence { BOUGH_SCENE_POTENTIAL } bough_scene_influence;
+
+typedef struct bough_scene_wind {
+    int kind;     // bough_scene_wind_kind
+    double speed; // along ground x [m/s]
+} bough_scene_wind;
+
+typedef struct bough_scene_induction {
+    bool tip_loss, hub_loss, tangential, drag;
+    int skew; // bough_scene_skew
+} bough_scene_induction;
+
+// Vertical along ground z from the origin.
+typedef struct bough_scene_tower {
+    const bough_node *node; // NULL: no tower influence
+    int influence;          // bough_scene_influence
+    int n_height, n_diameter; // equal
+    double *height;           // (n_height) strictly increasing [m]
+    double *diameter;         // (n_height) [m]
+} bough_scene_tower;
+
+typedef struct bough_scene_aero {
+    const bough_node *node; // NULL: no aerodynamics
+    double rate;            // samples per second [Hz]; the period is a multiple of the macro step
+    double air_density;     // [kg/m³]
+    bough_scene_wind wind;
+    double ramp[2]; // [s] as in bough_scene_load
+    int hold;       // bough_scene_hold: how loads go between samples
+    bough_scene_aero_blade blade;
+    bough_scene_polars polars;
+    bough_scene_induction induction;
+    bough_scene_tower tower;
+    double hub_radius; // [m]
+} bough_scene_aero;
+
+typedef struct bough_scene {
+    const bough_node *node;
+    const char *file; // path of the scene
+    const char *title;
+    double gravity[3]; // [m/s²] ground axes
+    bough_scene_simulation simulation;
+    int n_body;
+    bough_scene_body *body; // (n_body) in the file's order; a parent may come after its child
+    int *order;             // (n_body) indices of bodies, parents before children
+    int n_load;
+    bough_scene_load *load; // (n_load)
+    bough_scene_turbine turbine;
+    bough_scene_aero aero; // needs the turbine
+} bough_scene;
+
+// Reads and checks the scene with the replacements `sets` ("bodies[2].pitch=5 deg"). Every error
+// found is added to `errors`; then the status is BOUGH_INVALID and *scene is NULL.
+bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets,
+                              int n_set, bough_errors *errors, bough_scene **scene);
+
+// Writes every key of a scene and of its data files with unit, range, default and meaning.
+void bough_scene_help(FILE *stream);
+
+#endif
