@@ -1,0 +1,74 @@
+// The coupled system: subsystems, the stage each advances in, and the connections that copy outputs
+// to inputs. Constant once built. Ports of all members are numbered through: input j of member i is
+// component input_offset[i] + j of an array over all inputs, and likewise for outputs and states.
+#ifndef BOUGH_COSIM_ASSEMBLY_H
+#define BOUGH_COSIM_ASSEMBLY_H
+
+#include "core/arena.h"
+#include "core/status.h"
+#include "core/subsystem.h"
+
+// A subsystem and when it advances: members of one stage in parallel; sequential schemes take the
+// stages in order. Stage 0 is the master.
+typedef struct bough_member {
+    const bough_subsystem *subsystem; // borrowed; outlives the assembly
+    int stage;
+} bough_member;
+
+// Outputs from_offset … from_offset + count − 1 of one member are inputs to_offset … of another.
+typedef struct bough_connection {
+    int from, from_offset, to, to_offset, count;
+    bool kinematic; // a motion: where a value is held, its rate is held instead
+} bough_connection;
+
+typedef struct bough_assembly_def {
+    int n_member;
+    const bough_member *member; // (n_member)
+    int n_connection;
+    const bough_connection *connection; // (n_connection)
+} bough_assembly_def;
+
+// A pair of ports that exchange power: wrench · twist.
+typedef struct bough_interface {
+    int body;   // the member that returns the wrench
+    int wrench; // first input of the wrench's receiver, numbered over all inputs
+    int twist;  // first input of the body, numbered over all inputs
+    int count;  // components of the wrench
+} bough_interface;
+
+typedef struct bough_assembly {
+    int n_member, n_stage;
+    const bough_subsystem **member; // (n_member)
+    int *stage;                     // (n_member)
+    int n_state, n_input, n_output; // sums over the members
+    int *state_offset;              // (n_member + 1)
+    int *input_offset;              // (n_member + 1)
+    int *output_offset;             // (n_member + 1)
+    int *source;                    // (n_input) the output that feeds each input
+    int *source_member;             // (n_input) the member it belongs to
+    bool *kinematic;                // (n_input)
+    bool *feedthrough;              // (n_member) whether outputs depend on inputs directly
+    int *order;                     // (n_member) outputs evaluated in this order need no iteration
+    int n_interface;
+    bough_interface *interface; // (n_interface)
+} bough_assembly;
+
+// Builds the assembly in the arena. BOUGH_INVALID when an input is unconnected or connected twice,
+// a connection leaves its ports' ranges, or the outputs form an algebraic loop. Feedthrough is
+// found by probing output_tangent at the members' current states.
+bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *def,
+                                  bough_assembly **assembly);
+
+// Outputs and inputs of all members at their current states: output (n_output), input (n_input).
+void bough_assembly_outputs(const bough_assembly *a, double t, double *output, double *input);
+
+// Rates of the inputs of all members, given the inputs and the state rates (n_state).
+// Scratch: output_rate (n_output).
+void bough_assembly_rates(const bough_assembly *a, double t, const double *input,
+                          const double *state_rate, double *output_rate, double *input_rate);
+
+// input[j] = output[source[j]] for the inputs of one member.
+void bough_assembly_gather(const bough_assembly *a, int member, const double *output,
+                           double *input);
+
+#endif

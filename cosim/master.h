@@ -1,0 +1,63 @@
+// The macro loop. Macro times are T_k = k·H, by multiplication; a step is split where an event time
+// falls inside it, and the last one ends exactly on the duration.
+#ifndef BOUGH_COSIM_MASTER_H
+#define BOUGH_COSIM_MASTER_H
+
+#include "cosim/monitor.h"
+
+// Loads that arrive at their own rate: sample() is called at multiples of the period, between
+// steps, and sets the loads inside the subsystems for [t, t_next].
+typedef struct bough_sampled_load {
+    double period; // [s] an integer multiple of the macro step
+    void *self;
+    // *jumped is true on return when the loads are discontinuous at t.
+    bough_status (*sample)(void *self, double t, double t_next, bool *jumped);
+} bough_sampled_load;
+
+typedef struct bough_master_def {
+    bough_assembly_def assembly;
+    bough_scheme_options scheme;
+    double macro_step; // H [s]
+    double duration;   // [s]; the run starts at time 0
+    int n_load;
+    const bough_sampled_load *load; // (n_load), copied
+    int n_event;
+    const double *event; // (n_event) times where loads have corners [s], any order, copied
+    int threads;         // 1 or more
+} bough_master_def;
+
+// ramp, one thread, no loads, no events; assembly, macro_step and duration are the caller's.
+bough_master_def bough_master_def_default(void);
+
+typedef struct bough_master {
+    double macro_step, duration; // [s]
+    double time;                 // the current synchronisation point [s]
+    long steps;                  // macro steps taken
+    bough_assembly *assembly;
+    const bough_scheme *scheme;
+    bough_coupling *coupling;
+    bough_monitor *monitor;
+    int n_load;
+    bough_sampled_load *load; // (n_load)
+    long *load_every;         // (n_load) macro steps per period
+    int n_event;
+    double *event;   // (n_event) ascending
+    int next_event;  // first event after `time`
+    long grid_index; // k of the last grid point at or before `time`
+    bool at_event;   // `time` is an event
+} bough_master;
+
+// Whether a period is an integer multiple of the macro step within 1e-9: the multiple, 0 if not.
+long bough_master_multiple(double period, double macro_step);
+
+// Builds everything in the arena; stepping allocates nothing.
+bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
+                                bough_master **master);
+
+// One macro step: sample loads, take the members over the step, exchange, judge.
+bough_status bough_step(bough_master *m);
+
+// Whether the duration is reached.
+bool bough_master_done(const bough_master *m);
+
+#endif
