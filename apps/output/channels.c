@@ -1,0 +1,77 @@
+#include "apps/output/channels.h"
+
+#include <assert.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <string.h>
+
+bough_channels bough_channels_start(bough_arena *arena) { return (bough_channels){.arena = arena}; }
+
+// Room for one item more. The arena keeps the outgrown blocks: at most as much again.
+static void *grown(bough_arena *arena, void *items, int count, int *capacity, size_t size) {
+    if (count < *capacity) return items;
+    int wanted = *capacity ? 2 * *capacity : 16;
+    void *larger = bough_arena_take(arena, (size_t)wanted * size);
+    if (!larger) return NULL;
+    if (count) memcpy(larger, items, (size_t)count * size);
+    *capacity = wanted;
+    return larger;
+}
+
+bough_status bough_channels_group(bough_channels *list, bough_channel_sample *sample, void *self) {
+    bough_channel_group *group =
+        grown(list->arena, list->group, list->group_count, &list->group_capacity, sizeof *group);
+    if (!group) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the output channels");
+    list->group = group;
+    list->group[list->group_count++] =
+        (bough_channel_group){.sample = sample, .self = self, .first = list->count};
+    return bough_ok();
+}
+
+static bool is_word(const char *text, size_t size) {
+    size_t length = strlen(text);
+    return length > 0 && length < size && !strpbrk(text, " \t\r\n");
+}
+
+bough_status bough_channels_add(bough_channels *list, const char *unit, const char *format, ...) {
+    assert(list->group_count > 0);
+    char name[2 * BOUGH_CHANNEL_NAME];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(name, sizeof name, format, arguments);
+    va_end(arguments);
+    if (!is_word(name, BOUGH_CHANNEL_NAME) || strcmp(name, "Time") == 0) {
+        return bough_fail(BOUGH_INVALID,
+                          "'%s' cannot name an output channel: use 1 to %d "
+                          "characters without blanks, other than 'Time'",
+                          name, BOUGH_CHANNEL_NAME - 1);
+    }
+    assert(is_word(unit, BOUGH_CHANNEL_UNIT));
+    if (bough_channels_find(list, name) >= 0) {
+        return bough_fail(BOUGH_INVALID, "two output channels are named '%s': rename a body", name);
+    }
+    bough_channel *channel =
+        grown(list->arena, list->channel, list->count, &list->capacity, sizeof *channel);
+    if (!channel) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the output channels");
+    list->channel = channel;
+    channel += list->count++;
+    memcpy(channel->name, name, BOUGH_CHANNEL_NAME);
+    memcpy(channel->unit, unit, strlen(unit) + 1);
+    list->group[list->group_count - 1].count++;
+    return bough_ok();
+}
+
+int bough_channels_find(const bough_channels *list, const char *name) {
+    for (int i = 0; i < list->count; i++) {
+        if (strcmp(list->channel[i].name, name) == 0) return i;
+    }
+    return -1;
+}
+
+void bough_channels_sample(const bough_channels *list, double t, double *value) {
+    for (int i = 0; i < list->group_count; i++) {
+        const bough_channel_group *group = &list->group[i];
+        if (group->count) group->sample(group->self, t, value + group->first);
+    }
+}

@@ -1,0 +1,50 @@
+// Names and units of what a run records, in groups: whoever computes values registers one group
+// and its channels, and is asked for all of them at once. Building allocates, sampling does not.
+#ifndef BOUGH_OUTPUT_CHANNELS_H
+#define BOUGH_OUTPUT_CHANNELS_H
+
+#include "core/arena.h"
+#include "core/status.h"
+
+enum { BOUGH_CHANNEL_NAME = 48, BOUGH_CHANNEL_UNIT = 16 };
+
+typedef struct bough_channel {
+    char name[BOUGH_CHANNEL_NAME]; // OpenFAST's name where the quantity is the same
+    char unit[BOUGH_CHANNEL_UNIT]; // without parentheses: "m", "kN-m", "rpm", "-"
+} bough_channel;
+
+// Writes the group's values at time t [s], each in its channel's unit.
+typedef void bough_channel_sample(void *self, double t, double *value);
+
+typedef struct bough_channel_group {
+    bough_channel_sample *sample;
+    void *self;
+    int first, count; // its channels
+} bough_channel_group;
+
+typedef struct bough_channels {
+    bough_arena *arena;
+    bough_channel *channel;     // (count); time is not among them
+    bough_channel_group *group; // (group_count)
+    int count, capacity;
+    int group_count, group_capacity;
+} bough_channels;
+
+// An empty list whose memory is the arena's.
+bough_channels bough_channels_start(bough_arena *arena);
+
+// Begins a group: the channels added next are written by `sample`.
+bough_status bough_channels_group(bough_channels *list, bough_channel_sample *sample, void *self);
+
+// Adds a channel with a printf-style name. Names are unique, neither empty nor "Time" nor with
+// blanks, since readers split the name row there.
+bough_status bough_channels_add(bough_channels *list, const char *unit, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+// The index of the channel with this name, −1 if there is none.
+int bough_channels_find(const bough_channels *list, const char *name);
+
+// Asks every group: value (count).
+void bough_channels_sample(const bough_channels *list, double t, double *value);
+
+#endif

@@ -1,0 +1,76 @@
+#include "apps/output/folder.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+static bough_status make_one(const char *path) {
+    if (mkdir(path, 0777) == 0) return bough_ok();
+    int error = errno;
+    struct stat info;
+    if (stat(path, &info) == 0) {
+        if (S_ISDIR(info.st_mode)) return bough_ok();
+        return bough_fail(BOUGH_IO,
+                          "'%.200s' is a file; results need a folder: name another "
+                          "with --out",
+                          path);
+    }
+    return bough_fail(BOUGH_IO, "cannot create the folder '%.200s': %s", path, strerror(error));
+}
+
+bough_status bough_folder_make(const char *path) {
+    char part[BOUGH_PATH_MAX];
+    size_t length = strlen(path);
+    if (length == 0) return bough_fail(BOUGH_INVALID, "the results folder has an empty name");
+    if (length >= sizeof part)
+        return bough_fail(BOUGH_INVALID, "the results folder's name is too long");
+    memcpy(part, path, length + 1);
+    for (size_t i = 1; i < length; i++) {
+        if (part[i] != '/') continue;
+        part[i] = '\0';
+        bough_status status = make_one(part);
+        if (!bough_is_ok(&status)) return status;
+        part[i] = '/';
+    }
+    bough_status status = make_one(part);
+    if (!bough_is_ok(&status)) return status;
+    if (access(path, W_OK | X_OK) == 0) return bough_ok();
+    return bough_fail(BOUGH_IO, "cannot write into the folder '%.200s': %s", path, strerror(errno));
+}
+
+bough_status bough_folder_path(const char *folder, const char *name, char *path) {
+    int length = snprintf(path, BOUGH_PATH_MAX, "%s/%s", folder, name);
+    if (length < BOUGH_PATH_MAX) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "the path of '%s' in the results folder is too long", name);
+}
+
+static bough_status partial_path(const char *path, char *partial) {
+    int length = snprintf(partial, BOUGH_PATH_MAX, "%s.partial", path);
+    if (length < BOUGH_PATH_MAX) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "the path '%.200s' is too long", path);
+}
+
+bough_status bough_folder_open_partial(const char *path, FILE **file) {
+    char partial[BOUGH_PATH_MAX];
+    bough_status status = partial_path(path, partial);
+    if (!bough_is_ok(&status)) return status;
+    *file = fopen(partial, "w");
+    if (*file) return status;
+    return bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
+}
+
+bough_status bough_folder_commit(const char *path, FILE *file) {
+    char partial[BOUGH_PATH_MAX];
+    bough_status status = partial_path(path, partial);
+    if (!bough_is_ok(&status)) return status;
+    if (file) {
+        bool broken = ferror(file) != 0;
+        if (fclose(file) != 0 || broken) {
+            return bough_fail(BOUGH_IO, "cannot finish '%.200s': %s", partial,
+                              errno ? strerror(errno) : "an earlier write failed");
+        }
+    }
+    if (rename(partial, path) == 0) return status;
+    return bough_fail(BOUGH_IO, "cannot rename '%.200s': %s", partial, strerror(errno));
+}

@@ -1,0 +1,26 @@
+// The folder that receives a run's results, and files in it that are complete or absent: they are
+// written under another name and renamed at the end.
+#ifndef BOUGH_OUTPUT_FOLDER_H
+#define BOUGH_OUTPUT_FOLDER_H
+
+#include "core/status.h"
+
+#include <stdio.h>
+
+enum { BOUGH_PATH_MAX = 4096 };
+
+// Makes the folder and its missing parents. Refuses a path that is taken by a file, or a folder
+// that cannot be written.
+bough_status bough_folder_make(const char *path);
+
+// path = folder/name; refuses what does not fit into BOUGH_PATH_MAX.
+bough_status bough_folder_path(const char *folder, const char *name, char *path);
+
+// Opens path.partial for writing.
+bough_status bough_folder_open_partial(const char *path, FILE **file);
+
+// Closes the file (NULL is allowed) and gives path.partial its final name. A write error noticed
+// only now is reported, and the partial file is then left as it is.
+bough_status bough_folder_commit(const char *path, FILE *file);
+
+#endif

@@ -1,0 +1,47 @@
+#include "apps/output/progress.h"
+
+#include <stdio.h>
+#include <time.h>
+#include <unistd.h>
+
+double bough_wall_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+bough_progress bough_progress_start(double t, double t_end, bool quiet) {
+    double now = bough_wall_clock();
+    return (bough_progress){.visible = !quiet && isatty(STDERR_FILENO) == 1,
+                            .start = t,
+                            .end = t_end,
+                            .began = now,
+                            .shown = now};
+}
+
+int bough_progress_text(const bough_progress *p, double t, double wall, char *text, size_t size) {
+    double done = t - p->start;
+    int length = snprintf(text, size, "%.2f of %.6g s", t, p->end);
+    if (done <= 0 || wall <= 0 || length >= (int)size) return length;
+    double left = (p->end - t) * wall / done;
+    long seconds = left < 1e8 ? (long)(left + 0.5) : 99999999L;
+    length +=
+        snprintf(text + length, size - (size_t)length, ", %.3g times real time, %ld:%02ld left",
+                 done / wall, seconds / 60, seconds % 60);
+    return length;
+}
+
+void bough_progress_show(bough_progress *p, double t) {
+    if (!p->visible) return;
+    double now = bough_wall_clock();
+    if (now - p->shown < 0.1) return;
+    p->shown = now;
+    char text[128];
+    bough_progress_text(p, t, now - p->began, text, sizeof text);
+    fprintf(stderr, "\r%-72s", text);
+    fflush(stderr);
+}
+
+void bough_progress_clear(const bough_progress *p) {
+    if (p->visible) fprintf(stderr, "\r%72s\r", "");
+}

@@ -1,0 +1,28 @@
+// One line on a terminal that tells how far a run is, how fast, and how long it still takes.
+#ifndef BOUGH_OUTPUT_PROGRESS_H
+#define BOUGH_OUTPUT_PROGRESS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct bough_progress {
+    bool visible;        // stderr is a terminal and the user did not ask for quiet
+    double start, end;   // simulated [s]
+    double began, shown; // wall clock [s]
+} bough_progress;
+
+bough_progress bough_progress_start(double t, double t_end, bool quiet);
+
+// Call as often as convenient: the line is renewed at most ten times per second.
+void bough_progress_show(bough_progress *p, double t);
+
+// Clears the line, so that what is printed next starts at the margin.
+void bough_progress_clear(const bough_progress *p);
+
+// The text of the line at simulated time t after `wall` seconds; returns its length.
+int bough_progress_text(const bough_progress *p, double t, double wall, char *text, size_t size);
+
+// Monotonic wall clock [s], from an arbitrary origin.
+double bough_wall_clock(void);
+
+#endif

@@ -1,0 +1,56 @@
+// A folder of its own for a test that writes files, and the files' text.
+#ifndef BOUGH_TESTS_SCRATCH_H
+#define BOUGH_TESTS_SCRATCH_H
+
+#include "tests/check.h"
+
+#include <dirent.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { SCRATCH_TEXT = 1 << 20 };
+
+// cmocka set-up and tear-down: *state is the folder's path. It holds files only, no folders.
+static inline int scratch_make(void **state) {
+    char *path = malloc(64);
+    if (!path) return -1;
+    strcpy(path, "/tmp/bough-test-XXXXXX");
+    *state = path;
+    return mkdtemp(path) ? 0 : -1;
+}
+
+static inline int scratch_remove(void **state) {
+    char name[512];
+    DIR *folder = opendir(*state);
+    for (struct dirent *entry; folder && (entry = readdir(folder));) {
+        snprintf(name, sizeof name, "%s/%s", (char *)*state, entry->d_name);
+        if (entry->d_name[0] != '.') remove(name);
+    }
+    if (folder) closedir(folder);
+    int result = rmdir(*state);
+    free(*state);
+    return result;
+}
+
+// The whole text of folder/name, to be freed; NULL when there is no such file.
+static inline char *scratch_read(const char *folder, const char *name) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *file = fopen(path, "r");
+    if (!file) return NULL;
+    char *text = calloc(1, SCRATCH_TEXT);
+    if (text) text[fread(text, 1, SCRATCH_TEXT - 1, file)] = '\0';
+    fclose(file);
+    return text;
+}
+
+static inline bool scratch_has(const char *folder, const char *name) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return access(path, F_OK) == 0;
+}
+
+#endif
