@@ -1,5 +1,9 @@
 // Blade element momentum at one station: the inflow angle at which blade forces and momentum
-// agree, by Ning's single residual, which always has a bracketed root.
+// agree, by Ning's single residual, whose root is always bracketed.
+//
+// The solver keeps no memory: a warm start would save four of ten evaluations, but where a stalled
+// polar gives several roots it makes the answer depend on the past, and a repeated step would not
+// repeat its loads.
 //
 // S. A. Ning, "A simple solution method for the blade element momentum equations with guaranteed
 // convergence", Wind Energy 17 (2014). High thrust: M. L. Buhl, NREL/TP-500-36834 (2005).
@@ -30,13 +34,16 @@ typedef struct bough_element {
 } bough_element;
 
 typedef struct bough_induction {
-    double phi;               // inflow angle [rad]
-    double axial, tangential; // a, a' [-]
-    bool converged;           // false: no induction is meaningful and none is applied
+    double axial, tangential; // a in [−1, 1.5], a' in [−1, 1]; both 0 where no balance exists [-]
+    int evaluations;          // of the residual
+    bool fixed;               // at the very tip or root, where the loss leaves a = 1, a' = 0
 } bough_induction;
 
-// The induction at an element; `warm` is a guess of φ, which changes the cost and not the result.
+// The induction at an element; finite for any finite element.
 bough_induction bough_induction_solve(const bough_induction_options *options,
-                                      const bough_element *element, double warm);
+                                      const bough_element *element);
+
+// The inflow angle in (−π, π] with that induction [rad].
+double bough_induction_angle(const bough_element *element, double axial, double tangential);
 
 #endif

@@ -63,12 +63,13 @@ typedef struct bough_rotor_motion {
     const bough_vec3 *angular_velocity;  // (n_blade × n_vertex) [rad/s]
 } bough_rotor_motion;
 
-// What a station reports. x is normal to the rotor plane, y tangential against the rotation.
+// What a station reports. x is normal to the deformed blade in the plane of shaft and blade, y
+// tangential, against the rotation.
 typedef struct bough_station {
     double radius;                   // from the shaft axis [m]
     double inflow_x, inflow_y;       // relative to the station, without induction [m/s]
     double axial, tangential;        // a, a' after the skew correction [-]
-    double alpha, phi;               // angle of attack, inflow angle [rad]
+    double alpha, phi, twist;        // angle of attack, inflow angle, chord to the y axis [rad]
     double speed;                    // relative, with induction [m/s]
     bough_coefficients coefficients; // Cl, Cd, Cm
     double force_x, force_y;         // line force [N/m]
@@ -84,10 +85,7 @@ typedef struct bough_rotor_data {
     double thrust;          // along the shaft [N]
     double torque;          // about the shaft [N m]
     bough_vec3 disk_wind;   // mean of the disturbed wind over all stations [m/s]
-    // memory: a copy of it repeats a sample to the bit; zeros are a valid start
-    int n_memory;
-    double *memory; // (n_memory) warm starts of the inflow angle [rad]
-    void *scratch;
+    struct bough_rotor_scratch *scratch;
 } bough_rotor_data;
 
 // Builds the model; the def and all it points to may be released afterwards.
@@ -98,7 +96,8 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
 bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor,
                                     bough_rotor_data *data);
 
-// Evaluates the loads at the given motion. Results are finite for any finite motion.
+// Evaluates the loads at the given motion, of which they are a pure function: nothing is kept
+// from sample to sample. Finite for any finite motion.
 void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
                         bough_rotor_data *data);
 

@@ -1,0 +1,138 @@
+#include "aero/induction.h"
+
+#include "core/base.h"
+
+#include <math.h>
+
+// Ning's residual multiplied by sin φ, in which it has no pole:
+//     f(φ) = sin²φ/(1 − a) − |Vx/Vy| (sin φ cos φ − σ ct/(4F)),
+// written for the quadrant of positive inflow, to which mirroring brings every other.
+
+// Both ends of an interval keep this distance from φ = 0 and π, where no wake exists [rad].
+static const double clearance = 1e-6;
+// Slower than this there is no wake to speak of [m/s].
+static const double slow = 1e-3;
+// Least loss factor.
+static const double least_loss = 1e-4;
+
+bough_induction_options bough_induction_options_default(void) {
+    return (bough_induction_options){true, true, true, true, true};
+}
+
+typedef struct problem {
+    const bough_induction_options *options;
+    const bough_element *element;
+    double sign_x, sign_y; // of the inflow
+    double slope;          // |Vx / Vy|
+    bool brake;            // propeller brake state, φ < 0
+    int evaluations;
+} problem;
+
+typedef struct balance {
+    double axial; // sin²φ/(1 − a)
+    double swirl; // sin φ cos φ/(1 + a')
+    double sc;    // sin φ cos φ
+    double s2;    // sin²φ
+} balance;
+
+// (2/π) acos exp(−factor/|sin φ|)
+static double prandtl(double factor, double s) {
+    double x = factor / s;
+    return x > 37 ? 1 : 2 / BOUGH_PI * acos(exp(-x)); // beyond 37 the exponential is lost to 1
+}
+
+static double loss(const problem *p, double s) {
+    double f = 1;
+    if (p->options->tip_loss) f *= prandtl(p->element->tip_factor, s);
+    if (p->options->hub_loss) f *= prandtl(p->element->hub_factor, s);
+    return fmax(f, least_loss);
+}
+
+// sin²φ/(1 − a) for the loading c = σ cn/(4F) = k sin²φ. Beyond k = 2/3 by Buhl's parabola, whose
+// root written as 1 − a = 1/(√g₂ + 5/3 − F) has no singular case.
+static double axial_share(double c, double s2, double f, bool brake) {
+    if (brake) return s2 - c;
+    if (3 * c <= 2 * s2) return s2 + c;
+    return sqrt(s2 * (2 * f * c - (4. / 3 - f) * f * s2)) + (5. / 3 - f) * s2;
+}
+
+static balance balance_at(problem *p, double phi) {
+    const bough_element *e = p->element;
+    const bough_induction_options *o = p->options;
+    double s = sin(phi), c = cos(phi);
+    double flow_s = p->sign_x * s, flow_c = p->sign_y * c;
+    double angle = p->sign_y > 0 ? p->sign_x * phi : p->sign_x * (BOUGH_PI - phi);
+    bough_coefficients k = bough_polar_at(e->polar, angle - e->twist);
+    double normal = k.lift * flow_c + (o->axial_drag ? k.drag * flow_s : 0);
+    double tangent = k.lift * flow_s - (o->tangential_drag ? k.drag * flow_c : 0);
+    double f = loss(p, fabs(s)), density = e->solidity / (4 * f);
+    double swirl = o->tangential ? density * p->sign_y * tangent : 0;
+    p->evaluations++;
+    return (balance){axial_share(density * p->sign_x * normal, s * s, f, p->brake), s * c - swirl,
+                     s * c, s * s};
+}
+
+static double residual(const problem *p, balance b) {
+    return b.axial - p->slope * b.swirl;
+}
+
+// One step of Chandrupatla's method: inverse quadratic interpolation through (a, fa), (b, fb),
+// (c, fc) where it is known to converge, else bisection; the fraction of the way from a to b.
+static double fraction(double a, double fa, double b, double fb, double c, double fc) {
+    double xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
+    if (!(phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi)) return 0.5;
+    return fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb);
+}
+
+// A root in [low, high], where f changes sign.
+static double root(problem *p, double low, double f_low, double high, double f_high) {
+    enum { MOST = 100 };
+    double a = high, fa = f_high, b = low, fb = f_low, t = 0.5;
+    for (int i = 0; i < MOST; i++) {
+        double x = a + t * (b - a), fx = residual(p, balance_at(p, x));
+        double c = a, fc = fa;
+        if ((fx > 0) != (fa > 0)) {
+            c = b, fc = fb;
+            b = a, fb = fa;
+        }
+        a = x, fa = fx;
+        double width = fabs(b - a), tolerance = 1e-13 + 4e-16 * fabs(a);
+        if (fa == 0 || width < 4 * tolerance) break;
+        t = bough_clamp(fraction(a, fa, b, fb, c, fc), tolerance / width, 1 - tolerance / width);
+    }
+    return fabs(fa) <= fabs(fb) ? a : b;
+}
+
+// Looks for a balance with φ in [low, high]; the momentum balance must be of the assumed state.
+static bool search(problem *p, double low, double high, bool brake, balance *found) {
+    p->brake = brake;
+    double f_low = residual(p, balance_at(p, low)), f_high = residual(p, balance_at(p, high));
+    if ((f_low > 0) == (f_high > 0)) return false;
+    *found = balance_at(p, root(p, low, f_low, high, f_high));
+    return brake ? found->axial < 0 : found->axial > 0;
+}
+
+bough_induction bough_induction_solve(const bough_induction_options *options,
+                                      const bough_element *element) {
+    double vx = element->inflow_x, vy = element->inflow_y;
+    if ((options->tip_loss && element->tip_factor < 1e-9) ||
+        (options->hub_loss && element->hub_factor < 1e-9)) {
+        return (bough_induction){.axial = 1, .fixed = true};
+    }
+    if (fabs(vx) < slow || fabs(vy) < slow) return (bough_induction){0};
+    problem p = {.options = options, .element = element, .sign_x = copysign(1, vx),
+                 .sign_y = copysign(1, vy), .slope = fabs(vx / vy)};
+    balance b = {0};
+    bool found = search(&p, clearance, BOUGH_PI / 2, false, &b) ||
+                 search(&p, -BOUGH_PI / 4, -clearance, true, &b) ||
+                 search(&p, BOUGH_PI / 2, BOUGH_PI - clearance, false, &b);
+    if (!found) return (bough_induction){.evaluations = p.evaluations};
+    double swirl = b.swirl != 0 ? b.sc / b.swirl - 1 : -1;
+    return (bough_induction){.axial = bough_clamp(1 - b.s2 / b.axial, -1, 1.5),
+                             .tangential = options->tangential ? bough_clamp(swirl, -1, 1) : 0,
+                             .evaluations = p.evaluations};
+}
+
+double bough_induction_angle(const bough_element *element, double axial, double tangential) {
+    return atan2(element->inflow_x * (1 - axial), element->inflow_y * (1 + tangential));
+}

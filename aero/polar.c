@@ -1,0 +1,82 @@
+#include "aero/polar.h"
+
+#include "core/base.h"
+
+#include <math.h>
+
+enum { ROW = 8 }; // doubles per knot: one cache line
+
+static const double turn = 2 * BOUGH_PI;
+
+static bough_status check(const bough_polar_def *def) {
+    const char *name = def->name ? def->name : "unnamed";
+    if (def->n < 1) return bough_fail(BOUGH_INVALID, "Polar %s has no rows.", name);
+    for (int i = 0; i < 4 * def->n; i++) {
+        if (!isfinite(def->row[i])) {
+            return bough_fail(BOUGH_INVALID, "Polar %s, row %d: not a number.", name, i / 4 + 1);
+        }
+    }
+    for (int i = 1; i < def->n; i++) {
+        if (!(def->row[4 * i] > def->row[4 * (i - 1)])) {
+            return bough_fail(BOUGH_INVALID, "Polar %s, row %d: angles must increase.", name,
+                              i + 1);
+        }
+    }
+    if (def->row[4 * (def->n - 1)] - def->row[0] > 360) {
+        return bough_fail(BOUGH_INVALID, "Polar %s spans more than 360 degrees.", name);
+    }
+    return bough_ok();
+}
+
+// Copies the knots, closes the turn, and prepares the slopes.
+static void fill_rows(const bough_polar_def *def, int n, double *row) {
+    for (int i = 0; i < n; i++) {
+        const double *from = def->row + 4 * (i % def->n);
+        double *to = row + ROW * i;
+        to[0] = from[0] * (BOUGH_PI / 180) + (i < def->n ? 0 : turn);
+        for (int c = 1; c < 4; c++) to[c] = from[c];
+    }
+    for (int i = 0; i + 1 < n; i++) {
+        double *here = row + ROW * i, *next = here + ROW;
+        for (int c = 1; c < 4; c++) here[3 + c] = (next[c] - here[c]) / (next[0] - here[0]);
+    }
+}
+
+// bin[j]: the last knot at or below the start of bin j. A lookup begins there.
+static void fill_bins(bough_polar *polar, int *bin) {
+    int knot = 0;
+    for (int j = 0; j < polar->n_bin; j++) {
+        double start = polar->row[0] + j / polar->bin_per_rad;
+        while (knot + 2 < polar->n && polar->row[ROW * (knot + 1)] <= start) knot++;
+        bin[j] = knot;
+    }
+}
+
+bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar) {
+    bough_status status = check(def);
+    if (!bough_is_ok(&status)) return status;
+    bool closed = def->row[4 * (def->n - 1)] - def->row[0] >= 360 * (1 - 1e-12);
+    int n = closed ? def->n : def->n + 1;
+    // Bins of half a degree: at most two knots to pass in the tables of the field.
+    enum { N_BIN = 720 };
+    double *row = bough_arena_doubles(arena, (size_t)(ROW * n));
+    int *bin = bough_arena_take(arena, N_BIN * sizeof *bin);
+    if (!row || !bin) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for a polar.");
+    fill_rows(def, n, row);
+    *polar = (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / turn,
+                           .bin = bin};
+    fill_bins(polar, bin);
+    return bough_ok();
+}
+
+bough_coefficients bough_polar_at(const bough_polar *polar, double alpha) {
+    double x = alpha - polar->row[0];
+    if (x < 0 || x >= turn) x -= turn * floor(x / turn);
+    int j = (int)(x * polar->bin_per_rad);
+    int knot = polar->bin[j < polar->n_bin ? j : polar->n_bin - 1];
+    x += polar->row[0];
+    while (knot + 2 < polar->n && polar->row[ROW * (knot + 1)] <= x) knot++;
+    const double *r = polar->row + ROW * knot;
+    double d = x - r[0];
+    return (bough_coefficients){r[1] + d * r[4], r[2] + d * r[5], r[3] + d * r[6]};
+}
