@@ -129,13 +129,15 @@ typedef struct bough_tree_data {
     bough_twist *twist;              // of the link
     bough_vec3 *gravity;             // [m/s²]
     // computed by the recursions of dynamics.h
-    bough_twist *acceleration;       // rate of the twist's components
+    bough_twist *acceleration;       // rate of the twist's components, or a tangent
+    bough_vec3 *gravity_rate;        // tangent of gravity
     bough_wrench *wrench;            // accumulated
     double *articulated;             // articulated inertia (n_links × 6 × 6, row-major)
     double *joint_gain;              // U = Iᴬ S (n_links × 6 speeds × 6)
     double *joint_factor;            // Cholesky factor of SᵀU (n_links × 6 × 6, row-major)
     bough_inertia *composite;        // composite rigid bodies (n_links)
     double *force;                   // generalised forces (n_v)
+    int singular;                    // the link whose joint moves no inertia, else -1
 } bough_tree_data;
 
 // Data for evaluations of the tree; as many as there are threads or users.

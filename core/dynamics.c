@@ -1,0 +1,330 @@
+// Recursive dynamics of the rigid tree; the equations stand in dynamics.h.
+#include "core/dynamics.h"
+
+#include "core/base.h"
+#include "core/linalg.h"
+
+#include <string.h>
+
+enum { N = 6, NN = N * N };
+
+static const bough_twist no_twist;
+static const bough_wrench no_wrench;
+
+// X_i V_λ for a quantity that is `ground` on the ground
+static bough_twist from_parent(const bough_tree_data *d, const bough_link *links, int i,
+                               const bough_twist *quantity, bough_twist ground) {
+    int parent = links[i].parent;
+    return bough_twist_to_child(&d->relative[i], parent < 0 ? ground : quantity[parent]);
+}
+
+void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tree_data *d) {
+    const double *q = state, *v = state + tree->n_q;
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        int up = link->parent;
+        d->relative[i] = bough_joint_pose(&link->joint, q + link->first_coordinate);
+        d->pose[i] =
+            up < 0 ? d->relative[i] : bough_transform_compose(d->pose[up], d->relative[i]);
+        // V_i = X_i V_λ + S v
+        d->joint_twist[i] = bough_joint_twist(&link->joint, v + link->first_speed);
+        d->twist[i] = bough_twist_add(from_parent(d, tree->links, i, d->twist, no_twist),
+                                      d->joint_twist[i]);
+        d->gravity[i] = bough_mat3_tmul(d->pose[i].rotation, tree->gravity);
+    }
+}
+
+// -- loads -----------------------------------------------------------------------------------
+
+static void subtract_at(bough_tree_data *d, const bough_frame *frame, bough_wrench wrench) {
+    if (frame->link < 0) return;
+    bough_wrench *sum = &d->wrench[frame->link];
+    *sum = bough_wrench_sub(*sum, bough_wrench_to_parent(&frame->placement, wrench));
+}
+
+static bough_wrench external_at(const bough_external *e, double t) {
+    double dt = t - e->start;
+    return (bough_wrench){bough_axpy(dt, e->rate.force, e->value.force),
+                          bough_axpy(dt, e->rate.moment, e->value.moment)};
+}
+
+// wrench_i = V ×* I V − I g − f_ext: what resists, without accelerations
+static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t,
+                          const double *input) {
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_inertia *inertia = &tree->links[i].inertia;
+        bough_wrench momentum = bough_inertia_mul(inertia, d->twist[i]);
+        bough_wrench weight = bough_inertia_mul(inertia, (bough_twist){d->gravity[i], {0, 0, 0}});
+        d->wrench[i] = bough_wrench_sub(bough_wrench_cross(d->twist[i], momentum), weight);
+    }
+    for (int p = 0; input != NULL && p < tree->n_ports; p++) {
+        subtract_at(d, &tree->ports[p], bough_wrench_load(input + BOUGH_PORT_INPUTS * p));
+    }
+    for (int m = 0; m < tree->n_markers; m++) {
+        const bough_external *e = &tree->external[m];
+        if (e->active) subtract_at(d, &tree->markers[m], external_at(e, t));
+    }
+}
+
+// τ of the joint loads, into data->force
+static void joint_loads(const bough_tree *tree, bough_tree_data *d, double t) {
+    memset(d->force, 0, (size_t)tree->n_v * sizeof(double));
+    for (int k = 0; k < tree->n_loads; k++) {
+        const bough_joint_load_def *load = &tree->loads[k];
+        double span = load->end - load->start;
+        double factor = span <= 0 ? 1 : bough_clamp((t - load->start) / span, 0, 1);
+        d->force[tree->links[load->body].first_speed] += factor * load->value;
+    }
+}
+
+// -- inverse dynamics ------------------------------------------------------------------------
+
+void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, double t,
+                                 const double *input, const double *acceleration,
+                                 double *residual) {
+    bias_wrenches(tree, d, t, input);
+    joint_loads(tree, d, t);
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        // A_i = X_i A_λ + V_i × S v + S v̇
+        bough_twist own = bough_joint_twist(&link->joint, acceleration + link->first_speed);
+        bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
+        d->acceleration[i] =
+            bough_twist_add(from_parent(d, tree->links, i, d->acceleration, no_twist),
+                            bough_twist_add(turn, own));
+        d->wrench[i] =
+            bough_wrench_add(d->wrench[i], bough_inertia_mul(&link->inertia, d->acceleration[i]));
+    }
+    for (int i = tree->n_links - 1; i >= 0; i--) {
+        const bough_link *link = &tree->links[i];
+        double *row = residual + link->first_speed;
+        bough_joint_force(&link->joint, d->wrench[i], row); // Sᵀ f_i
+        for (int k = 0; k < link->n_speeds; k++) row[k] -= d->force[link->first_speed + k];
+        if (link->parent < 0) continue;
+        bough_wrench *up = &d->wrench[link->parent];
+        *up = bough_wrench_add(*up, bough_wrench_to_parent(&d->relative[i], d->wrench[i]));
+    }
+}
+
+// -- forward dynamics by articulated bodies ------------------------------------------------------
+
+static bough_twist unit_twist(int k) {
+    double e[N] = {0};
+    e[k] = 1;
+    return bough_twist_load(e);
+}
+
+// A column of the motion subspace
+static bough_twist subspace(const bough_joint *joint, int k) {
+    double e[N] = {0};
+    e[k] = 1;
+    return bough_joint_twist(joint, e);
+}
+
+static bough_wrench matrix_mul(const double *a, bough_twist v) {
+    double x[N], y[N];
+    bough_twist_store(v, x);
+    for (int r = 0; r < N; r++) {
+        y[r] = 0;
+        for (int c = 0; c < N; c++) y[r] += a[N * r + c] * x[c];
+    }
+    return bough_wrench_load(y);
+}
+
+// The 6×6 matrix of a rigid inertia; symmetric, so rows are columns.
+static void rigid_matrix(const bough_inertia *inertia, double *a) {
+    for (int k = 0; k < N; k++) {
+        bough_wrench_store(bough_inertia_mul(inertia, unit_twist(k)), a + N * k);
+    }
+}
+
+// up += Xᵀ a X
+static void add_to_parent(const bough_transform *x, const double *a, double *up) {
+    for (int k = 0; k < N; k++) {
+        double column[N];
+        bough_wrench w = matrix_mul(a, bough_twist_to_child(x, unit_twist(k)));
+        bough_wrench_store(bough_wrench_to_parent(x, w), column);
+        for (int r = 0; r < N; r++) up[N * k + r] += column[r];
+    }
+}
+
+// U = Iᴬ S, D = Sᵀ U and its Cholesky factor
+static bool factor_joint(const bough_link *link, const double *articulated, double *gain,
+                         double *factor) {
+    int n = link->n_speeds;
+    for (int k = 0; k < n; k++) {
+        bough_wrench u = matrix_mul(articulated, subspace(&link->joint, k));
+        bough_wrench_store(u, gain + N * k);
+        bough_joint_force(&link->joint, u, factor + n * k);
+    }
+    return bough_cholesky_factor(n, factor);
+}
+
+// Iᵃ = Iᴬ − U D⁻¹ Uᵀ, in place: what the parent feels of the body through its joint
+static void release_joint(const bough_link *link, const double *gain, const double *factor,
+                          double *articulated) {
+    int n = link->n_speeds;
+    for (int c = 0; c < N; c++) {
+        double x[N];
+        for (int k = 0; k < n; k++) x[k] = gain[N * k + c];
+        bough_cholesky_solve(n, factor, x);
+        for (int k = 0; k < n; k++) {
+            for (int r = 0; r < N; r++) articulated[N * r + c] -= gain[N * k + r] * x[k];
+        }
+    }
+}
+
+// U D⁻¹ u
+static bough_wrench gain_solve(const bough_link *link, const double *gain, const double *factor,
+                               const double *u) {
+    double x[N], w[N] = {0};
+    memcpy(x, u, (size_t)link->n_speeds * sizeof(double));
+    bough_cholesky_solve(link->n_speeds, factor, x);
+    for (int k = 0; k < link->n_speeds; k++) {
+        for (int r = 0; r < N; r++) w[r] += gain[N * k + r] * x[k];
+    }
+    return bough_wrench_load(w);
+}
+
+// u = τ − Sᵀ pᴬ, in place of τ in data->force
+static double *joint_remainder(const bough_link *link, bough_tree_data *d, int i) {
+    double *u = d->force + link->first_speed, resisting[N];
+    bough_joint_force(&link->joint, d->wrench[i], resisting);
+    for (int k = 0; k < link->n_speeds; k++) u[k] -= resisting[k];
+    return u;
+}
+
+// v̇ = D⁻¹ (u − Uᵀ a'), A = a' + S v̇
+static void accelerate(const bough_link *link, bough_tree_data *d, int i, bough_twist arriving,
+                       double *acceleration) {
+    double *own = acceleration + link->first_speed;
+    for (int k = 0; k < link->n_speeds; k++) {
+        bough_wrench column = bough_wrench_load(d->joint_gain + NN * i + N * k);
+        own[k] = d->force[link->first_speed + k] - bough_power(arriving, column);
+    }
+    bough_cholesky_solve(link->n_speeds, d->joint_factor + NN * i, own);
+    d->acceleration[i] = bough_twist_add(arriving, bough_joint_twist(&link->joint, own));
+}
+
+bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, double t,
+                                 const double *input, double *acceleration) {
+    bias_wrenches(tree, d, t, input);
+    joint_loads(tree, d, t);
+    d->singular = -1;
+    for (int i = 0; i < tree->n_links; i++) {
+        rigid_matrix(&tree->links[i].inertia, d->articulated + NN * i);
+    }
+    for (int i = tree->n_links - 1; i >= 0; i--) {
+        const bough_link *link = &tree->links[i];
+        double *own = d->articulated + NN * i, *gain = d->joint_gain + NN * i;
+        double *factor = d->joint_factor + NN * i;
+        if (!factor_joint(link, own, gain, factor)) {
+            d->singular = i;
+            return false;
+        }
+        double *u = joint_remainder(link, d, i);
+        if (link->parent < 0) continue;
+        release_joint(link, gain, factor, own);
+        add_to_parent(&d->relative[i], own, d->articulated + NN * link->parent);
+        // pᵃ = pᴬ + Iᵃ c + U D⁻¹ u
+        bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
+        bough_wrench passed = bough_wrench_add(
+            d->wrench[i],
+            bough_wrench_add(matrix_mul(own, turn), gain_solve(link, gain, factor, u)));
+        bough_wrench *up = &d->wrench[link->parent];
+        *up = bough_wrench_add(*up, bough_wrench_to_parent(&d->relative[i], passed));
+    }
+    for (int i = 0; i < tree->n_links; i++) {
+        bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
+        bough_twist carried = from_parent(d, tree->links, i, d->acceleration, no_twist);
+        accelerate(&tree->links[i], d, i, bough_twist_add(carried, turn), acceleration);
+    }
+    return true;
+}
+
+void bough_tree_response(const bough_tree *tree, bough_tree_data *d, const bough_frame *frame,
+                         bough_wrench wrench, double *change) {
+    memset(change, 0, (size_t)tree->n_v * sizeof(double));
+    if (frame->link < 0) return;
+    memset(d->force, 0, (size_t)tree->n_v * sizeof(double));
+    for (int i = 0; i < tree->n_links; i++) d->wrench[i] = no_wrench;
+    subtract_at(d, frame, wrench);
+    for (int i = frame->link; i >= 0; i = tree->links[i].parent) { // only ancestors feel it
+        const bough_link *link = &tree->links[i];
+        double *u = joint_remainder(link, d, i);
+        if (link->parent < 0) break;
+        bough_wrench passed = bough_wrench_add(
+            d->wrench[i],
+            gain_solve(link, d->joint_gain + NN * i, d->joint_factor + NN * i, u));
+        d->wrench[link->parent] = bough_wrench_to_parent(&d->relative[i], passed);
+    }
+    for (int i = 0; i < tree->n_links; i++) {
+        bough_twist carried = from_parent(d, tree->links, i, d->acceleration, no_twist);
+        accelerate(&tree->links[i], d, i, carried, change);
+    }
+}
+
+// -- joint-space inertia by composite rigid bodies -----------------------------------------------
+
+// Column `row` of M: the wrench of a unit speed of link i, felt by its own joint and its ancestors'.
+static void mass_column(const bough_tree *tree, const bough_tree_data *d, int i, int k,
+                        double *mass) {
+    const bough_link *link = &tree->links[i];
+    int n = tree->n_v, row = link->first_speed + k;
+    bough_wrench f = bough_inertia_mul(&d->composite[i], subspace(&link->joint, k));
+    for (int j = i; j >= 0; j = tree->links[j].parent) {
+        const bough_link *at = &tree->links[j];
+        double felt[N];
+        bough_joint_force(&at->joint, f, felt);
+        for (int c = 0; c < at->n_speeds; c++) {
+            mass[n * row + at->first_speed + c] = felt[c];
+            mass[n * (at->first_speed + c) + row] = felt[c];
+        }
+        f = bough_wrench_to_parent(&d->relative[j], f);
+    }
+}
+
+void bough_tree_mass_matrix(const bough_tree *tree, bough_tree_data *d, double *mass) {
+    memset(mass, 0, (size_t)tree->n_v * (size_t)tree->n_v * sizeof(double));
+    for (int i = 0; i < tree->n_links; i++) d->composite[i] = tree->links[i].inertia;
+    for (int i = tree->n_links - 1; i >= 0; i--) {
+        const bough_link *link = &tree->links[i];
+        for (int k = 0; k < link->n_speeds; k++) mass_column(tree, d, i, k, mass);
+        if (link->parent < 0) continue;
+        bough_inertia *up = &d->composite[link->parent];
+        *up = bough_inertia_add(*up, bough_inertia_to_parent(&d->relative[i], d->composite[i]));
+    }
+}
+
+// -- rates and tangents ----------------------------------------------------------------------
+
+void bough_tree_coordinate_rate(const bough_tree *tree, const double *state, double *rate) {
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        bough_joint_rate(&link->joint, state + link->first_coordinate,
+                         state + tree->n_q + link->first_speed, rate + link->first_coordinate);
+    }
+}
+
+void bough_tree_tangent(const bough_tree *tree, const double *state, const double *change,
+                        bough_tree_data *d) {
+    const double *dv = change + tree->n_q;
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        double eta[N];
+        bough_joint_speed(&link->joint, state + link->first_coordinate,
+                          change + link->first_coordinate, eta);
+        bough_twist moved = bough_joint_twist(&link->joint, eta);
+        bough_twist own = bough_joint_twist(&link->joint, dv + link->first_speed);
+        bough_twist carried = from_parent(d, tree->links, i, d->twist, no_twist);
+        // δV_i = X δV_λ + (X V_λ) × S δη + S δv
+        d->acceleration[i] =
+            bough_twist_add(from_parent(d, tree->links, i, d->acceleration, no_twist),
+                            bough_twist_add(bough_twist_cross(carried, moved), own));
+        // δg_i = Eᵀ δg_λ − S_ω δη × g_i
+        bough_vec3 above =
+            link->parent < 0 ? no_twist.linear : d->gravity_rate[link->parent];
+        d->gravity_rate[i] = bough_add(bough_mat3_tmul(d->relative[i].rotation, above),
+                                       bough_cross(d->gravity[i], moved.angular));
+    }
+}

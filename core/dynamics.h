@@ -1,0 +1,39 @@
+// The recursions of the rigid tree, each O(n) in links, after bough_tree_kinematics at the same
+// state. Everything is expressed in link axes at the link's origin, so that the equations are
+//     V_i = X_i V_λ + S v ,   A_i = X_i A_λ + V_i × S v + S v̇ ,
+//     f_i = I_i (A_i − g_i) + V_i ×* I_i V_i − f_ext + Σ X_jᵀ f_j ,   Sᵀ f_i = τ ,
+// λ the parent, j the children, A the rate of V's components.
+// Reference: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 5 to 7.
+#ifndef BOUGH_CORE_DYNAMICS_H
+#define BOUGH_CORE_DYNAMICS_H
+
+#include "core/tree.h"
+
+// residual (n_v) = M(q) v̇ + h(q, v) − τ(t, q, u) with v̇ = acceleration (n_v), u the port wrenches
+// (6 × n_ports) or NULL for none: joint loads, port and external wrenches are within τ and h.
+void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
+                                 const double *input, const double *acceleration,
+                                 double *residual);
+
+// acceleration v̇ (n_v) that makes the residual zero, by articulated bodies. False when a joint
+// moves no inertia. Leaves the links' accelerations and the factors in data.
+bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
+                                 const double *input, double *acceleration);
+
+// change (n_v) of v̇ by a wrench at a frame of the tree, in frame axes. Uses the factors of the
+// last bough_tree_forward_dynamics.
+void bough_tree_response(const bough_tree *tree, bough_tree_data *data, const bough_frame *frame,
+                         bough_wrench wrench, double *change);
+
+// M(q) (n_v × n_v), symmetric, by composite rigid bodies.
+void bough_tree_mass_matrix(const bough_tree *tree, bough_tree_data *data, double *mass);
+
+// q̇ = N(q) v for the whole state: rate (n_q)
+void bough_tree_coordinate_rate(const bough_tree *tree, const double *state, double *rate);
+
+// The tangents of the links' twists and of gravity along a change (n_q + n_v) of the state, into
+// data->acceleration and data->gravity_rate. Along the motion's own rate they are the exact rates.
+void bough_tree_tangent(const bough_tree *tree, const double *state, const double *change,
+                        bough_tree_data *data);
+
+#endif

@@ -1,0 +1,149 @@
+// The five joints. Reference: theory page, (3) and (13); speeds are components in body axes.
+#include "core/joint.h"
+
+#include "core/base.h"
+#include "core/rotation.h"
+
+static const struct {
+    const char *name;
+    int coordinates, speeds;
+} kinds[] = {
+    [BOUGH_JOINT_FIXED] = {"fixed", 0, 0},         [BOUGH_JOINT_REVOLUTE] = {"revolute", 1, 1},
+    [BOUGH_JOINT_PRISMATIC] = {"prismatic", 1, 1}, [BOUGH_JOINT_SPHERICAL] = {"spherical", 4, 3},
+    [BOUGH_JOINT_FREE] = {"free", 7, 6},
+};
+
+const char *bough_joint_name(bough_joint_kind kind) {
+    return kinds[kind].name;
+}
+
+int bough_joint_n_coordinates(bough_joint_kind kind) {
+    return kinds[kind].coordinates;
+}
+
+int bough_joint_n_speeds(bough_joint_kind kind) {
+    return kinds[kind].speeds;
+}
+
+// Where the coordinates hold the quaternion; -1 without one.
+static int quaternion_row(const bough_joint *joint) {
+    return joint->kind == BOUGH_JOINT_SPHERICAL ? 0 : joint->kind == BOUGH_JOINT_FREE ? 3 : -1;
+}
+
+static bough_quaternion load(const double *p) {
+    return (bough_quaternion){p[0], p[1], p[2], p[3]};
+}
+
+static bough_vec3 load3(const double *x) {
+    return bough_v3(x[0], x[1], x[2]);
+}
+
+static void store3(bough_vec3 x, double *out) {
+    out[0] = x.x, out[1] = x.y, out[2] = x.z;
+}
+
+static bough_mat3 rotation_at(const double *p) {
+    return bough_rotation_matrix(bough_quaternion_normalised(load(p)));
+}
+
+// The rotation by an angle about a unit axis: cos E + sin ξ(a) + (1 − cos) a aᵀ
+static bough_mat3 axis_rotation(bough_vec3 a, double angle) {
+    double c = cos(angle), s = sin(angle);
+    return (bough_mat3){
+        bough_axpy((1 - c) * a.x, a, bough_v3(c, s * a.z, -s * a.y)),
+        bough_axpy((1 - c) * a.y, a, bough_v3(-s * a.z, c, s * a.x)),
+        bough_axpy((1 - c) * a.z, a, bough_v3(s * a.y, -s * a.x, c)),
+    };
+}
+
+bough_transform bough_joint_pose(const bough_joint *joint, const double *q) {
+    bough_transform moved = bough_transform_identity();
+    switch (joint->kind) {
+    case BOUGH_JOINT_FIXED: break;
+    case BOUGH_JOINT_REVOLUTE: moved.rotation = axis_rotation(joint->axis, q[0]); break;
+    case BOUGH_JOINT_PRISMATIC: moved.position = bough_scale(q[0], joint->axis); break;
+    case BOUGH_JOINT_SPHERICAL: moved.rotation = rotation_at(q); break;
+    case BOUGH_JOINT_FREE:
+        moved.position = load3(q);
+        moved.rotation = rotation_at(q + 3);
+        break;
+    }
+    return bough_transform_compose(joint->placement, moved);
+}
+
+bough_twist bough_joint_twist(const bough_joint *joint, const double *v) {
+    bough_twist t = {{0, 0, 0}, {0, 0, 0}};
+    switch (joint->kind) {
+    case BOUGH_JOINT_FIXED: break;
+    case BOUGH_JOINT_REVOLUTE: t.angular = bough_scale(v[0], joint->axis); break;
+    case BOUGH_JOINT_PRISMATIC: t.linear = bough_scale(v[0], joint->axis); break;
+    case BOUGH_JOINT_SPHERICAL: t.angular = load3(v); break;
+    case BOUGH_JOINT_FREE: t = bough_twist_load(v); break;
+    }
+    return t;
+}
+
+void bough_joint_force(const bough_joint *joint, bough_wrench f, double *force) {
+    switch (joint->kind) {
+    case BOUGH_JOINT_FIXED: break;
+    case BOUGH_JOINT_REVOLUTE: force[0] = bough_dot(joint->axis, f.moment); break;
+    case BOUGH_JOINT_PRISMATIC: force[0] = bough_dot(joint->axis, f.force); break;
+    case BOUGH_JOINT_SPHERICAL: store3(f.moment, force); break;
+    case BOUGH_JOINT_FREE: bough_wrench_store(f, force); break;
+    }
+}
+
+// ṗ = ½ p∘(0,Ω), with p as it stands: |p| keeps its value exactly and only p/|p| is used.
+static void quaternion_rate(const double *p, const double *omega, double *rate) {
+    bough_quaternion turn = {0, omega[0], omega[1], omega[2]};
+    bough_quaternion r = bough_quaternion_product(load(p), turn);
+    rate[0] = 0.5 * r.w, rate[1] = 0.5 * r.x, rate[2] = 0.5 * r.y, rate[3] = 0.5 * r.z;
+}
+
+// Ω = 2 vec(p̄∘δp)/|p|²
+static void quaternion_speed(const double *p, const double *change, double *omega) {
+    bough_quaternion c =
+        bough_quaternion_product(bough_quaternion_conjugate(load(p)), load(change));
+    double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3];
+    store3(bough_scale(2 / square, bough_v3(c.x, c.y, c.z)), omega);
+}
+
+void bough_joint_rate(const bough_joint *joint, const double *q, const double *v, double *rate) {
+    switch (joint->kind) {
+    case BOUGH_JOINT_FIXED: break;
+    case BOUGH_JOINT_REVOLUTE:
+    case BOUGH_JOINT_PRISMATIC: rate[0] = v[0]; break;
+    case BOUGH_JOINT_SPHERICAL: quaternion_rate(q, v, rate); break;
+    case BOUGH_JOINT_FREE:
+        store3(bough_mat3_mul(rotation_at(q + 3), load3(v)), rate);
+        quaternion_rate(q + 3, v + 3, rate + 3);
+        break;
+    }
+}
+
+void bough_joint_speed(const bough_joint *joint, const double *q, const double *change, double *v) {
+    switch (joint->kind) {
+    case BOUGH_JOINT_FIXED: break;
+    case BOUGH_JOINT_REVOLUTE:
+    case BOUGH_JOINT_PRISMATIC: v[0] = change[0]; break;
+    case BOUGH_JOINT_SPHERICAL: quaternion_speed(q, change, v); break;
+    case BOUGH_JOINT_FREE:
+        store3(bough_mat3_tmul(rotation_at(q + 3), load3(change)), v);
+        quaternion_speed(q + 3, change + 3, v + 3);
+        break;
+    }
+}
+
+void bough_joint_normalise(const bough_joint *joint, double *q) {
+    int row = quaternion_row(joint);
+    if (row < 0) return;
+    bough_quaternion p = bough_quaternion_normalised(load(q + row));
+    q[row] = p.w, q[row + 1] = p.x, q[row + 2] = p.y, q[row + 3] = p.z;
+}
+
+double bough_joint_drift(const bough_joint *joint, const double *q) {
+    int row = quaternion_row(joint);
+    if (row < 0) return 0;
+    bough_quaternion p = load(q + row);
+    return fabs(sqrt(p.w * p.w + p.x * p.x + p.y * p.y + p.z * p.z) - 1);
+}

@@ -1,0 +1,22 @@
+// Dense linear algebra for small systems; the only user of LAPACK, kept to one thread because the
+// callers run in parallel themselves.
+#ifndef BOUGH_CORE_LINALG_H
+#define BOUGH_CORE_LINALG_H
+
+#include <stdbool.h>
+
+// LU factors of a (n × n, column-major) in place, with row interchanges in pivot (n). False when a
+// is singular or not finite.
+bool bough_dense_factor(int n, double *a, int *pivot);
+
+// Solves a x = b in place with those factors: b (n × n_right, column-major).
+void bough_dense_solve(int n, int n_right, const double *factor, const int *pivot, double *b);
+
+// The Cholesky factor L of a symmetric matrix (n × n, row-major; its lower triangle) in place,
+// a = L Lᵀ. False unless it is positive definite, with every pivot above 1e-12 of its diagonal.
+bool bough_cholesky_factor(int n, double *a);
+
+// Solves L Lᵀ x = b in place.
+void bough_cholesky_solve(int n, const double *factor, double *b);
+
+#endif

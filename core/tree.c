@@ -1,0 +1,357 @@
+// Building the tree from its def, and queries of poses, twists and sums.
+#include "core/tree.h"
+
+#include "core/base.h"
+#include "core/dynamics.h"
+
+#include <string.h>
+
+bough_body_def bough_body_def_default(void) {
+    bough_body_def def = {.name = "", .parent = BOUGH_GROUND, .axis = {0, 0, 1}};
+    def.joint = bough_transform_identity();
+    return def;
+}
+
+// -- checks of the def -----------------------------------------------------------------------
+
+static bool finite3(bough_vec3 v) {
+    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
+}
+
+static bool is_rotation(bough_mat3 r) {
+    bough_mat3 e = bough_mat3_product(bough_mat3_transpose(r), r);
+    double off = fabs(e.c1.x - 1) + fabs(e.c2.y - 1) + fabs(e.c3.z - 1) + fabs(e.c1.y) +
+                 fabs(e.c2.z) + fabs(e.c3.x);
+    return off < 1e-9 && bough_dot(bough_cross(r.c1, r.c2), r.c3) > 0;
+}
+
+static bough_status check_placement(const char *what, const char *name, bough_transform x) {
+    if (!finite3(x.position)) {
+        return bough_fail(BOUGH_INVALID, "%s '%s': its position is not finite", what, name);
+    }
+    if (!is_rotation(x.rotation)) {
+        return bough_fail(BOUGH_INVALID, "%s '%s': its rotation is not a right-handed orthonormal "
+                                         "matrix", what, name);
+    }
+    return bough_ok();
+}
+
+// A revolute or prismatic joint's axis, and initial values
+static bough_status check_joint(const bough_body_def *b) {
+    if (b->kind > BOUGH_JOINT_FREE) {
+        return bough_fail(BOUGH_INVALID, "body '%s': unknown kind of joint", b->name);
+    }
+    if (bough_joint_n_speeds(b->kind) == 1 && !(bough_norm(b->axis) > 0 && finite3(b->axis))) {
+        return bough_fail(BOUGH_INVALID, "body '%s': the axis of its %s joint has no direction",
+                          b->name, bough_joint_name(b->kind));
+    }
+    for (int k = 0; k < BOUGH_JOINT_COORDINATES; k++) {
+        bool speed_ok = k >= BOUGH_JOINT_SPEEDS || isfinite(b->speeds[k]);
+        if (!isfinite(b->coordinates[k]) || !speed_ok) {
+            return bough_fail(BOUGH_INVALID, "body '%s': its initial state is not finite", b->name);
+        }
+    }
+    return bough_ok();
+}
+
+static bough_status check_body(const bough_tree_def *def, int body) {
+    const bough_body_def *b = &def->bodies[body];
+    if (b->parent < BOUGH_GROUND || b->parent >= def->n_bodies) {
+        return bough_fail(BOUGH_INVALID, "body '%s': its parent does not exist", b->name);
+    }
+    bool finite = isfinite(b->mass) && finite3(b->mass_centre) && finite3(b->inertia.c1) &&
+                  finite3(b->inertia.c2) && finite3(b->inertia.c3);
+    if (!finite || b->mass < 0) {
+        return bough_fail(BOUGH_INVALID, "body '%s': mass, mass centre and inertia must be finite "
+                                         "and the mass not negative", b->name);
+    }
+    bough_status status = check_joint(b);
+    return bough_is_ok(&status) ? check_placement("joint of body", b->name, b->joint) : status;
+}
+
+// Number of bodies between the ground and a body; -1 in a cycle
+static int depth(const bough_tree_def *def, int body) {
+    int steps = 0;
+    for (int b = def->bodies[body].parent; b >= 0; b = def->bodies[b].parent) {
+        if (++steps > def->n_bodies) return -1;
+    }
+    return steps;
+}
+
+static bough_status check_attachments(const bough_tree_def *def) {
+    for (int m = 0; m < def->n_markers; m++) {
+        const bough_marker_def *marker = &def->markers[m];
+        if (marker->body < BOUGH_GROUND || marker->body >= def->n_bodies) {
+            return bough_fail(BOUGH_INVALID, "marker '%s': its body does not exist", marker->name);
+        }
+        bough_status status = check_placement("marker", marker->name, marker->placement);
+        if (!bough_is_ok(&status)) return status;
+    }
+    for (int p = 0; p < def->n_ports; p++) {
+        if (def->ports[p].marker < 0 || def->ports[p].marker >= def->n_markers) {
+            return bough_fail(BOUGH_INVALID, "port '%s': its marker does not exist",
+                              def->ports[p].name);
+        }
+    }
+    for (int k = 0; k < def->n_loads; k++) {
+        int body = def->loads[k].body;
+        bool known = body >= 0 && body < def->n_bodies;
+        if (!known || bough_joint_n_speeds(def->bodies[body].kind) != 1) {
+            return bough_fail(BOUGH_INVALID, "joint load on '%s': it needs a body with a revolute "
+                                             "or prismatic joint",
+                              known ? def->bodies[body].name : "?");
+        }
+    }
+    return bough_ok();
+}
+
+static bough_status check(const bough_tree_def *def) {
+    for (int b = 0; b < def->n_bodies; b++) {
+        bough_status status = check_body(def, b);
+        if (!bough_is_ok(&status)) return status;
+    }
+    for (int b = 0; b < def->n_bodies; b++) { // every parent exists by now
+        if (depth(def, b) < 0) {
+            return bough_fail(BOUGH_INVALID, "body '%s': its chain of parents is a cycle and "
+                                             "never reaches the ground", def->bodies[b].name);
+        }
+    }
+    return check_attachments(def);
+}
+
+// -- build -----------------------------------------------------------------------------------
+
+static bough_frame ground_frame(void) {
+    return (bough_frame){.link = BOUGH_GROUND, .placement = bough_transform_identity()};
+}
+
+static void add_inertia(bough_tree *tree, const bough_frame *frame, bough_inertia inertia) {
+    if (frame->link < 0) return; // the ground carries it
+    bough_inertia *sum = &tree->links[frame->link].inertia;
+    *sum = bough_inertia_add(*sum, bough_inertia_to_parent(&frame->placement, inertia));
+}
+
+static int add_link(bough_tree *tree, const bough_body_def *b, int body, bough_frame parent) {
+    bough_link *link = &tree->links[tree->n_links];
+    double length = bough_norm(b->axis);
+    link->parent = parent.link;
+    link->body = body;
+    link->joint.kind = b->kind;
+    link->joint.placement = bough_transform_compose(parent.placement, b->joint);
+    if (length > 0) link->joint.axis = bough_scale(1 / length, b->axis);
+    link->n_coordinates = bough_joint_n_coordinates(b->kind);
+    link->n_speeds = bough_joint_n_speeds(b->kind);
+    link->first_coordinate = tree->n_q;
+    link->first_speed = tree->n_v;
+    tree->n_q += link->n_coordinates;
+    tree->n_v += link->n_speeds;
+    return tree->n_links++;
+}
+
+// The parent stands already. Fixed joints are welded here.
+static void place_body(bough_tree *tree, const bough_body_def *b, int body) {
+    bough_frame parent = b->parent < 0 ? ground_frame() : tree->bodies[b->parent];
+    bough_frame *frame = &tree->bodies[body];
+    if (b->kind == BOUGH_JOINT_FIXED) {
+        frame->link = parent.link;
+        frame->placement = bough_transform_compose(parent.placement, b->joint);
+    } else {
+        frame->link = add_link(tree, b, body, parent);
+        frame->placement = bough_transform_identity();
+    }
+    add_inertia(tree, frame, bough_inertia_of(b->mass, b->mass_centre, b->inertia));
+}
+
+static void place_bodies(bough_tree *tree, const bough_tree_def *def) {
+    for (int placed = 0, level = 0; placed < def->n_bodies; level++) {
+        for (int b = 0; b < def->n_bodies; b++) {
+            if (depth(def, b) != level) continue;
+            place_body(tree, &def->bodies[b], b);
+            placed++;
+        }
+    }
+}
+
+static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
+    for (int m = 0; m < def->n_markers; m++) {
+        const bough_marker_def *marker = &def->markers[m];
+        bough_frame carrier = marker->body < 0 ? ground_frame() : tree->bodies[marker->body];
+        tree->markers[m].link = carrier.link;
+        tree->markers[m].placement =
+            bough_transform_compose(carrier.placement, marker->placement);
+    }
+    for (int p = 0; p < def->n_ports; p++) {
+        tree->ports[p].link = tree->markers[def->ports[p].marker].link;
+        tree->ports[p].placement = tree->markers[def->ports[p].marker].placement;
+        add_inertia(tree, &tree->ports[p], def->ports[p].root);
+    }
+    for (int k = 0; k < def->n_loads; k++) {
+        tree->loads[k] = def->loads[k];
+        tree->loads[k].body = tree->bodies[def->loads[k].body].link;
+    }
+}
+
+static void set_initial(bough_tree *tree, const bough_tree_def *def) {
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        const bough_body_def *b = &def->bodies[link->body];
+        double *q = tree->initial + link->first_coordinate;
+        memcpy(q, b->coordinates, (size_t)link->n_coordinates * sizeof(double));
+        memcpy(tree->initial + tree->n_q + link->first_speed, b->speeds,
+               (size_t)link->n_speeds * sizeof(double));
+        bough_joint_normalise(&link->joint, q);
+    }
+}
+
+static bool take_model(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+    tree->gravity = def->gravity;
+    tree->n_bodies = def->n_bodies;
+    tree->n_markers = def->n_markers;
+    tree->n_ports = def->n_ports;
+    tree->n_loads = def->n_loads;
+    tree->links = bough_arena_take(arena, (size_t)def->n_bodies * sizeof(bough_link));
+    tree->bodies = bough_arena_take(arena, (size_t)def->n_bodies * sizeof(bough_frame));
+    tree->markers = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_frame));
+    tree->ports = bough_arena_take(arena, (size_t)def->n_ports * sizeof(bough_frame));
+    tree->loads = bough_arena_take(arena, (size_t)def->n_loads * sizeof(bough_joint_load_def));
+    tree->external = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_external));
+    tree->initial = bough_arena_doubles(
+        arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) * (size_t)def->n_bodies);
+    return !bough_arena_exhausted(arena);
+}
+
+static bool take_names(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+    for (int b = 0; b < def->n_bodies; b++) {
+        tree->bodies[b].name = bough_arena_string(arena, def->bodies[b].name);
+    }
+    for (int m = 0; m < def->n_markers; m++) {
+        tree->markers[m].name = bough_arena_string(arena, def->markers[m].name);
+    }
+    for (int p = 0; p < def->n_ports; p++) {
+        tree->ports[p].name = bough_arena_string(arena, def->ports[p].name);
+    }
+    return !bough_arena_exhausted(arena);
+}
+
+// A joint that moves no inertia has no acceleration.
+static bough_status check_inertia(bough_arena *arena, const bough_tree_def *def,
+                                  const bough_tree *tree) {
+    bough_tree_data *data;
+    bough_status status = bough_tree_data_create(arena, tree, &data);
+    double *acceleration = bough_arena_doubles(arena, (size_t)tree->n_v);
+    if (!bough_is_ok(&status) || bough_arena_exhausted(arena)) return status;
+    bough_tree_kinematics(tree, tree->initial, data);
+    if (bough_tree_forward_dynamics(tree, data, 0, NULL, acceleration)) return bough_ok();
+    const bough_body_def *b = &def->bodies[tree->links[data->singular].body];
+    return bough_fail(BOUGH_INVALID,
+                      "body '%s': its %s joint moves no inertia in some direction; give the body "
+                      "or what it carries a mass and a moment of inertia",
+                      b->name, bough_joint_name(b->kind));
+}
+
+bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bough_tree **out) {
+    bough_status status = check(def);
+    if (!bough_is_ok(&status)) return status;
+    bough_tree *tree = bough_arena_take(arena, sizeof *tree);
+    if (tree == NULL || !take_model(arena, def, tree) || !take_names(arena, def, tree)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for a tree of %d bodies", def->n_bodies);
+    }
+    place_bodies(tree, def);
+    place_attachments(tree, def);
+    set_initial(tree, def);
+    *out = tree;
+    return check_inertia(arena, def, tree);
+}
+
+bough_status bough_tree_data_create(bough_arena *arena, const bough_tree *tree,
+                                    bough_tree_data **out) {
+    size_t n = (size_t)tree->n_links;
+    bough_tree_data *d = bough_arena_take(arena, sizeof *d);
+    if (d != NULL) {
+        d->relative = bough_arena_take(arena, n * sizeof *d->relative);
+        d->pose = bough_arena_take(arena, n * sizeof *d->pose);
+        d->joint_twist = bough_arena_take(arena, n * sizeof *d->joint_twist);
+        d->twist = bough_arena_take(arena, n * sizeof *d->twist);
+        d->gravity = bough_arena_take(arena, n * sizeof *d->gravity);
+        d->acceleration = bough_arena_take(arena, n * sizeof *d->acceleration);
+        d->gravity_rate = bough_arena_take(arena, n * sizeof *d->gravity_rate);
+        d->wrench = bough_arena_take(arena, n * sizeof *d->wrench);
+        d->composite = bough_arena_take(arena, n * sizeof *d->composite);
+        d->articulated = bough_arena_doubles(arena, 36 * n);
+        d->joint_gain = bough_arena_doubles(arena, 36 * n);
+        d->joint_factor = bough_arena_doubles(arena, 36 * n);
+        d->force = bough_arena_doubles(arena, (size_t)tree->n_v);
+    }
+    *out = d;
+    if (!bough_arena_exhausted(arena)) return bough_ok();
+    return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for a tree of %d bodies", tree->n_bodies);
+}
+
+// -- queries ---------------------------------------------------------------------------------
+
+static int find(const bough_frame *frames, int n, const char *name) {
+    for (int i = 0; i < n; i++) {
+        if (frames[i].name != NULL && strcmp(frames[i].name, name) == 0) return i;
+    }
+    return -1;
+}
+
+int bough_tree_find_body(const bough_tree *tree, const char *name) {
+    return find(tree->bodies, tree->n_bodies, name);
+}
+
+int bough_tree_find_marker(const bough_tree *tree, const char *name) {
+    return find(tree->markers, tree->n_markers, name);
+}
+
+bool bough_tree_joint_rows(const bough_tree *tree, int body, int *coordinate, int *speed) {
+    int link = tree->bodies[body].link;
+    if (link < 0 || tree->links[link].body != body) return false;
+    *coordinate = tree->links[link].first_coordinate;
+    *speed = tree->n_q + tree->links[link].first_speed;
+    return true;
+}
+
+void bough_tree_set_wrench(bough_tree *tree, int marker, double start, const double *value,
+                           const double *rate) {
+    const double zero[6] = {0};
+    bough_external *e = &tree->external[marker];
+    e->active = value != NULL || rate != NULL;
+    e->start = start;
+    e->value = bough_wrench_load(value != NULL ? value : zero);
+    e->rate = bough_wrench_load(rate != NULL ? rate : zero);
+}
+
+bough_transform bough_tree_frame_pose(const bough_tree_data *data, const bough_frame *frame) {
+    if (frame->link < 0) return frame->placement;
+    return bough_transform_compose(data->pose[frame->link], frame->placement);
+}
+
+bough_twist bough_tree_frame_twist(const bough_tree_data *data, const bough_frame *frame) {
+    if (frame->link < 0) return (bough_twist){{0, 0, 0}, {0, 0, 0}};
+    return bough_twist_to_child(&frame->placement, data->twist[frame->link]);
+}
+
+bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_frame *frame) {
+    bough_mat3 r = bough_tree_frame_pose(data, frame).rotation;
+    bough_twist own = bough_tree_frame_twist(data, frame);
+    return (bough_twist){bough_mat3_mul(r, own.linear), bough_mat3_mul(r, own.angular)};
+}
+
+bough_tree_sums bough_tree_sum(const bough_tree *tree, const bough_tree_data *data) {
+    bough_tree_sums s = {0};
+    bough_vec3 first = {0, 0, 0};
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_inertia *inertia = &tree->links[i].inertia;
+        bough_wrench momentum = bough_inertia_mul(inertia, data->twist[i]);
+        bough_wrench ground = bough_wrench_to_parent(&data->pose[i], momentum);
+        s.mass += inertia->mass;
+        s.kinetic += 0.5 * bough_power(data->twist[i], momentum);
+        s.linear_momentum = bough_add(s.linear_momentum, ground.force);
+        s.angular_momentum = bough_add(s.angular_momentum, ground.moment);
+        first = bough_add(first, bough_inertia_to_parent(&data->pose[i], *inertia).first);
+    }
+    s.potential = -bough_dot(tree->gravity, first);
+    if (s.mass > 0) s.mass_centre = bough_scale(1 / s.mass, first);
+    return s;
+}
