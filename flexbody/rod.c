@@ -1,0 +1,169 @@
+// Builds the constant rod model from its discretised definition.
+#include "flexbody/rod.h"
+
+#include "flexbody/rod_segment.h"
+
+#include <string.h>
+
+// Index of (i, j), i <= j, in the upper triangle by rows of a symmetric 6×6.
+static int triangle(int i, int j) {
+    return i <= j ? i * 6 - i * (i - 1) / 2 + (j - i) : triangle(j, i);
+}
+
+// Cholesky factor L (lower, full 6×6 storage) of a symmetric matrix; false when not positive.
+static bool cholesky(const double *upper, double l[6][6]) {
+    for (int j = 0; j < 6; j++) {
+        for (int i = j; i < 6; i++) {
+            double sum = upper[triangle(j, i)];
+            for (int k = 0; k < j; k++) sum -= l[i][k] * l[j][k];
+            if (i == j && !(sum > 0)) return false;
+            l[i][j] = i == j ? sqrt(sum) : sum / l[j][j];
+        }
+    }
+    return true;
+}
+
+// The inverse's upper triangle from the Cholesky factor.
+static void inverse_from_cholesky(double l[6][6], double *upper) {
+    double x[6];
+    for (int j = 0; j < 6; j++) {
+        for (int i = 0; i < 6; i++) {
+            x[i] = i == j;
+            for (int k = 0; k < i; k++) x[i] -= l[i][k] * x[k];
+            x[i] /= l[i][i];
+        }
+        for (int i = 5; i >= 0; i--) {
+            for (int k = i + 1; k < 6; k++) x[i] -= l[k][i] * x[k];
+            x[i] /= l[i][i];
+        }
+        for (int i = 0; i <= j; i++) upper[triangle(i, j)] = x[i];
+    }
+}
+
+// The upper triangle of (11)'s mass in section axes: [mE, −ξ(s); ξ(s), I].
+static void mass_matrix(const bough_vertex_inertia *v, double *upper) {
+    const double *j = v->inertia;
+    bough_vec3 s = v->moment;
+    const double rows[21] = {v->mass, 0,    0,   0,    s.z,  -s.y, v->mass, 0, -s.z, 0, s.x,
+                             v->mass, s.y,  -s.x, 0,   j[0], j[3], j[4], j[1], j[5], j[2]};
+    memcpy(upper, rows, sizeof rows);
+}
+
+static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
+    size_t s = (size_t)m->stride, vertices = (size_t)m->n + 1;
+    m->span = bough_arena_doubles(arena, vertices);
+    m->position0 = bough_arena_take(arena, vertices * sizeof *m->position0);
+    m->rotation0 = bough_arena_take(arena, vertices * sizeof *m->rotation0);
+    m->vertex = bough_arena_take(arena, vertices * sizeof *m->vertex);
+    m->length = bough_arena_doubles(arena, s);
+    m->inverse_length = bough_arena_doubles(arena, s);
+    m->strain0 = bough_arena_doubles(arena, 6 * s);
+    m->stiffness = bough_arena_doubles(arena, 21 * s);
+    m->damping = bough_arena_doubles(arena, 21 * s);
+    m->moment = bough_arena_doubles(arena, 3 * s);
+    m->inertia = bough_arena_doubles(arena, 6 * s);
+    m->inverse_mass = bough_arena_doubles(arena, 21 * s);
+    return !bough_arena_exhausted(arena);
+}
+
+static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, int n) {
+    int s = m->stride;
+    double h = def->span[n + 1] - def->span[n], l[6][6];
+    if (!(h > 0)) {
+        return bough_fail(BOUGH_INVALID, "rod %s: segment %d has length %g m", m->name, n + 1, h);
+    }
+    if (!cholesky(def->stiffness + 21 * n, l)) {
+        return bough_fail(BOUGH_INVALID, "rod %s: the stiffness of segment %d is not positive"
+                          " definite", m->name, n + 1);
+    }
+    m->length[n] = h;
+    m->inverse_length[n] = 1 / h;
+    for (int k = 0; k < 21; k++) {
+        m->stiffness[k * s + n] = def->stiffness[21 * n + k];
+        m->damping[k * s + n] = def->damping[21 * n + k];
+    }
+    vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
+    vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
+    segment_geometry shape = segment_shape(left, right, 1 / h);
+    if (shape.w < 0.5) {
+        return bough_fail(BOUGH_INVALID, "rod %s: the undeformed section turns by more than 120°"
+                          " over segment %d; use more segments", m->name, n + 1);
+    }
+    const double e0[6] = {shape.stretch.x,  shape.stretch.y,  shape.stretch.z,
+                          shape.phi.x / h, shape.phi.y / h, shape.phi.z / h};
+    for (int k = 0; k < 6; k++) m->strain0[k * s + n] = e0[k];
+    return bough_ok();
+}
+
+static bough_status set_vertex(bough_rod_model *m, const bough_rod_def *def, int i) {
+    int s = m->stride;
+    const bough_vertex_inertia *v = &def->inertia[i];
+    double mass[21], l[6][6], inverse[21];
+    mass_matrix(v, mass);
+    if (!cholesky(mass, l)) {
+        return bough_fail(BOUGH_INVALID, "rod %s: the inertia of vertex %d is not positive"
+                          " definite", m->name, i);
+    }
+    inverse_from_cholesky(l, inverse);
+    for (int k = 0; k < 21; k++) m->inverse_mass[k * s + i - 1] = inverse[k];
+    for (int k = 0; k < 6; k++) m->inertia[k * s + i - 1] = v->inertia[k];
+    m->moment[i - 1] = v->moment.x;
+    m->moment[s + i - 1] = v->moment.y;
+    m->moment[2 * s + i - 1] = v->moment.z;
+    return bough_ok();
+}
+
+bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
+                              bough_rod_model **model) {
+    bough_rod_model *m = bough_arena_take(arena, sizeof *m);
+    if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", def->name);
+    m->name = bough_arena_string(arena, def->name);
+    m->n = def->n_segment;
+    m->stride = bough_padded(m->n + 1);
+    if (!take_arrays(m, arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", def->name);
+    }
+    size_t vertices = (size_t)m->n + 1;
+    memcpy(m->span, def->span, vertices * sizeof *m->span);
+    memcpy(m->position0, def->position, vertices * sizeof *m->position0);
+    memcpy(m->rotation0, def->rotation, vertices * sizeof *m->rotation0);
+    memcpy(m->vertex, def->inertia, vertices * sizeof *m->vertex);
+    for (int n = 0; n < m->n; n++) {
+        bough_status status = set_segment(m, def, n);
+        if (bough_is_ok(&status)) status = set_vertex(m, def, n + 1);
+        if (!bough_is_ok(&status)) return status;
+    }
+    *model = m;
+    return bough_ok();
+}
+
+bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
+                            const bough_rod_model *model) {
+    size_t s = (size_t)model->stride;
+    scratch->vertex = bough_arena_doubles(arena, BOUGH_ROD_STATES * s);
+    scratch->segment = bough_arena_doubles(arena, 9 * s);
+    scratch->load = bough_arena_doubles(arena, 6 * s);
+    return scratch->vertex != NULL && scratch->segment != NULL && scratch->load != NULL;
+}
+
+bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
+                          const bough_rod_model *model) {
+    loads->start = 0;
+    loads->value = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    loads->rate = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    return loads->value != NULL && loads->rate != NULL;
+}
+
+void bough_rod_rest_state(const bough_rod_model *m, const double *input, double *state) {
+    int n = m->n;
+    bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
+    for (int i = 0; i < n; i++) {
+        bough_vec3 x = m->position0[i + 1];
+        bough_quaternion p = m->rotation0[i + 1];
+        bough_vec3 u = bough_add(u0, bough_cross(omega, x));
+        bough_vec3 w = bough_mat3_tmul(bough_rotation_matrix(p), omega);
+        const double values[BOUGH_ROD_STATES] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z,
+                                                 u.x, u.y, u.z, w.x, w.y, w.z};
+        for (int c = 0; c < BOUGH_ROD_STATES; c++) state[c * n + i] = values[c];
+    }
+}

@@ -1,0 +1,114 @@
+// The discrete geometrically exact Cosserat rod (THEORY 1): constant model and scratch.
+//
+// Vertex 0 is the root: it is welded to the body reference frame (BRF) and moves as the input
+// says. Vertices 1..N carry the states. Velocities are ABSOLUTE velocities resolved in moving
+// axes, so that inputs are the BRF's twist and gravity only, no acceleration:
+//     x  position relative to the BRF, in BRF axes [m]              ẋ = u − u₀ − ω×x
+//     p  rotation BRF ← section, quaternion                         ṗ = ½ (p∘(0,W) − (0,ω)∘p)
+//     u  absolute velocity, in BRF axes [m/s]                       (11)
+//     W  absolute angular velocity, in section axes [rad/s]         (11)
+// State arrays are component-major: state[c·N + i], c = x₁₋₃ p₀₋₃ u₁₋₃ W₁₋₃, i = vertex − 1.
+#ifndef BOUGH_FLEXBODY_ROD_H
+#define BOUGH_FLEXBODY_ROD_H
+
+#include "core/arena.h"
+#include "core/base.h"
+#include "core/rotation.h"
+#include "core/status.h"
+
+enum {
+    BOUGH_ROD_STATES = 13, // per moving vertex
+    BOUGH_ROD_INPUTS = 9,  // BRF velocity, angular velocity, gravity, each in BRF axes
+    BOUGH_ROD_OUTPUTS = 6, // root wrench on the carrier: force, moment about the BRF origin
+};
+
+// Offsets of the state's parts, in components.
+enum { BOUGH_ROD_X = 0, BOUGH_ROD_P = 3, BOUGH_ROD_U = 7, BOUGH_ROD_W = 10 };
+
+// Inertia lumped at a vertex, in section axes about the vertex.
+typedef struct bough_vertex_inertia {
+    double mass;         // [kg]
+    bough_vec3 moment;   // first moment mζ [kg m]
+    double inertia[6];   // Ixx Iyy Izz Ixy Ixz Iyz, tensor entries [kg m²]
+} bough_vertex_inertia;
+
+// What is discretised: filled by bough_section_discretise or by hand.
+typedef struct bough_rod_def {
+    const char *name;
+    int n_segment;                        // N
+    const double *span;                   // arc length of the vertices (N + 1) [m]
+    const bough_vec3 *position;           // undeformed, in the BRF (N + 1) [m]
+    const bough_quaternion *rotation;     // undeformed, section axes in the BRF (N + 1)
+    const double *stiffness;              // per segment, symmetric 6×6 upper triangle by rows
+                                          // (N × 21) [N, N m, N m²]; order V₁V₂V₃U₁U₂U₃
+    const double *damping;                // likewise (N × 21) [N s, N m s, N m² s]
+    const bough_vertex_inertia *inertia;  // (N + 1)
+} bough_rod_def;
+
+typedef struct bough_rod_model {
+    const char *name;
+    int n;      // segments = moving vertices
+    int stride; // of the arrays over vertices and segments below: padded n + 1
+    double *span;               // (n + 1) [m]
+    bough_vec3 *position0;      // undeformed (n + 1) [m]
+    bough_quaternion *rotation0; // undeformed (n + 1)
+    double *length;             // segment length h (stride) [m]
+    double *inverse_length;     // 1/h (stride) [1/m]
+    double *strain0;            // V⁰, U⁰ (6 × stride)
+    double *stiffness;          // C (21 × stride)
+    double *damping;            // D (21 × stride)
+    double *moment;             // first moment s = mζ of moving vertices (3 × stride) [kg m]
+    double *inertia;            // of moving vertices (6 × stride) [kg m²]
+    double *inverse_mass;       // of the 6×6 mass in section axes (21 × stride)
+    bough_vertex_inertia *vertex; // (n + 1); vertex 0 belongs to the carrier
+} bough_rod_model;
+
+// Loads on the vertices, linear in time: value + (t − start)·rate, resolved in BRF axes.
+typedef struct bough_rod_loads {
+    double start;  // [s]
+    double *value; // force then moment (6 × stride), vertex 0 included [N, N m]
+    double *rate;  // (6 × stride) [N/s, N m/s]
+} bough_rod_loads;
+
+// Work arrays of one evaluation; every array is (· × stride).
+typedef struct bough_rod_scratch {
+    double *vertex;  // x p u W of vertices 0..n, p normalised (13 × stride)
+    double *segment; // force on the left vertex in BRF axes, moments on the left and the right
+                     // vertex in their section axes (9 × stride), zero at n
+    double *load;    // loads at the time of evaluation (6 × stride)
+} bough_rod_scratch;
+
+// Builds the constant model. BOUGH_INVALID names the segment or vertex that is not usable.
+bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
+                              bough_rod_model **model);
+
+bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
+                            const bough_rod_model *model);
+bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
+                          const bough_rod_model *model);
+
+// The undeformed rod moving rigidly with its BRF: state (13 n), input (9).
+void bough_rod_rest_state(const bough_rod_model *m, const double *input, double *state);
+
+// Copies state and input into scratch->vertex; quaternions are normalised on the way.
+void bough_rod_gather(const bough_rod_model *m, const double *state, const double *input,
+                      bough_rod_scratch *scratch);
+
+// Elastic and viscous forces of segments first..last−1 from scratch->vertex into
+// scratch->segment. False when a segment's relative rotation exceeds 120° (mesh too coarse).
+bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch);
+
+// (8, 9, 11): rate (13 n). False when a value is not finite or a segment over-rotates.
+bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                          const double *state, const double *input, bough_rod_scratch *scratch,
+                          double *rate);
+
+// The root wrench (6).
+void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                           const double *state, const double *input, bough_rod_scratch *scratch,
+                           double *wrench);
+
+// Elastic energy [J] of the configuration in scratch->vertex.
+double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch);
+
+#endif

@@ -1,0 +1,194 @@
+// Right-hand side of the rod: gather, segment forces, vertex balances.
+#include "flexbody/rod.h"
+
+#include "flexbody/rod_segment.h"
+
+#include <string.h>
+
+void bough_rod_gather(const bough_rod_model *m, const double *state, const double *input,
+                      bough_rod_scratch *scratch) {
+    int n = m->n, s = m->stride;
+    double *restrict v = scratch->vertex;
+    for (int c = 0; c < BOUGH_ROD_STATES; c++) {
+        memcpy(v + c * s + 1, state + c * n, (size_t)n * sizeof *v);
+    }
+    bough_quaternion p0 = m->rotation0[0];
+    bough_vec3 omega = {input[3], input[4], input[5]};
+    bough_vec3 w0 = bough_mat3_tmul(bough_rotation_matrix(p0), omega);
+    const double root[BOUGH_ROD_STATES] = {0,        0,        0,        p0.w, p0.x, p0.y, p0.z,
+                                           input[0], input[1], input[2], w0.x, w0.y, w0.z};
+    for (int c = 0; c < BOUGH_ROD_STATES; c++) v[c * s] = root[c];
+    double *restrict p = v + BOUGH_ROD_P * s;
+#pragma omp simd
+    for (int i = 1; i <= n; i++) {
+        double w = p[i], x = p[s + i], y = p[2 * s + i], z = p[3 * s + i];
+        double scale = 1 / sqrt(w * w + x * x + y * y + z * z);
+        p[i] = scale * w;
+        p[s + i] = scale * x;
+        p[2 * s + i] = scale * y;
+        p[3 * s + i] = scale * z;
+    }
+}
+
+static inline vertex_state load_vertex(const double *restrict v, int s, int i) {
+    return (vertex_state){{v[i], v[s + i], v[2 * s + i]},
+                          {v[7 * s + i], v[8 * s + i], v[9 * s + i]},
+                          {v[10 * s + i], v[11 * s + i], v[12 * s + i]},
+                          {v[3 * s + i], v[4 * s + i], v[5 * s + i], v[6 * s + i]}};
+}
+
+static inline void store3(double *restrict a, int s, int i, bough_vec3 v) {
+    a[i] = v.x;
+    a[s + i] = v.y;
+    a[2 * s + i] = v.z;
+}
+
+static inline bough_vec3 load3(const double *restrict a, int s, int i) {
+    return (bough_vec3){a[i], a[s + i], a[2 * s + i]};
+}
+
+bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
+    int s = m->stride;
+    const double *restrict vertex = scratch->vertex, *restrict e0 = m->strain0;
+    const double *restrict c = m->stiffness, *restrict d = m->damping;
+    const double *restrict length = m->length, *restrict inverse = m->inverse_length;
+    double *restrict out = scratch->segment;
+    double least = 1;
+#pragma omp simd reduction(min : least)
+    for (int n = first; n < last; n++) {
+        vertex_state l = load_vertex(vertex, s, n), r = load_vertex(vertex, s, n + 1);
+        segment_geometry shape = segment_shape(l, r, inverse[n]);
+        strain rate = strain_rate(shape, segment_motion(shape, l, r), inverse[n]);
+        strain e = {bough_sub(shape.stretch, load3(e0, s, n)),
+                    bough_axpy(inverse[n], shape.phi, bough_scale(-1, load3(e0 + 3 * s, s, n)))};
+        strain elastic = symmetric_times(c, s, n, e), viscous = symmetric_times(d, s, n, rate);
+        strain stress = {bough_add(elastic.v, viscous.v), bough_add(elastic.u, viscous.u)};
+        segment_force f = stress_force(shape, stress, length[n]);
+        store3(out, s, n, f.f);
+        store3(out + 3 * s, s, n, f.ll);
+        store3(out + 6 * s, s, n, f.lr);
+        least = shape.w < least ? shape.w : least;
+    }
+    return least >= 0.5;
+}
+
+// Loads at time t into scratch->load.
+static void loads_at(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                     bough_rod_scratch *scratch) {
+    double elapsed = t - loads->start;
+    const double *restrict value = loads->value, *restrict rate = loads->rate;
+    double *restrict load = scratch->load;
+    int count = 6 * m->stride;
+#pragma omp simd
+    for (int k = 0; k < count; k++) load[k] = value[k] + elapsed * rate[k];
+}
+
+static inline bough_mat3 matrix_of(bough_quaternion p) {
+    double w = p.w, x = p.x, y = p.y, z = p.z;
+    return (bough_mat3){{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
+                        {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
+                        {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
+}
+
+// I W for the tensor entries Ixx Iyy Izz Ixy Ixz Iyz.
+static inline bough_vec3 inertia_times(const double *restrict j, int s, int i, bough_vec3 w) {
+    double xx = j[i], yy = j[s + i], zz = j[2 * s + i], xy = j[3 * s + i], xz = j[4 * s + i];
+    double yz = j[5 * s + i];
+    return (bough_vec3){xx * w.x + xy * w.y + xz * w.z, xy * w.x + yy * w.y + yz * w.z,
+                        xz * w.x + yz * w.y + zz * w.z};
+}
+
+// (11) solved for the accelerations, all vertices: the linear part goes out in BRF axes.
+static void vertex_accelerations(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                 const double *input, double *restrict rate) {
+    int n = m->n, s = m->stride;
+    const double *restrict v = scratch->vertex, *restrict f = scratch->segment;
+    const double *restrict load = scratch->load, *restrict inverse = m->inverse_mass;
+    const double *restrict first = m->moment, *restrict inertia = m->inertia;
+    bough_vec3 omega = {input[3], input[4], input[5]}, gravity = {input[6], input[7], input[8]};
+#pragma omp simd
+    for (int i = 1; i <= n; i++) {
+        vertex_state a = load_vertex(v, s, i);
+        bough_mat3 r = matrix_of(a.p);
+        bough_vec3 force = bough_add(bough_sub(load3(f, s, i), load3(f, s, i - 1)),
+                                     load3(load, s, i));
+        bough_vec3 moment = bough_add(bough_add(load3(f + 3 * s, s, i), load3(f + 6 * s, s, i - 1)),
+                                      bough_mat3_tmul(r, load3(load + 3 * s, s, i)));
+        bough_vec3 offset = load3(first, s, i - 1);
+        bough_vec3 centrifugal = bough_cross(a.w, bough_cross(a.w, offset));
+        bough_vec3 gyroscopic = bough_cross(a.w, inertia_times(inertia, s, i - 1, a.w));
+        strain h = {bough_sub(bough_mat3_tmul(r, force), centrifugal),
+                    bough_sub(moment, gyroscopic)};
+        strain q = symmetric_times(inverse, s, i - 1, h);
+        bough_vec3 acceleration = bough_sub(bough_add(bough_mat3_mul(r, q.v), gravity),
+                                            bough_cross(omega, a.u));
+        store3(rate + BOUGH_ROD_U * n, n, i - 1, acceleration);
+        store3(rate + BOUGH_ROD_W * n, n, i - 1, q.u);
+    }
+}
+
+// ẋ = u − u₀ − ω×x and ṗ = ½ (p∘(0,W) − (0,ω)∘p)
+static void vertex_kinematics(int n, const double *restrict state, const double *input,
+                              double *restrict rate) {
+    bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        bough_vec3 x = load3(state, n, i), u = load3(state + 7 * n, n, i);
+        bough_vec3 w = load3(state + 10 * n, n, i);
+        bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i],
+                              state[6 * n + i]};
+        bough_vec3 v = {p.x, p.y, p.z};
+        bough_vec3 difference = bough_sub(w, omega), sum = bough_add(w, omega);
+        bough_vec3 turn = bough_axpy(p.w, difference, bough_cross(v, sum));
+        store3(rate, n, i, bough_sub(bough_sub(u, u0), bough_cross(omega, x)));
+        rate[3 * n + i] = -0.5 * bough_dot(v, difference);
+        store3(rate + 4 * n, n, i, bough_scale(0.5, turn));
+    }
+}
+
+bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                          const double *state, const double *input, bough_rod_scratch *scratch,
+                          double *rate) {
+    bough_rod_gather(m, state, input, scratch);
+    loads_at(m, loads, t, scratch);
+    if (!bough_rod_forces(m, 0, m->n, scratch)) return false;
+    vertex_kinematics(m->n, state, input, rate);
+    vertex_accelerations(m, scratch, input, rate);
+    double sum = 0; // NaN and infinity survive a sum of squares
+    int last = BOUGH_ROD_STATES * m->n;
+#pragma omp simd reduction(+ : sum)
+    for (int k = BOUGH_ROD_U * m->n; k < last; k++) sum += rate[k] * rate[k];
+    return isfinite(sum);
+}
+
+void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                           const double *state, const double *input, bough_rod_scratch *scratch,
+                           double *wrench) {
+    int s = m->stride;
+    bough_rod_gather(m, state, input, scratch);
+    bough_rod_forces(m, 0, 1, scratch);
+    const double *f = scratch->segment;
+    bough_vec3 moment = bough_mat3_mul(bough_rotation_matrix(m->rotation0[0]),
+                                       bough_v3(f[3 * s], f[4 * s], f[5 * s]));
+    const double inner[6] = {f[0], f[s], f[2 * s], moment.x, moment.y, moment.z};
+    for (int c = 0; c < 6; c++) {
+        double load = loads->value[c * s] + (t - loads->start) * loads->rate[c * s];
+        wrench[c] = inner[c] + load;
+    }
+}
+
+double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch) {
+    int s = m->stride;
+    double energy = 0;
+    for (int n = 0; n < m->n; n++) {
+        vertex_state l = load_vertex(scratch->vertex, s, n);
+        vertex_state r = load_vertex(scratch->vertex, s, n + 1);
+        segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
+        strain e = {bough_sub(shape.stretch, load3(m->strain0, s, n)),
+                    bough_axpy(m->inverse_length[n], shape.phi,
+                               bough_scale(-1, load3(m->strain0 + 3 * s, s, n)))};
+        strain stress = symmetric_times(m->stiffness, s, n, e);
+        energy += 0.5 * m->length[n] * (bough_dot(e.v, stress.v) + bough_dot(e.u, stress.u));
+    }
+    return energy;
+}

@@ -1,0 +1,204 @@
+// The rod's forces, balances and tangents.
+#include "tests/check.h"
+
+#include "flexbody/rod_tangent.h"
+#include "tests/sample_rod.h"
+
+#include <stdlib.h>
+
+enum { N = 7, STATES = BOUGH_ROD_STATES * N };
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_rod_model *model;
+    bough_rod_scratch scratch;
+    bough_rod_loads loads;
+    bough_rod_tangent tangent;
+    double state[STATES], input[BOUGH_ROD_INPUTS];
+} fixture;
+
+static int setup(void **context) {
+    static const double input[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9};
+    fixture *f = calloc(1, sizeof *f);
+    f->arena = bough_arena_create();
+    f->model = sample_general(f->arena, N);
+    assert_true(bough_rod_scratch_init(&f->scratch, f->arena, f->model));
+    assert_true(bough_rod_loads_init(&f->loads, f->arena, f->model));
+    assert_true(bough_rod_tangent_init(&f->tangent, f->arena, f->model));
+    memcpy(f->input, input, sizeof input);
+    sample_state(f->model, f->input, f->state);
+    sample_loads(f->model, &f->loads);
+    *context = f;
+    return 0;
+}
+
+static int teardown(void **context) {
+    fixture *f = *context;
+    bough_arena_destroy(f->arena);
+    free(f);
+    return 0;
+}
+
+static void derivative(fixture *f, const double *state, const double *input, double *rate) {
+    assert_true(bough_rod_derivative(f->model, &f->loads, 0.5, state, input, &f->scratch, rate));
+}
+
+// (f(y + εd) − f(y − εd))/2ε
+static void directional(fixture *f, const double *dstate, const double *dinput, double *d) {
+    const double eps = 1e-6;
+    double yp[STATES], ym[STATES], up[BOUGH_ROD_INPUTS], um[BOUGH_ROD_INPUTS], fm[STATES];
+    for (int k = 0; k < STATES; k++) {
+        yp[k] = f->state[k] + eps * dstate[k];
+        ym[k] = f->state[k] - eps * dstate[k];
+    }
+    for (int k = 0; k < BOUGH_ROD_INPUTS; k++) {
+        up[k] = f->input[k] + eps * dinput[k];
+        um[k] = f->input[k] - eps * dinput[k];
+    }
+    derivative(f, yp, up, d);
+    derivative(f, ym, um, fm);
+    for (int k = 0; k < STATES; k++) d[k] = (d[k] - fm[k]) / (2 * eps);
+}
+
+static void undeformed_rod_moving_rigidly_feels_no_stress(void **context) {
+    fixture *f = *context;
+    double wrench[6];
+    memset(f->loads.value, 0, 6 * (size_t)f->model->stride * sizeof(double));
+    memset(f->loads.rate, 0, 6 * (size_t)f->model->stride * sizeof(double));
+    bough_rod_rest_state(f->model, f->input, f->state);
+    bough_rod_gather(f->model, f->state, f->input, &f->scratch);
+    assert_true(bough_rod_forces(f->model, 0, N, &f->scratch));
+    for (int k = 0; k < 9; k++) {
+        for (int n = 0; n < N; n++) {
+            check_near(f->scratch.segment[k * f->model->stride + n], 0, 0, 1e-12);
+        }
+    }
+    bough_rod_root_wrench(f->model, &f->loads, 0, f->state, f->input, &f->scratch, wrench);
+    for (int k = 0; k < 6; k++) check_near(wrench[k], 0, 0, 1e-12);
+}
+
+// Without damping the power of the vertex forces is minus the rate of the elastic energy.
+static void forces_are_the_gradient_of_the_energy(void **context) {
+    fixture *f = *context;
+    bough_rod_model *m = f->model;
+    int s = m->stride;
+    double rate[STATES], energy[2];
+    memset(m->damping, 0, 21 * (size_t)s * sizeof(double));
+    double still[BOUGH_ROD_INPUTS] = {0};
+    memset(f->loads.value, 0, 6 * (size_t)s * sizeof(double));
+    memset(f->loads.rate, 0, 6 * (size_t)s * sizeof(double));
+    derivative(f, f->state, still, rate);
+    const double *seg = f->scratch.segment, *v = f->scratch.vertex;
+    double power = 0;
+    for (int i = 1; i <= N; i++) {
+        for (int c = 0; c < 3; c++) {
+            power += (seg[c * s + i] - seg[c * s + i - 1]) * v[(BOUGH_ROD_U + c) * s + i];
+            power += (seg[(3 + c) * s + i] + seg[(6 + c) * s + i - 1]) *
+                     v[(BOUGH_ROD_W + c) * s + i];
+        }
+    }
+    for (int side = 0; side < 2; side++) {
+        double moved[STATES], eps = side == 0 ? -1e-6 : 1e-6;
+        for (int k = 0; k < STATES; k++) moved[k] = f->state[k] + eps * rate[k];
+        bough_rod_gather(m, moved, still, &f->scratch);
+        energy[side] = bough_rod_elastic_energy(m, &f->scratch);
+    }
+    check_near(power, -(energy[1] - energy[0]) / 2e-6, 1e-7, 0);
+}
+
+static void newton_solution_inverts_the_jacobian(void **context) {
+    fixture *f = *context;
+    const double gammas[] = {1e-3, 0.07, 0.4};
+    for (int g = 0; g < 3; g++) {
+        unsigned seed = 3;
+        double d[STATES], jd[STATES], b[STATES], none[BOUGH_ROD_INPUTS] = {0};
+        for (int k = 0; k < STATES; k++) d[k] = sample_random(&seed);
+        directional(f, d, none, jd);
+        for (int k = 0; k < STATES; k++) b[k] = d[k] - gammas[g] * jd[k];
+        assert_true(bough_rod_linearise(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch,
+                                        &f->tangent));
+        assert_true(bough_rod_factor(f->model, &f->tangent, gammas[g]));
+        bough_rod_solve(f->model, &f->tangent, b);
+        for (int k = 0; k < STATES; k++) check_near(b[k], d[k], 0, 2e-7);
+    }
+}
+
+static void input_columns_match_differences(void **context) {
+    fixture *f = *context;
+    double column[BOUGH_ROD_INPUTS * STATES], d[STATES], none[STATES] = {0};
+    bough_rod_input_columns(f->model, f->state, f->input, &f->scratch, column);
+    for (int j = 0; j < BOUGH_ROD_INPUTS; j++) {
+        double unit[BOUGH_ROD_INPUTS] = {0};
+        unit[j] = 1;
+        directional(f, none, unit, d);
+        for (int k = 0; k < STATES; k++) check_near(column[j * STATES + k], d[k], 0, 1e-7);
+    }
+}
+
+static void wrench_tangent_matches_differences(void **context) {
+    fixture *f = *context;
+    unsigned seed = 9;
+    const double eps = 1e-6;
+    double ds[STATES], du[BOUGH_ROD_INPUTS], y[STATES], u[BOUGH_ROD_INPUTS], side[2][6], d[6];
+    for (int k = 0; k < STATES; k++) ds[k] = sample_random(&seed);
+    for (int k = 0; k < BOUGH_ROD_INPUTS; k++) du[k] = sample_random(&seed);
+    for (int s = 0; s < 2; s++) {
+        double step = s == 0 ? -eps : eps;
+        for (int k = 0; k < STATES; k++) y[k] = f->state[k] + step * ds[k];
+        for (int k = 0; k < BOUGH_ROD_INPUTS; k++) u[k] = f->input[k] + step * du[k];
+        bough_rod_root_wrench(f->model, &f->loads, 0.5, y, u, &f->scratch, side[s]);
+    }
+    bough_rod_wrench_tangent(f->model, f->state, f->input, ds, du, &f->scratch, d);
+    for (int k = 0; k < 6; k++) check_near(d[k], (side[1][k] - side[0][k]) / (2 * eps), 1e-7, 1e-7);
+}
+
+// p and −p are the same rotation at any vertex.
+static void quaternion_sign_does_not_matter(void **context) {
+    fixture *f = *context;
+    double a[STATES], b[STATES];
+    derivative(f, f->state, f->input, a);
+    for (int c = 3; c < 7; c++) f->state[c * N + 3] *= -1;
+    derivative(f, f->state, f->input, b);
+    for (int k = 7 * N; k < STATES; k++) check_near(b[k], a[k], 0, 1e-12 * fabs(a[k]) + 1e-12);
+}
+
+// A rod carried by a turning frame moves as the same rod seen from the frame at rest.
+static void motion_does_not_depend_on_the_frame(void **context) {
+    fixture *f = *context;
+    double rate[STATES], seen[STATES], still[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, 1, -2, -9};
+    // the first segment would feel the root's motion: compare the vertices beyond it
+    derivative(f, f->state, still, rate);
+    derivative(f, f->state, f->input, seen);
+    bough_vec3 omega = {f->input[3], f->input[4], f->input[5]};
+    for (int i = 1; i < N; i++) {
+        bough_vec3 u = {f->state[7 * N + i], f->state[8 * N + i], f->state[9 * N + i]};
+        bough_vec3 turn = bough_cross(omega, u);
+        check_near(seen[7 * N + i] + turn.x, rate[7 * N + i], 1e-12, 1e-12);
+        check_near(seen[8 * N + i] + turn.y, rate[8 * N + i], 1e-12, 1e-12);
+        check_near(seen[10 * N + i], rate[10 * N + i], 1e-12, 1e-12);
+    }
+}
+
+static void overturned_segment_is_refused(void **context) {
+    fixture *f = *context;
+    double rate[STATES];
+    double half[4] = {0, 1, 0, 0};
+    for (int c = 0; c < 4; c++) f->state[(3 + c) * N + 4] = half[c];
+    bool ok = bough_rod_derivative(f->model, &f->loads, 0, f->state, f->input, &f->scratch, rate);
+    assert_false(ok);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(undeformed_rod_moving_rigidly_feels_no_stress, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(forces_are_the_gradient_of_the_energy, setup, teardown),
+        cmocka_unit_test_setup_teardown(newton_solution_inverts_the_jacobian, setup, teardown),
+        cmocka_unit_test_setup_teardown(input_columns_match_differences, setup, teardown),
+        cmocka_unit_test_setup_teardown(wrench_tangent_matches_differences, setup, teardown),
+        cmocka_unit_test_setup_teardown(quaternion_sign_does_not_matter, setup, teardown),
+        cmocka_unit_test_setup_teardown(motion_does_not_depend_on_the_frame, setup, teardown),
+        cmocka_unit_test_setup_teardown(overturned_segment_is_refused, setup, teardown),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
