@@ -7,7 +7,7 @@ set -eu
 exec awk -v results="$1/channels.out" '
 function abs(x) { return x < 0 ? -x : x }
 function fail(text) { print "compare: " text > "/dev/stderr"; code = 2; exit code }
-function percent(x, of) { return of == 0 ? (x == 0 ? 0 : 999) : 100 * abs(x / of) }
+function percent(x, of) { return of == 0 ? (x == 0 ? 0 : 999) : 100 * abs(x) / abs(of) }
 
 function read_results(   line, n, i, unit, name, part) {
     while ((status = (getline line < results)) > 0 && line !~ /^ *Time/) {
