@@ -1,0 +1,344 @@
+// The tree behind the subsystem contract.
+#include "core/tree_subsystem.h"
+
+#include "core/base.h"
+#include "core/dynamics.h"
+#include "core/integrator_ida.h"
+#include "core/linalg.h"
+
+#include <string.h>
+
+// Finite differences: the cube root of the rounding error for central, the square root for
+// one-sided ones balances truncation against cancellation.
+static const double central_increment = 6e-6, onesided_increment = 1.5e-8;
+
+// A quaternion's length is no state of the motion; past this the integrator starts anew with 1.
+static const double drift_limit = 1e-3;
+
+typedef struct tree_subsystem {
+    bough_tree *tree;
+    bough_tree_data *data;
+    const char *name;
+    int n; // n_q + n_v
+    double time;
+    double *state, *scale; // (n)
+    const bough_signal *signal; // while advancing
+    double *input;              // (n_input) at the evaluation's time
+    bool started;               // the integrator's history belongs to the state
+    bough_ida *ida;             // NULL without states
+    double *ida_state, *ida_rate;          // (n) as IDA keeps it: quaternions not normalised
+    double *ida_matrix, *newton_matrix;    // (n × n, column-major)
+    int *ida_pivot, *newton_pivot;         // (n)
+    double *y, *r, *base, *plus, *minus;   // (n) scratch
+    long newton_setups, derivatives;
+} tree_subsystem;
+
+// -- model exchange --------------------------------------------------------------------------
+
+static bool all_finite(const double *x, int n) {
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i])) return false;
+    }
+    return true;
+}
+
+static bool derivative(void *self, double t, const double *state, const double *input,
+                       double *rate) {
+    tree_subsystem *s = self;
+    s->derivatives++;
+    bough_tree_kinematics(s->tree, state, s->data);
+    bough_tree_coordinate_rate(s->tree, state, rate); // q̇ = N(q) v
+    bool ok = bough_tree_forward_dynamics(s->tree, s->data, t, input, rate + s->tree->n_q);
+    return ok && all_finite(rate, s->n);
+}
+
+static void store3(bough_vec3 x, double *out) {
+    out[0] = x.x, out[1] = x.y, out[2] = x.z;
+}
+
+static void output(void *self, double t, const double *state, const double *input, double *out) {
+    (void)t, (void)input;
+    tree_subsystem *s = self;
+    bough_tree_kinematics(s->tree, state, s->data);
+    for (int p = 0; p < s->tree->n_ports; p++, out += BOUGH_PORT_OUTPUTS) {
+        const bough_frame *port = &s->tree->ports[p];
+        bough_vec3 g = port->link < 0 ? s->tree->gravity : s->data->gravity[port->link];
+        bough_twist_store(bough_tree_frame_twist(s->data, port), out);
+        store3(bough_mat3_tmul(port->placement.rotation, g), out + 6);
+    }
+}
+
+static void output_tangent(void *self, double t, const double *state, const double *input,
+                           const double *state_rate, const double *input_rate, double *out) {
+    (void)t, (void)input, (void)input_rate; // a wrench moves nothing at once
+    tree_subsystem *s = self;
+    memset(out, 0, (size_t)s->tree->n_ports * BOUGH_PORT_OUTPUTS * sizeof(double));
+    if (state_rate == NULL) return;
+    bough_tree_kinematics(s->tree, state, s->data);
+    bough_tree_tangent(s->tree, state, state_rate, s->data);
+    for (int p = 0; p < s->tree->n_ports; p++, out += BOUGH_PORT_OUTPUTS) {
+        const bough_frame *port = &s->tree->ports[p];
+        if (port->link < 0) continue;
+        bough_twist_store(
+            bough_twist_to_child(&port->placement, s->data->acceleration[port->link]), out);
+        store3(bough_mat3_tmul(port->placement.rotation, s->data->gravity_rate[port->link]),
+               out + 6);
+    }
+}
+
+static void input_columns(void *self, double t, const double *state, const double *input,
+                          double *column) {
+    tree_subsystem *s = self;
+    const bough_tree *tree = s->tree;
+    bough_tree_kinematics(tree, state, s->data);
+    bough_tree_forward_dynamics(tree, s->data, t, input, s->r); // for its factors
+    for (int j = 0; j < BOUGH_PORT_INPUTS * tree->n_ports; j++, column += s->n) {
+        double unit[BOUGH_PORT_INPUTS] = {0};
+        unit[j % BOUGH_PORT_INPUTS] = 1;
+        memset(column, 0, (size_t)tree->n_q * sizeof(double));
+        bough_tree_response(tree, s->data, &tree->ports[j / BOUGH_PORT_INPUTS],
+                            bough_wrench_load(unit), column + tree->n_q);
+    }
+}
+
+// The increment of a state that keeps y + δ − y exact to its last digit
+static double increment_at(double y, double relative) {
+    return relative * fmax(1, fabs(y));
+}
+
+// f is defined for quaternions of any length, so its derivative by components is consistent.
+static bool newton_setup(void *self, double t, const double *state, const double *input,
+                         double gamma) {
+    tree_subsystem *s = self;
+    int n = s->n;
+    s->newton_setups++;
+    memcpy(s->y, state, (size_t)n * sizeof(double));
+    for (int j = 0; j < n; j++) {
+        // Coordinates enter by sines and cosines: their increment does not grow with them.
+        double d = j < s->tree->n_q ? central_increment : increment_at(state[j], central_increment);
+        double high = state[j] + d, low = state[j] - d;
+        s->y[j] = high;
+        bool ok = derivative(s, t, s->y, input, s->plus);
+        s->y[j] = low;
+        ok = ok && derivative(s, t, s->y, input, s->minus);
+        s->y[j] = state[j];
+        if (!ok) return false;
+        double *column = s->newton_matrix + (size_t)n * (size_t)j, factor = gamma / (high - low);
+        for (int i = 0; i < n; i++) column[i] = -factor * (s->plus[i] - s->minus[i]);
+        column[j] += 1;
+    }
+    return bough_dense_factor(n, s->newton_matrix, s->newton_pivot);
+}
+
+static void newton_solve(void *self, double *x) {
+    tree_subsystem *s = self;
+    bough_dense_solve(s->n, 1, s->newton_matrix, s->newton_pivot, x);
+}
+
+// -- own steps by IDA ------------------------------------------------------------------------
+
+// A tree without ports may be advanced without a signal.
+static void evaluate_input(tree_subsystem *s, double t) {
+    if (s->signal != NULL && s->signal->n > 0) bough_signal_value(s->signal, t, s->input);
+}
+
+static bool residual(void *self, double t, const double *y, const double *rate, double *r) {
+    tree_subsystem *s = self;
+    const bough_tree *tree = s->tree;
+    evaluate_input(s, t);
+    bough_tree_kinematics(tree, y, s->data);
+    bough_tree_coordinate_rate(tree, y, r);
+    for (int i = 0; i < tree->n_q; i++) r[i] = rate[i] - r[i]; // q̇ − N(q) v
+    bough_tree_inverse_dynamics(tree, s->data, t, s->input, rate + tree->n_q, r + tree->n_q);
+    return true;
+}
+
+// ∂F/∂y + cj ∂F/∂ẏ by columns: F is linear in the rates, so that cj may be of any size.
+static bool residual_setup(void *self, double t, const double *y, const double *rate, double cj) {
+    tree_subsystem *s = self;
+    int n = s->n;
+    residual(s, t, y, rate, s->base);
+    memcpy(s->y, y, (size_t)n * sizeof(double));
+    memcpy(s->r, rate, (size_t)n * sizeof(double));
+    for (int j = 0; j < n; j++) {
+        double high = y[j] + increment_at(y[j], onesided_increment), d = high - y[j];
+        s->y[j] = high;
+        s->r[j] = rate[j] + cj * d;
+        residual(s, t, s->y, s->r, s->plus);
+        s->y[j] = y[j];
+        s->r[j] = rate[j];
+        double *column = s->ida_matrix + (size_t)n * (size_t)j;
+        for (int i = 0; i < n; i++) column[i] = (s->plus[i] - s->base[i]) / d;
+    }
+    return bough_dense_factor(n, s->ida_matrix, s->ida_pivot);
+}
+
+static void residual_solve(void *self, double *x) {
+    tree_subsystem *s = self;
+    bough_dense_solve(s->n, 1, s->ida_matrix, s->ida_pivot, x);
+}
+
+static void normalise(tree_subsystem *s) {
+    for (int i = 0; i < s->tree->n_links; i++) {
+        const bough_link *link = &s->tree->links[i];
+        bough_joint_normalise(&link->joint, s->state + link->first_coordinate);
+    }
+}
+
+static bool has_drifted(const tree_subsystem *s) {
+    for (int i = 0; i < s->tree->n_links; i++) {
+        const bough_link *link = &s->tree->links[i];
+        if (bough_joint_drift(&link->joint, s->ida_state + link->first_coordinate) > drift_limit) {
+            return true;
+        }
+    }
+    return false;
+}
+
+static bough_status start(tree_subsystem *s) {
+    evaluate_input(s, s->time);
+    if (!derivative(s, s->time, s->state, s->input, s->ida_rate)) {
+        return bough_fail(BOUGH_FAILED,
+                          "%s at t = %.9g s: the accelerations are not finite; try a smaller "
+                          "macro step", s->name, s->time);
+    }
+    s->started = true;
+    return bough_ida_start(s->ida, s->time, s->state, s->ida_rate);
+}
+
+static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
+    tree_subsystem *s = self;
+    if (s->n == 0) {
+        s->time = t1;
+        return bough_ok();
+    }
+    bough_status status = bough_ok();
+    s->signal = input;
+    if (restart || !s->started) status = start(s);
+    if (bough_is_ok(&status)) {
+        status = bough_ida_advance(s->ida, t1, s->ida_state, s->ida_rate);
+    }
+    if (!bough_is_ok(&status)) {
+        s->started = false;
+        return status;
+    }
+    s->time = t1;
+    memcpy(s->state, s->ida_state, (size_t)s->n * sizeof(double));
+    normalise(s);
+    if (has_drifted(s)) s->started = false;
+    return status;
+}
+
+// -- state -----------------------------------------------------------------------------------
+
+static size_t save_size(void *self) {
+    tree_subsystem *s = self;
+    return (1 + (size_t)s->n) * sizeof(double);
+}
+
+static void save(void *self, void *copy) {
+    tree_subsystem *s = self;
+    memcpy(copy, &s->time, sizeof(double));
+    memcpy((double *)copy + 1, s->state, (size_t)s->n * sizeof(double));
+}
+
+static void set_state(void *self, double t, const double *state) {
+    tree_subsystem *s = self;
+    s->time = t;
+    memmove(s->state, state, (size_t)s->n * sizeof(double));
+    normalise(s);
+    s->started = false;
+}
+
+static void restore(void *self, const void *copy) {
+    tree_subsystem *s = self;
+    memcpy(&s->time, copy, sizeof(double));
+    memcpy(s->state, (const double *)copy + 1, (size_t)s->n * sizeof(double));
+    s->started = false;
+}
+
+static void statistics(void *self, bough_statistics *sum) {
+    tree_subsystem *s = self;
+    *sum = (bough_statistics){0};
+    if (s->ida != NULL) bough_ida_statistics(s->ida, sum);
+    sum->derivatives += s->derivatives;
+    sum->factorisations += s->newton_setups;
+}
+
+static const bough_subsystem_ops operations = {
+    .derivative = derivative,
+    .output = output,
+    .output_tangent = output_tangent,
+    .input_columns = input_columns,
+    .newton_setup = newton_setup,
+    .newton_solve = newton_solve,
+    .advance = advance,
+    .save_size = save_size,
+    .save = save,
+    .restore = restore,
+    .set_state = set_state,
+    .statistics = statistics,
+};
+
+// -- construction ----------------------------------------------------------------------------
+
+static bool take(bough_arena *arena, tree_subsystem *s) {
+    size_t n = (size_t)s->n;
+    double **vectors[] = {&s->state, &s->scale, &s->ida_state, &s->ida_rate, &s->y,
+                          &s->r,     &s->base,  &s->plus,      &s->minus};
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        *vectors[i] = bough_arena_doubles(arena, n);
+    }
+    s->input = bough_arena_doubles(arena, BOUGH_PORT_INPUTS * (size_t)s->tree->n_ports);
+    s->ida_matrix = bough_arena_doubles(arena, n * n);
+    s->newton_matrix = bough_arena_doubles(arena, n * n);
+    s->ida_pivot = bough_arena_take(arena, n * sizeof(int));
+    s->newton_pivot = bough_arena_take(arena, n * sizeof(int));
+    return !bough_arena_exhausted(arena);
+}
+
+static bough_status create_integrator(bough_arena *arena, tree_subsystem *s, double rtol) {
+    bough_dae dae = {.name = s->name,
+                     .n = s->n,
+                     .self = s,
+                     .residual = residual,
+                     .setup = residual_setup,
+                     .solve = residual_solve};
+    return s->n == 0 ? bough_ok() : bough_ida_create(arena, &dae, s->scale, rtol, &s->ida);
+}
+
+static void describe(tree_subsystem *s, bough_subsystem *subsystem) {
+    *subsystem = (bough_subsystem){
+        .name = s->name,
+        .kind = "tree",
+        .solver = "IDA",
+        .n_state = s->n,
+        .n_input = BOUGH_PORT_INPUTS * s->tree->n_ports,
+        .n_output = BOUGH_PORT_OUTPUTS * s->tree->n_ports,
+        .scale = s->scale,
+        .time = &s->time,
+        .state = s->state,
+        .ops = &operations,
+        .self = s,
+    };
+}
+
+bough_status bough_tree_subsystem_create(bough_arena *arena, bough_tree *tree, const char *name,
+                                         double start_time, double rtol,
+                                         bough_subsystem *subsystem) {
+    tree_subsystem *s = bough_arena_take(arena, sizeof *s);
+    if (s == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's integrator");
+    s->tree = tree;
+    s->n = tree->n_q + tree->n_v;
+    s->name = bough_arena_string(arena, name);
+    bough_status status = bough_tree_data_create(arena, tree, &s->data);
+    if (!bough_is_ok(&status)) return status;
+    if (!take(arena, s)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's integrator");
+    }
+    for (int i = 0; i < s->n; i++) s->scale[i] = 1;
+    set_state(s, start_time, tree->initial);
+    status = create_integrator(arena, s, rtol);
+    if (bough_is_ok(&status)) describe(s, subsystem);
+    return status;
+}
