@@ -1,9 +1,10 @@
 // A scene as the user said it: plain structs in SI units and radians, names resolved to indices,
-// every value checked. Read from a YAML file by one table (scene_schema.c); apps/scene/build makes
+// every value checked. Read from a YAML file by the tables of scene_schema.c; apps/scene/build makes
 // the model of it. Examples of every form: tests/scenes/example-*.yaml.
 //
-// All memory belongs to the arena given to bough_scene_read. A part that the file may leave out
-// has `node == NULL` when it is absent; its other fields then hold the defaults.
+// All memory belongs to the arena given to bough_scene_read. Every struct begins with its place in
+// the text; a part that the file may leave out has `node == NULL` when it is absent, and its other
+// fields then hold the defaults.
 //
 // Axes: ground z up. A placement is a list of steps, each in the frame reached so far. Section
 // quantities are in the section's axes, whose z is the tangent of the reference axis, and about the
@@ -29,6 +30,7 @@ typedef enum bough_scene_scheme {
 } bough_scene_scheme;
 
 typedef struct bough_scene_coupling {
+    const bough_node *node;
     int scheme;   // bough_scene_scheme
     int order;    // degree of the extrapolation, 0..2
     double theta; // share of the new value in the ramp, 0.5..1; 0: chosen by the scheme ("auto")
@@ -38,9 +40,15 @@ typedef enum bough_scene_master_kind { BOUGH_SCENE_IDA } bough_scene_master_kind
 typedef enum bough_scene_micro_kind { BOUGH_SCENE_CVODE_BDF } bough_scene_micro_kind;
 
 typedef struct bough_scene_solver {
+    const bough_node *node;
     int solver;  // bough_scene_master_kind or bough_scene_micro_kind
     double rtol; // [-]
 } bough_scene_solver;
+
+typedef struct bough_scene_output {
+    const bough_node *node;
+    double interval; // [s], a multiple of the macro step
+} bough_scene_output;
 
 typedef struct bough_scene_simulation {
     const bough_node *node;
@@ -49,7 +57,7 @@ typedef struct bough_scene_simulation {
     bough_scene_coupling coupling;
     bough_scene_solver master, micro;
     int threads;
-    double output_interval; // [s], a multiple of the macro step
+    bough_scene_output output;
 } bough_scene_simulation;
 
 typedef enum bough_scene_axis { BOUGH_SCENE_X, BOUGH_SCENE_Y, BOUGH_SCENE_Z } bough_scene_axis;
@@ -96,16 +104,24 @@ typedef struct bough_scene_station {
                            // reference axis [kg m]; Ixy = −∫xy
 } bough_scene_station;
 
+// The structure of a rod; a file holds one.
+typedef struct bough_scene_structure {
+    const bough_node *node;
+    const char *source; // where the data come from; NULL: not said
+    double length;      // extent along z [m]
+    double damping[6];  // stress = stiffness (strain + damping · strain rate) [s]
+    int n_station;      // 1: uniform, that station holds for all of [0, length]
+    bough_scene_station *station; // (n_station), spans strictly increasing from 0 to length; the
+                                  // same pointer for bodies that name the same file
+} bough_scene_structure;
+
 typedef struct bough_scene_rod {
     const bough_node *node; // NULL: the body has no rod
-    const char *source;     // where the data come from; NULL: not said
-    const char *table;      // name of the file as written; NULL: given in the scene
-    int n_segments;
-    double length;               // extent along z [m]
-    double damping[6];           // stress = stiffness (strain + damping · strain rate) [s]
-    int n_station;               // 1: uniform, that station holds for all of [0, length]
-    bough_scene_station *station; // (n_station), spans strictly increasing from 0 to length;
-                                 // the same pointer for bodies that name the same table
+    int n_segment;
+    bough_scene_structure structure; // of the table, or of the one section given in the scene
+    // As written in the scene; contained in `structure`:
+    bough_scene_station uniform;
+    double length, damping[6];
 } bough_scene_rod;
 
 typedef enum bough_scene_fidelity { BOUGH_SCENE_RIGID, BOUGH_SCENE_ROD } bough_scene_fidelity;
@@ -184,11 +200,13 @@ typedef enum bough_scene_wind_kind { BOUGH_SCENE_WIND_UNIFORM } bough_scene_wind
 typedef enum bough_scene_influence { BOUGH_SCENE_POTENTIAL } bough_scene_influence;
 
 typedef struct bough_scene_wind {
+    const bough_node *node;
     int kind;     // bough_scene_wind_kind
     double speed; // along ground x [m/s]
 } bough_scene_wind;
 
 typedef struct bough_scene_induction {
+    const bough_node *node;
     bool tip_loss, hub_loss, tangential, drag;
     int skew; // bough_scene_skew
 } bough_scene_induction;

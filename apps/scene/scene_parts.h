@@ -1,0 +1,36 @@
+// What the files that read a scene share among themselves.
+#ifndef BOUGH_APPS_SCENE_SCENE_PARTS_H
+#define BOUGH_APPS_SCENE_SCENE_PARTS_H
+
+#include "apps/scene/scene.h"
+#include "apps/scene/schema.h"
+
+// The table of a whole scene; fills a bough_scene.
+extern const bough_schema bough_scene_schema;
+
+// Readers of values that are lists of their own kind. `field` is named in the body.
+void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_axis_offset(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field);
+
+// Checks within one mapping or file; `item` is the struct that was read.
+void bough_scene_check_structure(bough_schema_reader *r, void *item);
+void bough_scene_check_rod(bough_schema_reader *r, void *item);
+void bough_scene_check_aero_blade(bough_schema_reader *r, void *item);
+void bough_scene_check_polar(bough_schema_reader *r, void *item);
+void bough_scene_check_polars(bough_schema_reader *r, void *item);
+void bough_scene_check_tower(bough_schema_reader *r, void *item);
+void bough_scene_check_load(bough_schema_reader *r, void *item);
+void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]);
+
+// Resolves names and checks what spans several parts of the scene.
+void bough_scene_link(bough_schema_reader *r, bough_scene *scene);
+
+// Replaces or adds the value that "path.to[2].key=value" names; the new root, or NULL after an
+// error. Nodes that an alias shares are copied before they change.
+bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *set,
+                            bough_errors *errors);
+
+#endif

@@ -1,0 +1,665 @@
+// Reading by table. Errors do not stop the reading: a wrong value leaves NaN, −1 or NULL behind and
+// the rest is read, so that one run shows every error of a file.
+#include "apps/scene/schema.h"
+
+#include "apps/scene/schema_parts.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+// A file that was read; bodies that name the same one share its tables.
+struct bough_schema_file {
+    struct bough_schema_file *next;
+    const char *path;
+    const bough_schema *schema;
+    void *item;
+};
+
+static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                       void *item);
+
+// -- errors -----------------------------------------------------------------------------------------
+
+// Appends to the path; the length before, for pop.
+static size_t push(bough_schema_reader *r, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static size_t push(bough_schema_reader *r, const char *format, ...) {
+    size_t length = strlen(r->path);
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(r->path + length, sizeof r->path - length, format, arguments);
+    va_end(arguments);
+    return length;
+}
+
+static size_t push_key(bough_schema_reader *r, const char *name) {
+    return push(r, r->path[0] == '\0' ? "%s" : ".%s", name);
+}
+
+static void pop(bough_schema_reader *r, size_t length) {
+    r->path[length] = '\0';
+}
+
+void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
+                        const char *format, ...) {
+    char text[400];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    size_t length = key[0] == '\0' ? strlen(reader->path) : push_key(reader, key);
+    bough_errors_add(reader->errors, node, reader->path, "%s", text);
+    pop(reader, length);
+}
+
+const char *bough_node_shown(const bough_node *node, char buffer[64]) {
+    if (node->kind == BOUGH_MAPPING) return "a mapping";
+    if (node->kind == BOUGH_SEQUENCE) return "a list";
+    if (node->text[0] == '\0') return node->quoted ? "''" : "nothing";
+    size_t length = strlen(node->text);
+    if (length <= 48) {
+        snprintf(buffer, 64, "'%s'", node->text);
+        return buffer;
+    }
+    length = 45;
+    while (((unsigned char)node->text[length] & 0xC0) == 0x80) length--; // not inside a character
+    snprintf(buffer, 64, "'%.*s...'", (int)length, node->text);
+    return buffer;
+}
+
+static void expected(bough_schema_reader *r, const bough_node *node, const char *what) {
+    char shown[64];
+    bough_schema_error(r, node, "", "expected %s, got %s", what, bough_node_shown(node, shown));
+}
+
+static int errors_so_far(const bough_schema_reader *r) {
+    return r->errors->n + r->errors->dropped;
+}
+
+// -- spelling ---------------------------------------------------------------------------------------
+
+enum { WORD = 40 };
+
+// Edit distance of two words shorter than WORD, an exchange of neighbours counting as one edit.
+static int edit_distance(const char *a, const char *b) {
+    int n = (int)strlen(a), m = (int)strlen(b), d[WORD + 1][WORD + 1];
+    for (int i = 0; i <= n; i++) d[i][0] = i;
+    for (int j = 0; j <= m; j++) d[0][j] = j;
+    for (int i = 1; i <= n; i++) {
+        for (int j = 1; j <= m; j++) {
+            int best = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+            if (d[i - 1][j] + 1 < best) best = d[i - 1][j] + 1;
+            if (d[i][j - 1] + 1 < best) best = d[i][j - 1] + 1;
+            bool swap = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+            if (swap && d[i - 2][j - 2] + 1 < best) best = d[i - 2][j - 2] + 1;
+            d[i][j] = best;
+        }
+    }
+    return d[n][m];
+}
+
+const char *bough_nearest(const char *word, const char *const *candidates, int n) {
+    size_t length = strlen(word);
+    if (length >= WORD) return NULL;
+    int best = length < 4 ? 2 : length < 8 ? 3 : 4; // one more than what counts as near
+    const char *nearest = NULL;
+    for (int i = 0; i < n; i++) {
+        if (candidates[i] == NULL || strlen(candidates[i]) >= WORD) continue;
+        int distance = edit_distance(word, candidates[i]);
+        if (distance < best) {
+            best = distance;
+            nearest = candidates[i];
+        }
+    }
+    return nearest;
+}
+
+// -- numbers ----------------------------------------------------------------------------------------
+
+static bool is_word(const bough_node *node, const char *word) {
+    return node->kind == BOUGH_SCALAR && strcmp(node->text, word) == 0;
+}
+
+// The column's unit holds for a plain number; a number with its own unit fails with it appended.
+static bool quantity(const bough_schema_reader *r, const char *text, bough_dimension dimension,
+                     double *value, char why[160]) {
+    double plain;
+    char ignored[160], joined[96];
+    if (r->unit == NULL || !bough_quantity(text, BOUGH_PURE_NUMBER, &plain, ignored)) {
+        return bough_quantity(text, dimension, value, why);
+    }
+    snprintf(joined, sizeof joined, "%s %s", text, r->unit);
+    return bough_quantity(joined, dimension, value, why);
+}
+
+double bough_schema_number(bough_schema_reader *reader, const bough_node *node,
+                           bough_dimension dimension) {
+    double value;
+    char why[160] = "", what[96], shown[64];
+    if (node->kind == BOUGH_SCALAR && quantity(reader, node->text, dimension, &value, why)) {
+        return value;
+    }
+    bough_dimension_expected(dimension, what);
+    bough_schema_error(reader, node, "", "expected %s, got %s%s%s", what,
+                       bough_node_shown(node, shown), why[0] == '\0' ? "" : ": ", why);
+    return NAN;
+}
+
+int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int most,
+                         double *values, const char *what) {
+    char shown[64];
+    if (node->kind != BOUGH_SEQUENCE) {
+        expected(reader, node, what);
+        return -1;
+    }
+    if (node->n < 1 || node->n > most) {
+        bough_schema_error(reader, node, "", "expected %s, got %d items", what, node->n);
+        return -1;
+    }
+    char why[160];
+    int n = node->n;
+    for (int i = 0; i < node->n; i++) {
+        const bough_node *item = node->value[i];
+        if (item->kind == BOUGH_SCALAR &&
+            bough_quantity(item->text, BOUGH_PURE_NUMBER, &values[i], why)) {
+            continue;
+        }
+        size_t length = push(reader, "[%d]", i);
+        bough_schema_error(reader, item, "", "expected a plain number in SI units, got %s",
+                           bough_node_shown(item, shown));
+        pop(reader, length);
+        n = -1;
+    }
+    return n;
+}
+
+// Whether the value is in a range "> 0", ">= 0", "[0, 2]"; ranges come from our own tables.
+static bool in_range(double value, const char *range) {
+    if (range == NULL) return true;
+    if (range[0] == '[') {
+        char *end;
+        double low = strtod(range + 1, &end);
+        return value >= low && value <= strtod(end + 1, NULL);
+    }
+    if (range[1] == '=') return value >= strtod(range + 2, NULL);
+    return value > strtod(range + 1, NULL);
+}
+
+static bool check_range(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                        double value) {
+    if (isnan(value) || in_range(value, key->range)) return true;
+    char shown[64];
+    const char *unit = bough_dimension_unit(key->dimension);
+    bough_schema_error(r, node, "", "must be %s%s%s%s, got %s", key->range[0] == '[' ? "in " : "",
+                       key->range, unit[0] == '\0' ? "" : " ", unit,
+                       bough_node_shown(node, shown));
+    return false;
+}
+
+static void read_number(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                        double *field) {
+    if (key->word != NULL && is_word(node, key->word)) {
+        *field = 0;
+        return;
+    }
+    double value = bough_schema_number(r, node, key->dimension);
+    *field = check_range(r, key, node, value) ? value : (double)NAN;
+}
+
+static void read_integer(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                         int *field) {
+    if (node->kind != BOUGH_SCALAR || !bough_whole_number(node->text, field)) {
+        expected(r, node, "a whole number");
+    } else {
+        check_range(r, key, node, *field);
+    }
+}
+
+// -- texts ------------------------------------------------------------------------------------------
+
+static void read_text(bough_schema_reader *r, const bough_node *node, const char **field) {
+    if (node->kind != BOUGH_SCALAR || node->text[0] == '\0') {
+        expected(r, node, "text");
+        *field = NULL;
+    } else {
+        *field = node->text;
+    }
+}
+
+static void read_choice(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                        int *field) {
+    char list[200] = "", shown[64];
+    int n = 0;
+    for (; key->choices[n] != NULL; n++) {
+        if (is_word(node, key->choices[n])) {
+            *field = n;
+            return;
+        }
+        size_t used = strlen(list);
+        snprintf(list + used, sizeof list - used, "%s%s", n == 0 ? "" : ", ", key->choices[n]);
+    }
+    *field = -1;
+    const char *near = node->kind == BOUGH_SCALAR ? bough_nearest(node->text, key->choices, n) : NULL;
+    bough_schema_error(r, node, "", "expected %s%s, got %s%s%s%s", n > 1 ? "one of " : "", list,
+                       bough_node_shown(node, shown), near == NULL ? "" : " (did you mean '",
+                       near == NULL ? "" : near, near == NULL ? "" : "'?)");
+}
+
+static void read_boolean(bough_schema_reader *r, const bough_node *node, bool *field) {
+    *field = !node->quoted && is_word(node, "true");
+    if (!*field && (node->quoted || !is_word(node, "false"))) expected(r, node, "true or false");
+}
+
+static void *field_at(void *item, size_t offset) {
+    return (char *)item + offset;
+}
+
+// Memory for the items of a list; NULL (and an error) when the node is not one long enough.
+static void *take_items(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                        size_t size) {
+    if (node->kind != BOUGH_SEQUENCE) {
+        expected(r, node, key->kind == BOUGH_KEY_LIST ? "a list of mappings" : "a list");
+        return NULL;
+    }
+    if (node->n < key->count) {
+        bough_schema_error(r, node, "", "expected at least %d item%s, got %d", key->count,
+                           key->count == 1 ? "" : "s", node->n);
+        return NULL;
+    }
+    return bough_arena_take(r->arena, (size_t)node->n * size);
+}
+
+static void read_texts(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                       void *item) {
+    const char **texts = take_items(r, key, node, sizeof *texts);
+    if (texts == NULL) return;
+    for (int i = 0; i < node->n; i++) {
+        size_t length = push(r, "[%d]", i);
+        read_text(r, node->value[i], &texts[i]);
+        pop(r, length);
+    }
+    *(const char ***)field_at(item, key->offset) = texts;
+    *(int *)field_at(item, key->count_offset) = node->n;
+}
+
+// -- lists of numbers -------------------------------------------------------------------------------
+
+static void read_components(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                            double *values) {
+    for (int i = 0; i < node->n; i++) {
+        size_t length = push(r, "[%d]", i);
+        read_number(r, key, node->value[i], &values[i]);
+        pop(r, length);
+    }
+}
+
+static void read_vector(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                        double *values) {
+    char what[40];
+    snprintf(what, sizeof what, "a list of %d numbers", key->count);
+    if (node->kind != BOUGH_SEQUENCE) {
+        expected(r, node, what);
+    } else if (node->n != key->count) {
+        bough_schema_error(r, node, "", "expected %s, got %d", what, node->n);
+    } else {
+        read_components(r, key, node, values);
+        return;
+    }
+    for (int i = 0; i < key->count; i++) values[i] = NAN;
+}
+
+static void read_numbers(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                         void *item) {
+    double *values = take_items(r, key, node, sizeof *values);
+    if (values == NULL) return;
+    read_components(r, key, node, values);
+    *(double **)field_at(item, key->offset) = values;
+    *(int *)field_at(item, key->count_offset) = node->n;
+}
+
+// -- lists of mappings ------------------------------------------------------------------------------
+
+static void read_rows(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                      void *item) {
+    char *items = take_items(r, key, node, key->of->size);
+    if (items == NULL) return;
+    for (int i = 0; i < node->n; i++) {
+        size_t length = push(r, "[%d]", i);
+        bough_schema_read(r, key->of, node->value[i], items + (size_t)i * key->of->size);
+        pop(r, length);
+    }
+    *(void **)field_at(item, key->offset) = items;
+    *(int *)field_at(item, key->count_offset) = node->n;
+}
+
+static const bough_key *find_key(const bough_schema *schema, const char *name) {
+    for (int i = 0; i < schema->n_key; i++) {
+        if (strcmp(schema->key[i].name, name) == 0) return &schema->key[i];
+    }
+    return NULL;
+}
+
+static void unknown_key(bough_schema_reader *r, const bough_schema *schema, const bough_node *at,
+                        const char *name) {
+    const char *names[64];
+    char shown[64];
+    bough_node word = {.kind = BOUGH_SCALAR, .text = name};
+    int n = 0;
+    for (; n < schema->n_key && n < 64; n++) names[n] = schema->key[n].name;
+    if (r->errors->dropped > 0) n = 0; // a hostile file: spelling costs time
+    const char *near = bough_nearest(name, names, n);
+    bough_schema_error(r, at, "", "unknown key %s%s%s%s", bough_node_shown(&word, shown),
+                       near == NULL ? "" : " (did you mean '", near == NULL ? "" : near,
+                       near == NULL ? "" : "'?)");
+}
+
+// The heads of a compact table: key names with the unit of their plain numbers, "twist deg".
+typedef struct columns {
+    int n;
+    bough_node **key; // (n)
+    const char **unit; // (n), NULL: SI
+} columns;
+
+// A column head: its name into a node, its unit or NULL.
+static bool read_column(bough_schema_reader *r, const bough_schema *row, const bough_node *head,
+                        bough_node *name, const char **unit) {
+    if (head->kind != BOUGH_SCALAR || head->text[0] == '\0') {
+        expected(r, head, "a column's name");
+        return false;
+    }
+    char *text = bough_arena_string(r->arena, head->text), why[160];
+    if (text == NULL) return false;
+    char *space = strchr(text, ' ');
+    if (space != NULL) *space = '\0';
+    *name = *head;
+    name->text = text;
+    *unit = space == NULL ? NULL : space + 1 + strspn(space + 1, " ");
+    const bough_key *key = find_key(row, text);
+    if (key == NULL) {
+        unknown_key(r, row, head, text);
+        return false;
+    }
+    if (*unit == NULL) return true;
+    bool one_number = key->kind == BOUGH_KEY_NUMBER;
+    if (one_number && bough_unit_fits(*unit, key->dimension, why)) return true;
+    bough_schema_error(r, head, "", one_number ? "column '%s': %s" : "column '%s' takes no unit",
+                       text, why);
+    return false;
+}
+
+static bool read_columns(bough_schema_reader *r, const bough_schema *row, const bough_node *heads,
+                         columns *c) {
+    if (heads->kind != BOUGH_SEQUENCE || heads->n == 0) {
+        expected(r, heads, "a list of column names");
+        return false;
+    }
+    bough_node *names = bough_arena_take(r->arena, (size_t)heads->n * sizeof *names);
+    c->n = heads->n;
+    c->key = bough_arena_take(r->arena, (size_t)c->n * sizeof *c->key);
+    c->unit = bough_arena_take(r->arena, (size_t)c->n * sizeof *c->unit);
+    if (names == NULL || c->key == NULL || c->unit == NULL) return false;
+    bool good = true;
+    for (int i = 0; i < c->n; i++) {
+        c->key[i] = &names[i];
+        bool read = read_column(r, row, heads->value[i], &names[i], &c->unit[i]);
+        for (int k = 0; read && good && k < i; k++) {
+            if (strcmp(names[k].text, names[i].text) != 0) continue;
+            bough_schema_error(r, heads->value[i], "", "column '%s' is given twice", names[i].text);
+            read = false;
+        }
+        good = good && read;
+    }
+    return good;
+}
+
+static void read_mapping(bough_schema_reader *r, const bough_schema *schema,
+                         const bough_node *node, const char *const *units, void *item);
+
+// A row of a compact table as the mapping it stands for; false after an error.
+static bool row_mapping(bough_schema_reader *r, const bough_node *row, const columns *c,
+                        bough_node *mapping) {
+    char what[60];
+    snprintf(what, sizeof what, "a list of %d values, one a column", c->n);
+    if (row->kind != BOUGH_SEQUENCE) {
+        expected(r, row, what);
+        return false;
+    }
+    if (row->n != c->n) {
+        bough_schema_error(r, row, "", "expected %s, got %d", what, row->n);
+        return false;
+    }
+    *mapping = *row;
+    mapping->kind = BOUGH_MAPPING;
+    mapping->key = c->key;
+    return true;
+}
+
+static void read_compact_rows(bough_schema_reader *r, const bough_key *key, const bough_node *rows,
+                              const columns *c, void *item) {
+    char *items = take_items(r, key, rows, key->of->size);
+    bough_node *mapping = bough_arena_take(r->arena, (size_t)rows->n * sizeof *mapping);
+    if (items == NULL || mapping == NULL) return;
+    for (int i = 0; i < rows->n; i++) {
+        size_t length = push(r, "[%d]", i);
+        if (row_mapping(r, rows->value[i], c, &mapping[i])) {
+            read_mapping(r, key->of, &mapping[i], c->unit, items + (size_t)i * key->of->size);
+        }
+        pop(r, length);
+    }
+    *(void **)field_at(item, key->offset) = items;
+    *(int *)field_at(item, key->count_offset) = rows->n;
+}
+
+// {columns: […], rows: [[…], …]}
+static void read_table(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                       void *item) {
+    const bough_node *heads = bough_node_find(node, "columns");
+    const bough_node *rows = bough_node_find(node, "rows");
+    for (int i = 0; i < node->n; i++) {
+        if (node->value[i] == heads || node->value[i] == rows) continue;
+        char shown[64];
+        bough_schema_error(r, node->key[i], "", "unknown key %s: a table has 'columns' and 'rows'",
+                           bough_node_shown(node->key[i], shown));
+    }
+    if (heads == NULL || rows == NULL) {
+        bough_schema_error(r, node, "", "expected a list of mappings, or 'columns' and 'rows'");
+        return;
+    }
+    columns c;
+    size_t length = push_key(r, "columns");
+    bool good = read_columns(r, key->of, heads, &c);
+    pop(r, length);
+    if (!good) return;
+    length = push_key(r, "rows");
+    read_compact_rows(r, key, rows, &c, item);
+    pop(r, length);
+}
+
+// -- files ------------------------------------------------------------------------------------------
+
+static const char *resolve(bough_schema_reader *r, const char *name) {
+    if (name[0] == '/') return name;
+    size_t size = strlen(r->directory) + strlen(name) + 1;
+    char *path = bough_arena_take(r->arena, size);
+    if (path != NULL) snprintf(path, size, "%s%s", r->directory, name);
+    return path;
+}
+
+// Reads the file's struct; errors inside it have paths that start at the file's top.
+static void *load(bough_schema_reader *r, const bough_schema *schema, const char *path) {
+    struct bough_schema_file *file = bough_arena_take(r->arena, sizeof *file);
+    void *item = bough_arena_take(r->arena, schema->size);
+    if (file == NULL || item == NULL) return NULL;
+    *file = (struct bough_schema_file){r->files, path, schema, item};
+    r->files = file;
+    bough_node *root = bough_text_read(r->arena, path, r->errors);
+    if (root == NULL) return item;
+    char outer[sizeof r->path];
+    memcpy(outer, r->path, sizeof outer);
+    r->path[0] = '\0';
+    bough_schema_read(r, schema, root, item);
+    memcpy(r->path, outer, sizeof outer);
+    return item;
+}
+
+static void read_file(bough_schema_reader *r, const bough_schema *schema, const bough_node *node,
+                      void *field) {
+    if (node->kind != BOUGH_SCALAR || node->text[0] == '\0') {
+        expected(r, node, "the name of a file");
+        return;
+    }
+    const char *path = resolve(r, node->text);
+    if (path == NULL) return;
+    for (struct bough_schema_file *f = r->files; f != NULL; f = f->next) {
+        if (f->schema != schema || strcmp(f->path, path) != 0) continue;
+        memcpy(field, f->item, schema->size);
+        return;
+    }
+    FILE *stream = fopen(path, "rb");
+    if (stream == NULL) {
+        bough_schema_error(r, node, "", "file '%s' cannot be read: %s", path, strerror(errno));
+        return;
+    }
+    fclose(stream);
+    void *item = load(r, schema, path);
+    if (item != NULL) memcpy(field, item, schema->size);
+}
+
+// -- mappings ---------------------------------------------------------------------------------------
+
+static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node,
+                       void *item) {
+    void *field = field_at(item, key->offset);
+    switch (key->kind) {
+    case BOUGH_KEY_NUMBER: read_number(r, key, node, field); break;
+    case BOUGH_KEY_INTEGER: read_integer(r, key, node, field); break;
+    case BOUGH_KEY_TEXT: read_text(r, node, field); break;
+    case BOUGH_KEY_CHOICE: read_choice(r, key, node, field); break;
+    case BOUGH_KEY_BOOLEAN: read_boolean(r, node, field); break;
+    case BOUGH_KEY_VECTOR: read_vector(r, key, node, field); break;
+    case BOUGH_KEY_NUMBERS: read_numbers(r, key, node, item); break;
+    case BOUGH_KEY_TEXTS: read_texts(r, key, node, item); break;
+    case BOUGH_KEY_MAPPING: bough_schema_read(r, key->of, node, field); break;
+    case BOUGH_KEY_LIST:
+        if (node->kind == BOUGH_MAPPING) {
+            read_table(r, key, node, item);
+        } else {
+            read_rows(r, key, node, item);
+        }
+        break;
+    case BOUGH_KEY_FILE: read_file(r, key->of, node, field); break;
+    case BOUGH_KEY_CUSTOM: key->read(r, node, field); break;
+    }
+}
+
+static void read_fallback(bough_schema_reader *r, const bough_key *key, void *item) {
+    if (key->kind == BOUGH_KEY_MAPPING) {
+        bough_schema_read(r, key->of, NULL, field_at(item, key->offset));
+        return;
+    }
+    if (key->fallback == NULL) return;
+    bough_node scalar = {.kind = BOUGH_SCALAR, .text = key->fallback, .file = "default"};
+    const bough_node *node = &scalar;
+    if (key->fallback[0] == '[') {
+        node = bough_text_parse(r->arena, "default", key->fallback, strlen(key->fallback),
+                                r->errors);
+    }
+    if (node != NULL) read_value(r, key, node, item);
+}
+
+// Whether `word` is one of "a|b|c".
+static bool is_among(const char *word, const char *list) {
+    size_t length = strlen(word);
+    for (const char *c = list; c != NULL; c = strchr(c, '|')) {
+        if (*c == '|') c++;
+        if (strncmp(c, word, length) == 0 && (c[length] == '|' || c[length] == '\0')) return true;
+    }
+    return false;
+}
+
+typedef enum relevance { APPLIES, APPLIES_NOT, UNKNOWN } relevance;
+
+// Whether the key applies under the choices read before it.
+static relevance applies(const bough_schema *schema, const bough_key *key, void *item) {
+    if (key->when == NULL) return APPLIES;
+    const bough_key *by = find_key(schema, key->when_key);
+    int choice = *(int *)field_at(item, by->offset);
+    if (choice < 0) return UNKNOWN;
+    return is_among(by->choices[choice], key->when) ? APPLIES : APPLIES_NOT;
+}
+
+// Says where a key that is given would apply, unless a twin of the same name applies here.
+static void refuse_key(bough_schema_reader *r, const bough_schema *schema, const bough_key *key,
+                       const bough_node *at, void *item) {
+    char where[120] = "";
+    for (int i = 0; i < schema->n_key; i++) {
+        const bough_key *twin = &schema->key[i];
+        if (strcmp(twin->name, key->name) != 0) continue;
+        if (twin < key || applies(schema, twin, item) != APPLIES_NOT) return;
+        size_t used = strlen(where);
+        snprintf(where + used, sizeof where - used, "%s%s", used == 0 ? "" : "|", twin->when);
+    }
+    for (char *c = strchr(where, '|'); c != NULL; c = strchr(c, '|')) *c = '/';
+    bough_schema_error(r, at, key->name, "only used with '%s: %s'", key->when_key, where);
+}
+
+static bough_node *key_node(const bough_node *mapping, const char *name, int *index) {
+    for (int i = 0; mapping != NULL && i < mapping->n; i++) {
+        *index = i;
+        if (strcmp(mapping->key[i]->text, name) == 0) return mapping->key[i];
+    }
+    return NULL;
+}
+
+static void read_one_key(bough_schema_reader *r, const bough_schema *schema, const bough_key *key,
+                         const bough_node *node, const char *const *units, void *item) {
+    int index = 0;
+    bough_node *at = key_node(node, key->name, &index);
+    relevance use = applies(schema, key, item);
+    if (at != NULL && use == APPLIES) {
+        size_t length = push_key(r, key->name);
+        r->unit = units == NULL ? NULL : units[index];
+        read_value(r, key, node->value[index], item);
+        r->unit = NULL;
+        pop(r, length);
+    } else if (at != NULL && use == APPLIES_NOT) {
+        refuse_key(r, schema, key, at, item);
+    } else if (at == NULL && use == APPLIES) {
+        if (key->required && node != NULL) {
+            bough_schema_error(r, node, "", "required key '%s' is missing", key->name);
+        }
+        read_fallback(r, key, item);
+    }
+}
+
+static void read_mapping(bough_schema_reader *r, const bough_schema *schema,
+                         const bough_node *node, const char *const *units, void *item) {
+    int before = errors_so_far(r);
+    *(const bough_node **)item = node;
+    for (int i = 0; i < schema->n_key; i++) {
+        read_one_key(r, schema, &schema->key[i], node, units, item);
+    }
+    for (int i = 0; node != NULL && i < node->n; i++) {
+        if (find_key(schema, node->key[i]->text) == NULL) {
+            unknown_key(r, schema, node->key[i], node->key[i]->text);
+        }
+    }
+    if (schema->check != NULL && node != NULL && errors_so_far(r) == before) {
+        schema->check(r, item);
+    }
+}
+
+void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema,
+                       const bough_node *node, void *item) {
+    if (node != NULL && node->kind != BOUGH_MAPPING) {
+        char what[80];
+        snprintf(what, sizeof what, "%s (a mapping of keys)", schema->name);
+        expected(reader, node, what);
+        node = NULL;
+    }
+    read_mapping(reader, schema, node, NULL, item);
+}
