@@ -37,19 +37,21 @@ static bough_status write_error(const bough_recorder *r) {
                       r->rows, errno ? strerror(errno) : "the device refused");
 }
 
+// Whether the byte is inside a UTF-8 character, after its first.
+static bool is_continuation(char byte) { return ((unsigned char)byte & 0xC0) == 0x80; }
+
 // The outcome has a fixed length, so that it can be replaced once the end is known.
 static bool write_outcome(bough_recorder *r, const char *text) {
     char line[OUTCOME];
     size_t length = strlen(text);
     if (length > OUTCOME - 1) {
         length = OUTCOME - 1;
-        while (length && ((unsigned char)text[length] & 0xC0) == 0x80)
-            length--; // whole characters
+        while (length && is_continuation(text[length]))
+            length--;
     }
-    memset(line, ' ', OUTCOME);
-    memcpy(line, text, length);
-    for (size_t i = 0; i < length; i++) {
-        if (line[i] == '\n' || line[i] == '\r') line[i] = ' ';
+    for (size_t i = 0; i < OUTCOME; i++) {
+        bool blank = i >= length || text[i] == '\n' || text[i] == '\r';
+        line[i] = blank ? ' ' : text[i];
     }
     line[OUTCOME - 1] = '\n';
     return fwrite(line, 1, OUTCOME, r->file) == OUTCOME;
