@@ -62,11 +62,6 @@ bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *
 // Outputs and inputs of all members at their current states: output (n_output), input (n_input).
 void bough_assembly_outputs(const bough_assembly *a, double t, double *output, double *input);
 
-// Rates of the inputs of all members, given the inputs and the state rates (n_state).
-// Scratch: output_rate (n_output).
-void bough_assembly_rates(const bough_assembly *a, double t, const double *input,
-                          const double *state_rate, double *output_rate, double *input_rate);
-
 // input[j] = output[source[j]] for the inputs of one member.
 void bough_assembly_gather(const bough_assembly *a, int member, const double *output,
                            double *input);

@@ -9,20 +9,20 @@ typedef struct bough_monitor bough_monitor;
 
 // What the monitor has to say at the end.
 typedef struct bough_coupling_report {
-    double defect_max; // largest |obtained − used| at a synchronisation point over the port's
-                       // running magnitude [1]
-    double defect_rms; // its root mean square over the steps [1]
-    double energy_residual; // Σ over interfaces |∫ (obtained − used wrench) · twist dt| [J]
+    double defect_max; // largest |obtained − used| at a synchronisation point, of a force, moment
+                       // or velocity relative to its own largest magnitude [1]
+    double defect_rms; // its root mean square over the steps, of the worst port [1]
+    double energy_residual;  // Σ over interfaces |∫ (obtained − used wrench) · twist dt| [J]
     double energy_exchanged; // Σ over interfaces ∫ |wrench · twist| dt [J]
 } bough_coupling_report;
 
-bough_status bough_monitor_create(bough_arena *arena, const bough_coupling *coupling,
-                                  bough_monitor **monitor);
+bough_status bough_monitor_create(bough_arena *arena, const bough_scheme *scheme,
+                                  const bough_coupling *coupling, bough_monitor **monitor);
 
 // Judges the step just taken: BOUGH_FAILED with a diagnosis when the run has become meaningless.
 bough_status bough_monitor_step(bough_monitor *m, const bough_coupling *c);
 
-bough_coupling_report bough_monitor_report(const bough_monitor *m);
+bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_coupling *c);
 
 // Residual of one interface [J].
 double bough_monitor_energy_residual(const bough_monitor *m, int interface);

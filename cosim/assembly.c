@@ -1,0 +1,181 @@
+#include "cosim/assembly.h"
+
+#include "core/base.h"
+
+static void take_members(bough_assembly *a, bough_arena *arena, const bough_assembly_def *def) {
+    size_t n = (size_t)def->n_member;
+    a->n_member = def->n_member;
+    a->member = bough_arena_take(arena, n * sizeof *a->member);
+    a->stage = bough_arena_take(arena, n * sizeof *a->stage);
+    a->state_offset = bough_arena_take(arena, (n + 1) * sizeof(int));
+    a->input_offset = bough_arena_take(arena, (n + 1) * sizeof(int));
+    a->output_offset = bough_arena_take(arena, (n + 1) * sizeof(int));
+    a->feedthrough = bough_arena_take(arena, n * sizeof(bool));
+    a->order = bough_arena_take(arena, n * sizeof(int));
+    if (bough_arena_exhausted(arena)) return;
+    for (int i = 0; i < def->n_member; i++) {
+        const bough_subsystem *s = def->member[i].subsystem;
+        a->member[i] = s;
+        a->stage[i] = def->member[i].stage;
+        if (a->stage[i] >= a->n_stage) a->n_stage = a->stage[i] + 1;
+        a->state_offset[i + 1] = a->state_offset[i] + s->n_state;
+        a->input_offset[i + 1] = a->input_offset[i] + s->n_input;
+        a->output_offset[i + 1] = a->output_offset[i] + s->n_output;
+    }
+    a->n_state = a->state_offset[def->n_member];
+    a->n_input = a->input_offset[def->n_member];
+    a->n_output = a->output_offset[def->n_member];
+}
+
+static bool in_range(const bough_assembly *a, const bough_connection *c) {
+    return c->from >= 0 && c->from < a->n_member && c->to >= 0 && c->to < a->n_member &&
+           c->count > 0 && c->from_offset >= 0 && c->to_offset >= 0 &&
+           c->from_offset + c->count <= a->member[c->from]->n_output &&
+           c->to_offset + c->count <= a->member[c->to]->n_input;
+}
+
+static bough_status connect(bough_assembly *a, const bough_connection *c) {
+    if (!in_range(a, c)) {
+        return bough_fail(BOUGH_INVALID, "a connection leaves the ports of its subsystems");
+    }
+    for (int j = 0; j < c->count; j++) {
+        int input = a->input_offset[c->to] + c->to_offset + j;
+        if (a->source[input] >= 0) {
+            return bough_fail(BOUGH_INVALID, "%s: input %d is connected twice",
+                              a->member[c->to]->name, c->to_offset + j);
+        }
+        a->source[input] = a->output_offset[c->from] + c->from_offset + j;
+        a->source_member[input] = c->from;
+        a->kinematic[input] = c->kinematic;
+    }
+    return bough_ok();
+}
+
+static bough_status connect_all(bough_assembly *a, const bough_assembly_def *def) {
+    for (int j = 0; j < a->n_input; j++) a->source[j] = -1;
+    for (int k = 0; k < def->n_connection; k++) {
+        bough_status status = connect(a, &def->connection[k]);
+        if (!bough_is_ok(&status)) return status;
+    }
+    for (int i = 0; i < a->n_member; i++) {
+        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+            if (a->source[j] < 0) {
+                return bough_fail(BOUGH_INVALID, "%s: input %d is not connected",
+                                  a->member[i]->name, j - a->input_offset[i]);
+            }
+        }
+    }
+    return bough_ok();
+}
+
+// The connection that answers `forward` in the opposite direction: the n-th for the n-th between
+// the same two members.
+static const bough_connection *partner(const bough_assembly_def *def, int forward) {
+    const bough_connection *c = &def->connection[forward];
+    int skip = 0;
+    for (int k = 0; k < forward; k++) {
+        const bough_connection *o = &def->connection[k];
+        if (o->kinematic && o->from == c->from && o->to == c->to) skip++;
+    }
+    for (int k = 0; k < def->n_connection; k++) {
+        const bough_connection *o = &def->connection[k];
+        if (!o->kinematic && o->from == c->to && o->to == c->from && skip-- == 0) return o;
+    }
+    return NULL;
+}
+
+static void pair_interfaces(bough_assembly *a, const bough_assembly_def *def) {
+    for (int k = 0; k < def->n_connection; k++) {
+        const bough_connection *c = &def->connection[k];
+        const bough_connection *back = c->kinematic ? partner(def, k) : NULL;
+        if (!back) continue;
+        a->interface[a->n_interface++] =
+            (bough_interface){.body = c->to,
+                              .wrench = a->input_offset[back->to] + back->to_offset,
+                              .twist = a->input_offset[c->to] + c->to_offset,
+                              .count = back->count < c->count ? back->count : c->count};
+    }
+}
+
+static bool probe_feedthrough(const bough_subsystem *s, double *input, double *output) {
+    bool found = false;
+    double *direction = input + s->n_input;
+    for (int j = 0; j < s->n_input; j++) {
+        direction[j] = 1;
+        s->ops->output_tangent(s->self, *s->time, s->state, input, NULL, direction, output);
+        direction[j] = 0;
+        for (int k = 0; k < s->n_output; k++) found = found || output[k] != 0;
+    }
+    return found;
+}
+
+// Whether the outputs of member i can be evaluated: its inputs are known or do not matter.
+static bool resolvable(const bough_assembly *a, int i, const bool *resolved) {
+    if (!a->feedthrough[i]) return true;
+    for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+        if (!resolved[a->source_member[j]]) return false;
+    }
+    return true;
+}
+
+static bough_status order_outputs(bough_assembly *a, bool *resolved) {
+    for (int n = 0; n < a->n_member; n++) {
+        int best = -1;
+        for (int i = 0; i < a->n_member; i++) {
+            if (resolved[i] || !resolvable(a, i, resolved)) continue;
+            if (best < 0 || a->stage[i] < a->stage[best]) best = i;
+        }
+        if (best < 0) {
+            return bough_fail(BOUGH_INVALID, "the outputs of the coupled bodies depend on each "
+                                             "other without delay (an algebraic loop)");
+        }
+        resolved[best] = true;
+        a->order[n] = best;
+    }
+    return bough_ok();
+}
+
+bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *def,
+                                  bough_assembly **assembly) {
+    bough_assembly *a = bough_arena_take(arena, sizeof *a);
+    if (!a) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    take_members(a, arena, def);
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    size_t n_input = (size_t)a->n_input;
+    a->source = bough_arena_take(arena, n_input * sizeof(int));
+    a->source_member = bough_arena_take(arena, n_input * sizeof(int));
+    a->kinematic = bough_arena_take(arena, n_input * sizeof(bool));
+    a->interface = bough_arena_take(arena, (size_t)def->n_connection * sizeof *a->interface);
+    bool *resolved = bough_arena_take(arena, (size_t)a->n_member * sizeof(bool));
+    double *input = bough_arena_doubles(arena, 2 * n_input);
+    double *output = bough_arena_doubles(arena, (size_t)a->n_output);
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+
+    bough_status status = connect_all(a, def);
+    if (!bough_is_ok(&status)) return status;
+    pair_interfaces(a, def);
+    for (int i = 0; i < a->n_member; i++) {
+        a->feedthrough[i] = probe_feedthrough(a->member[i], input, output);
+    }
+    status = order_outputs(a, resolved);
+    if (bough_is_ok(&status)) *assembly = a;
+    return status;
+}
+
+void bough_assembly_gather(const bough_assembly *a, int member, const double *output,
+                           double *input) {
+    for (int j = a->input_offset[member]; j < a->input_offset[member + 1]; j++) {
+        input[j] = output[a->source[j]];
+    }
+}
+
+void bough_assembly_outputs(const bough_assembly *a, double t, double *output, double *input) {
+    for (int n = 0; n < a->n_member; n++) {
+        int i = a->order[n];
+        const bough_subsystem *s = a->member[i];
+        bough_assembly_gather(a, i, output, input);
+        s->ops->output(s->self, t, s->state, input + a->input_offset[i],
+                       output + a->output_offset[i]);
+    }
+    for (int i = 0; i < a->n_member; i++) bough_assembly_gather(a, i, output, input);
+}

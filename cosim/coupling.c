@@ -1,0 +1,193 @@
+#include "cosim/coupling.h"
+
+#include "cosim/port.h"
+
+#include <string.h>
+
+static bool take(bough_coupling *c, bough_arena *arena) {
+    const bough_assembly *a = c->assembly;
+    size_t n_input = (size_t)a->n_input, n_output = (size_t)a->n_output;
+    size_t n_member = (size_t)a->n_member;
+    c->output = bough_arena_doubles(arena, n_output);
+    c->input = bough_arena_doubles(arena, n_input);
+    c->used = bough_arena_doubles(arena, n_input);
+    for (int p = 0; p < BOUGH_HISTORY; p++) c->past[p] = bough_arena_doubles(arena, n_input);
+    c->start_rate = bough_arena_doubles(arena, n_output);
+    c->end_output = bough_arena_doubles(arena, n_output);
+    c->end_rate = bough_arena_doubles(arena, n_output);
+    c->state_rate = bough_arena_doubles(arena, (size_t)a->n_state);
+    c->seen = bough_arena_doubles(arena, n_input);
+    c->seen_rate = bough_arena_doubles(arena, n_input);
+    c->status = bough_arena_take(arena, n_member * sizeof *c->status);
+    c->signal = bough_arena_take(arena, n_member * sizeof *c->signal);
+    for (int i = 0; i < a->n_member && c->signal; i++) {
+        c->signal[i].n = a->member[i]->n_input;
+        c->signal[i].coefficient = bough_arena_doubles(arena, 4 * (size_t)c->signal[i].n);
+    }
+    return !bough_arena_exhausted(arena);
+}
+
+bough_status bough_coupling_create(bough_arena *arena, const bough_assembly *assembly,
+                                   const bough_scheme_options *options, int threads,
+                                   bough_coupling **coupling) {
+    bough_coupling *c = bough_arena_take(arena, sizeof *c);
+    if (!c) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    c->assembly = assembly;
+    c->options = *options;
+    c->threads = threads;
+    c->failed_member = -1;
+    if (!take(c, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    c->t0 = c->t1 = *assembly->member[0]->time;
+    bough_assembly_outputs(assembly, c->t0, c->output, c->input);
+    memcpy(c->used, c->input, (size_t)assembly->n_input * sizeof(double));
+    memcpy(c->past[0], c->input, (size_t)assembly->n_input * sizeof(double));
+    c->past_time[0] = c->t0;
+    c->n_past = 1;
+    *coupling = c;
+    return bough_ok();
+}
+
+static bool in_stage(const bough_coupling *c, int stage, int member) {
+    return stage == BOUGH_ALL_STAGES || c->assembly->stage[member] == stage;
+}
+
+static void run_one(bough_coupling *c, int stage, int i, void (*work)(bough_coupling *, int)) {
+    c->status[i].code = BOUGH_OK;
+    if (in_stage(c, stage, i)) work(c, i);
+}
+
+bough_status bough_coupling_each(bough_coupling *c, int stage,
+                                 void (*work)(bough_coupling *c, int member)) {
+    int n = c->assembly->n_member;
+    if (c->threads > 1) {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(c->threads)
+        for (int i = 0; i < n; i++) run_one(c, stage, i, work);
+    } else {
+        for (int i = 0; i < n; i++) run_one(c, stage, i, work);
+    }
+    for (int i = 0; i < n; i++) {
+        if (bough_is_ok(&c->status[i])) continue;
+        c->failed_member = i;
+        return c->status[i];
+    }
+    return bough_ok();
+}
+
+void bough_coupling_begin(bough_coupling *c) {
+    for (int i = 0; i < c->assembly->n_member; i++) {
+        c->signal[i].t0 = c->t0;
+        c->signal[i].t1 = c->t1;
+    }
+}
+
+bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const double *input,
+                                const double *input_rate, double *rate) {
+    const bough_subsystem *s = c->assembly->member[member];
+    double *state_rate = c->state_rate + c->assembly->state_offset[member];
+    if (!s->ops->derivative(s->self, t, s->state, input, state_rate)) return false;
+    s->ops->output_tangent(s->self, t, s->state, input, state_rate, input_rate, rate);
+    return true;
+}
+
+bough_status bough_coupling_not_finite(const bough_coupling *c, int member) {
+    const bough_subsystem *s = c->assembly->member[member];
+    return bough_fail(BOUGH_FAILED, "%s: no finite rate of change at %.6g s", s->name, *s->time);
+}
+
+static void advance(bough_coupling *c, int member, bool restart) {
+    const bough_subsystem *s = c->assembly->member[member];
+    c->status[member] = s->ops->advance(s->self, c->t1, &c->signal[member], restart);
+}
+
+static void advance_kept(bough_coupling *c, int member) {
+    advance(c, member, false);
+}
+
+static void advance_restarted(bough_coupling *c, int member) {
+    advance(c, member, true);
+}
+
+bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart) {
+    return bough_coupling_each(c, stage, restart ? advance_restarted : advance_kept);
+}
+
+// Rates of a member's outputs at a time of the step under the signal it sees.
+static bool signal_rate(bough_coupling *c, int member, double t, double *output_rate) {
+    const bough_assembly *a = c->assembly;
+    double *seen = c->seen + a->input_offset[member];
+    double *seen_rate = c->seen_rate + a->input_offset[member];
+    bough_signal_value(&c->signal[member], t, seen);
+    bough_signal_rate(&c->signal[member], t, seen_rate);
+    return bough_coupling_output_rate(c, member, t, seen, seen_rate,
+                                      output_rate + a->output_offset[member]);
+}
+
+static void lead(bough_coupling *c, int member, bool restart) {
+    const bough_assembly *a = c->assembly;
+    const bough_subsystem *s = a->member[member];
+    if (!signal_rate(c, member, c->t0, c->start_rate)) {
+        c->status[member] = bough_coupling_not_finite(c, member);
+        return;
+    }
+    advance(c, member, restart);
+    if (!bough_is_ok(&c->status[member])) return;
+    if (!signal_rate(c, member, c->t1, c->end_rate)) {
+        c->status[member] = bough_coupling_not_finite(c, member);
+        return;
+    }
+    s->ops->output(s->self, c->t1, s->state, c->seen + a->input_offset[member],
+                   c->end_output + a->output_offset[member]);
+}
+
+static void lead_kept(bough_coupling *c, int member) {
+    lead(c, member, false);
+}
+
+static void lead_restarted(bough_coupling *c, int member) {
+    lead(c, member, true);
+}
+
+bough_status bough_coupling_advance_lead(bough_coupling *c, int stage, bool restart) {
+    return bough_coupling_each(c, stage, restart ? lead_restarted : lead_kept);
+}
+
+static void interpolate_polynomial(bough_coupling *c, bough_signal *s, int local, int j) {
+    int source = c->assembly->source[j];
+    int degree = c->options.order < c->n_past ? c->options.order : c->n_past;
+    double time[BOUGH_HISTORY + 1] = {c->t1};
+    const double *value[BOUGH_HISTORY + 1] = {c->end_output + source};
+    for (int p = 0; p < degree; p++) {
+        time[p + 1] = c->past_time[p];
+        value[p + 1] = c->past[p] + j;
+    }
+    bough_port_polynomial(s, local, 1, degree + 1, time, value);
+}
+
+void bough_coupling_interpolate(bough_coupling *c, int member, int j) {
+    const bough_assembly *a = c->assembly;
+    int source = a->source[j], local = j - a->input_offset[member];
+    if (c->options.interpolation == BOUGH_POLYNOMIAL) {
+        interpolate_polynomial(c, &c->signal[member], local, j);
+        return;
+    }
+    bough_port_hermite(&c->signal[member], local, 1,
+                       (bough_port_end){c->input + j, c->start_rate + source},
+                       (bough_port_end){c->end_output + source, c->end_rate + source});
+}
+
+void bough_coupling_exchange(bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    bough_assembly_outputs(a, c->t1, c->output, c->input);
+    for (int i = 0; i < a->n_member; i++) {
+        bough_signal_value(&c->signal[i], c->t1, c->used + a->input_offset[i]);
+    }
+    double *oldest = c->past[BOUGH_HISTORY - 1];
+    for (int p = BOUGH_HISTORY - 1; p > 0; p--) {
+        c->past[p] = c->past[p - 1];
+        c->past_time[p] = c->past_time[p - 1];
+    }
+    c->past[0] = oldest;
+    c->past_time[0] = c->t1;
+    memcpy(oldest, c->input, (size_t)a->n_input * sizeof(double));
+    if (c->n_past < BOUGH_HISTORY) c->n_past++;
+}

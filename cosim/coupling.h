@@ -1,0 +1,98 @@
+// Working data of the macro steps, and the moves that schemes are made of.
+#ifndef BOUGH_COSIM_COUPLING_H
+#define BOUGH_COSIM_COUPLING_H
+
+#include "cosim/assembly.h"
+
+// What a later stage sees of what an earlier stage has already found.
+typedef enum bough_interpolation {
+    BOUGH_HERMITE,    // cubic from values and rates at both ends
+    BOUGH_POLYNOMIAL, // through the new value and `order` earlier ones; order 0 holds the new value
+} bough_interpolation;
+
+// What the user chose. Unused fields are ignored by a scheme.
+typedef struct bough_scheme_options {
+    const char *name;  // one of bough_scheme_names()
+    int order;         // extrapolated: degree of the extrapolation, 0 … 2
+    bool parallel;     // extrapolated: all stages at once instead of one after the other
+    bool reversed;     // sequential schemes take the last stage first
+    bough_interpolation interpolation; // sequential schemes
+    double theta;      // ramp: 1/2 … 1; 0 chooses by the ratio of interface inertias
+    double rtol;       // monolithic: tolerance relative to the members' scales
+} bough_scheme_options;
+
+enum { BOUGH_HISTORY = 3 };
+
+typedef struct bough_coupling {
+    const bough_assembly *assembly;
+    bough_scheme_options options;
+    int threads;
+    void *scheme_data; // what the scheme created
+
+    // the step to take, set by the master
+    double t0, t1; // [s]
+    bool restart;  // a load jumped at t0: integrators start anew
+
+    // by bough_coupling_exchange: at the end of the last step
+    double *output; // (n_output) of all members at their current states
+    double *input;  // (n_input) the same, as their receivers see it
+    double *used;   // (n_input) what the receivers saw on the step, at its end
+    int n_past;     // valid entries of the two below
+    double past_time[BOUGH_HISTORY]; // the last synchronisation points, newest first [s]
+    double *past[BOUGH_HISTORY];     // (n_input each) inputs there
+
+    // during a step, by the scheme
+    bough_signal *signal;  // (n_member) what each member sees on the step
+    double *start_rate;    // (n_output) rates of the outputs at t0, of members already advanced
+    double *end_output;    // (n_output) outputs at t1, likewise
+    double *end_rate;      // (n_output)
+    bough_status *status;  // (n_member) of the last move
+    int failed_member;     // −1, or the member whose move failed
+
+    // scratch
+    double *state_rate;       // (n_state)
+    double *seen, *seen_rate; // (n_input)
+
+    // by the ramp scheme, for the summary
+    double theta;           // in use
+    double interface_ratio; // spectral radius of the interface's answer to itself at the first step
+} bough_coupling;
+
+// Builds the working data and evaluates the outputs at the members' current states.
+bough_status bough_coupling_create(bough_arena *arena, const bough_assembly *assembly,
+                                   const bough_scheme_options *options, int threads,
+                                   bough_coupling **coupling);
+
+// -- moves --------------------------------------------------------------------------------------
+
+enum { BOUGH_ALL_STAGES = -1 };
+
+// Runs work(c, member) for every member of a stage, in parallel when threads > 1, and returns the
+// first failure in member order that the work left in c->status.
+bough_status bough_coupling_each(bough_coupling *c, int stage,
+                                 void (*work)(bough_coupling *c, int member));
+
+// Sets the span of every signal to the step.
+void bough_coupling_begin(bough_coupling *c);
+
+// Rates of a member's outputs at t, of its current state under the input, whose rate may be NULL
+// for 0: rate (n_output of the member). False when its derivative has no finite value.
+bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const double *input,
+                                const double *input_rate, double *rate);
+
+// Advances the members of a stage to t1 under their signals.
+bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart);
+
+// The same, and finds what a later stage needs: start_rate, end_output, end_rate.
+bough_status bough_coupling_advance_lead(bough_coupling *c, int stage, bool restart);
+
+// Fills input j (numbered over all inputs) of its member from the new output that feeds it.
+void bough_coupling_interpolate(bough_coupling *c, int member, int j);
+
+// Outputs and inputs at t1, end values of the signals; the history moves on.
+void bough_coupling_exchange(bough_coupling *c);
+
+// A failure at t0 that names the member.
+bough_status bough_coupling_not_finite(const bough_coupling *c, int member);
+
+#endif

@@ -1,0 +1,153 @@
+#include "cosim/master.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bough_master_def bough_master_def_default(void) {
+    return (bough_master_def){.scheme = bough_scheme_options_default(), .threads = 1};
+}
+
+long bough_master_multiple(double period, double macro_step) {
+    double ratio = period / macro_step, whole = round(ratio);
+    return whole >= 1 && fabs(ratio - whole) <= 1e-9 * whole ? (long)whole : 0;
+}
+
+static int ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static bough_status copy_loads(bough_master *m, bough_arena *arena, const bough_master_def *def) {
+    m->load = bough_arena_take(arena, (size_t)def->n_load * sizeof *m->load);
+    m->load_every = bough_arena_take(arena, (size_t)def->n_load * sizeof *m->load_every);
+    m->event = bough_arena_doubles(arena, (size_t)def->n_event);
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    m->n_load = def->n_load;
+    for (int i = 0; i < def->n_load; i++) {
+        m->load[i] = def->load[i];
+        m->load_every[i] = bough_master_multiple(def->load[i].period, def->macro_step);
+        if (m->load_every[i] > 0) continue;
+        return bough_fail(BOUGH_INVALID,
+                          "a load is sampled every %.9g s, not a multiple of the macro step %.9g s",
+                          def->load[i].period, def->macro_step);
+    }
+    m->n_event = def->n_event;
+    for (int i = 0; i < def->n_event; i++) m->event[i] = def->event[i];
+    if (m->n_event > 0) qsort(m->event, (size_t)m->n_event, sizeof(double), ascending);
+    return bough_ok();
+}
+
+static bough_status check(const bough_master_def *def) {
+    if (!(def->macro_step > 0) || !(def->duration > 0) || !isfinite(def->duration)) {
+        return bough_fail(BOUGH_INVALID, "macro step %g s and duration %g s must be positive",
+                          def->macro_step, def->duration);
+    }
+    if (!bough_scheme_find(def->scheme.name)) {
+        return bough_fail(BOUGH_INVALID, "unknown coupling scheme \"%s\"", def->scheme.name);
+    }
+    return bough_ok();
+}
+
+bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
+                                bough_master **master) {
+    bough_status status = check(def);
+    if (!bough_is_ok(&status)) return status;
+    bough_master *m = bough_arena_take(arena, sizeof *m);
+    if (!m) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    m->macro_step = def->macro_step;
+    m->duration = def->duration;
+    m->at_event = true;
+    m->scheme = bough_scheme_find(def->scheme.name);
+    status = copy_loads(m, arena, def);
+    if (!bough_is_ok(&status)) return status;
+    status = bough_assembly_build(arena, &def->assembly, &m->assembly);
+    if (!bough_is_ok(&status)) return status;
+    status = bough_coupling_create(arena, m->assembly, &def->scheme, def->threads, &m->coupling);
+    if (!bough_is_ok(&status)) return status;
+    if (m->scheme->create) status = m->scheme->create(m->coupling, arena);
+    if (bough_is_ok(&status)) {
+        status = bough_monitor_create(arena, m->scheme, m->coupling, &m->monitor);
+    }
+    if (bough_is_ok(&status)) *master = m;
+    return status;
+}
+
+// Times closer than this are one synchronisation point [s].
+static double resolution(const bough_master *m) {
+    return 1e-9 * m->macro_step;
+}
+
+bool bough_master_done(const bough_master *m) {
+    return m->time >= m->duration;
+}
+
+static bool on_grid(const bough_master *m) {
+    return fabs(m->time - (double)m->grid_index * m->macro_step) <= resolution(m);
+}
+
+// The next synchronisation point: grid point, event or the end, whichever comes first.
+static double next_time(const bough_master *m) {
+    double eps = resolution(m);
+    double next = (double)(m->grid_index + 1) * m->macro_step;
+    for (int i = m->next_event; i < m->n_event; i++) {
+        if (m->event[i] <= m->time + eps) continue;
+        if (m->event[i] < next - eps) next = m->event[i];
+        break;
+    }
+    return next > m->duration - eps ? m->duration : next;
+}
+
+static bough_status sample_loads(bough_master *m, bool *jumped) {
+    if (!on_grid(m)) return bough_ok();
+    for (int i = 0; i < m->n_load; i++) {
+        if (m->grid_index % m->load_every[i] != 0) continue;
+        double next = (double)(m->grid_index + m->load_every[i]) * m->macro_step;
+        bool jump = false;
+        bough_status status = m->load[i].sample(m->load[i].self, m->time, next, &jump);
+        if (!bough_is_ok(&status)) return status;
+        *jumped = *jumped || jump;
+    }
+    return bough_ok();
+}
+
+static void set_time(bough_master *m, double t) {
+    double eps = resolution(m);
+    m->time = t;
+    m->at_event = false;
+    if (t >= (double)(m->grid_index + 1) * m->macro_step - eps) m->grid_index++;
+    while (m->next_event < m->n_event && m->event[m->next_event] <= t + eps) {
+        m->at_event = m->at_event || m->event[m->next_event] >= t - eps;
+        m->next_event++;
+    }
+}
+
+// Adds to a failed member's message what the coupling was doing.
+static bough_status explain(const bough_master *m, bough_status cause) {
+    if (cause.code != BOUGH_FAILED && cause.code != BOUGH_RETRY) return cause;
+    const char *advice = m->scheme->explicit_forces ? "; try a smaller macro step or scheme: ramp"
+                                                    : "; try a smaller macro step";
+    int room = (int)(sizeof cause.message - 160);
+    return bough_fail(BOUGH_FAILED, "%.*s (scheme %s, macro step %.6g s from %.6g s)%s", room,
+                      cause.message, m->scheme->name, m->coupling->t1 - m->coupling->t0, m->time,
+                      advice);
+}
+
+bough_status bough_step(bough_master *m) {
+    bough_coupling *c = m->coupling;
+    c->t0 = m->time;
+    c->t1 = next_time(m);
+    c->restart = m->at_event;
+    bough_status status = sample_loads(m, &c->restart);
+    if (!bough_is_ok(&status)) return status;
+
+    status = m->scheme->step(c); // predict, exchange, advance, correct: as the scheme orders them
+    if (!bough_is_ok(&status)) return explain(m, status);
+    bough_coupling_exchange(c);
+
+    status = bough_monitor_step(m->monitor, c);
+    if (!bough_is_ok(&status)) return status;
+    set_time(m, c->t1);
+    m->steps++;
+    return bough_ok();
+}

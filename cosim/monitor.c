@@ -1,0 +1,244 @@
+// The growth watch looks at the interface defect, what a force turned out to be at T_{k+1} minus
+// what its receiver was told. An explicit coupling beyond its limit makes it grow exponentially, at
+// rates as slow as 0.2 per second and under physical oscillation, so it is reduced to its maxima
+// over windows of two lengths, and a run of growing windows raises the alarm only when
+//   - the total growth is large (limit below),
+//   - it does not slow down: the later half of the run grows at least 0.7 times as much as the
+//     earlier half in the logarithm, which a ramp, a start-up or any low power of time does not, and
+//   - the defect is no longer small against the force itself.
+// It sees growth over the time that growth takes: at +0.8 per second about nine seconds. It cannot
+// tell a numerical from a physical exponential growth, nor see one that beats within its windows.
+#include "cosim/monitor.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { N_SCALE = 2, RING = 128, SHORTEST = 6 };
+static const int window_steps[N_SCALE] = {16, 64};
+static const double total_growth = 1e3;
+
+typedef struct window {
+    double current;       // maximum so far in the open window
+    double ring[RING];    // logarithms of the maxima of closed windows
+    int count;            // steps in the open window
+    int n;                // length of the run of growing windows, at most RING
+    int last;             // newest entry of the ring
+} window;
+
+// Up to three components of one connection: a vector, measured by its norm.
+typedef struct group {
+    int first, count;   // inputs, numbered over all
+    int to, from;       // members
+    bool kinematic;
+    double defect_max, defect_sum; // Σ of squares over the steps
+    double magnitude;   // largest norm of the obtained value so far
+    window scale[N_SCALE];
+} group;
+
+struct bough_monitor {
+    const bough_scheme *scheme;
+    int n_group;
+    group *group;
+    long steps;
+    double *previous;      // (n_input) obtained at the last synchronisation point
+    double *residual;      // (n_interface) ∫ (obtained − used wrench) · twist dt [J]
+    double exchanged;      // [J]
+    double *start;         // (n_input) scratch
+};
+
+static void make_groups(bough_monitor *m, const bough_assembly *a) {
+    for (int i = 0; i < a->n_member; i++) {
+        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+            group *last = m->n_group > 0 ? &m->group[m->n_group - 1] : NULL;
+            bool continues = last && last->to == i && last->from == a->source_member[j] &&
+                             last->kinematic == a->kinematic[j] && last->count < 3 &&
+                             a->source[j] == a->source[j - 1] + 1;
+            if (continues) {
+                last->count++;
+                continue;
+            }
+            m->group[m->n_group++] = (group){.first = j,
+                                             .count = 1,
+                                             .to = i,
+                                             .from = a->source_member[j],
+                                             .kinematic = a->kinematic[j]};
+        }
+    }
+}
+
+bough_status bough_monitor_create(bough_arena *arena, const bough_scheme *scheme,
+                                  const bough_coupling *coupling, bough_monitor **monitor) {
+    const bough_assembly *a = coupling->assembly;
+    size_t n_input = (size_t)a->n_input;
+    bough_monitor *m = bough_arena_take(arena, sizeof *m);
+    if (!m) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    m->scheme = scheme;
+    m->group = bough_arena_take(arena, n_input * sizeof *m->group);
+    m->previous = bough_arena_doubles(arena, n_input);
+    m->start = bough_arena_doubles(arena, n_input);
+    m->residual = bough_arena_doubles(arena, (size_t)a->n_interface);
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    make_groups(m, a);
+    memcpy(m->previous, coupling->input, n_input * sizeof(double));
+    *monitor = m;
+    return bough_ok();
+}
+
+// -- non-finite values ----------------------------------------------------------------------------
+
+static bool all_finite(const double *x, int n) {
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i])) return false;
+    }
+    return true;
+}
+
+static bough_status check_finite(const bough_monitor *m, const bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_subsystem *s = a->member[i];
+        if (all_finite(s->state, s->n_state) &&
+            all_finite(c->output + a->output_offset[i], s->n_output)) {
+            continue;
+        }
+        return bough_fail(BOUGH_FAILED,
+                          "%s: no finite state or output at %.6g s (scheme %s, macro step %.6g s); "
+                          "try a smaller macro step%s",
+                          s->name, c->t1, m->scheme->name, c->t1 - c->t0,
+                          m->scheme->explicit_forces ? " or scheme: ramp" : "");
+    }
+    return bough_ok();
+}
+
+// -- growth ---------------------------------------------------------------------------------------
+
+static double back(const window *w, int n) {
+    return w->ring[(w->last - n + RING) % RING];
+}
+
+// Closes the window: the run of growing windows becomes longer or starts anew.
+static void close_window(window *w, double floor) {
+    double maximum = log(fmax(w->current, floor));
+    bool grows = w->n > 0 && maximum > w->ring[w->last];
+    w->last = (w->last + 1) % RING;
+    w->ring[w->last] = maximum;
+    w->n = !grows ? 1 : w->n < RING ? w->n + 1 : RING;
+    w->current = 0;
+    w->count = 0;
+}
+
+// Growth per window [ratio] when the run is exponential and long enough, else 0.
+static double exponential_growth(const window *w) {
+    for (int span = SHORTEST; span < w->n; span++) {
+        double later = back(w, 0) - back(w, span / 2);
+        double total = back(w, 0) - back(w, 2 * (span / 2));
+        if (total >= log(total_growth) && later >= 0.7 * (total - later)) {
+            return exp(total / (2 * (span / 2)));
+        }
+    }
+    return 0;
+}
+
+static bough_status unstable(const bough_monitor *m, const bough_coupling *c, const group *g,
+                             double per_step) {
+    const bough_assembly *a = c->assembly;
+    double h = c->t1 - c->t0;
+    return bough_fail(BOUGH_FAILED,
+                      "coupling of %s and %s is unstable at %.6g s: scheme %s, macro step %.6g s, "
+                      "interface error grows by %.4g per step (%.3g per second); try a smaller "
+                      "macro step%s",
+                      a->member[g->from]->name, a->member[g->to]->name, c->t1, m->scheme->name, h,
+                      per_step, log(per_step) / h,
+                      m->scheme->explicit_forces ? " or scheme: ramp" : "");
+}
+
+static bough_status watch(const bough_monitor *m, const bough_coupling *c, group *g,
+                          double defect) {
+    double significant = m->scheme->explicit_forces ? 0.01 : 0.3;
+    for (int k = 0; k < N_SCALE; k++) {
+        window *w = &g->scale[k];
+        w->current = fmax(w->current, defect);
+        if (++w->count < window_steps[k]) continue;
+        bool large = w->current > significant * g->magnitude;
+        close_window(w, 1e-9 * g->magnitude + 1e-300);
+        double growth = large ? exponential_growth(w) : 0;
+        if (growth > 0) return unstable(m, c, g, pow(growth, 1.0 / window_steps[k]));
+    }
+    return bough_ok();
+}
+
+static double norm(const double *x, int n) {
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += x[i] * x[i];
+    return sqrt(sum);
+}
+
+static bough_status judge_group(const bough_monitor *m, const bough_coupling *c, group *g) {
+    double difference[3];
+    for (int i = 0; i < g->count; i++) {
+        difference[i] = c->input[g->first + i] - c->used[g->first + i];
+    }
+    double defect = norm(difference, g->count);
+    g->magnitude = fmax(g->magnitude, norm(c->input + g->first, g->count));
+    g->defect_max = fmax(g->defect_max, defect);
+    g->defect_sum += defect * defect;
+    return watch(m, c, g, defect);
+}
+
+// -- energy ---------------------------------------------------------------------------------------
+
+static double dot(const double *x, const double *y, int n) {
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += x[i] * y[i];
+    return sum;
+}
+
+// Trapezoidal work of the wrench that came out, and of its difference from the one used.
+static void account(bough_monitor *m, const bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    double half = (c->t1 - c->t0) / 2;
+    for (int i = 0; i < a->n_member; i++) {
+        bough_signal_value(&c->signal[i], c->t0, m->start + a->input_offset[i]);
+    }
+    for (int k = 0; k < a->n_interface; k++) {
+        const bough_interface *f = &a->interface[k];
+        const double *v0 = m->previous + f->twist, *v1 = c->input + f->twist;
+        double obtained0 = dot(m->previous + f->wrench, v0, f->count);
+        double obtained1 = dot(c->input + f->wrench, v1, f->count);
+        double used = dot(m->start + f->wrench, v0, f->count) +
+                      dot(c->used + f->wrench, v1, f->count);
+        m->residual[k] += half * (obtained0 + obtained1 - used);
+        m->exchanged += half * (fabs(obtained0) + fabs(obtained1));
+    }
+}
+
+bough_status bough_monitor_step(bough_monitor *m, const bough_coupling *c) {
+    bough_status status = check_finite(m, c);
+    if (!bough_is_ok(&status)) return status;
+    m->steps++;
+    account(m, c);
+    memcpy(m->previous, c->input, (size_t)c->assembly->n_input * sizeof(double));
+    for (int k = 0; k < m->n_group && bough_is_ok(&status); k++) {
+        status = judge_group(m, c, &m->group[k]);
+    }
+    return status;
+}
+
+bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_coupling *c) {
+    bough_coupling_report report = {.energy_exchanged = m->exchanged};
+    for (int k = 0; k < m->n_group && m->steps > 0; k++) {
+        const group *g = &m->group[k];
+        if (g->magnitude == 0) continue;
+        double rms = sqrt(g->defect_sum / (double)m->steps);
+        report.defect_max = fmax(report.defect_max, g->defect_max / g->magnitude);
+        report.defect_rms = fmax(report.defect_rms, rms / g->magnitude);
+    }
+    for (int k = 0; k < c->assembly->n_interface; k++) {
+        report.energy_residual += fabs(m->residual[k]);
+    }
+    return report;
+}
+
+double bough_monitor_energy_residual(const bough_monitor *m, int interface) {
+    return m->residual[interface];
+}

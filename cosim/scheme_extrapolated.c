@@ -1,0 +1,36 @@
+// Extrapolated coupling: like Gauss–Seidel, with forces extrapolated by a polynomial of degree 0, 1
+// or 2 through the last synchronisation values (fewer at the start); order degree + 1. The parallel
+// variant extrapolates every input. Stable only below some macro step.
+#include "cosim/scheme.h"
+#include "cosim/sequence.h"
+
+static bough_status create(bough_coupling *c, bough_arena *arena) {
+    (void)arena;
+    if (c->options.order >= 0 && c->options.order < BOUGH_HISTORY) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "extrapolated coupling: order is %d, must be 0, 1 or 2",
+                      c->options.order);
+}
+
+static bough_status step_parallel(bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    bough_coupling_begin(c);
+    for (int i = 0; i < a->n_member; i++) {
+        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+            bough_sequence_extrapolate(c, i, j, c->options.order);
+        }
+    }
+    return bough_coupling_advance(c, BOUGH_ALL_STAGES, true);
+}
+
+static bough_status step(bough_coupling *c) {
+    if (c->options.parallel) return step_parallel(c);
+    return bough_sequence_step(c, c->options.order);
+}
+
+const bough_scheme bough_scheme_extrapolated = {
+    .name = "extrapolated",
+    .summary = "forces extrapolated by a polynomial; order 1 to 3 (degree + 1), explicit",
+    .explicit_forces = true,
+    .create = create,
+    .step = step,
+};

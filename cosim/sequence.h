@@ -1,0 +1,14 @@
+// The sequential macro step that Gauss–Seidel and extrapolated coupling share.
+#ifndef BOUGH_COSIM_SEQUENCE_H
+#define BOUGH_COSIM_SEQUENCE_H
+
+#include "cosim/coupling.h"
+
+// Takes the stages in order. An input whose source has advanced already is interpolated; every
+// other is extrapolated by the polynomial of `degree` through the last synchronisation values.
+bough_status bough_sequence_step(bough_coupling *c, int degree);
+
+// Extrapolates input j (numbered over all inputs) of its member.
+void bough_sequence_extrapolate(bough_coupling *c, int member, int j, int degree);
+
+#endif
