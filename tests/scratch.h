@@ -17,7 +17,7 @@ enum { SCRATCH_TEXT = 1 << 20 };
 static inline int scratch_make(void **state) {
     char *path = malloc(64);
     if (!path) return -1;
-    strcpy(path, "/tmp/bough-test-XXXXXX");
+    snprintf(path, 64, "/tmp/bough-test-XXXXXX");
     *state = path;
     return mkdtemp(path) ? 0 : -1;
 }

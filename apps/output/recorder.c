@@ -49,9 +49,9 @@ static bool write_outcome(bough_recorder *r, const char *text) {
         while (length && is_continuation(text[length]))
             length--;
     }
-    for (size_t i = 0; i < OUTCOME; i++) {
-        bool blank = i >= length || text[i] == '\n' || text[i] == '\r';
-        line[i] = blank ? ' ' : text[i];
+    memset(line, ' ', OUTCOME);
+    for (size_t i = 0; i < length; i++) {
+        if (text[i] != '\n' && text[i] != '\r') line[i] = text[i];
     }
     line[OUTCOME - 1] = '\n';
     return fwrite(line, 1, OUTCOME, r->file) == OUTCOME;
