@@ -148,14 +148,24 @@ static void add_to_parent(const bough_transform *x, const double *a, double *up)
     }
 }
 
+// Whether a column of the motion subspace moves more inertia than rounding leaves behind.
+static bool moves_inertia(const double *articulated, bough_twist column, double moved) {
+    int first = bough_norm(column.angular) > 0 ? 3 : 0;
+    double trace = 0;
+    for (int r = first; r < first + 3; r++) trace += articulated[N * r + r];
+    return moved > 1e-14 * trace;
+}
+
 // U = Iᴬ S, D = Sᵀ U and its Cholesky factor
 static bool factor_joint(const bough_link *link, const double *articulated, double *gain,
                          double *factor) {
     int n = link->n_speeds;
     for (int k = 0; k < n; k++) {
-        bough_wrench u = matrix_mul(articulated, subspace(&link->joint, k));
+        bough_twist column = subspace(&link->joint, k);
+        bough_wrench u = matrix_mul(articulated, column);
         bough_wrench_store(u, gain + N * k);
         bough_joint_force(&link->joint, u, factor + n * k);
+        if (!moves_inertia(articulated, column, factor[n * k + k])) return false;
     }
     return bough_cholesky_factor(n, factor);
 }

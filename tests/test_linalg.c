@@ -1,0 +1,76 @@
+// Dense algebra against known solutions.
+#include "tests/check.h"
+
+#include "core/linalg.h"
+
+#include <string.h>
+
+static void lu_solves_with_interchanges(void **state) {
+    (void)state;
+    // column-major; the first pivot is zero
+    double a[9] = {0, 2, 1, 1, 0, 1, 3, 1, 0};
+    const double x[6] = {1, -2, 3, 0.5, 4, -1};
+    double b[6] = {0};
+    int pivot[3];
+    for (int k = 0; k < 2; k++) {
+        for (int c = 0; c < 3; c++) {
+            for (int r = 0; r < 3; r++) b[3 * k + r] += a[3 * c + r] * x[3 * k + c];
+        }
+    }
+    assert_true(bough_dense_factor(3, a, pivot));
+    bough_dense_solve(3, 2, a, pivot, b);
+    for (int i = 0; i < 6; i++) check_near(b[i], x[i], 1e-14, 0);
+}
+
+static void lu_refuses_singular_and_nan(void **state) {
+    (void)state;
+    double singular[4] = {1, 2, 2, 4}, nan[4] = {1, 0, NAN, 1};
+    int pivot[2];
+    assert_false(bough_dense_factor(2, singular, pivot));
+    assert_false(bough_dense_factor(2, nan, pivot));
+    assert_true(bough_dense_factor(0, NULL, NULL));
+    bough_dense_solve(0, 1, NULL, NULL, NULL);
+}
+
+// A = L Lᵀ with L known; only the lower triangle of A is given.
+static void cholesky_finds_the_factor(void **state) {
+    (void)state;
+    const double l[9] = {2, 0, 0, 1, 3, 0, -1, 0.5, 1.5};
+    double a[9], b[3] = {0};
+    const double x[3] = {1, 2, -3};
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++) {
+            double sum = 0;
+            for (int k = 0; k < 3; k++) sum += l[3 * i + k] * l[3 * j + k];
+            a[3 * i + j] = j <= i ? sum : NAN;
+            b[i] += sum * x[j];
+        }
+    }
+    assert_true(bough_cholesky_factor(3, a));
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j <= i; j++) check_near(a[3 * i + j], l[3 * i + j], 1e-15, 1e-15);
+    }
+    bough_cholesky_solve(3, a, b);
+    for (int i = 0; i < 3; i++) check_near(b[i], x[i], 1e-14, 0);
+}
+
+static void cholesky_refuses_indefinite_and_nearly_singular(void **state) {
+    (void)state;
+    double indefinite[4] = {1, 0, 2, 1}, near[4] = {1, 0, 1, 1 + 1e-14}, zero[1] = {0};
+    double nan[1] = {NAN}, fine[4] = {1, 0, 1, 1 + 1e-10};
+    assert_false(bough_cholesky_factor(2, indefinite));
+    assert_false(bough_cholesky_factor(2, near));
+    assert_false(bough_cholesky_factor(1, zero));
+    assert_false(bough_cholesky_factor(1, nan));
+    assert_true(bough_cholesky_factor(2, fine));
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lu_solves_with_interchanges),
+        cmocka_unit_test(lu_refuses_singular_and_nan),
+        cmocka_unit_test(cholesky_finds_the_factor),
+        cmocka_unit_test(cholesky_refuses_indefinite_and_nearly_singular),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,619 @@
+// The rigid tree: analytic motions, and every recursion against another one.
+#include "tests/check.h"
+
+#include "core/base.h"
+#include "core/dynamics.h"
+#include "core/rotation.h"
+#include "core/tree_subsystem.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST = 64 };
+
+static const bough_vec3 down_z = {0, 0, -9.81};
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_tree *tree;
+    bough_tree_data *data;
+    bough_subsystem s;
+} fixture;
+
+static fixture build(const bough_tree_def *def, double rtol) {
+    fixture f = {.arena = bough_arena_create()};
+    bough_status status = bough_tree_create(f.arena, def, &f.tree);
+    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
+    assert_int_equal(status.code, BOUGH_OK);
+    status = bough_tree_data_create(f.arena, f.tree, &f.data);
+    assert_int_equal(status.code, BOUGH_OK);
+    status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0, rtol, &f.s);
+    assert_int_equal(status.code, BOUGH_OK);
+    assert_true(f.s.n_state <= MOST);
+    return f;
+}
+
+static void advance(fixture *f, double t1, bool restart) {
+    bough_status status = f->s.ops->advance(f->s.self, t1, NULL, restart);
+    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
+    assert_int_equal(status.code, BOUGH_OK);
+    check_near(*f->s.time, t1, 0, 0);
+}
+
+static bough_mat3 diagonal(double a, double b, double c) {
+    return (bough_mat3){{a, 0, 0}, {0, b, 0}, {0, 0, c}};
+}
+
+static bough_mat3 turned(double x, double y, double z) {
+    return bough_rotation_matrix(bough_quaternion_exponential(bough_v3(x, y, z)));
+}
+
+// Deterministic numbers in (−1, 1)
+static double next(unsigned *seed) {
+    *seed = *seed * 1664525u + 1013904223u;
+    return (double)(*seed >> 8) / (double)(1u << 23) - 1;
+}
+
+static bough_vec3 next3(unsigned *seed) {
+    double x = next(seed), y = next(seed), z = next(seed);
+    return bough_v3(x, y, z);
+}
+
+static bough_body_def random_body(unsigned *seed, const char *name, int parent,
+                                  bough_joint_kind kind) {
+    bough_body_def b = bough_body_def_default();
+    bough_vec3 turn = next3(seed);
+    b.name = name;
+    b.parent = parent;
+    b.kind = kind;
+    b.joint = (bough_transform){next3(seed), turned(turn.x, turn.y, turn.z)};
+    b.axis = next3(seed);
+    b.mass = 1 + 0.5 * next(seed);
+    b.mass_centre = next3(seed);
+    bough_mat3 r = turned(next(seed), next(seed), next(seed));
+    b.inertia = bough_mat3_product(
+        r, bough_mat3_product(diagonal(0.3, 0.5, 0.7), bough_mat3_transpose(r)));
+    for (int k = 0; k < BOUGH_JOINT_COORDINATES; k++) b.coordinates[k] = next(seed);
+    for (int k = 0; k < BOUGH_JOINT_SPEEDS; k++) b.speeds[k] = next(seed);
+    return b;
+}
+
+// Every kind of joint, branches, a welded body in between, bodies out of order, two ports (one on
+// the welded body), a joint load with a ramp and an external wrench.
+static fixture everything(double rtol) {
+    static const char *names[] = {"a", "b", "c", "d", "e", "f", "g"};
+    static const int parents[] = {2, 0, BOUGH_GROUND, 2, 3, 4, BOUGH_GROUND};
+    static const bough_joint_kind kinds[] = {BOUGH_JOINT_REVOLUTE,  BOUGH_JOINT_SPHERICAL,
+                                             BOUGH_JOINT_FREE,      BOUGH_JOINT_PRISMATIC,
+                                             BOUGH_JOINT_FIXED,     BOUGH_JOINT_REVOLUTE,
+                                             BOUGH_JOINT_SPHERICAL};
+    unsigned seed = 7;
+    bough_body_def bodies[7];
+    for (int i = 0; i < 7; i++) bodies[i] = random_body(&seed, names[i], parents[i], kinds[i]);
+    bough_marker_def markers[] = {
+        {"on b", 1, {next3(&seed), turned(0.3, -0.4, 1)}},
+        {"on e", 4, {next3(&seed), turned(-1, 0.2, 0.5)}},
+        {"on f", 5, {next3(&seed), turned(1, 1, 0.1)}},
+    };
+    bough_port_def ports[] = {
+        {"first", 0, bough_inertia_of(0.4, bough_v3(0.1, 0, 0.2), diagonal(0.1, 0.2, 0.2))},
+        {"second", 1, bough_inertia_of(0.2, bough_v3(0, 0.3, 0), diagonal(0.1, 0.1, 0.1))},
+    };
+    bough_joint_load_def loads[] = {{5, 3.0, 0.1, 0.3}, {3, -2.0, 0, 0}};
+    bough_tree_def def = {.gravity = {1, -2, -9}, .n_bodies = 7,     .n_markers = 3, .n_ports = 2,
+                          .n_loads = 2,           .bodies = bodies, .markers = markers,
+                          .ports = ports,         .loads = loads};
+    fixture f = build(&def, rtol);
+    double value[6] = {1, 2, 3, -1, -2, 0.5}, rate[6] = {0.5, 0, 1, 0, 1, 0};
+    bough_tree_set_wrench(f.tree, 2, 0.05, value, rate);
+    return f;
+}
+
+static const double some_input[12] = {1, -2, 0.5, 0.3, 0.8, -0.6, -1, 0.4, 2, 0.7, -0.1, 0.9};
+
+// -- analytic motions ------------------------------------------------------------------------
+
+// A point mass m = 1 on a massless rod l = 1 about the y axis, from (−1, 0) at rest.
+static void pendulum_follows_the_elliptic_solution(void **state) {
+    (void)state;
+    bough_body_def b = bough_body_def_default();
+    b.name = "bob", b.kind = BOUGH_JOINT_REVOLUTE, b.axis = bough_v3(0, 1, 0);
+    b.mass = 1, b.mass_centre = bough_v3(-1, 0, 0);
+    bough_tree_def def = {.gravity = down_z, .n_bodies = 1, .bodies = &b};
+    fixture f = build(&def, 1e-10);
+    advance(&f, 2.367841947577, true); // one period
+    check_near(f.s.state[0], 0, 0, 2e-6);
+    check_near(f.s.state[1], 0, 0, 2e-6);
+    for (int k = 1; k <= 100; k++) {
+        double t = 0.1 * k;
+        if (t > 2.367841947577) advance(&f, t, false);
+    }
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_vec3 at = bough_tree_sum(f.tree, f.data).mass_centre;
+    check_near(at.x, -.2750874625761, 0, 1e-6);
+    check_near(at.z, -.9614192050991, 0, 1e-6);
+    bough_arena_destroy(f.arena);
+}
+
+// Point masses, l = 1 each, both horizontal and at rest. Absolute angles θ1, θ2 from the vertical
+// start at π/2; the joints turn about y from the horizontal, θ = π/2 − (sum of joint angles).
+static void double_pendulum_reaches_the_known_angles(void **state) {
+    (void)state;
+    bough_body_def b[2] = {bough_body_def_default(), bough_body_def_default()};
+    for (int i = 0; i < 2; i++) {
+        b[i].name = "bob", b[i].kind = BOUGH_JOINT_REVOLUTE, b[i].axis = bough_v3(0, 1, 0);
+        b[i].mass = 1, b[i].mass_centre = bough_v3(1, 0, 0);
+    }
+    b[1].parent = 0, b[1].joint.position = bough_v3(1, 0, 0);
+    bough_tree_def def = {.gravity = down_z, .n_bodies = 2, .bodies = b};
+    fixture f = build(&def, 1e-11);
+    advance(&f, 1, true);
+    check_near(BOUGH_PI / 2 - f.s.state[0], -.6250876998, 0, 1e-7);
+    check_near(BOUGH_PI / 2 - f.s.state[0] - f.s.state[1], -1.0345850857, 0, 1e-7);
+    bough_arena_destroy(f.arena);
+}
+
+static bough_tree_def free_body_def(bough_body_def *b, bough_mat3 inertia) {
+    *b = bough_body_def_default();
+    b->name = "top", b->kind = BOUGH_JOINT_FREE, b->mass = 2, b->inertia = inertia;
+    double q[7] = {1, 2, 3, 0.9, 0.1, -0.3, 0.2};
+    memcpy(b->coordinates, q, sizeof q);
+    return (bough_tree_def){.n_bodies = 1, .bodies = b};
+}
+
+// Ω of a body with moments (A, A, C): Ω3 constant, (Ω1, Ω2) turns at λ = (C − A)/A·Ω3.
+static void axisymmetric_body_precesses(void **state) {
+    (void)state;
+    bough_body_def b;
+    bough_tree_def def = free_body_def(&b, diagonal(0.5, 0.5, 0.9));
+    double v[6] = {0.3, -0.2, 0.1, 1.5, 0, 4};
+    memcpy(b.speeds, v, sizeof v);
+    fixture f = build(&def, 1e-10);
+    double t = 3.7, lambda = (0.9 - 0.5) / 0.5 * 4;
+    advance(&f, t, true);
+    check_near(f.s.state[10], 1.5 * cos(lambda * t), 0, 1e-7);
+    check_near(f.s.state[11], 1.5 * sin(lambda * t), 0, 1e-7);
+    check_near(f.s.state[12], 4, 1e-9, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// The mass centre flies straight, energy and both momenta stay, though the intermediate axis tips.
+static void free_asymmetric_body_conserves(void **state) {
+    (void)state;
+    bough_body_def b;
+    bough_tree_def def = free_body_def(&b, diagonal(0.5, 0.7, 0.9));
+    b.mass_centre = bough_v3(0.1, -0.2, 0.3);
+    double v[6] = {0.3, -0.2, 0.1, 0.02, 3, 0.01};
+    memcpy(b.speeds, v, sizeof v);
+    fixture f = build(&def, 1e-10);
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_sums before = bough_tree_sum(f.tree, f.data);
+    double turned_most = 3;
+    for (int k = 1; k <= 400; k++) {
+        advance(&f, 0.05 * k, k == 1);
+        turned_most = fmin(turned_most, f.s.state[11]);
+    }
+    assert_true(turned_most < -2.9); // the intermediate axis did tip over
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_sums after = bough_tree_sum(f.tree, f.data);
+    check_near(after.kinetic, before.kinetic, 1e-6, 0);
+    bough_vec3 l = bough_sub(after.angular_momentum, before.angular_momentum);
+    bough_vec3 p = bough_sub(after.linear_momentum, before.linear_momentum);
+    check_near(bough_norm(l), 0, 0, 1e-6 * bough_norm(before.angular_momentum));
+    check_near(bough_norm(p), 0, 0, 1e-5);
+    bough_vec3 way = bough_axpy(20 / before.mass, before.linear_momentum, before.mass_centre);
+    check_near(bough_norm(bough_sub(after.mass_centre, way)), 0, 0, 1e-4);
+    const double *q = f.s.state + 3;
+    check_near(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3], 1, 1e-14, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// A constant torque M on a revolute joint of inertia J without gravity, ramped over [1, 3] s:
+// ω = M/J·∫ factor.
+static void ramped_joint_load_spins_up(void **state) {
+    (void)state;
+    bough_body_def b = bough_body_def_default();
+    b.name = "rotor", b.kind = BOUGH_JOINT_REVOLUTE, b.axis = bough_v3(0, 0, 2);
+    b.inertia = diagonal(1, 1, 4);
+    bough_joint_load_def load = {0, 8, 1, 3};
+    bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_loads = 1, .loads = &load};
+    fixture f = build(&def, 1e-9);
+    advance(&f, 1, true);
+    check_near(f.s.state[1], 0, 0, 1e-12);
+    advance(&f, 2, true);
+    check_near(f.s.state[1], 2 * 0.25, 1e-6, 0);
+    advance(&f, 3, false);
+    check_near(f.s.state[1], 2 * 1.0, 1e-6, 0);
+    advance(&f, 4, true);
+    check_near(f.s.state[1], 2 * 2.0, 1e-6, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// -- recursions against each other -----------------------------------------------------------
+
+static void inverse_dynamics_inverts_forward_dynamics(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    double acceleration[MOST], residual[MOST], bias[MOST], mass[MOST * MOST];
+    double zero[MOST] = {0};
+    int n = f.tree->n_v;
+    double t = 0.2;
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    assert_true(bough_tree_forward_dynamics(f.tree, f.data, t, some_input, acceleration));
+    bough_tree_inverse_dynamics(f.tree, f.data, t, some_input, acceleration, residual);
+    bough_tree_inverse_dynamics(f.tree, f.data, t, some_input, zero, bias);
+    bough_tree_mass_matrix(f.tree, f.data, mass);
+    for (int i = 0; i < n; i++) {
+        check_near(residual[i], 0, 0, 1e-11);
+        double sum = bias[i]; // M v̇ + h − τ with M by composite bodies
+        for (int j = 0; j < n; j++) sum += mass[n * i + j] * acceleration[j];
+        check_near(sum, 0, 0, 1e-11);
+        assert_true(fabs(bias[i]) > 1e-6);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+static void kinetic_energy_is_the_mass_matrix_form(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    double mass[MOST * MOST], energy = 0;
+    int n = f.tree->n_v;
+    const double *v = f.s.state + f.tree->n_q;
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_mass_matrix(f.tree, f.data, mass);
+    for (int i = 0; i < n; i++) {
+        for (int j = 0; j < n; j++) energy += 0.5 * v[i] * mass[n * i + j] * v[j];
+    }
+    check_near(bough_tree_sum(f.tree, f.data).kinetic, energy, 1e-12, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// Power of the loads = rate of the energy, by differences along the exact motion.
+static void energy_follows_the_power_of_the_loads(void **state) {
+    (void)state;
+    fixture f = everything(1e-11);
+    f.tree->external[2].active = false;
+    f.tree->n_loads = 0;
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_sums before = bough_tree_sum(f.tree, f.data);
+    for (int k = 1; k <= 10; k++) advance(&f, 0.1 * k, k == 1);
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_sums after = bough_tree_sum(f.tree, f.data);
+    assert_true(fabs(after.kinetic - before.kinetic) > 1);
+    check_near(after.kinetic + after.potential, before.kinetic + before.potential, 1e-7, 1e-7);
+    bough_arena_destroy(f.arena);
+}
+
+// -- tangents --------------------------------------------------------------------------------
+
+static void output_tangent_is_the_derivative(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    int n = f.s.n_state, m = f.s.n_output;
+    double change[MOST], plus[MOST], minus[MOST], y[MOST], tangent[MOST], h = 1e-6;
+    unsigned seed = 3;
+    for (int i = 0; i < n; i++) change[i] = next(&seed);
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < n; i++) y[i] = f.s.state[i] + (side == 0 ? h : -h) * change[i];
+        f.s.ops->output(f.s.self, 0, y, some_input, side == 0 ? plus : minus);
+    }
+    f.s.ops->output_tangent(f.s.self, 0, f.s.state, some_input, change, NULL, tangent);
+    for (int i = 0; i < m; i++) {
+        check_near(tangent[i], (plus[i] - minus[i]) / (2 * h), 1e-8, 1e-8);
+        assert_true(fabs(tangent[i]) > 1e-4);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+// Along the motion: the links' accelerations of the forward dynamics, and ġ = −ω×g.
+static void output_tangent_along_the_motion_is_the_acceleration(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    double rate[MOST], tangent[MOST], out[MOST];
+    assert_true(f.s.ops->derivative(f.s.self, 0, f.s.state, some_input, rate));
+    f.s.ops->output(f.s.self, 0, f.s.state, some_input, out);
+    f.s.ops->output_tangent(f.s.self, 0, f.s.state, some_input, rate, NULL, tangent);
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    double ignored[MOST];
+    assert_true(bough_tree_forward_dynamics(f.tree, f.data, 0, some_input, ignored));
+    for (int p = 0; p < 2; p++) {
+        const bough_frame *port = &f.tree->ports[p];
+        double expected[6];
+        bough_twist_store(
+            bough_twist_to_child(&port->placement, f.data->acceleration[port->link]), expected);
+        for (int i = 0; i < 6; i++) check_near(tangent[9 * p + i], expected[i], 1e-12, 1e-12);
+        bough_vec3 omega = bough_v3(out[9 * p + 3], out[9 * p + 4], out[9 * p + 5]);
+        bough_vec3 g = bough_v3(out[9 * p + 6], out[9 * p + 7], out[9 * p + 8]);
+        bough_vec3 gdot = bough_cross(g, omega);
+        check_near(tangent[9 * p + 6], gdot.x, 1e-12, 1e-12);
+        check_near(tangent[9 * p + 7], gdot.y, 1e-12, 1e-12);
+        check_near(tangent[9 * p + 8], gdot.z, 1e-12, 1e-12);
+        check_near(bough_norm(g), bough_norm(f.tree->gravity), 1e-14, 0);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+static void input_columns_are_the_derivative(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    int n = f.s.n_state;
+    double *columns = calloc((size_t)(n * f.s.n_input), sizeof(double));
+    double plus[MOST], minus[MOST], u[12];
+    f.s.ops->input_columns(f.s.self, 0.2, f.s.state, some_input, columns);
+    for (int j = 0; j < f.s.n_input; j++) {
+        memcpy(u, some_input, sizeof u);
+        u[j] += 0.5; // f is linear in u: no truncation error
+        f.s.ops->derivative(f.s.self, 0.2, f.s.state, u, plus);
+        u[j] -= 1;
+        f.s.ops->derivative(f.s.self, 0.2, f.s.state, u, minus);
+        for (int i = 0; i < n; i++) check_near(columns[n * j + i], plus[i] - minus[i], 1e-9, 1e-11);
+    }
+    free(columns);
+    bough_arena_destroy(f.arena);
+}
+
+// (I − γJ) x = b with x by newton_solve and J x by a difference of f along x.
+static void newton_solve_inverts_the_linearisation(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    int n = f.s.n_state;
+    double x[MOST], b[MOST], y[MOST], plus[MOST], minus[MOST], gamma = 0.07, h = 1e-6;
+    unsigned seed = 5;
+    for (int i = 0; i < n; i++) x[i] = b[i] = next(&seed);
+    assert_true(f.s.ops->newton_setup(f.s.self, 0.2, f.s.state, some_input, gamma));
+    f.s.ops->newton_solve(f.s.self, x);
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < n; i++) y[i] = f.s.state[i] + (side == 0 ? h : -h) * x[i];
+        f.s.ops->derivative(f.s.self, 0.2, y, some_input, side == 0 ? plus : minus);
+    }
+    for (int i = 0; i < n; i++) {
+        check_near(x[i] - gamma * (plus[i] - minus[i]) / (2 * h), b[i], 1e-7, 1e-7);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+// -- topology --------------------------------------------------------------------------------
+
+// Pendulum whose mass sits on a body welded to it, hung from a tower and a nacelle welded to the
+// ground, against the same masses in one body.
+static void welded_bodies_move_as_one(void **state) {
+    (void)state;
+    unsigned seed = 11;
+    bough_body_def whole = random_body(&seed, "whole", BOUGH_GROUND, BOUGH_JOINT_SPHERICAL);
+    bough_body_def extra = random_body(&seed, "extra", 2, BOUGH_JOINT_FIXED);
+    bough_body_def tower = random_body(&seed, "tower", BOUGH_GROUND, BOUGH_JOINT_FIXED);
+    bough_body_def parts[3] = {extra, tower, whole}; // children before parents
+    parts[2].parent = 1;
+    parts[2].joint =
+        bough_transform_compose(bough_transform_inverse(tower.joint), whole.joint);
+    bough_inertia sum = bough_inertia_add(
+        bough_inertia_of(whole.mass, whole.mass_centre, whole.inertia),
+        bough_inertia_to_parent(&extra.joint, bough_inertia_of(extra.mass, extra.mass_centre,
+                                                               extra.inertia)));
+    whole.mass = sum.mass;
+    whole.mass_centre = bough_scale(1 / sum.mass, sum.first);
+    bough_mat3 shift = bough_steiner(bough_scale(-0.5, sum.first), whole.mass_centre);
+    whole.inertia = bough_mat3_add(sum.rotational, shift);
+    bough_tree_def one = {.gravity = down_z, .n_bodies = 1, .bodies = &whole};
+    bough_tree_def three = {.gravity = down_z, .n_bodies = 3, .bodies = parts};
+    fixture a = build(&one, 1e-9), b = build(&three, 1e-9);
+    assert_int_equal(b.s.n_state, 7);
+    assert_int_equal(b.tree->n_links, 1);
+    advance(&a, 1, true);
+    advance(&b, 1, true);
+    for (int i = 0; i < 7; i++) check_near(b.s.state[i], a.s.state[i], 0, 1e-6);
+    assert_true(fabs(a.s.state[1] - a.tree->initial[1]) > 1e-2);
+    bough_arena_destroy(a.arena);
+    bough_arena_destroy(b.arena);
+}
+
+// A port's root inertia is felt as a body welded there.
+static void root_inertia_is_felt_as_a_welded_body(void **state) {
+    (void)state;
+    unsigned seed = 21;
+    bough_body_def b[2] = {random_body(&seed, "hub", BOUGH_GROUND, BOUGH_JOINT_FREE),
+                           random_body(&seed, "root", 0, BOUGH_JOINT_FIXED)};
+    bough_marker_def marker = {"flange", 0, b[1].joint};
+    bough_port_def port = {"blade", 0,
+                           bough_inertia_of(b[1].mass, b[1].mass_centre, b[1].inertia)};
+    bough_tree_def welded = {.gravity = down_z, .n_bodies = 2, .bodies = b};
+    bough_tree_def ported = {.gravity = down_z, .n_bodies = 1, .bodies = b, .n_markers = 1,
+                             .markers = &marker, .n_ports = 1, .ports = &port};
+    fixture f = build(&welded, 1e-6), g = build(&ported, 1e-6);
+    double a[MOST], c[MOST], zero[6] = {0};
+    f.s.ops->derivative(f.s.self, 0, f.s.state, NULL, a);
+    g.s.ops->derivative(g.s.self, 0, g.s.state, zero, c);
+    for (int i = 0; i < f.s.n_state; i++) check_near(c[i], a[i], 1e-12, 1e-12);
+    bough_arena_destroy(f.arena);
+    bough_arena_destroy(g.arena);
+}
+
+static void ground_fixed_tree_has_no_states(void **state) {
+    (void)state;
+    bough_body_def b = bough_body_def_default();
+    b.name = "base", b.joint.position = bough_v3(1, 2, 3);
+    b.joint.rotation = turned(0, BOUGH_PI / 2, 0); // x to −z
+    bough_marker_def marker = {"clamp", 0, bough_transform_identity()};
+    bough_port_def port = {"rod", 0, {.mass = 1}};
+    bough_tree_def def = {.gravity = down_z, .n_bodies = 1, .bodies = &b, .n_markers = 1,
+                          .markers = &marker, .n_ports = 1, .ports = &port};
+    fixture f = build(&def, 1e-6);
+    assert_int_equal(f.s.n_state, 0);
+    assert_int_equal(f.s.n_input, 6);
+    double out[9], rate[9], u[6] = {1, 2, 3, 4, 5, 6}, coefficient[24] = {0};
+    bough_signal signal = {6, 0, 1, coefficient};
+    bough_status status = f.s.ops->advance(f.s.self, 1, &signal, true);
+    assert_int_equal(status.code, BOUGH_OK);
+    check_near(*f.s.time, 1, 0, 0);
+    f.s.ops->output(f.s.self, 1, f.s.state, u, out);
+    f.s.ops->output_tangent(f.s.self, 1, f.s.state, u, f.s.state, NULL, rate);
+    const double expected[9] = {0, 0, 0, 0, 0, 0, 9.81, 0, 0};
+    for (int i = 0; i < 9; i++) {
+        check_near(out[i], expected[i], 0, 1e-14);
+        check_near(rate[i], 0, 0, 0);
+    }
+    assert_true(f.s.ops->newton_setup(f.s.self, 1, f.s.state, u, 0.1));
+    f.s.ops->newton_solve(f.s.self, out);
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    check_near(bough_tree_frame_pose(f.data, &f.tree->markers[0]).position.y, 2, 0, 0);
+    bough_arena_destroy(f.arena);
+}
+
+static bough_code create_code(const bough_body_def *bodies, int n, const char *word) {
+    bough_arena *arena = bough_arena_create();
+    bough_tree *tree;
+    bough_tree_def def = {.n_bodies = n, .bodies = bodies};
+    bough_status status = bough_tree_create(arena, &def, &tree);
+    assert_true(bough_is_ok(&status) || strstr(status.message, word) != NULL);
+    bough_arena_destroy(arena);
+    return status.code;
+}
+
+static void bad_defs_are_named(void **state) {
+    (void)state;
+    unsigned seed = 2;
+    bough_body_def b[2] = {random_body(&seed, "one", BOUGH_GROUND, BOUGH_JOINT_REVOLUTE),
+                           random_body(&seed, "two", 0, BOUGH_JOINT_SPHERICAL)};
+    bough_body_def good[2] = {b[0], b[1]};
+    assert_int_equal(create_code(b, 2, ""), BOUGH_OK);
+    b[1].parent = 2;
+    assert_int_equal(create_code(b, 2, "'two'"), BOUGH_INVALID);
+    b[1] = good[1], b[0].parent = 1;
+    assert_int_equal(create_code(b, 2, "cycle"), BOUGH_INVALID);
+    b[0] = good[0], b[1].mass = 0, b[1].inertia = diagonal(0, 0, 0);
+    assert_int_equal(create_code(b, 2, "'two'"), BOUGH_INVALID);
+    b[1] = good[1], b[0].axis = bough_v3(0, 0, 0);
+    assert_int_equal(create_code(b, 2, "axis"), BOUGH_INVALID);
+    b[0] = good[0], b[1].mass = NAN;
+    assert_int_equal(create_code(b, 2, "'two'"), BOUGH_INVALID);
+    b[1] = good[1], b[1].joint.rotation.c1.x += 0.1;
+    assert_int_equal(create_code(b, 2, "rotation"), BOUGH_INVALID);
+    // a point mass on its own axis, and a free point mass away from its origin
+    b[1] = good[1], b[1].inertia = diagonal(0, 0, 0);
+    b[1].kind = BOUGH_JOINT_REVOLUTE, b[1].mass_centre = b[1].axis;
+    assert_int_equal(create_code(b, 2, "inertia"), BOUGH_INVALID);
+    b[1].kind = BOUGH_JOINT_FREE;
+    assert_int_equal(create_code(b, 2, "inertia"), BOUGH_INVALID);
+}
+
+// -- the contract ----------------------------------------------------------------------------
+
+static void restored_copies_repeat_bit_by_bit(void **state) {
+    (void)state;
+    fixture f = everything(1e-7);
+    int n = f.s.n_state;
+    double coefficient[48] = {0}, first[MOST], second[MOST];
+    for (int i = 0; i < 24; i++) coefficient[i] = some_input[i % 12];
+    bough_signal signal = {12, 0, 0.5, coefficient};
+    bough_status status = f.s.ops->advance(f.s.self, 0.2, &signal, true);
+    assert_int_equal(status.code, BOUGH_OK);
+    double *copy = malloc(f.s.ops->save_size(f.s.self));
+    f.s.ops->save(f.s.self, copy);
+    for (int run = 0; run < 2; run++) {
+        f.s.ops->restore(f.s.self, copy);
+        check_near(*f.s.time, 0.2, 0, 0);
+        for (int k = 3; k <= 5; k++) {
+            status = f.s.ops->advance(f.s.self, 0.1 * k, &signal, false);
+            assert_int_equal(status.code, BOUGH_OK);
+        }
+        memcpy(run == 0 ? first : second, f.s.state, (size_t)n * sizeof(double));
+        // go elsewhere in between, so that the integrator's leftovers differ
+        if (run == 0) f.s.ops->advance(f.s.self, 0.9, &signal, false);
+    }
+    assert_memory_equal(first, second, (size_t)n * sizeof(double));
+    free(copy);
+    bough_arena_destroy(f.arena);
+}
+
+// Kept history over many macro steps agrees with a far tighter run.
+static void kept_history_keeps_the_accuracy(void **state) {
+    (void)state;
+    fixture f = everything(1e-7), tight = everything(1e-11);
+    bough_statistics count;
+    double coefficient[48] = {0};
+    for (int i = 0; i < 24; i++) coefficient[i] = some_input[i % 12];
+    bough_signal signal = {12, 0, 1, coefficient};
+    for (int k = 1; k <= 25; k++) {
+        bough_status status = f.s.ops->advance(f.s.self, 0.02 * k, &signal, k == 1);
+        assert_int_equal(status.code, BOUGH_OK);
+    }
+    tight.s.ops->advance(tight.s.self, 0.3, &signal, true); // the ramp's end is a kink
+    tight.s.ops->advance(tight.s.self, 0.5, &signal, true);
+    for (int i = 0; i < f.s.n_state; i++) check_near(f.s.state[i], tight.s.state[i], 1e-5, 1e-5);
+    f.s.ops->statistics(f.s.self, &count);
+    assert_int_equal(count.restarts, 1);
+    assert_true(count.steps > 0 && count.jacobians > 0 && count.derivatives > count.steps);
+    bough_arena_destroy(f.arena);
+    bough_arena_destroy(tight.arena);
+}
+
+// A marker's wrench against the same wrench at the port in the same place.
+static void external_wrench_acts_as_a_port_does(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    double a[MOST], b[MOST], zero[12] = {0}, later[6], rate[6] = {1, 0, -1, 2, 0, 1};
+    bough_tree_set_wrench(f.tree, 2, 0, NULL, NULL);
+    f.s.ops->derivative(f.s.self, 0.4, f.s.state, some_input, a);
+    for (int m = 0; m < 2; m++) {
+        for (int i = 0; i < 6; i++) later[i] = some_input[6 * m + i] - 0.3 * rate[i];
+        bough_tree_set_wrench(f.tree, m, 0.1, later, rate);
+    }
+    f.s.ops->derivative(f.s.self, 0.4, f.s.state, zero, b);
+    for (int i = 0; i < f.s.n_state; i++) check_near(b[i], a[i], 1e-11, 1e-11);
+    bough_arena_destroy(f.arena);
+}
+
+// Velocity queries against differences of poses along the motion.
+static void frame_velocity_is_the_rate_of_the_pose(void **state) {
+    (void)state;
+    fixture f = everything(1e-6);
+    const bough_frame *marker = &f.tree->markers[2];
+    double rate[MOST], y[MOST], h = 1e-6;
+    bough_transform pose[2];
+    f.s.ops->derivative(f.s.self, 0, f.s.state, some_input, rate);
+    for (int side = 0; side < 2; side++) {
+        for (int i = 0; i < f.s.n_state; i++) y[i] = f.s.state[i] + (side ? h : -h) * rate[i];
+        bough_tree_kinematics(f.tree, y, f.data);
+        pose[side] = bough_tree_frame_pose(f.data, marker);
+    }
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_twist v = bough_tree_frame_velocity(f.data, marker);
+    bough_vec3 move = bough_sub(pose[1].position, pose[0].position);
+    bough_vec3 turn = bough_quaternion_logarithm(bough_quaternion_of_matrix(bough_mat3_product(
+        pose[1].rotation, bough_mat3_transpose(pose[0].rotation))));
+    check_near(bough_norm(bough_axpy(-2 * h, v.linear, move)), 0, 0, 1e-8 * 2 * h);
+    check_near(bough_norm(bough_axpy(-2 * h, v.angular, turn)), 0, 0, 1e-8 * 2 * h);
+    assert_true(bough_norm(v.angular) > 0.1);
+    int q, speed;
+    assert_true(bough_tree_joint_rows(f.tree, bough_tree_find_body(f.tree, "d"), &q, &speed));
+    check_near(rate[q], f.s.state[speed], 0, 0);
+    assert_false(bough_tree_joint_rows(f.tree, bough_tree_find_body(f.tree, "e"), &q, &speed));
+    assert_int_equal(bough_tree_find_marker(f.tree, "nobody"), -1);
+    bough_arena_destroy(f.arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(pendulum_follows_the_elliptic_solution),
+        cmocka_unit_test(double_pendulum_reaches_the_known_angles),
+        cmocka_unit_test(axisymmetric_body_precesses),
+        cmocka_unit_test(free_asymmetric_body_conserves),
+        cmocka_unit_test(ramped_joint_load_spins_up),
+        cmocka_unit_test(inverse_dynamics_inverts_forward_dynamics),
+        cmocka_unit_test(kinetic_energy_is_the_mass_matrix_form),
+        cmocka_unit_test(energy_follows_the_power_of_the_loads),
+        cmocka_unit_test(output_tangent_is_the_derivative),
+        cmocka_unit_test(output_tangent_along_the_motion_is_the_acceleration),
+        cmocka_unit_test(input_columns_are_the_derivative),
+        cmocka_unit_test(newton_solve_inverts_the_linearisation),
+        cmocka_unit_test(welded_bodies_move_as_one),
+        cmocka_unit_test(root_inertia_is_felt_as_a_welded_body),
+        cmocka_unit_test(ground_fixed_tree_has_no_states),
+        cmocka_unit_test(bad_defs_are_named),
+        cmocka_unit_test(restored_copies_repeat_bit_by_bit),
+        cmocka_unit_test(kept_history_keeps_the_accuracy),
+        cmocka_unit_test(external_wrench_acts_as_a_port_does),
+        cmocka_unit_test(frame_velocity_is_the_rate_of_the_pose),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
