@@ -98,8 +98,10 @@ static void long_message_is_cut_between_characters(void **state) {
     fixture f;
     open_recorder(&f, *state);
     char long_message[301] = "";
-    for (int i = 0; i < 300; i += 2)
-        memcpy(long_message + i, "ω", 2);
+    for (int i = 0; i < 300; i += 2) {
+        long_message[i] = "ω"[0];
+        long_message[i + 1] = "ω"[1];
+    }
     bough_status failure = bough_fail(BOUGH_FAILED, "%s", long_message);
     bough_recorder_finish(f.recorder, &failure);
     char *text = scratch_read(*state, "channels.out");
