@@ -1,44 +1,10 @@
 // Builds the constant rod model from its discretised definition.
 #include "flexbody/rod.h"
 
+#include "core/symmetric6.h"
 #include "flexbody/rod_segment.h"
 
 #include <string.h>
-
-// Index of (i, j), i <= j, in the upper triangle by rows of a symmetric 6×6.
-static int triangle(int i, int j) {
-    return i <= j ? i * 6 - i * (i - 1) / 2 + (j - i) : triangle(j, i);
-}
-
-// Cholesky factor L (lower, full 6×6 storage) of a symmetric matrix; false when not positive.
-static bool cholesky(const double *upper, double l[6][6]) {
-    for (int j = 0; j < 6; j++) {
-        for (int i = j; i < 6; i++) {
-            double sum = upper[triangle(j, i)];
-            for (int k = 0; k < j; k++) sum -= l[i][k] * l[j][k];
-            if (i == j && !(sum > 0)) return false;
-            l[i][j] = i == j ? sqrt(sum) : sum / l[j][j];
-        }
-    }
-    return true;
-}
-
-// The inverse's upper triangle from the Cholesky factor.
-static void inverse_from_cholesky(double l[6][6], double *upper) {
-    double x[6];
-    for (int j = 0; j < 6; j++) {
-        for (int i = 0; i < 6; i++) {
-            x[i] = i == j;
-            for (int k = 0; k < i; k++) x[i] -= l[i][k] * x[k];
-            x[i] /= l[i][i];
-        }
-        for (int i = 5; i >= 0; i--) {
-            for (int k = i + 1; k < 6; k++) x[i] -= l[k][i] * x[k];
-            x[i] /= l[i][i];
-        }
-        for (int i = 0; i <= j; i++) upper[triangle(i, j)] = x[i];
-    }
-}
 
 // The upper triangle of (11)'s mass in section axes: [mE, −ξ(s); ξ(s), I].
 static void mass_matrix(const bough_vertex_inertia *v, double *upper) {
@@ -68,11 +34,11 @@ static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
 
 static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, int n) {
     int s = m->stride;
-    double h = def->span[n + 1] - def->span[n], l[6][6];
+    double h = def->span[n + 1] - def->span[n], compliance[21];
     if (!(h > 0)) {
         return bough_fail(BOUGH_INVALID, "rod %s: segment %d has length %g m", m->name, n + 1, h);
     }
-    if (!cholesky(def->stiffness + 21 * n, l)) {
+    if (!bough_symmetric6_inverse(def->stiffness + 21 * n, compliance)) {
         return bough_fail(BOUGH_INVALID, "rod %s: the stiffness of segment %d is not positive"
                           " definite", m->name, n + 1);
     }
@@ -98,13 +64,12 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
 static bough_status set_vertex(bough_rod_model *m, const bough_rod_def *def, int i) {
     int s = m->stride;
     const bough_vertex_inertia *v = &def->inertia[i];
-    double mass[21], l[6][6], inverse[21];
+    double mass[21], inverse[21];
     mass_matrix(v, mass);
-    if (!cholesky(mass, l)) {
+    if (!bough_symmetric6_inverse(mass, inverse)) {
         return bough_fail(BOUGH_INVALID, "rod %s: the inertia of vertex %d is not positive"
                           " definite", m->name, i);
     }
-    inverse_from_cholesky(l, inverse);
     for (int k = 0; k < 21; k++) m->inverse_mass[k * s + i - 1] = inverse[k];
     for (int k = 0; k < 6; k++) m->inertia[k * s + i - 1] = v->inertia[k];
     m->moment[i - 1] = v->moment.x;

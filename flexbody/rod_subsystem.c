@@ -1,0 +1,194 @@
+#include "flexbody/rod_subsystem.h"
+
+#include "flexbody/micro_cvode.h"
+#include "flexbody/rod_tangent.h"
+
+#include <string.h>
+
+struct bough_rod_body {
+    const bough_rod_model *model;
+    bough_rod_loads loads;
+    double time, *state; // (13 n)
+    double *scale;       // (13 n)
+    bool moved;          // the state was set from outside: the integrator starts anew
+    const bough_signal *input; // of the step in progress
+    bough_rod_scratch scratch;
+    bough_rod_tangent micro_tangent; // of the sub-solver
+    bough_rod_tangent newton;        // of newton_setup
+    bough_micro_cvode *micro;
+};
+
+// -- the sub-solver's view --------------------------------------------------------------------------
+
+static bool micro_derivative(void *self, double t, const double *y, double *rate) {
+    bough_rod_body *b = self;
+    double input[BOUGH_ROD_INPUTS];
+    bough_signal_value(b->input, t, input);
+    return bough_rod_derivative(b->model, &b->loads, t, y, input, &b->scratch, rate);
+}
+
+static bool micro_linearise(void *self, double t, const double *y) {
+    bough_rod_body *b = self;
+    double input[BOUGH_ROD_INPUTS];
+    bough_signal_value(b->input, t, input);
+    return bough_rod_linearise(b->model, &b->loads, t, y, input, &b->scratch, &b->micro_tangent);
+}
+
+static bool micro_factor(void *self, double gamma) {
+    bough_rod_body *b = self;
+    return bough_rod_factor(b->model, &b->micro_tangent, gamma);
+}
+
+static void micro_solve(void *self, double *x) {
+    bough_rod_body *b = self;
+    bough_rod_solve(b->model, &b->micro_tangent, x);
+}
+
+// -- the contract -----------------------------------------------------------------------------------
+
+static bool derivative(void *self, double t, const double *state, const double *input,
+                       double *rate) {
+    bough_rod_body *b = self;
+    return bough_rod_derivative(b->model, &b->loads, t, state, input, &b->scratch, rate);
+}
+
+static void output(void *self, double t, const double *state, const double *input,
+                   double *wrench) {
+    bough_rod_body *b = self;
+    bough_rod_root_wrench(b->model, &b->loads, t, state, input, &b->scratch, wrench);
+}
+
+static void output_tangent(void *self, double t, const double *state, const double *input,
+                           const double *state_rate, const double *input_rate, double *rate) {
+    (void)t;
+    bough_rod_body *b = self;
+    bough_rod_wrench_tangent(b->model, state, input, state_rate, input_rate, &b->scratch, rate);
+}
+
+static void input_columns(void *self, double t, const double *state, const double *input,
+                          double *column) {
+    (void)t;
+    bough_rod_body *b = self;
+    bough_rod_input_columns(b->model, state, input, &b->scratch, column);
+}
+
+static bool newton_setup(void *self, double t, const double *state, const double *input,
+                         double gamma) {
+    bough_rod_body *b = self;
+    return bough_rod_linearise(b->model, &b->loads, t, state, input, &b->scratch, &b->newton) &&
+           bough_rod_factor(b->model, &b->newton, gamma);
+}
+
+static void newton_solve(void *self, double *x) {
+    bough_rod_body *b = self;
+    bough_rod_solve(b->model, &b->newton, x);
+}
+
+static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
+    bough_rod_body *b = self;
+    b->input = input;
+    bough_status status = bough_micro_cvode_advance(b->micro, b->time, t1, restart || b->moved,
+                                                    b->state);
+    b->moved = !bough_is_ok(&status);
+    b->time = t1;
+    return status;
+}
+
+static size_t state_bytes(const bough_rod_body *b) {
+    return (size_t)BOUGH_ROD_STATES * b->model->n * sizeof(double);
+}
+
+static size_t save_size(void *self) {
+    return sizeof(double) + state_bytes(self);
+}
+
+// CVODE gives no access to its history: a restored rod starts anew at order 1.
+static void save(void *self, void *copy) {
+    const bough_rod_body *b = self;
+    memcpy(copy, &b->time, sizeof b->time);
+    memcpy((char *)copy + sizeof b->time, b->state, state_bytes(b));
+}
+
+static void set_state(void *self, double t, const double *state) {
+    bough_rod_body *b = self;
+    b->time = t;
+    b->moved = true;
+    if (state != b->state) memcpy(b->state, state, state_bytes(b));
+}
+
+static void restore(void *self, const void *copy) {
+    bough_rod_body *b = self;
+    memcpy(&b->time, copy, sizeof b->time);
+    memcpy(b->state, (const char *)copy + sizeof b->time, state_bytes(b));
+    b->moved = true;
+}
+
+static void statistics(void *self, bough_statistics *sum) {
+    const bough_rod_body *b = self;
+    bough_micro_cvode_statistics(b->micro, sum);
+}
+
+// -- life -------------------------------------------------------------------------------------------
+
+static bool take_memory(bough_rod_body *b, bough_arena *arena) {
+    size_t states = (size_t)BOUGH_ROD_STATES * b->model->n;
+    b->state = bough_arena_doubles(arena, states);
+    b->scale = bough_arena_doubles(arena, states);
+    bool ok = bough_rod_loads_init(&b->loads, arena, b->model);
+    ok = bough_rod_scratch_init(&b->scratch, arena, b->model) && ok;
+    ok = bough_rod_tangent_init(&b->micro_tangent, arena, b->model) && ok;
+    ok = bough_rod_tangent_init(&b->newton, arena, b->model) && ok;
+    return ok && !bough_arena_exhausted(arena);
+}
+
+bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *model, double start,
+                                   double rtol, const double *input, bough_rod_body **body) {
+    // error scales of x, p, u, W: a tenth of a radian weighs as a metre
+    static const double scale[BOUGH_ROD_STATES] = {1, 1, 1, 0.1, 0.1, 0.1, 0.1,
+                                                   1, 1, 1, 0.1, 0.1, 0.1};
+    bough_rod_body *b = bough_arena_take(arena, sizeof *b);
+    if (b == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", model->name);
+    b->model = model;
+    if (!take_memory(b, arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", model->name);
+    }
+    b->time = start;
+    b->moved = true;
+    bough_rod_rest_state(model, input, b->state);
+    int n = model->n;
+    for (int k = 0; k < BOUGH_ROD_STATES * n; k++) b->scale[k] = scale[k / n];
+    bough_ode ode = {model->name, BOUGH_ROD_STATES * n, b,           micro_derivative,
+                     micro_linearise, micro_factor,       micro_solve};
+    bough_status status = bough_micro_cvode_create(arena, &ode, b->scale, rtol, &b->micro);
+    if (bough_is_ok(&status)) *body = b;
+    return status;
+}
+
+bough_subsystem bough_rod_body_subsystem(bough_rod_body *body) {
+    static const bough_subsystem_ops ops = {
+        derivative, output, output_tangent, input_columns, newton_setup, newton_solve, advance,
+        save_size,  save,   restore,        set_state,     statistics};
+    return (bough_subsystem){.name = body->model->name,
+                             .kind = "rod",
+                             .solver = "CVODE BDF",
+                             .n_state = BOUGH_ROD_STATES * body->model->n,
+                             .n_input = BOUGH_ROD_INPUTS,
+                             .n_output = BOUGH_ROD_OUTPUTS,
+                             .scale = body->scale,
+                             .time = &body->time,
+                             .state = body->state,
+                             .ops = &ops,
+                             .self = body};
+}
+
+bough_rod_loads *bough_rod_body_loads(bough_rod_body *body) {
+    return &body->loads;
+}
+
+const bough_rod_model *bough_rod_body_model(const bough_rod_body *body) {
+    return body->model;
+}
+
+const double *bough_rod_body_state(const bough_rod_body *body) {
+    return body->state;
+}
