@@ -1,0 +1,21 @@
+// Joins the rotor's aerodynamics to the bodies of a simulation: motion of the blades' vertices in,
+// loads on them out, sampled at the scene's rate and held or joined linearly between samples.
+#ifndef BOUGH_APPS_SCENE_AERO_LINK_H
+#define BOUGH_APPS_SCENE_AERO_LINK_H
+
+#include "aero/rotor.h"
+#include "apps/scene/build.h"
+
+typedef struct bough_aero_link bough_aero_link;
+
+// Builds the rotor of the scene's aero block for the simulation's blades.
+bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation,
+                                   bough_aero_link **link);
+
+// The sampled load for the master's loop.
+bough_sampled_load bough_aero_link_load(bough_aero_link *link);
+
+// Results of the last sample, with the ramp's factor at its time.
+const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor);
+
+#endif

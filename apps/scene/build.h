@@ -1,0 +1,59 @@
+// The composition root: makes a running simulation of a scene. The only place that knows the tree,
+// the rods, the aerodynamics and the coupling together.
+#ifndef BOUGH_APPS_SCENE_BUILD_H
+#define BOUGH_APPS_SCENE_BUILD_H
+
+#include "apps/output/channels.h"
+#include "apps/scene/scene.h"
+#include "core/tree.h"
+#include "cosim/master.h"
+#include "flexbody/rod_subsystem.h"
+
+struct bough_aero_link;
+
+// A flexible blade, cable or tower, or the same body integrated to a rigid one: where it is and, if
+// it is a rod, its sub-solver.
+typedef struct bough_beam {
+    const bough_scene_body *body;
+    bough_rod_def def;    // the undeformed mesh in the body's frame
+    int marker;           // of the tree, the body's frame
+    int port;             // of the tree; −1 when rigid
+    bough_rod_body *rod;  // NULL when rigid
+} bough_beam;
+
+typedef struct bough_simulation {
+    const bough_scene *scene;
+    bough_tree *tree;
+    bough_tree_data *view; // for queries between steps
+    bough_subsystem trunk;
+    int n_beam;
+    bough_beam *beam;      // (n_beam) bodies that have a rod, in the scene's order
+    bough_subsystem *rod;  // (number of rods) their contracts, in port order
+    int n_rod;
+    struct bough_aero_link *aero; // NULL without an aero block
+    bough_master *master;
+} bough_simulation;
+
+// Builds everything the scene names, and nothing else, in the arena.
+bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
+                                    bough_simulation **simulation);
+
+// Registers the channels that the scene's parts give.
+bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels);
+
+// Brings `view` to the current synchronisation point; queries and channels read it.
+void bough_simulation_update(bough_simulation *s);
+
+// The beam of a scene body; NULL when it has no rod.
+bough_beam *bough_simulation_beam(const bough_simulation *s, int body);
+
+// Motion of all vertices of a beam in ground axes, from `view` and the rod's state: position,
+// section axes, velocity and angular velocity, each (n_segment + 1).
+typedef struct bough_beam_motion {
+    bough_vec3 *position, *velocity, *angular_velocity;
+    bough_mat3 *rotation;
+} bough_beam_motion;
+void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam,
+                                  bough_beam_motion motion);
+
+#endif
