@@ -42,7 +42,7 @@ static void cholesky_finds_the_factor(void **state) {
         for (int j = 0; j < 3; j++) {
             double sum = 0;
             for (int k = 0; k < 3; k++) sum += l[3 * i + k] * l[3 * j + k];
-            a[3 * i + j] = j <= i ? sum : NAN;
+            a[3 * i + j] = j <= i ? sum : (double)NAN;
             b[i] += sum * x[j];
         }
     }
