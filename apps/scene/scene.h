@@ -1,6 +1,6 @@
 // A scene as the user said it: plain structs in SI units and radians, names resolved to indices,
-// every value checked. Read from a YAML file by the tables of scene_schema.c; apps/scene/build makes
-// the model of it. Examples of every form: tests/scenes/example-*.yaml.
+// every value checked. Read from a YAML file by the tables of scene_schema.c; apps/scene/build
+// makes the model of it. Examples of every form: tests/scenes/example-*.yaml.
 //
 // All memory belongs to the arena given to bough_scene_read. Every struct begins with its place in
 // the text; a part that the file may leave out has `node == NULL` when it is absent, and its other
@@ -107,10 +107,10 @@ typedef struct bough_scene_station {
 // The structure of a rod; a file holds one.
 typedef struct bough_scene_structure {
     const bough_node *node;
-    const char *source; // where the data come from; NULL: not said
-    double length;      // extent along z [m]
-    double damping[6];  // stress = stiffness (strain + damping · strain rate) [s]
-    int n_station;      // 1: uniform, that station holds for all of [0, length]
+    const char *source;           // where the data come from; NULL: not said
+    double length;                // extent along z [m]
+    double damping[6];            // stress = stiffness (strain + damping · strain rate) [s]
+    int n_station;                // 1: uniform, that station holds for all of [0, length]
     bough_scene_station *station; // (n_station), spans strictly increasing from 0 to length; the
                                   // same pointer for bodies that name the same file
 } bough_scene_structure;
@@ -213,8 +213,8 @@ typedef struct bough_scene_induction {
 
 // Vertical along ground z from the origin.
 typedef struct bough_scene_tower {
-    const bough_node *node; // NULL: no tower influence
-    int influence;          // bough_scene_influence
+    const bough_node *node;   // NULL: no tower influence
+    int influence;            // bough_scene_influence
     int n_height, n_diameter; // equal
     double *height;           // (n_height) strictly increasing [m]
     double *diameter;         // (n_height) [m]

@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+enum { MAX_ITEMS = 10000 }; // of a list: names are looked up one by one
+
 // A file that was read; bodies that name the same one share its tables.
 struct bough_schema_file {
     struct bough_schema_file *next;
@@ -21,7 +23,8 @@ struct bough_schema_file {
 static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node,
                        void *item);
 
-// -- errors -----------------------------------------------------------------------------------------
+// -- errors
+// -----------------------------------------------------------------------------------------
 
 // Appends to the path; the length before, for pop.
 static size_t push(bough_schema_reader *r, const char *format, ...)
@@ -40,9 +43,7 @@ static size_t push_key(bough_schema_reader *r, const char *name) {
     return push(r, r->path[0] == '\0' ? "%s" : ".%s", name);
 }
 
-static void pop(bough_schema_reader *r, size_t length) {
-    r->path[length] = '\0';
-}
+static void pop(bough_schema_reader *r, size_t length) { r->path[length] = '\0'; }
 
 void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
                         const char *format, ...) {
@@ -66,7 +67,8 @@ const char *bough_node_shown(const bough_node *node, char buffer[64]) {
         return buffer;
     }
     length = 45;
-    while (((unsigned char)node->text[length] & 0xC0) == 0x80) length--; // not inside a character
+    while (((unsigned char)node->text[length] & 0xC0) == 0x80)
+        length--; // not inside a character
     snprintf(buffer, 64, "'%.*s...'", (int)length, node->text);
     return buffer;
 }
@@ -76,19 +78,20 @@ static void expected(bough_schema_reader *r, const bough_node *node, const char 
     bough_schema_error(r, node, "", "expected %s, got %s", what, bough_node_shown(node, shown));
 }
 
-static int errors_so_far(const bough_schema_reader *r) {
-    return r->errors->n + r->errors->dropped;
-}
+static int errors_so_far(const bough_schema_reader *r) { return r->errors->n + r->errors->dropped; }
 
-// -- spelling ---------------------------------------------------------------------------------------
+// -- spelling
+// ---------------------------------------------------------------------------------------
 
 enum { WORD = 40 };
 
 // Edit distance of two words shorter than WORD, an exchange of neighbours counting as one edit.
 static int edit_distance(const char *a, const char *b) {
     int n = (int)strlen(a), m = (int)strlen(b), d[WORD + 1][WORD + 1];
-    for (int i = 0; i <= n; i++) d[i][0] = i;
-    for (int j = 0; j <= m; j++) d[0][j] = j;
+    for (int i = 0; i <= n; i++)
+        d[i][0] = i;
+    for (int j = 0; j <= m; j++)
+        d[0][j] = j;
     for (int i = 1; i <= n; i++) {
         for (int j = 1; j <= m; j++) {
             int best = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
@@ -118,7 +121,8 @@ const char *bough_nearest(const char *word, const char *const *candidates, int n
     return nearest;
 }
 
-// -- numbers ----------------------------------------------------------------------------------------
+// -- numbers
+// ----------------------------------------------------------------------------------------
 
 static bool is_word(const bough_node *node, const char *word) {
     return node->kind == BOUGH_SCALAR && strcmp(node->text, word) == 0;
@@ -195,8 +199,7 @@ static bool check_range(bough_schema_reader *r, const bough_key *key, const boug
     char shown[64];
     const char *unit = bough_dimension_unit(key->dimension);
     bough_schema_error(r, node, "", "must be %s%s%s%s, got %s", key->range[0] == '[' ? "in " : "",
-                       key->range, unit[0] == '\0' ? "" : " ", unit,
-                       bough_node_shown(node, shown));
+                       key->range, unit[0] == '\0' ? "" : " ", unit, bough_node_shown(node, shown));
     return false;
 }
 
@@ -219,7 +222,8 @@ static void read_integer(bough_schema_reader *r, const bough_key *key, const bou
     }
 }
 
-// -- texts ------------------------------------------------------------------------------------------
+// -- texts
+// ------------------------------------------------------------------------------------------
 
 static void read_text(bough_schema_reader *r, const bough_node *node, const char **field) {
     if (node->kind != BOUGH_SCALAR || node->text[0] == '\0') {
@@ -243,7 +247,8 @@ static void read_choice(bough_schema_reader *r, const bough_key *key, const boug
         snprintf(list + used, sizeof list - used, "%s%s", n == 0 ? "" : ", ", key->choices[n]);
     }
     *field = -1;
-    const char *near = node->kind == BOUGH_SCALAR ? bough_nearest(node->text, key->choices, n) : NULL;
+    const char *near =
+        node->kind == BOUGH_SCALAR ? bough_nearest(node->text, key->choices, n) : NULL;
     bough_schema_error(r, node, "", "expected %s%s, got %s%s%s%s", n > 1 ? "one of " : "", list,
                        bough_node_shown(node, shown), near == NULL ? "" : " (did you mean '",
                        near == NULL ? "" : near, near == NULL ? "" : "'?)");
@@ -254,9 +259,7 @@ static void read_boolean(bough_schema_reader *r, const bough_node *node, bool *f
     if (!*field && (node->quoted || !is_word(node, "false"))) expected(r, node, "true or false");
 }
 
-static void *field_at(void *item, size_t offset) {
-    return (char *)item + offset;
-}
+static void *field_at(void *item, size_t offset) { return (char *)item + offset; }
 
 // Memory for the items of a list; NULL (and an error) when the node is not one long enough.
 static void *take_items(bough_schema_reader *r, const bough_key *key, const bough_node *node,
@@ -268,6 +271,10 @@ static void *take_items(bough_schema_reader *r, const bough_key *key, const boug
     if (node->n < key->count) {
         bough_schema_error(r, node, "", "expected at least %d item%s, got %d", key->count,
                            key->count == 1 ? "" : "s", node->n);
+        return NULL;
+    }
+    if (node->n > MAX_ITEMS) {
+        bough_schema_error(r, node, "", "expected at most %d items, got %d", MAX_ITEMS, node->n);
         return NULL;
     }
     return bough_arena_take(r->arena, (size_t)node->n * size);
@@ -286,7 +293,8 @@ static void read_texts(bough_schema_reader *r, const bough_key *key, const bough
     *(int *)field_at(item, key->count_offset) = node->n;
 }
 
-// -- lists of numbers -------------------------------------------------------------------------------
+// -- lists of numbers
+// -------------------------------------------------------------------------------
 
 static void read_components(bough_schema_reader *r, const bough_key *key, const bough_node *node,
                             double *values) {
@@ -309,7 +317,8 @@ static void read_vector(bough_schema_reader *r, const bough_key *key, const boug
         read_components(r, key, node, values);
         return;
     }
-    for (int i = 0; i < key->count; i++) values[i] = NAN;
+    for (int i = 0; i < key->count; i++)
+        values[i] = NAN;
 }
 
 static void read_numbers(bough_schema_reader *r, const bough_key *key, const bough_node *node,
@@ -321,7 +330,8 @@ static void read_numbers(bough_schema_reader *r, const bough_key *key, const bou
     *(int *)field_at(item, key->count_offset) = node->n;
 }
 
-// -- lists of mappings ------------------------------------------------------------------------------
+// -- lists of mappings
+// ------------------------------------------------------------------------------
 
 static void read_rows(bough_schema_reader *r, const bough_key *key, const bough_node *node,
                       void *item) {
@@ -349,7 +359,8 @@ static void unknown_key(bough_schema_reader *r, const bough_schema *schema, cons
     char shown[64];
     bough_node word = {.kind = BOUGH_SCALAR, .text = name};
     int n = 0;
-    for (; n < schema->n_key && n < 64; n++) names[n] = schema->key[n].name;
+    for (; n < schema->n_key && n < 64; n++)
+        names[n] = schema->key[n].name;
     if (r->errors->dropped > 0) n = 0; // a hostile file: spelling costs time
     const char *near = bough_nearest(name, names, n);
     bough_schema_error(r, at, "", "unknown key %s%s%s%s", bough_node_shown(&word, shown),
@@ -360,7 +371,7 @@ static void unknown_key(bough_schema_reader *r, const bough_schema *schema, cons
 // The heads of a compact table: key names with the unit of their plain numbers, "twist deg".
 typedef struct columns {
     int n;
-    bough_node **key; // (n)
+    bough_node **key;  // (n)
     const char **unit; // (n), NULL: SI
 } columns;
 
@@ -416,8 +427,8 @@ static bool read_columns(bough_schema_reader *r, const bough_schema *row, const 
     return good;
 }
 
-static void read_mapping(bough_schema_reader *r, const bough_schema *schema,
-                         const bough_node *node, const char *const *units, void *item);
+static void read_mapping(bough_schema_reader *r, const bough_schema *schema, const bough_node *node,
+                         const char *const *units, void *item);
 
 // A row of a compact table as the mapping it stands for; false after an error.
 static bool row_mapping(bough_schema_reader *r, const bough_node *row, const columns *c,
@@ -479,7 +490,8 @@ static void read_table(bough_schema_reader *r, const bough_key *key, const bough
     pop(r, length);
 }
 
-// -- files ------------------------------------------------------------------------------------------
+// -- files
+// ------------------------------------------------------------------------------------------
 
 static const char *resolve(bough_schema_reader *r, const char *name) {
     if (name[0] == '/') return name;
@@ -529,7 +541,8 @@ static void read_file(bough_schema_reader *r, const bough_schema *schema, const 
     if (item != NULL) memcpy(field, item, schema->size);
 }
 
-// -- mappings ---------------------------------------------------------------------------------------
+// -- mappings
+// ---------------------------------------------------------------------------------------
 
 static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node,
                        void *item) {
@@ -565,8 +578,8 @@ static void read_fallback(bough_schema_reader *r, const bough_key *key, void *it
     bough_node scalar = {.kind = BOUGH_SCALAR, .text = key->fallback, .file = "default"};
     const bough_node *node = &scalar;
     if (key->fallback[0] == '[') {
-        node = bough_text_parse(r->arena, "default", key->fallback, strlen(key->fallback),
-                                r->errors);
+        node =
+            bough_text_parse(r->arena, "default", key->fallback, strlen(key->fallback), r->errors);
     }
     if (node != NULL) read_value(r, key, node, item);
 }
@@ -603,7 +616,8 @@ static void refuse_key(bough_schema_reader *r, const bough_schema *schema, const
         size_t used = strlen(where);
         snprintf(where + used, sizeof where - used, "%s%s", used == 0 ? "" : "|", twin->when);
     }
-    for (char *c = strchr(where, '|'); c != NULL; c = strchr(c, '|')) *c = '/';
+    for (char *c = strchr(where, '|'); c != NULL; c = strchr(c, '|'))
+        *c = '/';
     bough_schema_error(r, at, key->name, "only used with '%s: %s'", key->when_key, where);
 }
 
@@ -636,8 +650,8 @@ static void read_one_key(bough_schema_reader *r, const bough_schema *schema, con
     }
 }
 
-static void read_mapping(bough_schema_reader *r, const bough_schema *schema,
-                         const bough_node *node, const char *const *units, void *item) {
+static void read_mapping(bough_schema_reader *r, const bough_schema *schema, const bough_node *node,
+                         const char *const *units, void *item) {
     int before = errors_so_far(r);
     *(const bough_node **)item = node;
     for (int i = 0; i < schema->n_key; i++) {

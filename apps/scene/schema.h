@@ -35,10 +35,10 @@ typedef enum bough_key_kind {
     BOUGH_KEY_NUMBERS, // double *, and an int at count_offset
     BOUGH_KEY_TEXTS,   // const char **, and an int at count_offset
     BOUGH_KEY_MAPPING, // the struct of schema `of`
-    BOUGH_KEY_LIST,    // pointer to structs of schema `of`, and an int at count_offset. Written as a
-                       // list of mappings, or {columns: [span, twist deg, …], rows: [[…], …]}
-    BOUGH_KEY_FILE,    // the struct of schema `of`, read from the file of that name
-    BOUGH_KEY_CUSTOM,  // what `read` makes of it
+    BOUGH_KEY_LIST,   // pointer to structs of schema `of`, and an int at count_offset. Written as a
+                      // list of mappings, or {columns: [span, twist deg, …], rows: [[…], …]}
+    BOUGH_KEY_FILE,   // the struct of schema `of`, read from the file of that name
+    BOUGH_KEY_CUSTOM, // what `read` makes of it
 } bough_key_kind;
 
 typedef struct bough_schema bough_schema;
@@ -55,11 +55,11 @@ typedef struct bough_key {
     const char *when;           // … is one of these, "revolute|prismatic"; NULL: always
     const char *fallback;       // default as it would be written
     bool required;
-    int count;                  // of a vector; least number of items of a list
+    int count; // of a vector; least number of items of a list
     const bough_schema *of;
     void (*read)(bough_schema_reader *reader, const bough_node *node, void *field);
     size_t offset, count_offset; // of the field in the struct
-    const char *form;           // of a custom key, for the help
+    const char *form;            // of a custom key, for the help
     const char *help;
 } bough_key;
 
@@ -76,9 +76,9 @@ struct bough_schema {
 struct bough_schema_reader {
     bough_arena *arena;
     bough_errors *errors;
-    const char *directory; // with its last slash, "" for the current one
-    const char *unit;      // of plain numbers, from the head of a column; NULL: SI
-    char path[256];        // of the value being read
+    const char *directory;           // with its last slash, "" for the current one
+    const char *unit;                // of plain numbers, from the head of a column; NULL: SI
+    char path[256];                  // of the value being read
     struct bough_schema_file *files; // read so far
 };
 

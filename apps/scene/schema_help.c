@@ -4,12 +4,18 @@
 #include <string.h>
 
 static const char *const kind_names[] = {
-    [BOUGH_KEY_NUMBER] = "number",     [BOUGH_KEY_INTEGER] = "whole number",
-    [BOUGH_KEY_TEXT] = "text",         [BOUGH_KEY_CHOICE] = "choice",
-    [BOUGH_KEY_BOOLEAN] = "true|false", [BOUGH_KEY_VECTOR] = "numbers",
-    [BOUGH_KEY_NUMBERS] = "list of numbers", [BOUGH_KEY_TEXTS] = "list of texts",
-    [BOUGH_KEY_MAPPING] = "mapping",   [BOUGH_KEY_LIST] = "list of mappings",
-    [BOUGH_KEY_FILE] = "file",         [BOUGH_KEY_CUSTOM] = "",
+    [BOUGH_KEY_NUMBER] = "number",
+    [BOUGH_KEY_INTEGER] = "whole number",
+    [BOUGH_KEY_TEXT] = "text",
+    [BOUGH_KEY_CHOICE] = "choice",
+    [BOUGH_KEY_BOOLEAN] = "true|false",
+    [BOUGH_KEY_VECTOR] = "numbers",
+    [BOUGH_KEY_NUMBERS] = "list of numbers",
+    [BOUGH_KEY_TEXTS] = "list of texts",
+    [BOUGH_KEY_MAPPING] = "mapping",
+    [BOUGH_KEY_LIST] = "list of mappings",
+    [BOUGH_KEY_FILE] = "file",
+    [BOUGH_KEY_CUSTOM] = "",
 };
 
 static void append(char *line, size_t size, const char *a, const char *b) {

@@ -39,8 +39,8 @@ static const unit units[] = {
 static const struct {
     const char *symbol;
     double factor;
-} prefixes[] = {{"n", 1e-9}, {"u", 1e-6}, {"µ", 1e-6}, {"m", 1e-3}, {"c", 1e-2},
-                {"k", 1e3},  {"M", 1e6},  {"G", 1e9}};
+} prefixes[] = {{"n", 1e-9}, {"u", 1e-6}, {"µ", 1e-6}, {"m", 1e-3},
+                {"c", 1e-2}, {"k", 1e3},  {"M", 1e6},  {"G", 1e9}};
 
 static const struct {
     const char *name; // "expected …"
@@ -63,9 +63,7 @@ static const struct {
     [BOUGH_STIFFNESS] = {"a stiffness", "N/m", "3 kN/m", {0, 1, -2, 0}},
 };
 
-const char *bough_dimension_unit(bough_dimension dimension) {
-    return dimensions[dimension].si;
-}
+const char *bough_dimension_unit(bough_dimension dimension) { return dimensions[dimension].si; }
 
 void bough_dimension_expected(bough_dimension dimension, char text[96]) {
     if (dimension == BOUGH_PURE_NUMBER) {
@@ -76,7 +74,8 @@ void bough_dimension_expected(bough_dimension dimension, char text[96]) {
              dimensions[dimension].si, dimensions[dimension].example);
 }
 
-// -- units ------------------------------------------------------------------------------------------
+// -- units
+// ------------------------------------------------------------------------------------------
 
 // A unit by its symbol without exponent: factor and exponents, NULL when there is none.
 static const unit *find_unit(const char *symbol, double *factor) {
@@ -120,7 +119,8 @@ static bool apply_token(char *token, int sign, double *factor, int exponent[N_BA
     const unit *u = find_unit(token, &size);
     if (u == NULL) return false;
     *factor *= pow(size, power);
-    for (int k = 0; k < N_BASE; k++) exponent[k] += power * u->exponent[k];
+    for (int k = 0; k < N_BASE; k++)
+        exponent[k] += power * u->exponent[k];
     return true;
 }
 
@@ -146,7 +146,7 @@ static bool unit_factor(const char *text, bough_dimension dimension, double *fac
         sign = 1;
         c += length;
     }
-    snprintf(why, 160, "'%.40s' is another kind of unit", text);
+    snprintf(why, 160, "the unit '%.40s' does not fit", text + strspn(text, " "));
     return sign > 0 && memcmp(exponent, dimensions[dimension].exponent, sizeof exponent) == 0;
 }
 
@@ -155,11 +155,10 @@ bool bough_unit_fits(const char *text, bough_dimension dimension, char why[160])
     return unit_factor(text, dimension, &factor, why);
 }
 
-// -- numbers ----------------------------------------------------------------------------------------
+// -- numbers
+// ----------------------------------------------------------------------------------------
 
-static size_t digits(const char *text) {
-    return strspn(text, "0123456789");
-}
+static size_t digits(const char *text) { return strspn(text, "0123456789"); }
 
 // Length of the number that the text starts with; 0: it starts with none.
 static size_t number_length(const char *text) {

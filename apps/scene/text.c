@@ -49,7 +49,8 @@ typedef struct reader {
     bough_node *root;
 } reader;
 
-// -- errors -----------------------------------------------------------------------------------------
+// -- errors
+// -----------------------------------------------------------------------------------------
 
 static bool grow_errors(bough_errors *errors) {
     if (errors->n < errors->capacity) return true;
@@ -126,7 +127,8 @@ void bough_errors_print(const bough_errors *errors, FILE *stream) {
     if (errors->dropped > 0) fprintf(stream, "%d more errors\n", errors->dropped);
 }
 
-// -- memory -----------------------------------------------------------------------------------------
+// -- memory
+// -----------------------------------------------------------------------------------------
 
 static void *take(reader *r, size_t size) {
     size = (size + 15) / 16 * 16;
@@ -154,7 +156,8 @@ static bool push(reader *r, bough_node *node) {
     return true;
 }
 
-// -- refusals ---------------------------------------------------------------------------------------
+// -- refusals
+// ---------------------------------------------------------------------------------------
 
 static bool refuse(reader *r, yaml_mark_t at, const char *text) {
     bough_node where = {.file = r->file, .line = (int)at.line + 1, .column = (int)at.column + 1};
@@ -175,8 +178,9 @@ static const char *readable(const char *problem) {
     } table[] = {
         {"cannot start any token", "unexpected character here (tabs cannot indent; quote text that "
                                    "starts with @, `, % or a bracket)"},
-        {"mapping values are not allowed", "unexpected ':' (two keys on one line, or a line that is "
-                                           "indented too far)"},
+        {"mapping values are not allowed",
+         "unexpected ':' (two keys on one line, or a line that is "
+         "indented too far)"},
         {"did not find expected key", "expected 'key: value' here (check the indentation)"},
         {"could not find expected ':'", "expected ':' after a key (check the indentation)"},
         {"did not find expected ',' or ']'", "expected ',' or ']' to end the list"},
@@ -214,7 +218,8 @@ static bool syntax_error(reader *r) {
                   control ? "a control character is not allowed" : "this is not UTF-8 text");
 }
 
-// -- nodes ------------------------------------------------------------------------------------------
+// -- nodes
+// ------------------------------------------------------------------------------------------
 
 static bough_node *new_node(reader *r, bough_node_kind kind, yaml_mark_t at) {
     if (++r->n_node > MAX_NODES) {
@@ -262,7 +267,8 @@ static bool remember_anchor(reader *r, const yaml_char_t *name, bough_node *node
 }
 
 static bool add_scalar(reader *r, const yaml_event_t *e) {
-    if (e->data.scalar.tag != NULL) return refuse(r, e->start_mark, "tags (!...) are not used here");
+    if (e->data.scalar.tag != NULL)
+        return refuse(r, e->start_mark, "tags (!...) are not used here");
     bough_node *node = new_node(r, BOUGH_SCALAR, e->start_mark);
     if (node == NULL) return false;
     size_t length = e->data.scalar.length;
@@ -397,7 +403,8 @@ static bool parse_events(reader *r) {
     return refuse(r, (yaml_mark_t){0}, "the file is empty");
 }
 
-// -- reading ----------------------------------------------------------------------------------------
+// -- reading
+// ----------------------------------------------------------------------------------------
 
 bough_node *bough_text_parse(bough_arena *arena, const char *file, const char *text, size_t size,
                              bough_errors *errors) {

@@ -27,15 +27,15 @@ typedef struct bough_node {
     struct bough_node **value; // (n)
     const char *text;          // of a scalar
     const char *file;
-    int line, column; // from 1; line 0: no position, the file's name says all
+    int line, column;   // from 1; line 0: no position, the file's name says all
     int height, weight; // levels below; values below, this one included, aliases expanded
 } bough_node;
 
 typedef struct bough_error {
     const char *file;
-    int line, column;  // from 1; line 0: none
-    const char *path;  // "bodies[2].joint.axis"; "" for the whole file
-    const char *text;  // what was expected
+    int line, column; // from 1; line 0: none
+    const char *path; // "bodies[2].joint.axis"; "" for the whole file
+    const char *text; // what was expected
 } bough_error;
 
 // The errors found in a scene. Start with {.arena = arena}; all memory is the arena's.

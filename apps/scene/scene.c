@@ -1,0 +1,50 @@
+// Reading a scene: text, replacements, tables, links. All errors are collected before it gives up.
+#include "apps/scene/scene_parts.h"
+
+#include <string.h>
+
+// The directory of a path, with its slash; "" for the current one.
+static const char *directory_of(bough_arena *arena, const char *path) {
+    char *copy = bough_arena_string(arena, path);
+    if (copy == NULL) return "";
+    char *slash = strrchr(copy, '/');
+    copy[slash == NULL ? 0 : slash - copy + 1] = '\0';
+    return copy;
+}
+
+// Applies every replacement that is good; the others leave an error.
+static bough_node *replace(bough_arena *arena, bough_node *root, const char *const *sets, int n_set,
+                           bough_errors *errors) {
+    for (int i = 0; i < n_set; i++) {
+        bough_node *changed = bough_scene_set(arena, root, sets[i], errors);
+        if (changed != NULL) root = changed;
+    }
+    return root;
+}
+
+static bough_status finish(const char *path, bough_arena *arena, bough_errors *errors) {
+    if (bough_arena_exhausted(arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: memory is exhausted", path);
+    }
+    int n = errors->n + errors->dropped;
+    if (n == 0) return bough_ok();
+    bough_errors_sort(errors, path);
+    return bough_fail(BOUGH_INVALID, "%s: %d error%s in the scene", path, n, n == 1 ? "" : "s");
+}
+
+bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets,
+                              int n_set, bough_errors *errors, bough_scene **scene) {
+    *scene = NULL;
+    bough_scene *s = bough_arena_take(arena, sizeof *s);
+    bough_node *root = bough_text_read(arena, path, errors);
+    if (s == NULL || root == NULL) return finish(path, arena, errors);
+    root = replace(arena, root, sets, n_set, errors);
+    bough_schema_reader reader = {
+        .arena = arena, .errors = errors, .directory = directory_of(arena, path)};
+    s->file = bough_arena_string(arena, path);
+    bough_schema_read(&reader, &bough_scene_schema, root, s);
+    if (s->node != NULL) bough_scene_link(&reader, s);
+    bough_status status = finish(path, arena, errors);
+    if (bough_is_ok(&status)) *scene = s;
+    return status;
+}

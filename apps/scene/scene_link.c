@@ -1,0 +1,375 @@
+// Names become indices, and what spans several parts of the scene is checked. Runs also after other
+// errors, so that all are shown at once: wrong values are NaN, −1 or NULL here and raise no second
+// error.
+#include "apps/scene/scene_parts.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+enum { UNRESOLVED = -2 }; // a name that could not be resolved
+
+// Sets the path of the next errors.
+static void at(bough_schema_reader *r, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+static void at(bough_schema_reader *r, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(r->path, sizeof r->path, format, arguments);
+    va_end(arguments);
+}
+
+static int find_body(const bough_scene *s, const char *name) {
+    for (int i = 0; i < s->n_body; i++) {
+        if (s->body[i].name != NULL && strcmp(s->body[i].name, name) == 0) return i;
+    }
+    return UNRESOLVED;
+}
+
+static const char *nearest_body(bough_schema_reader *r, const bough_scene *s, const char *name) {
+    if (r->errors->dropped > 0) return NULL; // a hostile file: spelling costs time
+    const char **names = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *names);
+    if (names == NULL) return NULL;
+    for (int i = 0; i < s->n_body; i++)
+        names[i] = s->body[i].name;
+    return bough_nearest(name, names, s->n_body);
+}
+
+// The index of a named body; UNRESOLVED after an error at the key of `node`.
+static int resolve(bough_schema_reader *r, const bough_scene *s, const bough_node *node,
+                   const char *key, const char *name) {
+    if (name == NULL) return UNRESOLVED;
+    int index = find_body(s, name);
+    if (index != UNRESOLVED) return index;
+    const char *near = nearest_body(r, s, name);
+    bough_schema_error(r, node, key, "there is no body '%.48s'%s%s%s", name,
+                       near == NULL ? "" : " (did you mean '", near == NULL ? "" : near,
+                       near == NULL ? "" : "'?)");
+    return UNRESOLVED;
+}
+
+static const bough_node *value_of(const bough_node *node, const char *key) {
+    const bough_node *value = bough_node_find(node, key);
+    return value == NULL ? node : value;
+}
+
+// -- bodies
+// -----------------------------------------------------------------------------------------
+
+// Names go into channels and file names.
+static void check_name(bough_schema_reader *r, const bough_scene *s, int i) {
+    static const char allowed[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+    const bough_scene_body *b = &s->body[i];
+    if (b->name == NULL) return;
+    const bough_node *node = value_of(b->node, "name");
+    char shown[64];
+    if (strspn(b->name, allowed) != strlen(b->name)) {
+        bough_schema_error(r, node, "name", "a name has letters, digits, '_' and '-', got %s",
+                           bough_node_shown(node, shown));
+    } else if (strcmp(b->name, "ground") == 0) {
+        bough_schema_error(r, node, "name", "'ground' is no name for a body");
+    } else if (find_body(s, b->name) != i) {
+        bough_schema_error(r, node, "name", "body '%s' is given twice", b->name);
+    }
+}
+
+static void check_rod_use(bough_schema_reader *r, const bough_scene_body *b) {
+    const bough_node *pitch = bough_node_find(b->node, "pitch");
+    if (b->fidelity < 0 || b->node == NULL) return;
+    bool has_rod = bough_node_find(b->node, "rod") != NULL;
+    if (!has_rod && pitch != NULL) {
+        bough_schema_error(r, pitch, "pitch", "only used with a rod");
+    }
+    if (b->fidelity == BOUGH_SCENE_ROD && !has_rod) {
+        bough_schema_error(r, b->node, "", "required key 'rod' is missing (with 'fidelity: rod')");
+    }
+    static const char *const rigid[] = {"mass", "centre_of_mass", "inertia"};
+    for (int k = 0; k < 3 && has_rod && b->fidelity == BOUGH_SCENE_RIGID; k++) {
+        const bough_node *given = bough_node_find(b->node, rigid[k]);
+        if (given != NULL) bough_schema_error(r, given, rigid[k], "follows from the body's rod");
+    }
+}
+
+static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
+    bough_scene_joint *joint = &s->body[i].joint;
+    joint->parent = UNRESOLVED;
+    if (joint->parent_name == NULL) return;
+    at(r, "bodies[%d].joint", i);
+    if (strcmp(joint->parent_name, "ground") == 0) {
+        joint->parent = BOUGH_SCENE_GROUND;
+        return;
+    }
+    const bough_node *node = value_of(joint->node, "parent");
+    joint->parent = resolve(r, s, node, "parent", joint->parent_name);
+    if (joint->parent >= 0 && s->body[joint->parent].fidelity == BOUGH_SCENE_ROD) {
+        bough_schema_error(r, node, "parent", "'%s' is a rod; bodies hang on rigid bodies only",
+                           joint->parent_name);
+    }
+}
+
+// The body at which a walk towards the ground comes back to itself, from any body above a loop.
+static int body_in_loop(const bough_scene *s, int i) {
+    for (int k = 0; k < s->n_body; k++)
+        i = s->body[i].joint.parent;
+    int lowest = i;
+    for (int k = s->body[i].joint.parent; k != i; k = s->body[k].joint.parent) {
+        if (k < lowest) lowest = k;
+    }
+    return lowest;
+}
+
+static void report_loop(bough_schema_reader *r, const bough_scene *s, int start) {
+    char loop[200];
+    int first = body_in_loop(s, start), length = 0;
+    for (int k = first, more = 1; more; k = s->body[k].joint.parent) {
+        length += snprintf(loop + length, sizeof loop - (size_t)length, "%s -> ", s->body[k].name);
+        if (length >= (int)sizeof loop) length = (int)sizeof loop - 1;
+        more = s->body[k].joint.parent != first;
+    }
+    at(r, "bodies[%d].joint", first);
+    bough_schema_error(r, value_of(s->body[first].joint.node, "parent"), "parent",
+                       "parents form a loop: %s%s", loop, s->body[first].name);
+}
+
+// Parents before children. Bodies that no pass can place hang on a loop or on an unknown parent.
+static bool order_bodies(bough_schema_reader *r, bough_scene *s) {
+    s->order = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *s->order);
+    bool *placed = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *placed);
+    if (s->order == NULL || placed == NULL) return false;
+    int n = 0;
+    for (int before = -1; n > before;) {
+        before = n;
+        for (int i = 0; i < s->n_body; i++) {
+            int parent = s->body[i].joint.parent;
+            if (placed[i] || parent == UNRESOLVED || (parent >= 0 && !placed[parent])) continue;
+            placed[i] = true;
+            s->order[n++] = i;
+        }
+    }
+    for (int i = 0; i < s->n_body; i++) {
+        int k = i;
+        for (int steps = 0; k >= 0 && !placed[k] && steps < s->n_body; steps++) {
+            k = s->body[k].joint.parent;
+        }
+        if (k < 0 || placed[k]) continue;
+        report_loop(r, s, i);
+        break;
+    }
+    return n == s->n_body;
+}
+
+static bool has_mass(const bough_scene_body *b) {
+    return bough_node_find(b->node, "rod") != NULL || b->fidelity != BOUGH_SCENE_RIGID ||
+           !(b->mass == 0 && b->inertia[0] == 0 && b->inertia[1] == 0 && b->inertia[2] == 0);
+}
+
+// Every joint that moves must carry something with mass, or no motion is defined. Needs the order.
+static void check_moving_mass(bough_schema_reader *r, const bough_scene *s) {
+    bool *carries = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *carries);
+    if (carries == NULL) return;
+    for (int k = s->n_body - 1; k >= 0; k--) {
+        int i = s->order[k];
+        const bough_scene_body *b = &s->body[i];
+        carries[i] = carries[i] || has_mass(b);
+        if (carries[i] && b->joint.parent >= 0) carries[b->joint.parent] = true;
+        if (carries[i] || b->joint.kind <= BOUGH_SCENE_FIXED) continue;
+        at(r, "bodies[%d]", i);
+        bough_schema_error(r, b->node, "",
+                           "a joint that moves must carry mass: give 'mass' here or "
+                           "to a body that hangs on this one");
+    }
+}
+
+static void link_bodies(bough_schema_reader *r, bough_scene *s) {
+    for (int i = 0; i < s->n_body; i++) {
+        at(r, "bodies[%d]", i);
+        check_name(r, s, i);
+        check_rod_use(r, &s->body[i]);
+        link_parent(r, s, i);
+    }
+    if (order_bodies(r, s)) check_moving_mass(r, s);
+}
+
+// -- loads and turbine
+// ------------------------------------------------------------------------------
+
+static void link_load(bough_schema_reader *r, const bough_scene *s, bough_scene_load *load) {
+    const bough_node *joint = value_of(load->node, "joint");
+    load->joint = resolve(r, s, joint, "joint", load->joint_name);
+    if (load->joint < 0) return;
+    int kind = s->body[load->joint].joint.kind;
+    if (kind < 0) return;
+    bool revolute = kind == BOUGH_SCENE_REVOLUTE;
+    if (!revolute && kind != BOUGH_SCENE_PRISMATIC) {
+        bough_schema_error(r, joint, "joint",
+                           "the joint of '%s' must be revolute or prismatic to take a load",
+                           load->joint_name);
+        return;
+    }
+    const char *wrong = revolute ? "force" : "torque";
+    const bough_node *given = bough_node_find(load->node, wrong);
+    if (given != NULL) {
+        bough_schema_error(r, given, wrong, "the joint of '%s' is %s: give a %s", load->joint_name,
+                           revolute ? "revolute" : "prismatic", revolute ? "torque" : "force");
+    }
+}
+
+// Whether `ancestor` carries body i; false in a loop or where a name is unknown.
+static bool hangs_on(const bough_scene *s, int i, int ancestor) {
+    for (int steps = 0; i >= 0 && steps <= s->n_body; steps++) {
+        if (i == ancestor) return true;
+        i = s->body[i].joint.parent;
+    }
+    return false;
+}
+
+static bool is_listed_before(const bough_scene_turbine *t, int k) {
+    for (int i = 0; i < k; i++) {
+        if (t->blade[i] == t->blade[k]) return true;
+    }
+    return false;
+}
+
+static void link_blade(bough_schema_reader *r, bough_scene *s, int k) {
+    bough_scene_turbine *t = &s->turbine;
+    const bough_node *node = bough_node_find(t->node, "blades")->value[k];
+    const char *name = t->blade_name[k];
+    at(r, "turbine.blades[%d]", k);
+    t->blade[k] = resolve(r, s, node, "", name);
+    if (t->blade[k] < 0) return;
+    if (is_listed_before(t, k)) {
+        bough_schema_error(r, node, "", "blade '%s' is given twice", name);
+    } else if (bough_node_find(s->body[t->blade[k]].node, "rod") == NULL) {
+        bough_schema_error(r, node, "", "body '%s' has no rod, so it is no blade", name);
+    } else if (t->rotor >= 0 && !hangs_on(s, t->blade[k], t->rotor)) {
+        bough_schema_error(r, node, "", "body '%s' does not hang on the rotor '%s'", name,
+                           t->rotor_name);
+    }
+}
+
+static void link_turbine(bough_schema_reader *r, bough_scene *s) {
+    bough_scene_turbine *t = &s->turbine;
+    t->rotor = UNRESOLVED;
+    if (t->node == NULL) return;
+    at(r, "turbine");
+    const bough_node *rotor = value_of(t->node, "rotor");
+    t->rotor = resolve(r, s, rotor, "rotor", t->rotor_name);
+    int kind = t->rotor < 0 ? -1 : s->body[t->rotor].joint.kind;
+    if (kind >= 0 && kind != BOUGH_SCENE_REVOLUTE) {
+        bough_schema_error(r, rotor, "rotor", "the joint of '%s' must be revolute", t->rotor_name);
+    }
+    t->blade = bough_arena_take(r->arena, (size_t)t->n_blade * sizeof *t->blade);
+    if (t->blade == NULL) return;
+    for (int k = 0; k < t->n_blade; k++)
+        link_blade(r, s, k);
+}
+
+// -- aerodynamics
+// -----------------------------------------------------------------------------------
+
+static void link_polar(bough_schema_reader *r, bough_scene *s, const char *const *names, int i) {
+    const bough_scene_polars *polars = &s->aero.polars;
+    bough_scene_aero_station *station = &s->aero.blade.station[i];
+    station->polar = -1;
+    if (station->polar_name == NULL) return;
+    for (int k = 0; k < polars->n_polar && station->polar < 0; k++) {
+        if (names[k] != NULL && strcmp(names[k], station->polar_name) == 0) station->polar = k;
+    }
+    if (station->polar >= 0) return;
+    bool compact = bough_node_find(s->aero.blade.node, "stations")->kind == BOUGH_MAPPING;
+    at(r, "stations%s[%d]", compact ? ".rows" : "", i);
+    int n = r->errors->dropped > 0 ? 0 : polars->n_polar;
+    const char *near = bough_nearest(station->polar_name, names, n);
+    bough_schema_error(r, value_of(station->node, "polar"), "polar",
+                       "the polars file has no '%.48s'%s%s%s", station->polar_name,
+                       near == NULL ? "" : " (did you mean '", near == NULL ? "" : near,
+                       near == NULL ? "" : "'?)");
+}
+
+static void link_polars(bough_schema_reader *r, bough_scene *s) {
+    const bough_scene_polars *polars = &s->aero.polars;
+    if (polars->n_polar == 0) return;
+    const char **names = bough_arena_take(r->arena, (size_t)polars->n_polar * sizeof *names);
+    if (names == NULL) return;
+    for (int k = 0; k < polars->n_polar; k++)
+        names[k] = polars->polar[k].name;
+    for (int i = 0; i < s->aero.blade.n_station; i++) {
+        if (s->aero.blade.station[i].node != NULL) link_polar(r, s, names, i);
+    }
+}
+
+// Blade elements end where the rods end.
+static void check_blade_lengths(bough_schema_reader *r, const bough_scene *s) {
+    const bough_scene_aero_blade *blade = &s->aero.blade;
+    if (blade->n_station < 2) return;
+    double span = blade->station[blade->n_station - 1].span;
+    for (int k = 0; k < s->turbine.n_blade; k++) {
+        if (s->turbine.blade[k] < 0) continue;
+        const bough_scene_body *b = &s->body[s->turbine.blade[k]];
+        double length = b->rod.structure.length;
+        if (!(length > 0) || !(fabs(span - length) > 1e-3 * length)) continue;
+        bough_schema_error(r, value_of(s->aero.node, "blade"), "blade",
+                           "the blade elements end at %g m, but '%s' is %g m long", span, b->name,
+                           length);
+        return;
+    }
+}
+
+static void link_aero(bough_schema_reader *r, bough_scene *s) {
+    if (s->aero.node == NULL) return;
+    at(r, "aero");
+    if (s->turbine.node == NULL) {
+        bough_schema_error(r, s->aero.node, "", "needs 'turbine', which names rotor and blades");
+    }
+    bough_scene_check_ramp(r, s->aero.node, s->aero.ramp);
+    check_blade_lengths(r, s);
+    link_polars(r, s);
+}
+
+// -- times
+// ------------------------------------------------------------------------------------------
+
+// Whether time/step is a whole number, at least one; true where either is wrong already.
+static bool is_multiple(double time, double step) {
+    if (!(time > 0) || !(step > 0)) return true;
+    double count = time / step;
+    return count > 0.5 && fabs(count - round(count)) <= 1e-9 * count;
+}
+
+static void check_times(bough_schema_reader *r, bough_scene *s) {
+    bough_scene_simulation *simulation = &s->simulation;
+    double step = simulation->macro_step;
+    const bough_node *interval = bough_node_find(simulation->output.node, "interval");
+    if (simulation->output.node == NULL || interval == NULL) simulation->output.interval = step;
+    at(r, "simulation");
+    if (!is_multiple(simulation->duration, step)) {
+        bough_schema_error(r, value_of(simulation->node, "duration"), "duration",
+                           "%g s is not a multiple of the macro step, %g s", simulation->duration,
+                           step);
+    }
+    if (interval != NULL && !is_multiple(simulation->output.interval, step)) {
+        bough_schema_error(r, interval, "output.interval",
+                           "%g s is not a multiple of the macro step, %g s",
+                           simulation->output.interval, step);
+    }
+    if (s->aero.node != NULL && s->aero.rate > 0 && !is_multiple(1 / s->aero.rate, step)) {
+        at(r, "aero");
+        bough_schema_error(r, value_of(s->aero.node, "rate"), "rate",
+                           "its period %g s is not a multiple of the macro step, %g s",
+                           1 / s->aero.rate, step);
+    }
+}
+
+void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
+    check_times(r, scene);
+    link_bodies(r, scene);
+    for (int i = 0; i < scene->n_load; i++) {
+        at(r, "loads[%d]", i);
+        if (scene->load[i].node != NULL) link_load(r, scene, &scene->load[i]);
+    }
+    link_turbine(r, scene);
+    link_aero(r, scene);
+    at(r, "%s", "");
+}

@@ -1,0 +1,353 @@
+// Values of a scene that are lists of their own kind, and checks within one table.
+#include "apps/scene/scene_parts.h"
+
+#include "core/base.h"
+
+#include <math.h>
+#include <string.h>
+
+// -- placement
+// --------------------------------------------------------------------------------------
+
+// "move z 1.96 m" or "rotate y 5 deg".
+static bool parse_step(bough_schema_reader *r, const bough_node *node, bough_scene_step *step) {
+    static const char *const verbs[] = {"move", "rotate"};
+    char verb[8], axis[4], shown[64], why[160] = "";
+    int used = 0;
+    const char *text = node->kind == BOUGH_SCALAR ? node->text : "";
+    if (sscanf(text, "%7s %3s %n", verb, axis, &used) == 2 && used > 0) {
+        int k = strcmp(verb, verbs[0]) == 0 ? 0 : strcmp(verb, verbs[1]) == 0 ? 1 : -1;
+        bool named = axis[1] == '\0' && axis[0] >= 'x' && axis[0] <= 'z';
+        bough_dimension dimension = k == 1 ? BOUGH_ANGLE : BOUGH_LENGTH;
+        step->rotate = k == 1;
+        step->axis = axis[0] - 'x';
+        if (k >= 0 && named && bough_quantity(text + used, dimension, &step->amount, why)) {
+            return true;
+        }
+    }
+    bough_schema_error(r, node, "",
+                       "expected 'move x|y|z LENGTH' or 'rotate x|y|z ANGLE', got %s%s%s",
+                       bough_node_shown(node, shown), why[0] == '\0' ? "" : ": ", why);
+    return false;
+}
+
+// Puts `[index]` behind the path for one error.
+static size_t push_index(bough_schema_reader *r, int index) {
+    size_t length = strlen(r->path);
+    snprintf(r->path + length, sizeof r->path - length, "[%d]", index);
+    return length;
+}
+
+// field: the joint
+void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_joint *joint = field;
+    char shown[64];
+    if (node->kind != BOUGH_SEQUENCE) {
+        bough_schema_error(r, node, "", "expected a list of steps, got %s",
+                           bough_node_shown(node, shown));
+        return;
+    }
+    joint->placement = bough_arena_take(r->arena, (size_t)node->n * sizeof *joint->placement);
+    if (joint->placement == NULL) return;
+    joint->n_placement = node->n;
+    for (int i = 0; i < node->n; i++) {
+        size_t length = push_index(r, i);
+        parse_step(r, node->value[i], &joint->placement[i]);
+        r->path[length] = '\0';
+    }
+}
+
+// -- matrices
+// ---------------------------------------------------------------------------------------
+
+// Cholesky's factorisation of the n×n matrix, of which a pivot below 1e-12 of its diagonal entry
+// counts as none.
+static bool is_positive_definite(const double *matrix, int n) {
+    double l[36];
+    memcpy(l, matrix, (size_t)(n * n) * sizeof *l);
+    for (int j = 0; j < n; j++) {
+        double pivot = l[n * j + j];
+        for (int k = 0; k < j; k++)
+            pivot -= l[n * j + k] * l[n * j + k];
+        if (!(pivot > 1e-12 * matrix[n * j + j])) return false;
+        l[n * j + j] = sqrt(pivot);
+        for (int i = j + 1; i < n; i++) {
+            for (int k = 0; k < j; k++)
+                l[n * i + j] -= l[n * i + k] * l[n * j + k];
+            l[n * i + j] /= l[n * j + j];
+        }
+    }
+    return true;
+}
+
+// field: the matrix (36)
+void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, void *field) {
+    double values[21], *matrix = field;
+    const char *what = "a list of 6 (diagonal) or 21 (upper triangle) numbers";
+    int n = bough_schema_numbers(r, node, 21, values, what);
+    if (n < 0) return;
+    if (n != 6 && n != 21) {
+        bough_schema_error(r, node, "", "expected %s, got %d items", what, n);
+        return;
+    }
+    const double *next = values;
+    for (int i = 0; i < 6; i++) {
+        for (int j = i; j < (n == 6 ? i + 1 : 6); j++)
+            matrix[6 * i + j] = matrix[6 * j + i] = *next++;
+    }
+    if (!is_positive_definite(matrix, 6)) {
+        bough_schema_error(r, node, "", "the stiffness matrix must be positive definite");
+    }
+}
+
+// Whether the inertia about the mass centre is positive definite: parallel axes removed.
+static bool has_section_inertia(const bough_scene_station *s) {
+    double cx = s->mass_centre[0], cy = s->mass_centre[1], m = s->mass;
+    double central[9] = {s->inertia[0] - m * cy * cy,
+                         s->inertia[2] + m * cx * cy,
+                         0,
+                         s->inertia[2] + m * cx * cy,
+                         s->inertia[1] - m * cx * cx,
+                         0,
+                         0,
+                         0,
+                         s->inertia[3] - m * (cx * cx + cy * cy)};
+    return is_positive_definite(central, 3);
+}
+
+// field: the station
+void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_station *s = field;
+    double v[7];
+    const char *what = "a list [m, cx, cy, Ixx, Iyy, Ixy] or with Izz";
+    int n = bough_schema_numbers(r, node, 7, v, what);
+    if (n < 0) return;
+    if (n < 6) {
+        bough_schema_error(r, node, "", "expected %s, got %d items", what, n);
+        return;
+    }
+    s->mass = v[0];
+    memcpy(s->mass_centre, v + 1, sizeof s->mass_centre);
+    memcpy(s->inertia, v + 3, 3 * sizeof *v);
+    s->inertia[3] = n == 7 ? v[6] : v[3] + v[4];
+    if (!(s->mass > 0)) {
+        bough_schema_error(r, node->value[0], "", "the mass per length must be > 0 kg/m");
+    } else if (!has_section_inertia(s)) {
+        bough_schema_error(r, node, "",
+                           "the inertia about the mass centre must be positive definite");
+    }
+}
+
+// Not below zero about any axis; all zero is a point mass.
+static bool is_semidefinite(const double v[6]) {
+    double a = v[0], b = v[1], c = v[2], d = v[3], e = v[4], f = v[5];
+    double t = 1e-12 * (fabs(a) + fabs(b) + fabs(c));
+    double determinant = a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e);
+    return a >= 0 && b >= 0 && c >= 0 && a * b - d * d >= -t * t && a * c - e * e >= -t * t &&
+           b * c - f * f >= -t * t && determinant >= -t * t * t;
+}
+
+// field: the six entries
+void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field) {
+    double v[6] = {0}, *inertia = field;
+    const char *what = "a list [Ixx, Iyy, Izz] or with Ixy, Ixz, Iyz";
+    int n = bough_schema_numbers(r, node, 6, v, what);
+    if (n < 0) return;
+    memcpy(inertia, v, sizeof v);
+    if (n != 3 && n != 6) {
+        bough_schema_error(r, node, "", "expected %s, got %d items", what, n);
+    } else if (!is_semidefinite(v)) {
+        bough_schema_error(r, node, "", "the inertia matrix must not be negative about any axis");
+    }
+}
+
+// field: position (3)
+void bough_scene_read_axis_offset(bough_schema_reader *r, const bough_node *node, void *field) {
+    double v[2], *position = field;
+    int n = bough_schema_numbers(r, node, 2, v, "a list [x, y] of lengths in m");
+    if (n == 2) {
+        memcpy(position, v, sizeof v);
+    } else if (n == 1) {
+        bough_schema_error(r, node, "", "expected a list [x, y] of lengths in m, got 1 items");
+    }
+}
+
+// -- tables
+// -----------------------------------------------------------------------------------------
+
+// Puts "list[i]" or "list.rows[i]" at the end of the path.
+static size_t push_row(bough_schema_reader *r, const bough_node *owner, const char *list, int i) {
+    const bough_node *node = bough_node_find(owner, list);
+    bool compact = node != NULL && node->kind == BOUGH_MAPPING;
+    size_t length = strlen(r->path);
+    snprintf(r->path + length, sizeof r->path - length, "%s%s%s[%d]", length == 0 ? "" : ".", list,
+             compact ? ".rows" : "", i);
+    return length;
+}
+
+// What a row's value must satisfy after its predecessor (NAN: it is the first and must be `first`).
+typedef struct sequence {
+    const char *list, *key; // "stations", "span"
+    double first;
+    double unit; // of the message
+    const char *unit_name;
+} sequence;
+
+// False after an error at the value that does not go on from the one before.
+static bool check_next(bough_schema_reader *r, const sequence *s, const bough_node *owner,
+                       const bough_node *row, int i, double before, double value) {
+    double unit = s->unit;
+    bool first = isnan(before);
+    if (first ? fabs(value - s->first) <= 1e-6 * unit : value > before) return true;
+    size_t length = push_row(r, owner, s->list, i);
+    const bough_node *at = bough_node_find(row, s->key);
+    if (first) {
+        bough_schema_error(r, at, s->key, "the first must be %g %s, got %g %s", s->first / unit,
+                           s->unit_name, value / unit, s->unit_name);
+    } else {
+        bough_schema_error(r, at, s->key, "must be more than the %g %s before it, got %g %s",
+                           before / unit, s->unit_name, value / unit, s->unit_name);
+    }
+    r->path[length] = '\0';
+    return false;
+}
+
+static const sequence spans = {"stations", "span", 0, 1, "m"};
+
+// The last span against the length; one station holds for the whole length.
+static void check_length(bough_schema_reader *r, bough_scene_structure *s) {
+    double last = s->station[s->n_station - 1].position[2];
+    const bough_node *given = bough_node_find(s->node, "length");
+    if (given == NULL && s->n_station == 1) {
+        bough_schema_error(r, s->node, "", "required key 'length' is missing (with one station)");
+    } else if (given == NULL) {
+        s->length = last;
+    } else if (s->n_station > 1 && fabs(last - s->length) > 1e-6 * s->length) {
+        bough_schema_error(r, given, "length", "is %g m, but the last station stands at %g m",
+                           s->length, last);
+    }
+}
+
+void bough_scene_check_structure(bough_schema_reader *r, void *item) {
+    bough_scene_structure *s = item;
+    double before = NAN;
+    bool good = true;
+    for (int i = 0; i < s->n_station; i++) {
+        double span = s->station[i].position[2];
+        good = check_next(r, &spans, s->node, s->station[i].node, i, before, span) && good;
+        before = span;
+    }
+    if (good) check_length(r, s);
+}
+
+void bough_scene_check_aero_blade(bough_schema_reader *r, void *item) {
+    const bough_scene_aero_blade *b = item;
+    double before = NAN;
+    for (int i = 0; i < b->n_station; i++) {
+        double span = b->station[i].span;
+        check_next(r, &spans, b->node, b->station[i].node, i, before, span);
+        before = span;
+    }
+}
+
+void bough_scene_check_polar(bough_schema_reader *r, void *item) {
+    static const sequence angles = {"table", "alpha", -BOUGH_PI, BOUGH_PI / 180, "deg"};
+    const bough_scene_polar *p = item;
+    double before = NAN;
+    bool good = true;
+    for (int i = 0; i < p->n_row; i++) {
+        good = check_next(r, &angles, p->node, p->row[i].node, i, before, p->row[i].alpha) && good;
+        before = p->row[i].alpha;
+    }
+    if (!good || fabs(before - BOUGH_PI) <= 1e-6) return;
+    size_t length = push_row(r, p->node, "table", p->n_row - 1);
+    bough_schema_error(r, bough_node_find(p->row[p->n_row - 1].node, "alpha"), "alpha",
+                       "the last must be 180 deg, got %g deg", before * 180 / BOUGH_PI);
+    r->path[length] = '\0';
+}
+
+void bough_scene_check_polars(bough_schema_reader *r, void *item) {
+    const bough_scene_polars *p = item;
+    for (int i = 0; i < p->n_polar; i++) {
+        for (int k = 0; k < i; k++) {
+            if (strcmp(p->polar[i].name, p->polar[k].name) != 0) continue;
+            size_t length = push_row(r, p->node, "polars", i);
+            bough_schema_error(r, bough_node_find(p->polar[i].node, "name"), "name",
+                               "polar '%s' is given twice", p->polar[i].name);
+            r->path[length] = '\0';
+            break;
+        }
+    }
+}
+
+void bough_scene_check_tower(bough_schema_reader *r, void *item) {
+    const bough_scene_tower *t = item;
+    const bough_node *height = bough_node_find(t->node, "height");
+    const bough_node *diameter = bough_node_find(t->node, "diameter");
+    if (t->n_height != t->n_diameter) {
+        bough_schema_error(r, diameter, "diameter", "has %d values, but height has %d",
+                           t->n_diameter, t->n_height);
+    }
+    for (int i = 1; i < t->n_height; i++) {
+        if (t->height[i] > t->height[i - 1]) continue;
+        char key[32];
+        snprintf(key, sizeof key, "height[%d]", i);
+        bough_schema_error(r, height->value[i], key,
+                           "must be more than the %g m before it, got %g m", t->height[i - 1],
+                           t->height[i]);
+    }
+}
+
+// -- rods and loads
+// ---------------------------------------------------------------------------------
+
+// A table, or a uniform section given here, never parts of both.
+static void check_rod_keys(bough_schema_reader *r, const bough_scene_rod *rod, bool table) {
+    static const char *const uniform[] = {"length", "stiffness", "mass", "twist"};
+    for (int i = 0; i < 4; i++) {
+        const bough_node *given = bough_node_find(rod->node, uniform[i]);
+        if (table && given != NULL) {
+            bough_schema_error(r, given, uniform[i], "only used without a table");
+        } else if (!table && given == NULL && i < 3) {
+            bough_schema_error(r, rod->node, "", "required key '%s' is missing (without a table)",
+                               uniform[i]);
+        }
+    }
+}
+
+void bough_scene_check_rod(bough_schema_reader *r, void *item) {
+    bough_scene_rod *rod = item;
+    bool table = bough_node_find(rod->node, "table") != NULL;
+    check_rod_keys(r, rod, table);
+    if (!table) {
+        rod->structure.node = rod->node;
+        rod->structure.length = rod->length;
+        rod->structure.n_station = 1;
+        rod->structure.station = bough_arena_take(r->arena, sizeof rod->uniform);
+        if (rod->structure.station == NULL) return;
+        rod->uniform.node = rod->node;
+        *rod->structure.station = rod->uniform;
+    }
+    if (bough_node_find(rod->node, "damping") != NULL) {
+        memcpy(rod->structure.damping, rod->damping, sizeof rod->damping);
+    }
+}
+
+void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]) {
+    const bough_node *given = bough_node_find(node, "ramp");
+    if (given != NULL && ramp[1] < ramp[0]) {
+        bough_schema_error(r, given, "ramp", "must end after it starts, got [%g s, %g s]", ramp[0],
+                           ramp[1]);
+    }
+}
+
+void bough_scene_check_load(bough_schema_reader *r, void *item) {
+    const bough_scene_load *load = item;
+    const bough_node *torque = bough_node_find(load->node, "torque");
+    const bough_node *force = bough_node_find(load->node, "force");
+    if ((torque == NULL) == (force == NULL)) {
+        bough_schema_error(r, load->node, "", "expected either 'torque' or 'force'%s",
+                           torque == NULL ? "" : ", got both");
+    }
+    bough_scene_check_ramp(r, load->node, load->ramp);
+}
