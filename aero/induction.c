@@ -16,7 +16,7 @@ static const double slow = 1e-3;
 static const double least_loss = 1e-4;
 
 bough_induction_options bough_induction_options_default(void) {
-    return (bough_induction_options){true, true, true, true, true};
+    return (bough_induction_options){BOUGH_HIGH_THRUST_SMOOTH, true, true, true, true, true};
 }
 
 typedef struct problem {
@@ -48,12 +48,35 @@ static double loss(const problem *p, double s) {
     return fmax(f, least_loss);
 }
 
-// sin²φ/(1 − a) for the loading c = σ cn/(4F) = k sin²φ. Beyond k = 2/3 by Buhl's parabola, whose
+// sin²φ/(1 − a) for the loading c = σ cn/(4F) = k sin²φ by Buhl's parabola beyond k = 2/3, whose
 // root written as 1 − a = 1/(√g₂ + 5/3 − F) has no singular case.
-static double axial_share(double c, double s2, double f, bool brake) {
+static double axial_buhl(double c, double s, double f, bool brake) {
+    double s2 = s * s;
     if (brake) return s2 - c;
     if (3 * c <= 2 * s2) return s2 + c;
     return sqrt(s2 * (2 * f * c - (4. / 3 - f) * f * s2)) + (5. / 3 - f) * s2;
+}
+
+// a beyond which the smooth parabola replaces momentum theory.
+static const double critical = 0.35;
+
+// The same by the parabola CT = d₀ + d₁ x + d₂ x² of x = 1 − a that leaves 4 F a (1 − a) smoothly
+// at a = 0.35. Its other root, a > 1, belongs to φ < 0.
+static double axial_smooth(double c, double s, double f) {
+    const double xc = 1 - critical, d0 = 2;
+    double s2 = s * s;
+    if (xc * c <= critical * s2) return s2 + c;
+    double value = 4 * f * critical * xc, slope = 4 * f * (1 - 2 * critical);
+    double d2 = (d0 - slope * xc - value) / (xc * xc), d1 = -slope - 2 * d2 * xc;
+    double root = sqrt(fmax(0, d1 * d1 * s2 + 4 * d0 * (4 * f * c - d2 * s2)));
+    return (s * root - d1 * s2) / (2 * d0);
+}
+
+// The momentum share of the thrust, a/(k |1 − a|), with which the swirl fades beyond a = 0.35.
+static double swirl_share(double c, double s, double axial) {
+    double s2 = s * s;
+    if ((1 - critical) * c <= critical * s2) return 1;
+    return fabs(axial - s2) / c; // a = 1 − sin²φ/axial
 }
 
 static balance balance_at(problem *p, double phi) {
@@ -66,10 +89,14 @@ static balance balance_at(problem *p, double phi) {
     double normal = k.lift * flow_c + (o->axial_drag ? k.drag * flow_s : 0);
     double tangent = k.lift * flow_s - (o->tangential_drag ? k.drag * flow_c : 0);
     double f = loss(p, fabs(s)), density = e->solidity / (4 * f);
+    double loading = density * p->sign_x * normal;
     double swirl = o->tangential ? density * p->sign_y * tangent : 0;
     p->evaluations++;
-    return (balance){axial_share(density * p->sign_x * normal, s * s, f, p->brake), s * c - swirl,
-                     s * c, s * s};
+    if (o->high_thrust == BOUGH_HIGH_THRUST_BUHL) {
+        return (balance){axial_buhl(loading, s, f, p->brake), s * c - swirl, s * c, s * s};
+    }
+    double axial = axial_smooth(loading, s, f);
+    return (balance){axial, s * c - swirl * swirl_share(loading, s, axial), s * c, s * s};
 }
 
 static double residual(const problem *p, balance b) {

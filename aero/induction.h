@@ -6,7 +6,7 @@
 // repeat its loads.
 //
 // S. A. Ning, "A simple solution method for the blade element momentum equations with guaranteed
-// convergence", Wind Energy 17 (2014). High thrust: M. L. Buhl, NREL/TP-500-36834 (2005).
+// convergence", Wind Energy 17 (2014).
 #ifndef BOUGH_AERO_INDUCTION_H
 #define BOUGH_AERO_INDUCTION_H
 
@@ -14,23 +14,34 @@
 
 #include <stdbool.h>
 
+// How thrust goes on growing with a where momentum theory would have it fall.
+typedef enum bough_high_thrust {
+    // From a = 0.35 a parabola, smooth there, to CT = 2 at a = 1 and beyond; the swirl fades with
+    // the momentum share of the thrust. What AeroDyn's newer (polar) formulation does.
+    BOUGH_HIGH_THRUST_SMOOTH,
+    // From a = 0.4 the parabola of M. L. Buhl, NREL/TP-500-36834 (2005); for a > 1 the propeller
+    // brake state of momentum theory. What AeroDyn does without it.
+    BOUGH_HIGH_THRUST_BUHL,
+} bough_high_thrust;
+
 typedef struct bough_induction_options {
-    bool tip_loss, hub_loss;    // Prandtl
-    bool tangential;            // a' at all
-    bool axial_drag;            // drag in the axial induction
-    bool tangential_drag;       // drag in the tangential induction
+    bough_high_thrust high_thrust;
+    bool tip_loss, hub_loss; // Prandtl
+    bool tangential;         // a' at all
+    bool axial_drag;         // drag in the axial induction
+    bool tangential_drag;    // drag in the tangential induction
 } bough_induction_options;
 
-// Everything on.
+// Everything on, smooth high thrust.
 bough_induction_options bough_induction_options_default(void);
 
-// One station. x is along the rotor axis (downwind), y tangential against the rotation.
+// One station. x is normal to the swept surface (downwind), y tangential against the rotation.
 typedef struct bough_element {
     const bough_polar *polar;
-    double solidity;              // B c / (2 π r) [-]
+    double solidity;               // B c/(2 π r) [-]
     double tip_factor, hub_factor; // B (R − r)/(2 r), B (r − R_hub)/(2 R_hub) [-]
-    double twist;                 // angle of the chord from the rotor plane [rad]
-    double inflow_x, inflow_y;    // relative to the blade, without induction [m/s]
+    double twist;                  // of the chord from y [rad]
+    double inflow_x, inflow_y;     // relative to the blade, without induction [m/s]
 } bough_element;
 
 typedef struct bough_induction {

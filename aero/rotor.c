@@ -55,6 +55,7 @@ struct bough_rotor_scratch {
 
 // What the whole rotor tells each station.
 typedef struct disk {
+    bough_vec3 shaft;    // unit vector
     double skew;         // angle of the wind from the shaft [rad]
     bough_vec3 downwind; // unit vector of the wind's part in the rotor plane, 0 if none
     double wake;         // 0: too slow for momentum theory, 1: full induction
@@ -353,7 +354,7 @@ static disk survey_disk(const bough_rotor *rotor, const bough_rotor_motion *moti
     double axial = bough_dot(wind, motion->shaft);
     bough_vec3 across = bough_axpy(-axial, motion->shaft, wind);
     double size = bough_norm(across);
-    disk d = {.skew = atan2(size, axial), .wake = wake_strength(rotor, data, axial)};
+    disk d = {.shaft = motion->shaft, .skew = atan2(size, axial), .wake = wake_strength(rotor, data, axial)};
     if (size > 1e-9 * fabs(axial)) d.downwind = bough_scale(1 / size, across);
     return d;
 }
@@ -367,7 +368,8 @@ static double skewed(double axial, const disk *d, bough_vec3 blade, double share
 }
 
 static void induce(const bough_rotor *rotor, const disk *d, const station_model *m,
-                   bough_vec3 blade, double tip_radius, bough_station *out) {
+                   const station_state *state, double tip_radius, bough_station *out) {
+    bough_vec3 blade = bough_cross(d->shaft, state->y); // radial, in the rotor plane
     double radius = fmax(out->radius, 1e-3);
     bough_element element = {.polar = m->polar,
                              .solidity = rotor->n_blade * m->chord / (2 * BOUGH_PI * radius),
@@ -405,15 +407,13 @@ static void load(const bough_rotor *rotor, const station_model *m, const station
     }
 }
 
-static void load_blade(const bough_rotor *rotor, const bough_rotor_motion *motion, const disk *d,
-                       int blade, bough_rotor_data *data) {
+static void load_blade(const bough_rotor *rotor, const disk *d, int blade, bough_rotor_data *data) {
     const station_state *state = data->scratch->state + blade * rotor->n_station;
     bough_station *out = data->station + blade * rotor->n_station;
     bough_vec3 *force = data->scratch->line, *moment = force + rotor->n_station;
     double tip_radius = fmax(out[rotor->n_station - 1].radius, 1e-3);
-    bough_vec3 along = bough_cross(motion->shaft, state->y); // radial, in the rotor plane
     for (int j = 0; j < rotor->n_station; j++) {
-        induce(rotor, d, rotor->station + j, along, tip_radius, out + j);
+        induce(rotor, d, rotor->station + j, state + j, tip_radius, out + j);
         load(rotor, rotor->station + j, state + j, out + j, force + j, moment + j);
     }
     for (int i = 0; i < rotor->n_vertex; i++) {
@@ -443,6 +443,6 @@ void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *moti
                         bough_rotor_data *data) {
     for (int b = 0; b < rotor->n_blade; b++) move_blade(rotor, motion, b, data);
     disk d = survey_disk(rotor, motion, data);
-    for (int b = 0; b < rotor->n_blade; b++) load_blade(rotor, motion, &d, b, data);
+    for (int b = 0; b < rotor->n_blade; b++) load_blade(rotor, &d, b, data);
     sum_rotor(rotor, motion, data);
 }

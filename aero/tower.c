@@ -29,10 +29,14 @@ bough_status bough_tower_build(bough_arena *arena, const bough_tower_def *def, b
     return bough_ok();
 }
 
-// The radius at a height above the base, 0 where there is no tower.
+// The radius at a height above the base, 0 where there is no tower. Above the top it fades over
+// one radius, as in the reference code.
 static double radius_at(const bough_tower *tower, double height) {
     int n = tower->n;
-    if (n == 0 || height < tower->height[0] || height > tower->height[n - 1]) return 0;
+    if (n == 0 || height < tower->height[0]) return 0;
+    double top = tower->radius[n - 1], above = height - tower->height[n - 1];
+    if (above >= top) return 0;
+    if (above > 0) return top * cos(BOUGH_PI / 2 * above / top);
     int i = 1;
     while (i < n - 1 && height > tower->height[i]) i++;
     double w = (height - tower->height[i - 1]) / (tower->height[i] - tower->height[i - 1]);

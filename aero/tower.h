@@ -6,7 +6,8 @@
 #include "core/status.h"
 #include "core/vec3.h"
 
-// A vertical tower; n = 0 for none. Above the last height there is no influence.
+// A vertical tower; n = 0 for none. Above the last height the influence fades over
+// one radius.
 typedef struct bough_tower_def {
     bough_vec3 base; // [m], global axes
     int n;

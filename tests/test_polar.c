@@ -1,0 +1,100 @@
+#include "aero/polar.h"
+
+#include "core/base.h"
+#include "tests/check.h"
+#include "tests/nrel5mw_aero.h"
+
+static const double degree = BOUGH_PI / 180;
+
+static bough_polar build(bough_arena *arena, const bough_polar_def *def) {
+    bough_polar polar;
+    bough_status status = bough_polar_build(arena, def, &polar);
+    assert_int_equal(status.code, BOUGH_OK);
+    return polar;
+}
+
+static void knots_are_reproduced(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    for (int p = 0; p < 8; p++) {
+        bough_polar polar = build(arena, nrel5mw_polars + p);
+        for (int i = 0; i < nrel5mw_polars[p].n; i++) {
+            const double *row = nrel5mw_polars[p].row + 4 * i;
+            bough_coefficients c = bough_polar_at(&polar, row[0] * degree);
+            check_near(c.lift, row[1], 1e-11, 1e-11);
+            check_near(c.drag, row[2], 1e-11, 1e-11);
+            check_near(c.moment, row[3], 1e-11, 1e-11);
+        }
+    }
+    bough_arena_destroy(arena);
+}
+
+// Against a plain search of the table.
+static void interpolation_is_linear(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    const bough_polar_def *def = nrel5mw_polars + 7;
+    bough_polar polar = build(arena, def);
+    for (double a = -179.99; a < 180; a += 0.0371) {
+        int i = 0;
+        while (i < def->n - 2 && def->row[4 * (i + 1)] < a) i++;
+        const double *r = def->row + 4 * i;
+        double w = (a - r[0]) / (r[4] - r[0]);
+        bough_coefficients c = bough_polar_at(&polar, a * degree);
+        check_near(c.lift, r[1] + w * (r[5] - r[1]), 1e-10, 1e-11);
+        check_near(c.drag, r[2] + w * (r[6] - r[2]), 1e-10, 1e-11);
+        check_near(c.moment, r[3] + w * (r[7] - r[3]), 1e-10, 1e-11);
+    }
+    bough_arena_destroy(arena);
+}
+
+static void turns_repeat(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_polar polar = build(arena, nrel5mw_polars + 3);
+    for (double a = -3; a < 3; a += 0.07) {
+        bough_coefficients here = bough_polar_at(&polar, a);
+        for (int turn = -3; turn <= 3; turn++) {
+            bough_coefficients there = bough_polar_at(&polar, a + 2 * BOUGH_PI * turn);
+            check_near(there.lift, here.lift, 1e-11, 1e-12);
+            check_near(there.drag, here.drag, 1e-11, 1e-12);
+        }
+    }
+    bough_arena_destroy(arena);
+}
+
+// A table of less than a turn goes on from its last row to its first.
+static void gap_is_bridged(void **state) {
+    (void)state;
+    const double row[] = {-90, 1, 0, 0, 90, 3, 0, 0};
+    bough_arena *arena = bough_arena_create();
+    bough_polar polar = build(arena, &(bough_polar_def){"gap", 2, row});
+    check_near(bough_polar_at(&polar, 180 * degree).lift, 2, 1e-12, 0);
+    check_near(bough_polar_at(&polar, -135 * degree).lift, 1.5, 1e-12, 0);
+    check_near(bough_polar_at(&polar, 45 * degree).lift, 2.5, 1e-12, 0);
+    bough_arena_destroy(arena);
+}
+
+static void bad_tables_are_refused(void **state) {
+    (void)state;
+    const double backward[] = {0, 1, 0, 0, -1, 1, 0, 0}, wide[] = {-180, 1, 0, 0, 181, 1, 0, 0};
+    const double absent[] = {0, (double)NAN, 0, 0};
+    const bough_polar_def bad[] = {
+        {"empty", 0, backward}, {"backward", 2, backward}, {"wide", 2, wide}, {"nan", 1, absent}};
+    bough_arena *arena = bough_arena_create();
+    bough_polar polar;
+    for (int i = 0; i < 4; i++) {
+        bough_status status = bough_polar_build(arena, bad + i, &polar);
+        assert_int_equal(status.code, BOUGH_INVALID);
+    }
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(knots_are_reproduced), cmocka_unit_test(interpolation_is_linear),
+        cmocka_unit_test(turns_repeat),         cmocka_unit_test(gap_is_bridged),
+        cmocka_unit_test(bad_tables_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

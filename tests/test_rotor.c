@@ -1,0 +1,453 @@
+#include "aero/rotor.h"
+
+#include "core/base.h"
+#include "core/rotation.h"
+#include "tests/check.h"
+#include "tests/nrel5mw_aero.h"
+
+#include <stdlib.h>
+
+static const double degree = BOUGH_PI / 180, rpm = BOUGH_PI / 30;
+
+enum { VERTICES = 25, BLADES = 3, STATIONS = 19 };
+
+// A rigid rotor on straight blades: what the loads need of a turbine.
+typedef struct rig {
+    bough_arena *arena;
+    bough_rotor_def def;
+    const bough_rotor *rotor;
+    bough_rotor_data data;
+    bough_rotor_motion motion;
+    double tilt, cone, overhang; // cone: blade tips upwind [rad], [m]
+    double pitch, speed;
+    bough_station_def station[STATIONS];
+    double span[VERTICES];
+    bough_vec3 axis[VERTICES];
+    bough_mat3 section[VERTICES];
+    bough_vec3 position[BLADES * VERTICES], velocity[BLADES * VERTICES], spin[BLADES * VERTICES];
+    bough_mat3 rotation[BLADES * VERTICES];
+} rig;
+
+static bough_mat3 turned(bough_vec3 rotation_vector) {
+    return bough_rotation_matrix(bough_quaternion_exponential(rotation_vector));
+}
+
+static rig *create_rig(bool flat) {
+    rig *r = calloc(1, sizeof *r);
+    r->arena = bough_arena_create();
+    r->def = bough_rotor_def_default();
+    nrel5mw_stations(r->station, flat);
+    for (int i = 0; i < VERTICES; i++) {
+        r->span[i] = 61.5 * i / (VERTICES - 1);
+        r->axis[i] = bough_v3(0, 0, r->span[i]);
+        r->section[i] = bough_mat3_identity();
+    }
+    r->def.hub_radius = 1.5;
+    r->def.n_polar = 8;
+    r->def.polar = nrel5mw_polars;
+    r->def.n_station = STATIONS;
+    r->def.station = r->station;
+    r->def.n_vertex = VERTICES;
+    r->def.vertex_span = r->span;
+    r->def.vertex_position = r->axis;
+    r->def.vertex_rotation = r->section;
+    r->motion = (bough_rotor_motion){.position = r->position, .rotation = r->rotation,
+                                     .velocity = r->velocity, .angular_velocity = r->spin};
+    if (!flat) {
+        r->tilt = 5 * degree;
+        r->cone = 2.5 * degree;
+        r->overhang = 5.0191;
+        r->def.tower = (bough_tower_def){.n = 12, .height = nrel5mw_tower_height,
+                                         .diameter = nrel5mw_tower_diameter};
+    }
+    return r;
+}
+
+static void build(rig *r) {
+    bough_status status = bough_rotor_build(r->arena, &r->def, &r->rotor);
+    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
+    assert_int_equal(status.code, BOUGH_OK);
+    status = bough_rotor_data_build(r->arena, r->rotor, &r->data);
+    assert_int_equal(status.code, BOUGH_OK);
+}
+
+static void destroy_rig(rig *r) {
+    bough_arena_destroy(r->arena);
+    free(r);
+}
+
+// Places the rigid rotor at an azimuth of blade 1 (0: up).
+static void place(rig *r, double azimuth) {
+    bough_mat3 nacelle = turned(bough_v3(0, r->tilt, 0));
+    r->motion.shaft = nacelle.c1;
+    r->motion.hub = bough_axpy(-r->overhang, nacelle.c1, bough_v3(0, 0, 87.6 + 1.96256));
+    bough_vec3 omega = bough_scale(r->speed, nacelle.c1);
+    for (int b = 0; b < BLADES; b++) {
+        bough_mat3 blade = bough_mat3_product(
+            nacelle, turned(bough_v3(azimuth + 2 * BOUGH_PI * b / BLADES, 0, 0)));
+        blade = bough_mat3_product(blade, turned(bough_v3(0, -r->cone, 0)));
+        blade = bough_mat3_product(blade, turned(bough_v3(0, 0, -r->pitch)));
+        for (int i = 0; i < VERTICES; i++) {
+            int k = b * VERTICES + i;
+            bough_vec3 arm = bough_mat3_mul(blade, bough_add(r->axis[i], bough_v3(0, 0, 1.5)));
+            r->position[k] = bough_add(r->motion.hub, arm);
+            r->rotation[k] = bough_mat3_product(blade, r->section[i]);
+            r->velocity[k] = bough_cross(omega, arm);
+            r->spin[k] = omega;
+        }
+    }
+}
+
+static void operate(rig *r, double wind, double pitch_deg, double speed_rpm) {
+    r->def.wind.speed = wind;
+    r->speed = speed_rpm * rpm;
+    r->pitch = pitch_deg * degree;
+    build(r);
+}
+
+static void sample(rig *r, double azimuth) {
+    place(r, azimuth);
+    bough_rotor_sample(r->rotor, &r->motion, &r->data);
+}
+
+// The flat rotor without tilt, cone and offsets, with Buhl's high thrust.
+static rig *create_flat_rig(void) {
+    rig *r = create_rig(true);
+    r->def.induction.high_thrust = BOUGH_HIGH_THRUST_BUHL;
+    return r;
+}
+
+// Thrust [kN] and torque [kN m] of the flat rotor: AeroDyn v5, and to six digits an independent
+// solution of the same equations.
+static void flat_rotor_matches_reference(void **state) {
+    (void)state;
+    static const double table[][5] = {
+        {3, 0, 6.972, 77.370925, 54.299714},      {4, 0, 7.183, 120.905807, 246.723471},
+        {8, 0, 9.156, 384.414061, 1976.531272},   {10, 0, 11.431, 600.183949, 3091.937526},
+        {11, 0, 11.89, 700.397181, 3932.783839},  {12, 3.823, 12.1, 589.108228, 4199.850531},
+        {18, 14.92, 12.1, 337.306733, 4163.84765}, {25, 23.469, 12.1, 244.203811, 3637.726746}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        rig *r = create_flat_rig();
+        operate(r, table[i][0], table[i][1], table[i][2]);
+        sample(r, 0.4);
+        check_near(r->data.thrust, 1e3 * table[i][3], 1e-5, 0);
+        check_near(r->data.torque, 1e3 * table[i][4], 1e-5, 0);
+        destroy_rig(r);
+    }
+}
+
+// Switching the corrections off one by one at 8 m/s, and heavy loading at 15 rpm.
+static void switches_match_reference(void **state) {
+    (void)state;
+    static const double table[5][2] = {{397.593, 2146.476}, {384.535, 1976.489},
+                                       {382.420, 1995.611}, {384.880, 1978.841},
+                                       {493.990, 889.607}};
+    for (int i = 0; i < 5; i++) {
+        rig *r = create_flat_rig();
+        bough_induction_options *o = &r->def.induction;
+        o->tip_loss = i != 0;
+        o->hub_loss = i != 1;
+        o->tangential = i != 2;
+        o->axial_drag = i != 3;
+        operate(r, 8, 0, i == 4 ? 15 : 9.156);
+        sample(r, 0);
+        check_near(r->data.thrust, 1e3 * table[i][0], 1e-4, 0);
+        check_near(r->data.torque, 1e3 * table[i][1], 1e-4, 0);
+        destroy_rig(r);
+    }
+}
+
+// Every station at 8 m/s: inflow x, y, relative speed, φ, α, a, a', Cl, Cd, force x, y. AeroDyn v5.
+static void stations_match_reference(void **state) {
+    (void)state;
+    // clang-format off
+    static const double table[STATIONS][11] = {
+        {8, 1.4382211, 1.4382211, 0, -13.308, 1, 0, 0, 0.5, 0, -2.2437578},
+        {8, 2.7486323, 7.747101, 71.038353, 57.730353, 0.084160682, -0.084160682, 0, 0.5, 61.570565, -21.154356},
+        {8, 5.3693588, 9.1786945, 56.131679, 42.823679, 0.04734269, -0.04734269, 0, 0.5, 82.564891, -55.415066},
+        {8, 7.9900854, 10.982422, 45.035526, 31.727526, 0.028680187, -0.028680187, 0, 0.35, 76.233874, -76.139395},
+        {8, 11.266065, 13.485452, 26.509642, 13.201642, 0.24759872, 0.071144324, 1.5230821, 0.11931222, 718.85357, 290.88041},
+        {8, 15.197203, 16.997202, 20.059785, 8.5797845, 0.27124398, 0.05059269, 1.3259785, 0.012711698, 1028.9052, 364.5672},
+        {8, 19.128341, 20.607258, 16.925217, 6.7632172, 0.25009342, 0.03065217, 1.1041654, 0.011405287, 1228.7198, 360.08074},
+        {8, 23.059479, 24.302002, 14.337997, 5.3269966, 0.24772673, 0.021056774, 0.98585556, 0.0098307986, 1471.8145, 360.60464},
+        {8, 26.990616, 28.045367, 11.955757, 4.1607573, 0.27377812, 0.016538583, 0.97161239, 0.0073964544, 1837.8742, 374.57445},
+        {8, 30.921754, 31.840209, 10.400601, 3.8566007, 0.28148804, 0.012784108, 0.93421849, 0.0072426403, 2141.5518, 375.93395},
+        {8, 34.852892, 35.652472, 8.8799601, 3.5189601, 0.31206405, 0.01068052, 0.94982017, 0.0066189601, 2561.4069, 381.92245},
+        {8, 38.784029, 39.490504, 7.7648981, 3.5768981, 0.3330618, 0.008879377, 0.95538222, 0.0066768981, 2946.9052, 380.87861},
+        {8, 42.715167, 43.368425, 7.2577693, 4.1327693, 0.31513947, 0.0071586517, 0.91300293, 0.0054531077, 3142.886, 381.19716},
+        {8, 46.646305, 47.238574, 6.546013, 4.227013, 0.32684387, 0.0060948611, 0.92365247, 0.0054908052, 3468.9803, 377.18344},
+        {8, 50.577443, 51.114984, 5.8889672, 4.3629672, 0.34444397, 0.0052945894, 0.93901529, 0.0055451869, 3766.1479, 365.99735},
+        {8, 53.853423, 54.343531, 5.2827183, 4.4197183, 0.37457219, 0.0048146376, 0.94542817, 0.0055678873, 3940.8854, 340.99138},
+        {8, 56.474149, 56.920539, 4.7010481, 4.3310481, 0.41687228, 0.0045136236, 0.93540843, 0.0055324192, 3861.0674, 294.52932},
+        {8, 59.094876, 59.511779, 4.3029362, 4.1969362, 0.44185518, 0.0042162116, 0.92025379, 0.0054787745, 2825.9898, 195.72054},
+        {8, 60.405191, 60.405191, 0, -0.106, 1, 0, 0.429916, 0.0052, 1363.3916, -16.490748},
+    };
+    // clang-format on
+    rig *r = create_flat_rig();
+    operate(r, 8, 0, 9.156);
+    sample(r, 1);
+    for (int j = 0; j < STATIONS; j++) {
+        const double *t = table[j];
+        const bough_station *s = r->data.station + j;
+        const double value[11] = {s->inflow_x, s->inflow_y, s->speed, s->phi / degree,
+                                  s->alpha / degree, s->axial, s->tangential,
+                                  s->coefficients.lift, s->coefficients.drag, s->force_x,
+                                  s->force_y};
+        for (int c = 0; c < 11; c++) check_near(value[c], t[c], 1e-5, 2e-6);
+    }
+    destroy_rig(r);
+}
+
+static void mean_of_revolution(rig *r, double *thrust, double *torque) {
+    enum { SAMPLES = 72 }; // over the passage of one blade
+    *thrust = *torque = 0;
+    for (int k = 0; k < SAMPLES; k++) {
+        sample(r, 2 * BOUGH_PI / BLADES * k / SAMPLES);
+        *thrust += r->data.thrust / SAMPLES;
+        *torque += r->data.torque / SAMPLES;
+    }
+}
+
+// The whole turbine with rigid blades: tilt 5°, pre-cone 2.5°, tower potential flow, skewed wake.
+// Wind, pitch, speed, mean thrust [kN] and torque [kN m]: OpenFAST v5.
+static void rigid_turbine_matches_reference(void **state) {
+    (void)state;
+    static const double table[12][5] = {
+        {4, 0, 7.2, 122.637, 260.011},      {6, 0, 7.9, 233.22, 950.717},
+        {8, 0, 6, 244.148, 2145.35},        {8, 0, 9.16, 382.103, 1960.59},
+        {8, 0, 15, 501.001, 950.214},       {8, 5, 9.16, 232.219, 1481.82},
+        {11.4, 0, 12.1, 737.315, 4236.88},  {13, 6.6, 12.1, 496.79, 4123.98},
+        {15, 10.45, 12.1, 404.739, 4109.58}, {20, 6.5, 14, 1102.77, 12095},
+        {20, 17.47, 12.1, 302.035, 4041.38}, {25, 23.47, 12.1, 232.542, 3459.5}};
+    for (int i = 0; i < 12; i++) {
+        rig *r = create_rig(false);
+        operate(r, table[i][0], table[i][1], table[i][2]);
+        double thrust, torque;
+        mean_of_revolution(r, &thrust, &torque);
+        check_near(thrust, 1e3 * table[i][3], 3e-3, 0);
+        check_near(torque, 1e3 * table[i][4], 5e-3, 0);
+        destroy_rig(r);
+    }
+}
+
+// Bends, twists and moves the placed blades smoothly by some decimetres and degrees.
+static void disturb(rig *r) {
+    for (int k = 0; k < BLADES * VERTICES; k++) {
+        double s = r->span[k % VERTICES] / 61.5, b = 1 + 0.3 * (k / VERTICES);
+        r->rotation[k] = bough_mat3_product(
+            r->rotation[k], turned(bough_v3(-0.05 * b * s, 0.12 * s * s, 0.08 * b * s)));
+        r->position[k] = bough_axpy(4 * b * s * s, bough_v3(0.9, 0.1, -0.2), r->position[k]);
+        r->velocity[k] = bough_add(r->velocity[k], bough_v3(b * s * s, -0.4 * s, 0.2));
+        r->spin[k] = bough_add(r->spin[k], bough_v3(0.01, 0.02 * s, -0.01 * b));
+    }
+}
+
+// Force and moment about the origin of the line loads of blade 0, independently of the weights:
+// many points along the deformed axis, between vertices and stations linear.
+static void integrate_line_load(const rig *r, const bough_vec3 *force, const bough_vec3 *moment,
+                                bough_vec3 *total, bough_vec3 *about) {
+    enum { POINTS = 400000 };
+    *total = *about = bough_v3(0, 0, 0);
+    double end = r->station[STATIONS - 1].span, ds = end / POINTS;
+    for (int k = 0, i = 0, j = 0; k < POINTS; k++) {
+        double s = (k + 0.5) * ds;
+        while (i < VERTICES - 2 && r->span[i + 1] < s) i++;
+        while (j < STATIONS - 2 && r->station[j + 1].span < s) j++;
+        double w = (s - r->span[i]) / (r->span[i + 1] - r->span[i]);
+        double v = (s - r->station[j].span) / (r->station[j + 1].span - r->station[j].span);
+        bough_vec3 x = bough_add(bough_scale(1 - w, r->position[i]),
+                                 bough_scale(w, r->position[i + 1]));
+        bough_vec3 f = bough_add(bough_scale(1 - v, force[j]), bough_scale(v, force[j + 1]));
+        bough_vec3 m = bough_add(bough_scale(1 - v, moment[j]), bough_scale(v, moment[j + 1]));
+        *total = bough_axpy(ds, f, *total);
+        *about = bough_axpy(ds, bough_add(bough_cross(x, f), m), *about);
+    }
+}
+
+// The line load is rebuilt from the reported stations; without offsets, with flat blades.
+static void mapping_conserves_force_and_moment(void **state) {
+    (void)state;
+    rig *r = create_rig(true);
+    operate(r, 12, 3, 11);
+    place(r, 0.7);
+    for (int k = 0; k < BLADES * VERTICES; k++) { // bent without rotating the sections
+        double s = r->span[k % VERTICES] / 61.5;
+        r->position[k] = bough_axpy(6 * s * s, bough_v3(0.9, 0.1, -0.2), r->position[k]);
+    }
+    bough_rotor_sample(r->rotor, &r->motion, &r->data);
+    bough_vec3 z = r->rotation[0].c3, y = bough_cross(z, r->motion.shaft), x = bough_cross(y, z);
+    bough_vec3 force[STATIONS], moment[STATIONS], total, about;
+    for (int j = 0; j < STATIONS; j++) {
+        const bough_station *s = r->data.station + j;
+        double c = r->station[j].chord;
+        force[j] = bough_axpy(-s->force_y, y, bough_scale(s->force_x, x));
+        moment[j] = bough_scale(0.5 * 1.225 * s->speed * s->speed * c * c *
+                                    s->coefficients.moment, z);
+    }
+    integrate_line_load(r, force, moment, &total, &about);
+    for (int i = 0; i < VERTICES; i++) {
+        total = bough_sub(total, r->data.force[i]);
+        about = bough_sub(about, bough_cross(r->position[i], r->data.force[i]));
+        about = bough_sub(about, r->data.moment[i]);
+    }
+    check_near(bough_norm(total), 0, 0, 1e-3);  // of 2e5 N: the error of the summation
+    check_near(bough_norm(about), 0, 0, 2e-1);  // of 2e7 N m
+    destroy_rig(r);
+}
+
+// Aerodynamic-centre offsets leave the forces of a station and add offset × force.
+static void offsets_carry_moment(void **state) {
+    (void)state;
+    rig *r = create_rig(true);
+    for (int j = 0; j < STATIONS; j++) r->station[j].centre_y = -0.4;
+    r->def.pitching_moment = false;
+    operate(r, 10, 2, 10);
+    sample(r, 0);
+    bough_vec3 force = {0}, moment = {0};
+    for (int i = 0; i < VERTICES; i++) {
+        force = bough_add(force, r->data.force[i]);
+        moment = bough_add(moment, r->data.moment[i]);
+    }
+    bough_mat3 blade = r->rotation[0];
+    bough_vec3 expected = bough_cross(bough_scale(-0.4, blade.c2), force);
+    check_near(bough_norm(bough_sub(moment, expected)), 0, 0, 1e-9 * bough_norm(expected));
+    assert_true(bough_norm(expected) > 1e4);
+    destroy_rig(r);
+}
+
+static void check_same_loads(const rig *a, const rig *b, const bough_mat3 *turn) {
+    for (int k = 0; k < BLADES * VERTICES; k++) {
+        bough_vec3 f = a->data.force[k], m = a->data.moment[k];
+        if (turn) f = bough_mat3_mul(*turn, f), m = bough_mat3_mul(*turn, m);
+        check_near(bough_norm(bough_sub(f, b->data.force[k])), 0, 0, 1e-5);
+        check_near(bough_norm(bough_sub(m, b->data.moment[k])), 0, 0, 1e-5);
+    }
+}
+
+// Structural section axes may include the structural twist, or any other fixed angles.
+static void section_axes_are_arbitrary(void **state) {
+    (void)state;
+    rig *a = create_rig(false), *b = create_rig(false);
+    for (int i = 0; i < VERTICES; i++) b->section[i] = turned(bough_v3(0, 0, -0.01 * (24 - i)));
+    operate(a, 9, 1, 10);
+    operate(b, 9, 1, 10);
+    sample(a, 2);
+    sample(b, 2);
+    check_same_loads(a, b, NULL);
+    destroy_rig(a);
+    destroy_rig(b);
+}
+
+// Moving with the wind of the same speed, or standing elsewhere, changes nothing.
+static void rigid_translation_changes_nothing(void **state) {
+    (void)state;
+    rig *a = create_rig(false), *b = create_rig(false);
+    a->def.tower.n = b->def.tower.n = 0;
+    operate(a, 11, 0, 10);
+    operate(b, 14, 0, 10);
+    place(a, 1);
+    place(b, 1);
+    disturb(a);
+    disturb(b);
+    bough_vec3 shift = bough_v3(7, -3, 20), drift = bough_v3(3, 0, 0);
+    for (int k = 0; k < BLADES * VERTICES; k++) {
+        b->position[k] = bough_add(b->position[k], shift);
+        b->velocity[k] = bough_add(b->velocity[k], drift);
+    }
+    b->motion.hub = bough_add(b->motion.hub, shift);
+    bough_rotor_sample(a->rotor, &a->motion, &a->data);
+    bough_rotor_sample(b->rotor, &b->motion, &b->data);
+    check_same_loads(a, b, NULL);
+    destroy_rig(a);
+    destroy_rig(b);
+}
+
+// A third of a turn exchanges the blades.
+static void blades_are_alike(void **state) {
+    (void)state;
+    rig *a = create_rig(true), *b = create_rig(true);
+    operate(a, 11, 0, 10);
+    operate(b, 11, 0, 10);
+    sample(a, 0.3);
+    sample(b, 0.3 + 0.5);
+    bough_mat3 turn = turned(bough_v3(0.5, 0, 0));
+    check_same_loads(a, b, &turn);
+    destroy_rig(a);
+    destroy_rig(b);
+}
+
+// Nothing is kept between samples, so repeated steps repeat their loads to the bit.
+static void sample_is_a_function_of_motion(void **state) {
+    (void)state;
+    rig *a = create_rig(false), *b = create_rig(false);
+    operate(a, 20, 6.5, 14);
+    operate(b, 20, 6.5, 14);
+    for (int k = 0; k < 20; k++) {
+        sample(a, 0.3 * k);
+        disturb(a);
+        bough_rotor_sample(a->rotor, &a->motion, &a->data);
+    }
+    sample(a, 0.9);
+    size_t before = bough_arena_bytes(b->arena);
+    sample(b, 0.9);
+    assert_true(bough_arena_bytes(b->arena) == before);
+    size_t size = BLADES * VERTICES * sizeof *a->data.force;
+    assert_memory_equal(a->data.force, b->data.force, size);
+    assert_memory_equal(a->data.moment, b->data.moment, size);
+    destroy_rig(a);
+    destroy_rig(b);
+}
+
+// Calm, locked, feathered, turning backwards, overspeeding, blown from behind.
+static void odd_states_are_finite(void **state) {
+    (void)state;
+    static const double wind[] = {-15, 0, 1e-9, 8, 60}, pitch[] = {-180, -30, 0, 90};
+    static const double speed[] = {-12, 0, 1e-9, 3, 40};
+    for (int i = 0; i < 5 * 4 * 5; i++) {
+        rig *r = create_rig(false);
+        operate(r, wind[i % 5], pitch[i / 5 % 4], speed[i / 20]);
+        sample(r, 0.1 * i);
+        assert_true(isfinite(r->data.thrust) && isfinite(r->data.torque));
+        for (int k = 0; k < BLADES * VERTICES; k++) {
+            assert_true(isfinite(bough_norm(r->data.force[k])));
+            assert_true(isfinite(bough_norm(r->data.moment[k])));
+        }
+        destroy_rig(r);
+    }
+}
+
+static void bad_defs_are_refused(void **state) {
+    (void)state;
+    for (int i = 0; i < 7; i++) {
+        rig *r = create_rig(true);
+        if (i == 0) r->def.n_blade = 0;
+        if (i == 1) r->station[3].polar = 8;
+        if (i == 2) r->station[3].span = r->station[2].span;
+        if (i == 3) r->station[18].span = 62;
+        if (i == 4) r->def.density = 0;
+        if (i == 5) r->span[4] = r->span[3];
+        if (i == 6) r->def.tower.n = 1;
+        bough_status status = bough_rotor_build(r->arena, &r->def, &r->rotor);
+        assert_int_equal(status.code, BOUGH_INVALID);
+        assert_null(r->rotor);
+        destroy_rig(r);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(flat_rotor_matches_reference),
+        cmocka_unit_test(switches_match_reference),
+        cmocka_unit_test(stations_match_reference),
+        cmocka_unit_test(rigid_turbine_matches_reference),
+        cmocka_unit_test(mapping_conserves_force_and_moment),
+        cmocka_unit_test(offsets_carry_moment),
+        cmocka_unit_test(section_axes_are_arbitrary),
+        cmocka_unit_test(rigid_translation_changes_nothing),
+        cmocka_unit_test(blades_are_alike),
+        cmocka_unit_test(sample_is_a_function_of_motion),
+        cmocka_unit_test(odd_states_are_finite),
+        cmocka_unit_test(bad_defs_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
