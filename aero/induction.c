@@ -10,6 +10,8 @@
 
 // Both ends of an interval keep this distance from φ = 0 and π, where no wake exists [rad].
 static const double clearance = 1e-6;
+// Of the inflow angle [rad].
+static const double precision = 1e-12;
 // Slower than this there is no wake to speak of [m/s].
 static const double slow = 1e-3;
 // Least loss factor.
@@ -99,9 +101,7 @@ static balance balance_at(problem *p, double phi) {
     return (balance){axial, s * c - swirl * swirl_share(loading, s, axial), s * c, s * s};
 }
 
-static double residual(const problem *p, balance b) {
-    return b.axial - p->slope * b.swirl;
-}
+static double residual(const problem *p, balance b) { return b.axial - p->slope * b.swirl; }
 
 // One step of Chandrupatla's method: inverse quadratic interpolation through (a, fa), (b, fb),
 // (c, fc) where it is known to converge, else bisection; the fraction of the way from a to b.
@@ -111,31 +111,53 @@ static double fraction(double a, double fa, double b, double fb, double c, doubl
     return fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb);
 }
 
-// A root in [low, high], where f changes sign.
-static double root(problem *p, double low, double f_low, double high, double f_high) {
+// The balance at a root in [low, high], where f changes sign.
+static balance root(problem *p, double low, balance at_low, double high, balance at_high) {
     enum { MOST = 100 };
-    double a = high, fa = f_high, b = low, fb = f_low, t = 0.5;
+    double a = high, fa = residual(p, at_high), b = low, fb = residual(p, at_low), t = 0.5;
+    balance at_a = at_high;
     for (int i = 0; i < MOST; i++) {
-        double x = a + t * (b - a), fx = residual(p, balance_at(p, x));
-        double c = a, fc = fa;
+        double x = a + t * (b - a);
+        balance at_x = balance_at(p, x);
+        double fx = residual(p, at_x), c = a, fc = fa;
         if ((fx > 0) != (fa > 0)) {
             c = b, fc = fb;
             b = a, fb = fa;
         }
-        a = x, fa = fx;
-        double width = fabs(b - a), tolerance = 1e-13 + 4e-16 * fabs(a);
-        if (fa == 0 || width < 4 * tolerance) break;
-        t = bough_clamp(fraction(a, fa, b, fb, c, fc), tolerance / width, 1 - tolerance / width);
+        a = x, fa = fx, at_a = at_x;
+        double width = fabs(b - a);
+        if (fa == 0 || width < 2 * precision) break;
+        t = fraction(a, fa, b, fb, c, fc);
+        if (fabs(t) * width < precision && fabs(fx) < fabs(fb)) break;
+        t = bough_clamp(t, precision / width, 1 - precision / width);
     }
-    return fabs(fa) <= fabs(fb) ? a : b;
+    return at_a;
+}
+
+static bool changes_sign(const problem *p, balance a, balance b) {
+    return (residual(p, a) > 0) != (residual(p, b) > 0);
+}
+
+// The windmill state, φ in (0, π/2], split at the angle without induction, near which it ends.
+static bool search_windmill(problem *p, balance *found) {
+    double middle = bough_clamp(atan(p->slope), 2 * clearance, BOUGH_PI / 2 - clearance);
+    double low = clearance, high = middle;
+    balance at_low = balance_at(p, low), at_high = balance_at(p, high);
+    if (!changes_sign(p, at_low, at_high)) {
+        low = middle, at_low = at_high;
+        high = BOUGH_PI / 2, at_high = balance_at(p, high);
+        if (!changes_sign(p, at_low, at_high)) return false;
+    }
+    *found = root(p, low, at_low, high, at_high);
+    return found->axial > 0;
 }
 
 // Looks for a balance with φ in [low, high]; the momentum balance must be of the assumed state.
 static bool search(problem *p, double low, double high, bool brake, balance *found) {
     p->brake = brake;
-    double f_low = residual(p, balance_at(p, low)), f_high = residual(p, balance_at(p, high));
-    if ((f_low > 0) == (f_high > 0)) return false;
-    *found = balance_at(p, root(p, low, f_low, high, f_high));
+    balance at_low = balance_at(p, low), at_high = balance_at(p, high);
+    if (!changes_sign(p, at_low, at_high)) return false;
+    *found = root(p, low, at_low, high, at_high);
     return brake ? found->axial < 0 : found->axial > 0;
 }
 
@@ -147,11 +169,13 @@ bough_induction bough_induction_solve(const bough_induction_options *options,
         return (bough_induction){.axial = 1, .fixed = true};
     }
     if (fabs(vx) < slow || fabs(vy) < slow) return (bough_induction){0};
-    problem p = {.options = options, .element = element, .sign_x = copysign(1, vx),
-                 .sign_y = copysign(1, vy), .slope = fabs(vx / vy)};
+    problem p = {.options = options,
+                 .element = element,
+                 .sign_x = copysign(1, vx),
+                 .sign_y = copysign(1, vy),
+                 .slope = fabs(vx / vy)};
     balance b = {0};
-    bool found = search(&p, clearance, BOUGH_PI / 2, false, &b) ||
-                 search(&p, -BOUGH_PI / 4, -clearance, true, &b) ||
+    bool found = search_windmill(&p, &b) || search(&p, -BOUGH_PI / 4, -clearance, true, &b) ||
                  search(&p, BOUGH_PI / 2, BOUGH_PI - clearance, false, &b);
     if (!found) return (bough_induction){.evaluations = p.evaluations};
     double swirl = b.swirl != 0 ? b.sc / b.swirl - 1 : -1;

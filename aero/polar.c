@@ -34,11 +34,13 @@ static void fill_rows(const bough_polar_def *def, int n, double *row) {
         const double *from = def->row + 4 * (i % def->n);
         double *to = row + ROW * i;
         to[0] = from[0] * (BOUGH_PI / 180) + (i < def->n ? 0 : turn);
-        for (int c = 1; c < 4; c++) to[c] = from[c];
+        for (int c = 1; c < 4; c++)
+            to[c] = from[c];
     }
     for (int i = 0; i + 1 < n; i++) {
         double *here = row + ROW * i, *next = here + ROW;
-        for (int c = 1; c < 4; c++) here[3 + c] = (next[c] - here[c]) / (next[0] - here[0]);
+        for (int c = 1; c < 4; c++)
+            here[3 + c] = (next[c] - here[c]) / (next[0] - here[0]);
     }
 }
 
@@ -47,7 +49,8 @@ static void fill_bins(bough_polar *polar, int *bin) {
     int knot = 0;
     for (int j = 0; j < polar->n_bin; j++) {
         double start = polar->row[0] + j / polar->bin_per_rad;
-        while (knot + 2 < polar->n && polar->row[ROW * (knot + 1)] <= start) knot++;
+        while (knot + 2 < polar->n && polar->row[ROW * (knot + 1)] <= start)
+            knot++;
         bin[j] = knot;
     }
 }
@@ -63,8 +66,8 @@ bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, b
     int *bin = bough_arena_take(arena, N_BIN * sizeof *bin);
     if (!row || !bin) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for a polar.");
     fill_rows(def, n, row);
-    *polar = (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / turn,
-                           .bin = bin};
+    *polar =
+        (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / turn, .bin = bin};
     fill_bins(polar, bin);
     return bough_ok();
 }
@@ -75,7 +78,8 @@ bough_coefficients bough_polar_at(const bough_polar *polar, double alpha) {
     int j = (int)(x * polar->bin_per_rad);
     int knot = polar->bin[j < polar->n_bin ? j : polar->n_bin - 1];
     x += polar->row[0];
-    while (knot + 2 < polar->n && polar->row[ROW * (knot + 1)] <= x) knot++;
+    while (knot + 2 < polar->n && polar->row[ROW * (knot + 1)] <= x)
+        knot++;
     const double *r = polar->row + ROW * knot;
     double d = x - r[0];
     return (bough_coefficients){r[1] + d * r[4], r[2] + d * r[5], r[3] + d * r[6]};

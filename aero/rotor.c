@@ -3,7 +3,6 @@
 #include "core/base.h"
 #include "core/rotation.h"
 
-
 // The blade-element planes follow the reference code for these loads (AeroDyn without its polar
 // option), because the 1 % agreement asked for is decided there: x is normal to the coned and
 // bent, but not swept, pitched or twisted blade; loss factors are those of the undeformed rotor;
@@ -139,7 +138,8 @@ static bough_mat3 twisted(double twist) {
 static void place_station(const bough_rotor_def *def, const bough_station_def *from,
                           const bough_polar *polar, station_model *to) {
     int i = 0;
-    while (i < def->n_vertex - 2 && from->span > def->vertex_span[i + 1]) i++;
+    while (i < def->n_vertex - 2 && from->span > def->vertex_span[i + 1])
+        i++;
     double start = def->vertex_span[i], end = def->vertex_span[i + 1];
     double w = bough_clamp((from->span - start) / (end - start), 0, 1);
     bough_mat3 structure =
@@ -149,15 +149,15 @@ static void place_station(const bough_rotor_def *def, const bough_station_def *f
     bough_vec3 arm = bough_v3(from->centre_x - axis.x, from->centre_y - axis.y, 0);
     double radius = def->hub_radius + from->span;
     double tip = def->hub_radius + def->station[def->n_station - 1].span;
-    *to = (station_model){.polar = polar + from->polar,
-                          .vertex = i,
-                          .weight = w,
-                          .section = bough_mat3_product(bough_mat3_transpose(structure),
-                                                        twisted(from->twist)),
-                          .centre = bough_mat3_tmul(structure, arm),
-                          .chord = from->chord,
-                          .tip_factor = def->n_blade * (tip - radius) / (2 * radius),
-                          .hub_factor = def->n_blade * from->span / (2 * def->hub_radius)};
+    *to = (station_model){
+        .polar = polar + from->polar,
+        .vertex = i,
+        .weight = w,
+        .section = bough_mat3_product(bough_mat3_transpose(structure), twisted(from->twist)),
+        .centre = bough_mat3_tmul(structure, arm),
+        .chord = from->chord,
+        .tip_factor = def->n_blade * (tip - radius) / (2 * radius),
+        .hub_factor = def->n_blade * from->span / (2 * def->hub_radius)};
 }
 
 // Adds ∫ hat_i N_j ds over [a, b], on which all are linear; by Simpson's rule, exact for products.
@@ -184,7 +184,8 @@ static void fill_mapping(const bough_rotor_def *def, double *dense) {
     for (int j = 0; j + 1 < def->n_station; j++) {
         double a = def->station[j].span, end = def->station[j + 1].span;
         while (a < end) {
-            while (vertex < last && def->vertex_span[vertex + 1] <= a) vertex++;
+            while (vertex < last && def->vertex_span[vertex + 1] <= a)
+                vertex++;
             double b = vertex < last ? fmin(end, def->vertex_span[vertex + 1]) : end;
             add_interval(def, a, b, vertex, j, dense);
             a = b;
@@ -197,8 +198,10 @@ static void compress_rows(const bough_rotor *rotor, const double *dense) {
     for (int i = 0; i < rotor->n_vertex; i++) {
         const double *d = dense + i * rotor->n_station;
         int first = 0, end = rotor->n_station;
-        while (first < end && d[first] == 0) first++;
-        while (end > first && d[end - 1] == 0) end--;
+        while (first < end && d[first] == 0)
+            first++;
+        while (end > first && d[end - 1] == 0)
+            end--;
         rotor->row[i] = (vertex_row){first, end - first, d + first};
     }
 }
@@ -228,12 +231,17 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
     if (!rotor || !station || !row || !dense) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's aerodynamics.");
     }
-    *rotor = (bough_rotor){.n_blade = def->n_blade, .n_station = def->n_station,
-                           .n_vertex = def->n_vertex, .density = def->density,
-                           .pitching_moment = def->pitching_moment, .skew = def->skew,
-                           .induction = def->induction, .wind = def->wind,
+    *rotor = (bough_rotor){.n_blade = def->n_blade,
+                           .n_station = def->n_station,
+                           .n_vertex = def->n_vertex,
+                           .density = def->density,
+                           .pitching_moment = def->pitching_moment,
+                           .skew = def->skew,
+                           .induction = def->induction,
+                           .wind = def->wind,
                            .root = bough_mat3_transpose(def->vertex_rotation[0]),
-                           .station = station, .row = row};
+                           .station = station,
+                           .row = row};
     const bough_polar *polar = NULL;
     status = build_polars(arena, def, &polar);
     if (bough_is_ok(&status)) status = bough_tower_build(arena, &def->tower, &rotor->tower);
@@ -312,13 +320,13 @@ static void move_blade(const bough_rotor *rotor, const bough_rotor_motion *motio
         bough_mat3 section = bough_mat3_product(structure, m->section);
         state->arm = bough_mat3_mul(structure, m->centre);
         orient(&frame, &section, state);
-        bough_vec3 centre = bough_add(
-            between(motion->position[a], motion->position[b], m->weight), state->arm);
+        bough_vec3 centre =
+            bough_add(between(motion->position[a], motion->position[b], m->weight), state->arm);
         bough_vec3 spin =
             between(motion->angular_velocity[a], motion->angular_velocity[b], m->weight);
-        bough_vec3 velocity = bough_add(
-            between(motion->velocity[a], motion->velocity[b], m->weight),
-            bough_cross(spin, state->arm));
+        bough_vec3 velocity =
+            bough_add(between(motion->velocity[a], motion->velocity[b], m->weight),
+                      bough_cross(spin, state->arm));
         state->wind = bough_tower_disturbed(&rotor->tower, centre,
                                             bough_wind_at(&rotor->wind, centre, motion->time));
         bough_vec3 inflow = bough_sub(state->wind, velocity);
@@ -349,12 +357,15 @@ static disk survey_disk(const bough_rotor *rotor, const bough_rotor_motion *moti
                         bough_rotor_data *data) {
     int n = rotor->n_blade * rotor->n_station;
     bough_vec3 wind = {0};
-    for (int k = 0; k < n; k++) wind = bough_axpy(1. / n, data->scratch->state[k].wind, wind);
+    for (int k = 0; k < n; k++)
+        wind = bough_axpy(1. / n, data->scratch->state[k].wind, wind);
     data->disk_wind = wind;
     double axial = bough_dot(wind, motion->shaft);
     bough_vec3 across = bough_axpy(-axial, motion->shaft, wind);
     double size = bough_norm(across);
-    disk d = {.shaft = motion->shaft, .skew = atan2(size, axial), .wake = wake_strength(rotor, data, axial)};
+    disk d = {.shaft = motion->shaft,
+              .skew = atan2(size, axial),
+              .wake = wake_strength(rotor, data, axial)};
     if (size > 1e-9 * fabs(axial)) d.downwind = bough_scale(1 / size, across);
     return d;
 }
@@ -441,8 +452,10 @@ static void sum_rotor(const bough_rotor *rotor, const bough_rotor_motion *motion
 
 void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
                         bough_rotor_data *data) {
-    for (int b = 0; b < rotor->n_blade; b++) move_blade(rotor, motion, b, data);
+    for (int b = 0; b < rotor->n_blade; b++)
+        move_blade(rotor, motion, b, data);
     disk d = survey_disk(rotor, motion, data);
-    for (int b = 0; b < rotor->n_blade; b++) load_blade(rotor, &d, b, data);
+    for (int b = 0; b < rotor->n_blade; b++)
+        load_blade(rotor, &d, b, data);
     sum_rotor(rotor, motion, data);
 }

@@ -18,20 +18,20 @@
 
 // One row of the aerodynamic blade table (undeformed blade).
 typedef struct bough_station_def {
-    double span;         // along the reference axis from the root [m]
-    double chord;        // [m]
-    double twist;        // positive: leading edge into the wind [rad]
-    double centre_x;     // aerodynamic centre in blade-root axes, flapwise [m]
-    double centre_y;     //   and edgewise [m]; its z is that of the reference axis at `span`
-    int polar;           // index into the rotor's polars
+    double span;     // along the reference axis from the root [m]
+    double chord;    // [m]
+    double twist;    // positive: leading edge into the wind [rad]
+    double centre_x; // aerodynamic centre in blade-root axes, flapwise [m]
+    double centre_y; //   and edgewise [m]; its z is that of the reference axis at `span`
+    int polar;       // index into the rotor's polars
 } bough_station_def;
 
 typedef struct bough_rotor_def {
     int n_blade;
-    double density;      // of air [kg/m³]
-    double hub_radius;   // from the shaft axis to the blade roots [m]
+    double density;    // of air [kg/m³]
+    double hub_radius; // from the shaft axis to the blade roots [m]
     bool pitching_moment;
-    bool skew;           // Pitt–Peters correction of the axial induction
+    bool skew; // Pitt–Peters correction of the axial induction
     bough_induction_options induction;
     bough_wind_def wind;
     bough_tower_def tower;
@@ -54,13 +54,13 @@ bough_rotor_def bough_rotor_def_default(void);
 
 // The motion at a sample, in ground axes. Blade b's vertex i is at index b·n_vertex + i.
 typedef struct bough_rotor_motion {
-    double time;                         // [s]
-    bough_vec3 hub;                      // where the blade-root axes meet the shaft [m]
-    bough_vec3 shaft;                    // unit vector, downwind
-    const bough_vec3 *position;          // (n_blade × n_vertex) [m]
-    const bough_mat3 *rotation;          // (n_blade × n_vertex) columns: section axes
-    const bough_vec3 *velocity;          // (n_blade × n_vertex) [m/s]
-    const bough_vec3 *angular_velocity;  // (n_blade × n_vertex) [rad/s]
+    double time;                        // [s]
+    bough_vec3 hub;                     // where the blade-root axes meet the shaft [m]
+    bough_vec3 shaft;                   // unit vector, downwind
+    const bough_vec3 *position;         // (n_blade × n_vertex) [m]
+    const bough_mat3 *rotation;         // (n_blade × n_vertex) columns: section axes
+    const bough_vec3 *velocity;         // (n_blade × n_vertex) [m/s]
+    const bough_vec3 *angular_velocity; // (n_blade × n_vertex) [rad/s]
 } bough_rotor_motion;
 
 // What a station reports. x is normal to the deformed blade in the plane of shaft and blade, y

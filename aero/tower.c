@@ -38,7 +38,8 @@ static double radius_at(const bough_tower *tower, double height) {
     if (above >= top) return 0;
     if (above > 0) return top * cos(BOUGH_PI / 2 * above / top);
     int i = 1;
-    while (i < n - 1 && height > tower->height[i]) i++;
+    while (i < n - 1 && height > tower->height[i])
+        i++;
     double w = (height - tower->height[i - 1]) / (tower->height[i] - tower->height[i - 1]);
     return tower->radius[i - 1] + w * (tower->radius[i] - tower->radius[i - 1]);
 }

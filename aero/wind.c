@@ -1,8 +1,6 @@
 #include "aero/wind.h"
 
-bough_wind_def bough_wind_def_default(void) {
-    return (bough_wind_def){.reference_height = 90};
-}
+bough_wind_def bough_wind_def_default(void) { return (bough_wind_def){.reference_height = 90}; }
 
 bough_vec3 bough_wind_at(const bough_wind_def *wind, bough_vec3 position, double t) {
     (void)t; // steady wind; time is part of the interface because every other kind needs it

@@ -45,8 +45,13 @@ static bough_induction_options lossless(void) {
 }
 
 static bough_element element_of(const bough_polar *polar) {
-    return (bough_element){.polar = polar, .solidity = 0.05, .tip_factor = 1, .hub_factor = 10,
-                           .twist = 0.05, .inflow_x = 8, .inflow_y = 40};
+    return (bough_element){.polar = polar,
+                           .solidity = 0.05,
+                           .tip_factor = 1,
+                           .hub_factor = 10,
+                           .twist = 0.05,
+                           .inflow_x = 8,
+                           .inflow_y = 40};
 }
 
 // Without swirl and loss, thrust from momentum 4a(1 − a) equals thrust from the blade.

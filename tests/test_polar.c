@@ -37,7 +37,8 @@ static void interpolation_is_linear(void **state) {
     bough_polar polar = build(arena, def);
     for (double a = -179.99; a < 180; a += 0.0371) {
         int i = 0;
-        while (i < def->n - 2 && def->row[4 * (i + 1)] < a) i++;
+        while (i < def->n - 2 && def->row[4 * (i + 1)] < a)
+            i++;
         const double *r = def->row + 4 * i;
         double w = (a - r[0]) / (r[4] - r[0]);
         bough_coefficients c = bough_polar_at(&polar, a * degree);
@@ -92,8 +93,8 @@ static void bad_tables_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(knots_are_reproduced), cmocka_unit_test(interpolation_is_linear),
-        cmocka_unit_test(turns_repeat),         cmocka_unit_test(gap_is_bridged),
+        cmocka_unit_test(knots_are_reproduced),   cmocka_unit_test(interpolation_is_linear),
+        cmocka_unit_test(turns_repeat),           cmocka_unit_test(gap_is_bridged),
         cmocka_unit_test(bad_tables_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

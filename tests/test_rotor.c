@@ -51,14 +51,16 @@ static rig *create_rig(bool flat) {
     r->def.vertex_span = r->span;
     r->def.vertex_position = r->axis;
     r->def.vertex_rotation = r->section;
-    r->motion = (bough_rotor_motion){.position = r->position, .rotation = r->rotation,
-                                     .velocity = r->velocity, .angular_velocity = r->spin};
+    r->motion = (bough_rotor_motion){.position = r->position,
+                                     .rotation = r->rotation,
+                                     .velocity = r->velocity,
+                                     .angular_velocity = r->spin};
     if (!flat) {
         r->tilt = 5 * degree;
         r->cone = 2.5 * degree;
         r->overhang = 5.0191;
-        r->def.tower = (bough_tower_def){.n = 12, .height = nrel5mw_tower_height,
-                                         .diameter = nrel5mw_tower_diameter};
+        r->def.tower = (bough_tower_def){
+            .n = 12, .height = nrel5mw_tower_height, .diameter = nrel5mw_tower_diameter};
     }
     return r;
 }
@@ -122,9 +124,9 @@ static rig *create_flat_rig(void) {
 static void flat_rotor_matches_reference(void **state) {
     (void)state;
     static const double table[][5] = {
-        {3, 0, 6.972, 77.370925, 54.299714},      {4, 0, 7.183, 120.905807, 246.723471},
-        {8, 0, 9.156, 384.414061, 1976.531272},   {10, 0, 11.431, 600.183949, 3091.937526},
-        {11, 0, 11.89, 700.397181, 3932.783839},  {12, 3.823, 12.1, 589.108228, 4199.850531},
+        {3, 0, 6.972, 77.370925, 54.299714},       {4, 0, 7.183, 120.905807, 246.723471},
+        {8, 0, 9.156, 384.414061, 1976.531272},    {10, 0, 11.431, 600.183949, 3091.937526},
+        {11, 0, 11.89, 700.397181, 3932.783839},   {12, 3.823, 12.1, 589.108228, 4199.850531},
         {18, 14.92, 12.1, 337.306733, 4163.84765}, {25, 23.469, 12.1, 244.203811, 3637.726746}};
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         rig *r = create_flat_rig();
@@ -139,8 +141,10 @@ static void flat_rotor_matches_reference(void **state) {
 // Switching the corrections off one by one at 8 m/s, and heavy loading at 15 rpm.
 static void switches_match_reference(void **state) {
     (void)state;
-    static const double table[5][2] = {{397.593, 2146.476}, {384.535, 1976.489},
-                                       {382.420, 1995.611}, {384.880, 1978.841},
+    static const double table[5][2] = {{397.593, 2146.476},
+                                       {384.535, 1976.489},
+                                       {382.420, 1995.611},
+                                       {384.880, 1978.841},
                                        {493.990, 889.607}};
     for (int i = 0; i < 5; i++) {
         rig *r = create_flat_rig();
@@ -189,11 +193,12 @@ static void stations_match_reference(void **state) {
     for (int j = 0; j < STATIONS; j++) {
         const double *t = table[j];
         const bough_station *s = r->data.station + j;
-        const double value[11] = {s->inflow_x, s->inflow_y, s->speed, s->phi / degree,
-                                  s->alpha / degree, s->axial, s->tangential,
-                                  s->coefficients.lift, s->coefficients.drag, s->force_x,
-                                  s->force_y};
-        for (int c = 0; c < 11; c++) check_near(value[c], t[c], 1e-5, 2e-6);
+        const double value[11] = {
+            s->inflow_x,          s->inflow_y, s->speed,      s->phi / degree,
+            s->alpha / degree,    s->axial,    s->tangential, s->coefficients.lift,
+            s->coefficients.drag, s->force_x,  s->force_y};
+        for (int c = 0; c < 11; c++)
+            check_near(value[c], t[c], 1e-5, 2e-6);
     }
     destroy_rig(r);
 }
@@ -213,10 +218,10 @@ static void mean_of_revolution(rig *r, double *thrust, double *torque) {
 static void rigid_turbine_matches_reference(void **state) {
     (void)state;
     static const double table[12][5] = {
-        {4, 0, 7.2, 122.637, 260.011},      {6, 0, 7.9, 233.22, 950.717},
-        {8, 0, 6, 244.148, 2145.35},        {8, 0, 9.16, 382.103, 1960.59},
-        {8, 0, 15, 501.001, 950.214},       {8, 5, 9.16, 232.219, 1481.82},
-        {11.4, 0, 12.1, 737.315, 4236.88},  {13, 6.6, 12.1, 496.79, 4123.98},
+        {4, 0, 7.2, 122.637, 260.011},       {6, 0, 7.9, 233.22, 950.717},
+        {8, 0, 6, 244.148, 2145.35},         {8, 0, 9.16, 382.103, 1960.59},
+        {8, 0, 15, 501.001, 950.214},        {8, 5, 9.16, 232.219, 1481.82},
+        {11.4, 0, 12.1, 737.315, 4236.88},   {13, 6.6, 12.1, 496.79, 4123.98},
         {15, 10.45, 12.1, 404.739, 4109.58}, {20, 6.5, 14, 1102.77, 12095},
         {20, 17.47, 12.1, 302.035, 4041.38}, {25, 23.47, 12.1, 232.542, 3459.5}};
     for (int i = 0; i < 12; i++) {
@@ -251,12 +256,14 @@ static void integrate_line_load(const rig *r, const bough_vec3 *force, const bou
     double end = r->station[STATIONS - 1].span, ds = end / POINTS;
     for (int k = 0, i = 0, j = 0; k < POINTS; k++) {
         double s = (k + 0.5) * ds;
-        while (i < VERTICES - 2 && r->span[i + 1] < s) i++;
-        while (j < STATIONS - 2 && r->station[j + 1].span < s) j++;
+        while (i < VERTICES - 2 && r->span[i + 1] < s)
+            i++;
+        while (j < STATIONS - 2 && r->station[j + 1].span < s)
+            j++;
         double w = (s - r->span[i]) / (r->span[i + 1] - r->span[i]);
         double v = (s - r->station[j].span) / (r->station[j + 1].span - r->station[j].span);
-        bough_vec3 x = bough_add(bough_scale(1 - w, r->position[i]),
-                                 bough_scale(w, r->position[i + 1]));
+        bough_vec3 x =
+            bough_add(bough_scale(1 - w, r->position[i]), bough_scale(w, r->position[i + 1]));
         bough_vec3 f = bough_add(bough_scale(1 - v, force[j]), bough_scale(v, force[j + 1]));
         bough_vec3 m = bough_add(bough_scale(1 - v, moment[j]), bough_scale(v, moment[j + 1]));
         *total = bough_axpy(ds, f, *total);
@@ -281,8 +288,8 @@ static void mapping_conserves_force_and_moment(void **state) {
         const bough_station *s = r->data.station + j;
         double c = r->station[j].chord;
         force[j] = bough_axpy(-s->force_y, y, bough_scale(s->force_x, x));
-        moment[j] = bough_scale(0.5 * 1.225 * s->speed * s->speed * c * c *
-                                    s->coefficients.moment, z);
+        moment[j] =
+            bough_scale(0.5 * 1.225 * s->speed * s->speed * c * c * s->coefficients.moment, z);
     }
     integrate_line_load(r, force, moment, &total, &about);
     for (int i = 0; i < VERTICES; i++) {
@@ -290,8 +297,8 @@ static void mapping_conserves_force_and_moment(void **state) {
         about = bough_sub(about, bough_cross(r->position[i], r->data.force[i]));
         about = bough_sub(about, r->data.moment[i]);
     }
-    check_near(bough_norm(total), 0, 0, 1e-3);  // of 2e5 N: the error of the summation
-    check_near(bough_norm(about), 0, 0, 2e-1);  // of 2e7 N m
+    check_near(bough_norm(total), 0, 0, 1e-3); // of 2e5 N: the error of the summation
+    check_near(bough_norm(about), 0, 0, 2e-1); // of 2e7 N m
     destroy_rig(r);
 }
 
@@ -299,7 +306,8 @@ static void mapping_conserves_force_and_moment(void **state) {
 static void offsets_carry_moment(void **state) {
     (void)state;
     rig *r = create_rig(true);
-    for (int j = 0; j < STATIONS; j++) r->station[j].centre_y = -0.4;
+    for (int j = 0; j < STATIONS; j++)
+        r->station[j].centre_y = -0.4;
     r->def.pitching_moment = false;
     operate(r, 10, 2, 10);
     sample(r, 0);
@@ -328,7 +336,8 @@ static void check_same_loads(const rig *a, const rig *b, const bough_mat3 *turn)
 static void section_axes_are_arbitrary(void **state) {
     (void)state;
     rig *a = create_rig(false), *b = create_rig(false);
-    for (int i = 0; i < VERTICES; i++) b->section[i] = turned(bough_v3(0, 0, -0.01 * (24 - i)));
+    for (int i = 0; i < VERTICES; i++)
+        b->section[i] = turned(bough_v3(0, 0, -0.01 * (24 - i)));
     operate(a, 9, 1, 10);
     operate(b, 9, 1, 10);
     sample(a, 2);
