@@ -24,12 +24,11 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
         const bough_link *link = &tree->links[i];
         int up = link->parent;
         d->relative[i] = bough_joint_pose(&link->joint, q + link->first_coordinate);
-        d->pose[i] =
-            up < 0 ? d->relative[i] : bough_transform_compose(d->pose[up], d->relative[i]);
+        d->pose[i] = up < 0 ? d->relative[i] : bough_transform_compose(d->pose[up], d->relative[i]);
         // V_i = X_i V_λ + S v
         d->joint_twist[i] = bough_joint_twist(&link->joint, v + link->first_speed);
-        d->twist[i] = bough_twist_add(from_parent(d, tree->links, i, d->twist, no_twist),
-                                      d->joint_twist[i]);
+        d->twist[i] =
+            bough_twist_add(from_parent(d, tree->links, i, d->twist, no_twist), d->joint_twist[i]);
         d->gravity[i] = bough_mat3_tmul(d->pose[i].rotation, tree->gravity);
     }
 }
@@ -89,9 +88,8 @@ void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, dou
         // A_i = X_i A_λ + V_i × S v + S v̇
         bough_twist own = bough_joint_twist(&link->joint, acceleration + link->first_speed);
         bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
-        d->acceleration[i] =
-            bough_twist_add(from_parent(d, tree->links, i, d->acceleration, no_twist),
-                            bough_twist_add(turn, own));
+        d->acceleration[i] = bough_twist_add(
+            from_parent(d, tree->links, i, d->acceleration, no_twist), bough_twist_add(turn, own));
         d->wrench[i] =
             bough_wrench_add(d->wrench[i], bough_inertia_mul(&link->inertia, d->acceleration[i]));
     }
@@ -99,7 +97,8 @@ void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, dou
         const bough_link *link = &tree->links[i];
         double *row = residual + link->first_speed;
         bough_joint_force(&link->joint, d->wrench[i], row); // Sᵀ f_i
-        for (int k = 0; k < link->n_speeds; k++) row[k] -= d->force[link->first_speed + k];
+        for (int k = 0; k < link->n_speeds; k++)
+            row[k] -= d->force[link->first_speed + k];
         if (link->parent < 0) continue;
         bough_wrench *up = &d->wrench[link->parent];
         *up = bough_wrench_add(*up, bough_wrench_to_parent(&d->relative[i], d->wrench[i]));
@@ -126,7 +125,8 @@ static bough_wrench matrix_mul(const double *a, bough_twist v) {
     bough_twist_store(v, x);
     for (int r = 0; r < N; r++) {
         y[r] = 0;
-        for (int c = 0; c < N; c++) y[r] += a[N * r + c] * x[c];
+        for (int c = 0; c < N; c++)
+            y[r] += a[N * r + c] * x[c];
     }
     return bough_wrench_load(y);
 }
@@ -144,7 +144,8 @@ static void add_to_parent(const bough_transform *x, const double *a, double *up)
         double column[N];
         bough_wrench w = matrix_mul(a, bough_twist_to_child(x, unit_twist(k)));
         bough_wrench_store(bough_wrench_to_parent(x, w), column);
-        for (int r = 0; r < N; r++) up[N * k + r] += column[r];
+        for (int r = 0; r < N; r++)
+            up[N * k + r] += column[r];
     }
 }
 
@@ -152,7 +153,8 @@ static void add_to_parent(const bough_transform *x, const double *a, double *up)
 static bool moves_inertia(const double *articulated, bough_twist column, double moved) {
     int first = bough_norm(column.angular) > 0 ? 3 : 0;
     double trace = 0;
-    for (int r = first; r < first + 3; r++) trace += articulated[N * r + r];
+    for (int r = first; r < first + 3; r++)
+        trace += articulated[N * r + r];
     return moved > 1e-14 * trace;
 }
 
@@ -176,10 +178,12 @@ static void release_joint(const bough_link *link, const double *gain, const doub
     int n = link->n_speeds;
     for (int c = 0; c < N; c++) {
         double x[N];
-        for (int k = 0; k < n; k++) x[k] = gain[N * k + c];
+        for (int k = 0; k < n; k++)
+            x[k] = gain[N * k + c];
         bough_cholesky_solve(n, factor, x);
         for (int k = 0; k < n; k++) {
-            for (int r = 0; r < N; r++) articulated[N * r + c] -= gain[N * k + r] * x[k];
+            for (int r = 0; r < N; r++)
+                articulated[N * r + c] -= gain[N * k + r] * x[k];
         }
     }
 }
@@ -191,7 +195,8 @@ static bough_wrench gain_solve(const bough_link *link, const double *gain, const
     memcpy(x, u, (size_t)link->n_speeds * sizeof(double));
     bough_cholesky_solve(link->n_speeds, factor, x);
     for (int k = 0; k < link->n_speeds; k++) {
-        for (int r = 0; r < N; r++) w[r] += gain[N * k + r] * x[k];
+        for (int r = 0; r < N; r++)
+            w[r] += gain[N * k + r] * x[k];
     }
     return bough_wrench_load(w);
 }
@@ -200,7 +205,8 @@ static bough_wrench gain_solve(const bough_link *link, const double *gain, const
 static double *joint_remainder(const bough_link *link, bough_tree_data *d, int i) {
     double *u = d->force + link->first_speed, resisting[N];
     bough_joint_force(&link->joint, d->wrench[i], resisting);
-    for (int k = 0; k < link->n_speeds; k++) u[k] -= resisting[k];
+    for (int k = 0; k < link->n_speeds; k++)
+        u[k] -= resisting[k];
     return u;
 }
 
@@ -238,9 +244,9 @@ bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, dou
         add_to_parent(&d->relative[i], own, d->articulated + NN * link->parent);
         // pᵃ = pᴬ + Iᵃ c + U D⁻¹ u
         bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
-        bough_wrench passed = bough_wrench_add(
-            d->wrench[i],
-            bough_wrench_add(matrix_mul(own, turn), gain_solve(link, gain, factor, u)));
+        bough_wrench passed =
+            bough_wrench_add(d->wrench[i], bough_wrench_add(matrix_mul(own, turn),
+                                                            gain_solve(link, gain, factor, u)));
         bough_wrench *up = &d->wrench[link->parent];
         *up = bough_wrench_add(*up, bough_wrench_to_parent(&d->relative[i], passed));
     }
@@ -257,15 +263,15 @@ void bough_tree_response(const bough_tree *tree, bough_tree_data *d, const bough
     memset(change, 0, (size_t)tree->n_v * sizeof(double));
     if (frame->link < 0) return;
     memset(d->force, 0, (size_t)tree->n_v * sizeof(double));
-    for (int i = 0; i < tree->n_links; i++) d->wrench[i] = no_wrench;
+    for (int i = 0; i < tree->n_links; i++)
+        d->wrench[i] = no_wrench;
     subtract_at(d, frame, wrench);
     for (int i = frame->link; i >= 0; i = tree->links[i].parent) { // only ancestors feel it
         const bough_link *link = &tree->links[i];
         double *u = joint_remainder(link, d, i);
         if (link->parent < 0) break;
         bough_wrench passed = bough_wrench_add(
-            d->wrench[i],
-            gain_solve(link, d->joint_gain + NN * i, d->joint_factor + NN * i, u));
+            d->wrench[i], gain_solve(link, d->joint_gain + NN * i, d->joint_factor + NN * i, u));
         d->wrench[link->parent] = bough_wrench_to_parent(&d->relative[i], passed);
     }
     for (int i = 0; i < tree->n_links; i++) {
@@ -276,7 +282,8 @@ void bough_tree_response(const bough_tree *tree, bough_tree_data *d, const bough
 
 // -- joint-space inertia by composite rigid bodies -----------------------------------------------
 
-// Column `row` of M: the wrench of a unit speed of link i, felt by its own joint and its ancestors'.
+// Column `row` of M: the wrench of a unit speed of link i, felt by its own joint and its
+// ancestors'.
 static void mass_column(const bough_tree *tree, const bough_tree_data *d, int i, int k,
                         double *mass) {
     const bough_link *link = &tree->links[i];
@@ -296,10 +303,12 @@ static void mass_column(const bough_tree *tree, const bough_tree_data *d, int i,
 
 void bough_tree_mass_matrix(const bough_tree *tree, bough_tree_data *d, double *mass) {
     memset(mass, 0, (size_t)tree->n_v * (size_t)tree->n_v * sizeof(double));
-    for (int i = 0; i < tree->n_links; i++) d->composite[i] = tree->links[i].inertia;
+    for (int i = 0; i < tree->n_links; i++)
+        d->composite[i] = tree->links[i].inertia;
     for (int i = tree->n_links - 1; i >= 0; i--) {
         const bough_link *link = &tree->links[i];
-        for (int k = 0; k < link->n_speeds; k++) mass_column(tree, d, i, k, mass);
+        for (int k = 0; k < link->n_speeds; k++)
+            mass_column(tree, d, i, k, mass);
         if (link->parent < 0) continue;
         bough_inertia *up = &d->composite[link->parent];
         *up = bough_inertia_add(*up, bough_inertia_to_parent(&d->relative[i], d->composite[i]));
@@ -332,8 +341,7 @@ void bough_tree_tangent(const bough_tree *tree, const double *state, const doubl
             bough_twist_add(from_parent(d, tree->links, i, d->acceleration, no_twist),
                             bough_twist_add(bough_twist_cross(carried, moved), own));
         // δg_i = Eᵀ δg_λ − S_ω δη × g_i
-        bough_vec3 above =
-            link->parent < 0 ? no_twist.linear : d->gravity_rate[link->parent];
+        bough_vec3 above = link->parent < 0 ? no_twist.linear : d->gravity_rate[link->parent];
         d->gravity_rate[i] = bough_add(bough_mat3_tmul(d->relative[i].rotation, above),
                                        bough_cross(d->gravity[i], moved.angular));
     }

@@ -12,8 +12,7 @@
 // residual (n_v) = M(q) v̇ + h(q, v) − τ(t, q, u) with v̇ = acceleration (n_v), u the port wrenches
 // (6 × n_ports) or NULL for none: joint loads, port and external wrenches are within τ and h.
 void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
-                                 const double *input, const double *acceleration,
-                                 double *residual);
+                                 const double *input, const double *acceleration, double *residual);
 
 // acceleration v̇ (n_v) that makes the residual zero, by articulated bodies. False when a joint
 // moves no inertia. Leaves the links' accelerations and the factors in data.

@@ -47,7 +47,7 @@ static int jacobian(double t, double cj, N_Vector y, N_Vector rate, N_Vector r, 
     bough_ida *ida = self;
     ida->jacobians++;
     return ida->dae.setup(ida->dae.self, t, bough_vector_data(y), bough_vector_data(rate), cj) ? 0
-                                                                                            : 1;
+                                                                                               : 1;
 }
 
 static int weights(N_Vector y, N_Vector out, void *self) {
@@ -75,9 +75,7 @@ static int matrix_zero(SUNMatrix m) {
     return 0;
 }
 
-static void matrix_destroy(SUNMatrix m) {
-    SUNMatFreeEmpty(m);
-}
+static void matrix_destroy(SUNMatrix m) { SUNMatFreeEmpty(m); }
 
 static SUNLinearSolver_Type solver_type(SUNLinearSolver s) {
     (void)s;
@@ -167,7 +165,8 @@ bough_status bough_ida_create(bough_arena *arena, const bough_dae *dae, const do
     if (ida == NULL || weight == NULL) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for IDA", dae->name);
     }
-    for (int i = 0; i < dae->n; i++) weight[i] = 1 / (rtol * scale[i]);
+    for (int i = 0; i < dae->n; i++)
+        weight[i] = 1 / (rtol * scale[i]);
     ida->dae = *dae;
     ida->weight = weight;
     *out = ida;
@@ -199,10 +198,11 @@ static bough_status failure(bough_ida *ida, double t, int flag) {
     if (flag == IDA_TOO_MUCH_WORK) {
         return bough_fail(BOUGH_FAILED,
                           "%s at t = %.9g s: IDA took %d steps without reaching the end of the "
-                          "macro step; %s", ida->dae.name, t, (int)MOST_STEPS, advice);
+                          "macro step; %s",
+                          ida->dae.name, t, (int)MOST_STEPS, advice);
     }
-    return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: IDA failed (code %d: %s); %s",
-                      ida->dae.name, t, flag, ida->message, advice);
+    return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: IDA failed (code %d: %s); %s", ida->dae.name,
+                      t, flag, ida->message, advice);
 }
 
 bough_status bough_ida_start(bough_ida *ida, double t, const double *y, const double *rate) {

@@ -13,34 +13,22 @@ static const struct {
     [BOUGH_JOINT_FREE] = {"free", 7, 6},
 };
 
-const char *bough_joint_name(bough_joint_kind kind) {
-    return kinds[kind].name;
-}
+const char *bough_joint_name(bough_joint_kind kind) { return kinds[kind].name; }
 
-int bough_joint_n_coordinates(bough_joint_kind kind) {
-    return kinds[kind].coordinates;
-}
+int bough_joint_n_coordinates(bough_joint_kind kind) { return kinds[kind].coordinates; }
 
-int bough_joint_n_speeds(bough_joint_kind kind) {
-    return kinds[kind].speeds;
-}
+int bough_joint_n_speeds(bough_joint_kind kind) { return kinds[kind].speeds; }
 
 // Where the coordinates hold the quaternion; -1 without one.
 static int quaternion_row(const bough_joint *joint) {
     return joint->kind == BOUGH_JOINT_SPHERICAL ? 0 : joint->kind == BOUGH_JOINT_FREE ? 3 : -1;
 }
 
-static bough_quaternion load(const double *p) {
-    return (bough_quaternion){p[0], p[1], p[2], p[3]};
-}
+static bough_quaternion load(const double *p) { return (bough_quaternion){p[0], p[1], p[2], p[3]}; }
 
-static bough_vec3 load3(const double *x) {
-    return bough_v3(x[0], x[1], x[2]);
-}
+static bough_vec3 load3(const double *x) { return bough_v3(x[0], x[1], x[2]); }
 
-static void store3(bough_vec3 x, double *out) {
-    out[0] = x.x, out[1] = x.y, out[2] = x.z;
-}
+static void store3(bough_vec3 x, double *out) { out[0] = x.x, out[1] = x.y, out[2] = x.z; }
 
 static bough_mat3 rotation_at(const double *p) {
     return bough_rotation_matrix(bough_quaternion_normalised(load(p)));

@@ -24,7 +24,8 @@ bool bough_dense_factor(int n, double *a, int *pivot) {
     if (n == 0) return true;
     call_once(&library_is_prepared, one_thread);
     double sum = 0; // a NaN may pass the pivot search
-    for (size_t i = 0; i < (size_t)n * (size_t)n; i++) sum += fabs(a[i]);
+    for (size_t i = 0; i < (size_t)n * (size_t)n; i++)
+        sum += fabs(a[i]);
     if (!isfinite(sum)) return false;
     int info = 0;
     dgetrf_(&n, &n, a, &n, pivot, &info);
@@ -40,12 +41,14 @@ void bough_dense_solve(int n, int n_right, const double *factor, const int *pivo
 bool bough_cholesky_factor(int n, double *a) {
     for (int j = 0; j < n; j++) {
         double diagonal = a[n * j + j], pivot = diagonal;
-        for (int k = 0; k < j; k++) pivot -= a[n * j + k] * a[n * j + k];
+        for (int k = 0; k < j; k++)
+            pivot -= a[n * j + k] * a[n * j + k];
         if (!(pivot > 1e-12 * diagonal) || !isfinite(pivot)) return false;
         a[n * j + j] = sqrt(pivot);
         for (int i = j + 1; i < n; i++) {
             double s = a[n * i + j];
-            for (int k = 0; k < j; k++) s -= a[n * i + k] * a[n * j + k];
+            for (int k = 0; k < j; k++)
+                s -= a[n * i + k] * a[n * j + k];
             a[n * i + j] = s / a[n * j + j];
         }
     }
@@ -54,11 +57,13 @@ bool bough_cholesky_factor(int n, double *a) {
 
 void bough_cholesky_solve(int n, const double *factor, double *b) {
     for (int i = 0; i < n; i++) {
-        for (int k = 0; k < i; k++) b[i] -= factor[n * i + k] * b[k];
+        for (int k = 0; k < i; k++)
+            b[i] -= factor[n * i + k] * b[k];
         b[i] /= factor[n * i + i];
     }
     for (int i = n - 1; i >= 0; i--) {
-        for (int k = i + 1; k < n; k++) b[i] -= factor[n * k + i] * b[k];
+        for (int k = i + 1; k < n; k++)
+            b[i] -= factor[n * k + i] * b[k];
         b[i] /= factor[n * i + i];
     }
 }

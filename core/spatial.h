@@ -60,8 +60,7 @@ static inline bough_wrench bough_wrench_sub(bough_wrench a, bough_wrench b) {
 // X V: the parent frame's twist expressed in the child frame, at the child's origin.
 static inline bough_twist bough_twist_to_child(const bough_transform *x, bough_twist t) {
     bough_vec3 at = bough_add(t.linear, bough_cross(t.angular, x->position));
-    return (bough_twist){bough_mat3_tmul(x->rotation, at),
-                         bough_mat3_tmul(x->rotation, t.angular)};
+    return (bough_twist){bough_mat3_tmul(x->rotation, at), bough_mat3_tmul(x->rotation, t.angular)};
 }
 
 // Xᵀ f: the child frame's wrench expressed in the parent frame, at the parent's origin.
@@ -101,9 +100,8 @@ static inline bough_wrench bough_inertia_mul(const bough_inertia *i, bough_twist
 static inline bough_mat3 bough_steiner(bough_vec3 a, bough_vec3 b) {
     double d = 2 * bough_dot(a, b), xy = -a.x * b.y - b.x * a.y, yz = -a.y * b.z - b.y * a.z,
            zx = -a.z * b.x - b.z * a.x;
-    return (bough_mat3){{d - 2 * a.x * b.x, xy, zx},
-                        {xy, d - 2 * a.y * b.y, yz},
-                        {zx, yz, d - 2 * a.z * b.z}};
+    return (bough_mat3){
+        {d - 2 * a.x * b.x, xy, zx}, {xy, d - 2 * a.y * b.y, yz}, {zx, yz, d - 2 * a.z * b.z}};
 }
 
 static inline bough_mat3 bough_mat3_add(bough_mat3 a, bough_mat3 b) {
@@ -118,8 +116,8 @@ static inline bough_inertia bough_inertia_add(bough_inertia a, bough_inertia b) 
 // The inertia of a mass [kg] at `centre` [m], from that about its centre [kg m²].
 static inline bough_inertia bough_inertia_of(double mass, bough_vec3 centre, bough_mat3 about) {
     bough_vec3 first = bough_scale(mass, centre);
-    return (bough_inertia){
-        mass, first, bough_mat3_add(about, bough_steiner(bough_scale(0.5, first), centre))};
+    return (bough_inertia){mass, first,
+                           bough_mat3_add(about, bough_steiner(bough_scale(0.5, first), centre))};
 }
 
 // Xᵀ I X: the child frame's inertia expressed in the parent frame, about the parent's origin.

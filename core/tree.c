@@ -14,9 +14,7 @@ bough_body_def bough_body_def_default(void) {
 
 // -- checks of the def -----------------------------------------------------------------------
 
-static bool finite3(bough_vec3 v) {
-    return isfinite(v.x) && isfinite(v.y) && isfinite(v.z);
-}
+static bool finite3(bough_vec3 v) { return isfinite(v.x) && isfinite(v.y) && isfinite(v.z); }
 
 static bool is_rotation(bough_mat3 r) {
     bough_mat3 e = bough_mat3_product(bough_mat3_transpose(r), r);
@@ -30,8 +28,10 @@ static bough_status check_placement(const char *what, const char *name, bough_tr
         return bough_fail(BOUGH_INVALID, "%s '%s': its position is not finite", what, name);
     }
     if (!is_rotation(x.rotation)) {
-        return bough_fail(BOUGH_INVALID, "%s '%s': its rotation is not a right-handed orthonormal "
-                                         "matrix", what, name);
+        return bough_fail(BOUGH_INVALID,
+                          "%s '%s': its rotation is not a right-handed orthonormal "
+                          "matrix",
+                          what, name);
     }
     return bough_ok();
 }
@@ -62,8 +62,10 @@ static bough_status check_body(const bough_tree_def *def, int body) {
     bool finite = isfinite(b->mass) && finite3(b->mass_centre) && finite3(b->inertia.c1) &&
                   finite3(b->inertia.c2) && finite3(b->inertia.c3);
     if (!finite || b->mass < 0) {
-        return bough_fail(BOUGH_INVALID, "body '%s': mass, mass centre and inertia must be finite "
-                                         "and the mass not negative", b->name);
+        return bough_fail(BOUGH_INVALID,
+                          "body '%s': mass, mass centre and inertia must be finite "
+                          "and the mass not negative",
+                          b->name);
     }
     bough_status status = check_joint(b);
     return bough_is_ok(&status) ? check_placement("joint of body", b->name, b->joint) : status;
@@ -97,8 +99,9 @@ static bough_status check_attachments(const bough_tree_def *def) {
         int body = def->loads[k].body;
         bool known = body >= 0 && body < def->n_bodies;
         if (!known || bough_joint_n_speeds(def->bodies[body].kind) != 1) {
-            return bough_fail(BOUGH_INVALID, "joint load on '%s': it needs a body with a revolute "
-                                             "or prismatic joint",
+            return bough_fail(BOUGH_INVALID,
+                              "joint load on '%s': it needs a body with a revolute "
+                              "or prismatic joint",
                               known ? def->bodies[body].name : "?");
         }
     }
@@ -112,8 +115,10 @@ static bough_status check(const bough_tree_def *def) {
     }
     for (int b = 0; b < def->n_bodies; b++) { // every parent exists by now
         if (depth(def, b) < 0) {
-            return bough_fail(BOUGH_INVALID, "body '%s': its chain of parents is a cycle and "
-                                             "never reaches the ground", def->bodies[b].name);
+            return bough_fail(BOUGH_INVALID,
+                              "body '%s': its chain of parents is a cycle and "
+                              "never reaches the ground",
+                              def->bodies[b].name);
         }
     }
     return check_attachments(def);
@@ -177,8 +182,7 @@ static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
         const bough_marker_def *marker = &def->markers[m];
         bough_frame carrier = marker->body < 0 ? ground_frame() : tree->bodies[marker->body];
         tree->markers[m].link = carrier.link;
-        tree->markers[m].placement =
-            bough_transform_compose(carrier.placement, marker->placement);
+        tree->markers[m].placement = bough_transform_compose(carrier.placement, marker->placement);
     }
     for (int p = 0; p < def->n_ports; p++) {
         tree->ports[p].link = tree->markers[def->ports[p].marker].link;
@@ -215,8 +219,8 @@ static bool take_model(bough_arena *arena, const bough_tree_def *def, bough_tree
     tree->ports = bough_arena_take(arena, (size_t)def->n_ports * sizeof(bough_frame));
     tree->loads = bough_arena_take(arena, (size_t)def->n_loads * sizeof(bough_joint_load_def));
     tree->external = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_external));
-    tree->initial = bough_arena_doubles(
-        arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) * (size_t)def->n_bodies);
+    tree->initial = bough_arena_doubles(arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) *
+                                                   (size_t)def->n_bodies);
     return !bough_arena_exhausted(arena);
 }
 

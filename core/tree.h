@@ -10,22 +10,22 @@
 
 #include <stdbool.h>
 
-enum { BOUGH_GROUND = -1 };          // as a body's parent, a marker's body or a link's parent
+enum { BOUGH_GROUND = -1 }; // as a body's parent, a marker's body or a link's parent
 enum { BOUGH_PORT_INPUTS = 6, BOUGH_PORT_OUTPUTS = 9 };
 
 // -- def -------------------------------------------------------------------------------------
 
 typedef struct bough_body_def {
     const char *name;
-    int parent;                      // index of a body, in any order, or BOUGH_GROUND
-    bough_joint_kind kind;           // the joint to the parent
-    bough_transform joint;           // joint frame in the parent's body frame
-    bough_vec3 axis;                 // in joint axes, scaled to length 1; revolute and prismatic
+    int parent;            // index of a body, in any order, or BOUGH_GROUND
+    bough_joint_kind kind; // the joint to the parent
+    bough_transform joint; // joint frame in the parent's body frame
+    bough_vec3 axis;       // in joint axes, scaled to length 1; revolute and prismatic
     double coordinates[BOUGH_JOINT_COORDINATES]; // initial, see joint.h [rad, m, –]
     double speeds[BOUGH_JOINT_SPEEDS];           // initial, see joint.h [rad/s, m/s]
-    double mass;                     // [kg]
-    bough_vec3 mass_centre;          // in body axes [m]
-    bough_mat3 inertia;              // about the mass centre in body axes [kg m²]
+    double mass;                                 // [kg]
+    bough_vec3 mass_centre;                      // in body axes [m]
+    bough_mat3 inertia;                          // about the mass centre in body axes [kg m²]
 } bough_body_def;
 
 // A massless body fixed at the origin of the ground; coordinates and quaternions at rest.
@@ -34,8 +34,8 @@ bough_body_def bough_body_def_default(void);
 // A frame on a body, where things are attached and observed.
 typedef struct bough_marker_def {
     const char *name;
-    int body;                        // index, or BOUGH_GROUND
-    bough_transform placement;       // in the body frame
+    int body;                  // index, or BOUGH_GROUND
+    bough_transform placement; // in the body frame
 } bough_marker_def;
 
 // A marker at which a flexible body is welded. Inputs, 6 per port: the wrench (force, moment) on
@@ -43,20 +43,21 @@ typedef struct bough_marker_def {
 // (linear, angular velocity) and the gravity vector, all in marker axes [m/s, rad/s, m/s²].
 typedef struct bough_port_def {
     const char *name;
-    int marker;                      // index
-    bough_inertia root;              // of the flexible body's root vertex, in the marker frame
+    int marker;         // index
+    bough_inertia root; // of the flexible body's root vertex, in the marker frame: the tree
+                        // carries its inertia and weight, so the wrench must not contain them
 } bough_port_def;
 
 // A load along a joint's axis: value × factor, factor rising linearly from 0 at `start` to 1 at
 // `end`; end <= start means constant from the beginning.
 typedef struct bough_joint_load_def {
-    int body;                        // whose joint; revolute or prismatic
-    double value;                    // [N m] or [N]
-    double start, end;               // [s]
+    int body;          // whose joint; revolute or prismatic
+    double value;      // [N m] or [N]
+    double start, end; // [s]
 } bough_joint_load_def;
 
 typedef struct bough_tree_def {
-    bough_vec3 gravity;              // in ground axes [m/s²]
+    bough_vec3 gravity; // in ground axes [m/s²]
     int n_bodies, n_markers, n_ports, n_loads;
     const bough_body_def *bodies;
     const bough_marker_def *markers;
@@ -68,38 +69,38 @@ typedef struct bough_tree_def {
 
 // A moving body with all that is welded to it; its frame is the moving body's.
 typedef struct bough_link {
-    int parent;                      // link of smaller index, or BOUGH_GROUND
-    int body;                        // the def's body whose joint moves it
-    bough_joint joint;               // placed in the parent link's frame
+    int parent;                          // link of smaller index, or BOUGH_GROUND
+    int body;                            // the def's body whose joint moves it
+    bough_joint joint;                   // placed in the parent link's frame
     int first_coordinate, n_coordinates; // its rows of q
-    int first_speed, n_speeds;       // its rows of v
-    bough_inertia inertia;           // of everything welded, in the link frame
+    int first_speed, n_speeds;           // its rows of v
+    bough_inertia inertia;               // of everything welded, in the link frame
 } bough_link;
 
 // A frame on a link (or on the ground), for bodies, markers and ports.
 typedef struct bough_frame {
     char *name;
     int link;
-    bough_transform placement;       // in the link's frame
+    bough_transform placement; // in the link's frame
 } bough_frame;
 
 typedef struct bough_external {
     bool active;
-    double start;                    // [s]
-    bough_wrench value, rate;        // in marker axes [N, N m; per s]
+    double start;             // [s]
+    bough_wrench value, rate; // in marker axes [N, N m; per s]
 } bough_external;
 
 typedef struct bough_tree {
-    bough_vec3 gravity;              // in ground axes [m/s²]
+    bough_vec3 gravity; // in ground axes [m/s²]
     int n_links, n_bodies, n_markers, n_ports, n_loads;
-    int n_q, n_v;                    // the state is (q, v), n_q + n_v
-    bough_link *links;               // (n_links), parents first
-    bough_frame *bodies;             // (n_bodies), as in the def
-    bough_frame *markers;            // (n_markers), as in the def
-    bough_frame *ports;              // (n_ports), as in the def, the marker's placement
-    bough_joint_load_def *loads;     // (n_loads), body replaced by the link's index
-    bough_external *external;        // (n_markers), changed by bough_tree_set_wrench only
-    double *initial;                 // initial state (n_q + n_v)
+    int n_q, n_v;                // the state is (q, v), n_q + n_v
+    bough_link *links;           // (n_links), parents first
+    bough_frame *bodies;         // (n_bodies), as in the def
+    bough_frame *markers;        // (n_markers), as in the def
+    bough_frame *ports;          // (n_ports), as in the def, the marker's placement
+    bough_joint_load_def *loads; // (n_loads), body replaced by the link's index
+    bough_external *external;    // (n_markers), changed by bough_tree_set_wrench only
+    double *initial;             // initial state (n_q + n_v)
 } bough_tree;
 
 // Builds the tree in the arena. BOUGH_INVALID for an unknown parent, a cycle, a joint that moves
@@ -123,21 +124,21 @@ void bough_tree_set_wrench(bough_tree *tree, int marker, double start, const dou
 
 typedef struct bough_tree_data {
     // computed by bough_tree_kinematics, each (n_links), in link axes unless it says otherwise
-    bough_transform *relative;       // link in its parent
-    bough_transform *pose;           // link in the ground
-    bough_twist *joint_twist;        // S v
-    bough_twist *twist;              // of the link
-    bough_vec3 *gravity;             // [m/s²]
+    bough_transform *relative; // link in its parent
+    bough_transform *pose;     // link in the ground
+    bough_twist *joint_twist;  // S v
+    bough_twist *twist;        // of the link
+    bough_vec3 *gravity;       // [m/s²]
     // computed by the recursions of dynamics.h
-    bough_twist *acceleration;       // rate of the twist's components, or a tangent
-    bough_vec3 *gravity_rate;        // tangent of gravity
-    bough_wrench *wrench;            // accumulated
-    double *articulated;             // articulated inertia (n_links × 6 × 6, row-major)
-    double *joint_gain;              // U = Iᴬ S (n_links × 6 speeds × 6)
-    double *joint_factor;            // Cholesky factor of SᵀU (n_links × 6 × 6, row-major)
-    bough_inertia *composite;        // composite rigid bodies (n_links)
-    double *force;                   // generalised forces (n_v)
-    int singular;                    // the link whose joint moves no inertia, else -1
+    bough_twist *acceleration; // rate of the twist's components, or a tangent
+    bough_vec3 *gravity_rate;  // tangent of gravity
+    bough_wrench *wrench;      // accumulated
+    double *articulated;       // articulated inertia (n_links × 6 × 6, row-major)
+    double *joint_gain;        // U = Iᴬ S (n_links × 6 speeds × 6)
+    double *joint_factor;      // Cholesky factor of SᵀU (n_links × 6 × 6, row-major)
+    bough_inertia *composite;  // composite rigid bodies (n_links)
+    double *force;             // generalised forces (n_v)
+    int singular;              // the link whose joint moves no inertia, else -1
 } bough_tree_data;
 
 // Data for evaluations of the tree; as many as there are threads or users.
@@ -157,11 +158,11 @@ bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_f
 // Sums over the moving links. Potential energy is zero with all mass centres in the ground's origin
 // plane normal to gravity; angular momentum is about the ground's origin, in ground axes.
 typedef struct bough_tree_sums {
-    double mass;                     // [kg]
-    double kinetic, potential;       // [J]
-    bough_vec3 linear_momentum;      // [kg m/s]
-    bough_vec3 angular_momentum;     // [kg m²/s]
-    bough_vec3 mass_centre;          // in the ground [m]
+    double mass;                 // [kg]
+    double kinetic, potential;   // [J]
+    bough_vec3 linear_momentum;  // [kg m/s]
+    bough_vec3 angular_momentum; // [kg m²/s]
+    bough_vec3 mass_centre;      // in the ground [m]
 } bough_tree_sums;
 
 bough_tree_sums bough_tree_sum(const bough_tree *tree, const bough_tree_data *data);

@@ -21,15 +21,15 @@ typedef struct tree_subsystem {
     const char *name;
     int n; // n_q + n_v
     double time;
-    double *state, *scale; // (n)
-    const bough_signal *signal; // while advancing
-    double *input;              // (n_input) at the evaluation's time
-    bool started;               // the integrator's history belongs to the state
-    bough_ida *ida;             // NULL without states
-    double *ida_state, *ida_rate;          // (n) as IDA keeps it: quaternions not normalised
-    double *ida_matrix, *newton_matrix;    // (n × n, column-major)
-    int *ida_pivot, *newton_pivot;         // (n)
-    double *y, *r, *base, *plus, *minus;   // (n) scratch
+    double *state, *scale;               // (n)
+    const bough_signal *signal;          // while advancing
+    double *input;                       // (n_input) at the evaluation's time
+    bool started;                        // the integrator's history belongs to the state
+    bough_ida *ida;                      // NULL without states
+    double *ida_state, *ida_rate;        // (n) as IDA keeps it: quaternions not normalised
+    double *ida_matrix, *newton_matrix;  // (n × n, column-major)
+    int *ida_pivot, *newton_pivot;       // (n)
+    double *y, *r, *base, *plus, *minus; // (n) scratch
     long newton_setups, derivatives;
 } tree_subsystem;
 
@@ -52,9 +52,7 @@ static bool derivative(void *self, double t, const double *state, const double *
     return ok && all_finite(rate, s->n);
 }
 
-static void store3(bough_vec3 x, double *out) {
-    out[0] = x.x, out[1] = x.y, out[2] = x.z;
-}
+static void store3(bough_vec3 x, double *out) { out[0] = x.x, out[1] = x.y, out[2] = x.z; }
 
 static void output(void *self, double t, const double *state, const double *input, double *out) {
     (void)t, (void)input;
@@ -79,8 +77,8 @@ static void output_tangent(void *self, double t, const double *state, const doub
     for (int p = 0; p < s->tree->n_ports; p++, out += BOUGH_PORT_OUTPUTS) {
         const bough_frame *port = &s->tree->ports[p];
         if (port->link < 0) continue;
-        bough_twist_store(
-            bough_twist_to_child(&port->placement, s->data->acceleration[port->link]), out);
+        bough_twist_store(bough_twist_to_child(&port->placement, s->data->acceleration[port->link]),
+                          out);
         store3(bough_mat3_tmul(port->placement.rotation, s->data->gravity_rate[port->link]),
                out + 6);
     }
@@ -102,9 +100,7 @@ static void input_columns(void *self, double t, const double *state, const doubl
 }
 
 // The increment of a state that keeps y + δ − y exact to its last digit
-static double increment_at(double y, double relative) {
-    return relative * fmax(1, fabs(y));
-}
+static double increment_at(double y, double relative) { return relative * fmax(1, fabs(y)); }
 
 // f is defined for quaternions of any length, so its derivative by components is consistent.
 static bool newton_setup(void *self, double t, const double *state, const double *input,
@@ -124,7 +120,8 @@ static bool newton_setup(void *self, double t, const double *state, const double
         s->y[j] = state[j];
         if (!ok) return false;
         double *column = s->newton_matrix + (size_t)n * (size_t)j, factor = gamma / (high - low);
-        for (int i = 0; i < n; i++) column[i] = -factor * (s->plus[i] - s->minus[i]);
+        for (int i = 0; i < n; i++)
+            column[i] = -factor * (s->plus[i] - s->minus[i]);
         column[j] += 1;
     }
     return bough_dense_factor(n, s->newton_matrix, s->newton_pivot);
@@ -148,7 +145,8 @@ static bool residual(void *self, double t, const double *y, const double *rate, 
     evaluate_input(s, t);
     bough_tree_kinematics(tree, y, s->data);
     bough_tree_coordinate_rate(tree, y, r);
-    for (int i = 0; i < tree->n_q; i++) r[i] = rate[i] - r[i]; // q̇ − N(q) v
+    for (int i = 0; i < tree->n_q; i++)
+        r[i] = rate[i] - r[i]; // q̇ − N(q) v
     bough_tree_inverse_dynamics(tree, s->data, t, s->input, rate + tree->n_q, r + tree->n_q);
     return true;
 }
@@ -168,7 +166,8 @@ static bool residual_setup(void *self, double t, const double *y, const double *
         s->y[j] = y[j];
         s->r[j] = rate[j];
         double *column = s->ida_matrix + (size_t)n * (size_t)j;
-        for (int i = 0; i < n; i++) column[i] = (s->plus[i] - s->base[i]) / d;
+        for (int i = 0; i < n; i++)
+            column[i] = (s->plus[i] - s->base[i]) / d;
     }
     return bough_dense_factor(n, s->ida_matrix, s->ida_pivot);
 }
@@ -200,7 +199,8 @@ static bough_status start(tree_subsystem *s) {
     if (!derivative(s, s->time, s->state, s->input, s->ida_rate)) {
         return bough_fail(BOUGH_FAILED,
                           "%s at t = %.9g s: the accelerations are not finite; try a smaller "
-                          "macro step", s->name, s->time);
+                          "macro step",
+                          s->name, s->time);
     }
     s->started = true;
     return bough_ida_start(s->ida, s->time, s->state, s->ida_rate);
@@ -336,7 +336,8 @@ bough_status bough_tree_subsystem_create(bough_arena *arena, bough_tree *tree, c
     if (!take(arena, s)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's integrator");
     }
-    for (int i = 0; i < s->n; i++) s->scale[i] = 1;
+    for (int i = 0; i < s->n; i++)
+        s->scale[i] = 1;
     set_state(s, start_time, tree->initial);
     status = create_integrator(arena, s, rtol);
     if (bough_is_ok(&status)) describe(s, subsystem);

@@ -17,17 +17,11 @@ typedef struct content {
     double *data;
 } content;
 
-static content *of(N_Vector v) {
-    return v->content;
-}
+static content *of(N_Vector v) { return v->content; }
 
-static int length(N_Vector v) {
-    return of(v)->n;
-}
+static int length(N_Vector v) { return of(v)->n; }
 
-double *bough_vector_data(N_Vector v) {
-    return of(v)->data;
-}
+double *bough_vector_data(N_Vector v) { return of(v)->data; }
 
 // -- construction ----------------------------------------------------------------------------
 
@@ -36,18 +30,14 @@ static N_Vector_ID id(N_Vector v) {
     return SUNDIALS_NVEC_CUSTOM;
 }
 
-static sunindextype get_length(N_Vector v) {
-    return length(v);
-}
+static sunindextype get_length(N_Vector v) { return length(v); }
 
 static void space(N_Vector v, sunindextype *reals, sunindextype *integers) {
     *reals = length(v);
     *integers = 1;
 }
 
-static void set_data(double *data, N_Vector v) {
-    of(v)->data = data;
-}
+static void set_data(double *data, N_Vector v) { of(v)->data = data; }
 
 static void destroy(N_Vector v) {
     if (v == NULL) return;
@@ -93,14 +83,16 @@ static void linear_sum(double a, N_Vector vx, double b, N_Vector vy, N_Vector vz
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++) z[i] = a * x[i] + b * y[i];
+    for (int i = 0; i < n; i++)
+        z[i] = a * x[i] + b * y[i];
 }
 
 static void constant(double c, N_Vector vz) {
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++) z[i] = c;
+    for (int i = 0; i < n; i++)
+        z[i] = c;
 }
 
 static void product(N_Vector vx, N_Vector vy, N_Vector vz) {
@@ -108,7 +100,8 @@ static void product(N_Vector vx, N_Vector vy, N_Vector vz) {
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++) z[i] = x[i] * y[i];
+    for (int i = 0; i < n; i++)
+        z[i] = x[i] * y[i];
 }
 
 static void quotient(N_Vector vx, N_Vector vy, N_Vector vz) {
@@ -116,7 +109,8 @@ static void quotient(N_Vector vx, N_Vector vy, N_Vector vz) {
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++) z[i] = x[i] / y[i];
+    for (int i = 0; i < n; i++)
+        z[i] = x[i] / y[i];
 }
 
 static void scale(double c, N_Vector vx, N_Vector vz) {
@@ -124,7 +118,8 @@ static void scale(double c, N_Vector vx, N_Vector vz) {
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++) z[i] = c * x[i];
+    for (int i = 0; i < n; i++)
+        z[i] = c * x[i];
 }
 
 static void absolute(N_Vector vx, N_Vector vz) {
@@ -132,7 +127,8 @@ static void absolute(N_Vector vx, N_Vector vz) {
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++) z[i] = fabs(x[i]);
+    for (int i = 0; i < n; i++)
+        z[i] = fabs(x[i]);
 }
 
 static void inverse(N_Vector vx, N_Vector vz) {
@@ -140,7 +136,8 @@ static void inverse(N_Vector vx, N_Vector vz) {
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++) z[i] = 1 / x[i];
+    for (int i = 0; i < n; i++)
+        z[i] = 1 / x[i];
 }
 
 static void add_constant(N_Vector vx, double b, N_Vector vz) {
@@ -148,7 +145,8 @@ static void add_constant(N_Vector vx, double b, N_Vector vz) {
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++) z[i] = x[i] + b;
+    for (int i = 0; i < n; i++)
+        z[i] = x[i] + b;
 }
 
 static void compare(double c, N_Vector vx, N_Vector vz) {
@@ -156,7 +154,8 @@ static void compare(double c, N_Vector vx, N_Vector vz) {
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++) z[i] = fabs(x[i]) >= c ? 1.0 : 0.0;
+    for (int i = 0; i < n; i++)
+        z[i] = fabs(x[i]) >= c ? 1.0 : 0.0;
 }
 
 // -- reductions ------------------------------------------------------------------------------
@@ -166,7 +165,8 @@ static double dot(N_Vector vx, N_Vector vy) {
     double sum = 0;
     int n = length(vx);
 #pragma omp simd reduction(+ : sum)
-    for (int i = 0; i < n; i++) sum += x[i] * y[i];
+    for (int i = 0; i < n; i++)
+        sum += x[i] * y[i];
     return sum;
 }
 
@@ -175,7 +175,8 @@ static double max_norm(N_Vector vx) {
     double most = 0;
     int n = length(vx);
 #pragma omp simd reduction(max : most)
-    for (int i = 0; i < n; i++) most = fabs(x[i]) > most ? fabs(x[i]) : most;
+    for (int i = 0; i < n; i++)
+        most = fabs(x[i]) > most ? fabs(x[i]) : most;
     return most;
 }
 
@@ -184,7 +185,8 @@ static double least(N_Vector vx) {
     double low = DBL_MAX;
     int n = length(vx);
 #pragma omp simd reduction(min : low)
-    for (int i = 0; i < n; i++) low = x[i] < low ? x[i] : low;
+    for (int i = 0; i < n; i++)
+        low = x[i] < low ? x[i] : low;
     return low;
 }
 
@@ -193,7 +195,8 @@ static double l1_norm(N_Vector vx) {
     double sum = 0;
     int n = length(vx);
 #pragma omp simd reduction(+ : sum)
-    for (int i = 0; i < n; i++) sum += fabs(x[i]);
+    for (int i = 0; i < n; i++)
+        sum += fabs(x[i]);
     return sum;
 }
 
@@ -202,7 +205,8 @@ static double weighted_squares(N_Vector vx, N_Vector vw) {
     double sum = 0;
     int n = length(vx);
 #pragma omp simd reduction(+ : sum)
-    for (int i = 0; i < n; i++) sum += (x[i] * w[i]) * (x[i] * w[i]);
+    for (int i = 0; i < n; i++)
+        sum += (x[i] * w[i]) * (x[i] * w[i]);
     return sum;
 }
 
@@ -210,9 +214,7 @@ static double wrms_norm(N_Vector vx, N_Vector vw) {
     return sqrt(weighted_squares(vx, vw) / length(vx));
 }
 
-static double wl2_norm(N_Vector vx, N_Vector vw) {
-    return sqrt(weighted_squares(vx, vw));
-}
+static double wl2_norm(N_Vector vx, N_Vector vw) { return sqrt(weighted_squares(vx, vw)); }
 
 static double wrms_norm_mask(N_Vector vx, N_Vector vw, N_Vector vm) {
     const double *x = bough_vector_data(vx), *w = bough_vector_data(vw);
@@ -282,7 +284,8 @@ static int linear_combination(int count, double *c, N_Vector *vx, N_Vector vz) {
             const double *x = bough_vector_data(vx[k]) + start;
             double ck = c[k];
 #pragma omp simd
-            for (int i = 0; i < m; i++) sum[i] += ck * x[i];
+            for (int i = 0; i < m; i++)
+                sum[i] += ck * x[i];
         }
         memcpy(z + start, sum, (size_t)m * sizeof(double));
     }
@@ -291,37 +294,44 @@ static int linear_combination(int count, double *c, N_Vector *vx, N_Vector vz) {
 
 // Z_k = a_k x + Y_k
 static int scale_add_multi(int count, double *a, N_Vector x, N_Vector *y, N_Vector *z) {
-    for (int k = 0; k < count; k++) linear_sum(a[k], x, 1, y[k], z[k]);
+    for (int k = 0; k < count; k++)
+        linear_sum(a[k], x, 1, y[k], z[k]);
     return 0;
 }
 
 static int dot_multi(int count, N_Vector x, N_Vector *y, double *dots) {
-    for (int k = 0; k < count; k++) dots[k] = dot(x, y[k]);
+    for (int k = 0; k < count; k++)
+        dots[k] = dot(x, y[k]);
     return 0;
 }
 
 static int linear_sum_array(int count, double a, N_Vector *x, double b, N_Vector *y, N_Vector *z) {
-    for (int k = 0; k < count; k++) linear_sum(a, x[k], b, y[k], z[k]);
+    for (int k = 0; k < count; k++)
+        linear_sum(a, x[k], b, y[k], z[k]);
     return 0;
 }
 
 static int scale_array(int count, double *c, N_Vector *x, N_Vector *z) {
-    for (int k = 0; k < count; k++) scale(c[k], x[k], z[k]);
+    for (int k = 0; k < count; k++)
+        scale(c[k], x[k], z[k]);
     return 0;
 }
 
 static int constant_array(int count, double c, N_Vector *z) {
-    for (int k = 0; k < count; k++) constant(c, z[k]);
+    for (int k = 0; k < count; k++)
+        constant(c, z[k]);
     return 0;
 }
 
 static int wrms_norm_array(int count, N_Vector *x, N_Vector *w, double *norms) {
-    for (int k = 0; k < count; k++) norms[k] = wrms_norm(x[k], w[k]);
+    for (int k = 0; k < count; k++)
+        norms[k] = wrms_norm(x[k], w[k]);
     return 0;
 }
 
 static int wrms_norm_mask_array(int count, N_Vector *x, N_Vector *w, N_Vector m, double *norms) {
-    for (int k = 0; k < count; k++) norms[k] = wrms_norm_mask(x[k], w[k], m);
+    for (int k = 0; k < count; k++)
+        norms[k] = wrms_norm_mask(x[k], w[k], m);
     return 0;
 }
 

@@ -14,7 +14,8 @@ static void blocks_are_aligned_zeroed_and_apart(void **state) {
         size_t size = (size_t)(1 + 37 * i);
         blocks[i] = bough_arena_take(arena, size);
         assert_int_equal((uintptr_t)blocks[i] % 64, 0);
-        for (size_t k = 0; k < size; k++) assert_int_equal(blocks[i][k], 0);
+        for (size_t k = 0; k < size; k++)
+            assert_int_equal(blocks[i][k], 0);
         memset(blocks[i], i + 1, size);
     }
     for (int i = 0; i < 50; i++) {
@@ -78,7 +79,8 @@ static void objects_are_released_newest_first(void **state) {
     assert_int_equal(r.count, 0);
     bough_arena_destroy(arena);
     assert_int_equal(r.count, 3);
-    for (int i = 0; i < 3; i++) assert_int_equal(r.order[i], 2 - i);
+    for (int i = 0; i < 3; i++)
+        assert_int_equal(r.order[i], 2 - i);
     bough_arena_destroy(NULL);
 }
 

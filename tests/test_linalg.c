@@ -14,12 +14,14 @@ static void lu_solves_with_interchanges(void **state) {
     int pivot[3];
     for (int k = 0; k < 2; k++) {
         for (int c = 0; c < 3; c++) {
-            for (int r = 0; r < 3; r++) b[3 * k + r] += a[3 * c + r] * x[3 * k + c];
+            for (int r = 0; r < 3; r++)
+                b[3 * k + r] += a[3 * c + r] * x[3 * k + c];
         }
     }
     assert_true(bough_dense_factor(3, a, pivot));
     bough_dense_solve(3, 2, a, pivot, b);
-    for (int i = 0; i < 6; i++) check_near(b[i], x[i], 1e-14, 0);
+    for (int i = 0; i < 6; i++)
+        check_near(b[i], x[i], 1e-14, 0);
 }
 
 static void lu_refuses_singular_and_nan(void **state) {
@@ -41,17 +43,20 @@ static void cholesky_finds_the_factor(void **state) {
     for (int i = 0; i < 3; i++) {
         for (int j = 0; j < 3; j++) {
             double sum = 0;
-            for (int k = 0; k < 3; k++) sum += l[3 * i + k] * l[3 * j + k];
+            for (int k = 0; k < 3; k++)
+                sum += l[3 * i + k] * l[3 * j + k];
             a[3 * i + j] = j <= i ? sum : (double)NAN;
             b[i] += sum * x[j];
         }
     }
     assert_true(bough_cholesky_factor(3, a));
     for (int i = 0; i < 3; i++) {
-        for (int j = 0; j <= i; j++) check_near(a[3 * i + j], l[3 * i + j], 1e-15, 1e-15);
+        for (int j = 0; j <= i; j++)
+            check_near(a[3 * i + j], l[3 * i + j], 1e-15, 1e-15);
     }
     bough_cholesky_solve(3, a, b);
-    for (int i = 0; i < 3; i++) check_near(b[i], x[i], 1e-14, 0);
+    for (int i = 0; i < 3; i++)
+        check_near(b[i], x[i], 1e-14, 0);
 }
 
 static void cholesky_refuses_indefinite_and_nearly_singular(void **state) {

@@ -64,8 +64,8 @@ static void product_composes_rotations(void **state) {
 // Half turns about each axis drive every branch of the inversion.
 static void matrix_gives_the_quaternion_back(void **state) {
     (void)state;
-    const bough_vec3 turns[] = {{0, 0, 0},       {pi, 0, 0},      {0, pi, 0},      {0, 0, pi},
-                                {3, 0.2, -0.1},  {-0.3, 3, 0.2},  {0.1, -0.2, 3},  {0.5, 0.6, 0.7},
+    const bough_vec3 turns[] = {{0, 0, 0},       {pi, 0, 0},     {0, pi, 0},     {0, 0, pi},
+                                {3, 0.2, -0.1},  {-0.3, 3, 0.2}, {0.1, -0.2, 3}, {0.5, 0.6, 0.7},
                                 {2.2, 2.2, 0.1}, {0, 2.2, -2.2}};
     for (size_t i = 0; i < sizeof turns / sizeof *turns; i++) {
         bough_mat3 r = bough_rotation_matrix(bough_quaternion_exponential(turns[i]));

@@ -71,10 +71,12 @@ static bough_body_def random_body(unsigned *seed, const char *name, int parent,
     b.mass = 1 + 0.5 * next(seed);
     b.mass_centre = next3(seed);
     bough_mat3 r = turned(next(seed), next(seed), next(seed));
-    b.inertia = bough_mat3_product(
-        r, bough_mat3_product(diagonal(0.3, 0.5, 0.7), bough_mat3_transpose(r)));
-    for (int k = 0; k < BOUGH_JOINT_COORDINATES; k++) b.coordinates[k] = next(seed);
-    for (int k = 0; k < BOUGH_JOINT_SPEEDS; k++) b.speeds[k] = next(seed);
+    b.inertia =
+        bough_mat3_product(r, bough_mat3_product(diagonal(0.3, 0.5, 0.7), bough_mat3_transpose(r)));
+    for (int k = 0; k < BOUGH_JOINT_COORDINATES; k++)
+        b.coordinates[k] = next(seed);
+    for (int k = 0; k < BOUGH_JOINT_SPEEDS; k++)
+        b.speeds[k] = next(seed);
     return b;
 }
 
@@ -83,13 +85,13 @@ static bough_body_def random_body(unsigned *seed, const char *name, int parent,
 static fixture everything(double rtol) {
     static const char *names[] = {"a", "b", "c", "d", "e", "f", "g"};
     static const int parents[] = {2, 0, BOUGH_GROUND, 2, 3, 4, BOUGH_GROUND};
-    static const bough_joint_kind kinds[] = {BOUGH_JOINT_REVOLUTE,  BOUGH_JOINT_SPHERICAL,
-                                             BOUGH_JOINT_FREE,      BOUGH_JOINT_PRISMATIC,
-                                             BOUGH_JOINT_FIXED,     BOUGH_JOINT_REVOLUTE,
-                                             BOUGH_JOINT_SPHERICAL};
+    static const bough_joint_kind kinds[] = {
+        BOUGH_JOINT_REVOLUTE, BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_FREE,     BOUGH_JOINT_PRISMATIC,
+        BOUGH_JOINT_FIXED,    BOUGH_JOINT_REVOLUTE,  BOUGH_JOINT_SPHERICAL};
     unsigned seed = 7;
     bough_body_def bodies[7];
-    for (int i = 0; i < 7; i++) bodies[i] = random_body(&seed, names[i], parents[i], kinds[i]);
+    for (int i = 0; i < 7; i++)
+        bodies[i] = random_body(&seed, names[i], parents[i], kinds[i]);
     bough_marker_def markers[] = {
         {"on b", 1, {next3(&seed), turned(0.3, -0.4, 1)}},
         {"on e", 4, {next3(&seed), turned(-1, 0.2, 0.5)}},
@@ -100,9 +102,15 @@ static fixture everything(double rtol) {
         {"second", 1, bough_inertia_of(0.2, bough_v3(0, 0.3, 0), diagonal(0.1, 0.1, 0.1))},
     };
     bough_joint_load_def loads[] = {{5, 3.0, 0.1, 0.3}, {3, -2.0, 0, 0}};
-    bough_tree_def def = {.gravity = {1, -2, -9}, .n_bodies = 7,     .n_markers = 3, .n_ports = 2,
-                          .n_loads = 2,           .bodies = bodies, .markers = markers,
-                          .ports = ports,         .loads = loads};
+    bough_tree_def def = {.gravity = {1, -2, -9},
+                          .n_bodies = 7,
+                          .n_markers = 3,
+                          .n_ports = 2,
+                          .n_loads = 2,
+                          .bodies = bodies,
+                          .markers = markers,
+                          .ports = ports,
+                          .loads = loads};
     fixture f = build(&def, rtol);
     double value[6] = {1, 2, 3, -1, -2, 0.5}, rate[6] = {0.5, 0, 1, 0, 1, 0};
     bough_tree_set_wrench(f.tree, 2, 0.05, value, rate);
@@ -246,7 +254,8 @@ static void inverse_dynamics_inverts_forward_dynamics(void **state) {
     for (int i = 0; i < n; i++) {
         check_near(residual[i], 0, 0, 1e-11);
         double sum = bias[i]; // M v̇ + h − τ with M by composite bodies
-        for (int j = 0; j < n; j++) sum += mass[n * i + j] * acceleration[j];
+        for (int j = 0; j < n; j++)
+            sum += mass[n * i + j] * acceleration[j];
         check_near(sum, 0, 0, 1e-11);
         assert_true(fabs(bias[i]) > 1e-6);
     }
@@ -262,7 +271,8 @@ static void kinetic_energy_is_the_mass_matrix_form(void **state) {
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     bough_tree_mass_matrix(f.tree, f.data, mass);
     for (int i = 0; i < n; i++) {
-        for (int j = 0; j < n; j++) energy += 0.5 * v[i] * mass[n * i + j] * v[j];
+        for (int j = 0; j < n; j++)
+            energy += 0.5 * v[i] * mass[n * i + j] * v[j];
     }
     check_near(bough_tree_sum(f.tree, f.data).kinetic, energy, 1e-12, 0);
     bough_arena_destroy(f.arena);
@@ -276,7 +286,8 @@ static void energy_follows_the_power_of_the_loads(void **state) {
     f.tree->n_loads = 0;
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     bough_tree_sums before = bough_tree_sum(f.tree, f.data);
-    for (int k = 1; k <= 10; k++) advance(&f, 0.1 * k, k == 1);
+    for (int k = 1; k <= 10; k++)
+        advance(&f, 0.1 * k, k == 1);
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     bough_tree_sums after = bough_tree_sum(f.tree, f.data);
     assert_true(fabs(after.kinetic - before.kinetic) > 1);
@@ -292,9 +303,11 @@ static void output_tangent_is_the_derivative(void **state) {
     int n = f.s.n_state, m = f.s.n_output;
     double change[MOST], plus[MOST], minus[MOST], y[MOST], tangent[MOST], h = 1e-6;
     unsigned seed = 3;
-    for (int i = 0; i < n; i++) change[i] = next(&seed);
+    for (int i = 0; i < n; i++)
+        change[i] = next(&seed);
     for (int side = 0; side < 2; side++) {
-        for (int i = 0; i < n; i++) y[i] = f.s.state[i] + (side == 0 ? h : -h) * change[i];
+        for (int i = 0; i < n; i++)
+            y[i] = f.s.state[i] + (side == 0 ? h : -h) * change[i];
         f.s.ops->output(f.s.self, 0, y, some_input, side == 0 ? plus : minus);
     }
     f.s.ops->output_tangent(f.s.self, 0, f.s.state, some_input, change, NULL, tangent);
@@ -319,9 +332,10 @@ static void output_tangent_along_the_motion_is_the_acceleration(void **state) {
     for (int p = 0; p < 2; p++) {
         const bough_frame *port = &f.tree->ports[p];
         double expected[6];
-        bough_twist_store(
-            bough_twist_to_child(&port->placement, f.data->acceleration[port->link]), expected);
-        for (int i = 0; i < 6; i++) check_near(tangent[9 * p + i], expected[i], 1e-12, 1e-12);
+        bough_twist_store(bough_twist_to_child(&port->placement, f.data->acceleration[port->link]),
+                          expected);
+        for (int i = 0; i < 6; i++)
+            check_near(tangent[9 * p + i], expected[i], 1e-12, 1e-12);
         bough_vec3 omega = bough_v3(out[9 * p + 3], out[9 * p + 4], out[9 * p + 5]);
         bough_vec3 g = bough_v3(out[9 * p + 6], out[9 * p + 7], out[9 * p + 8]);
         bough_vec3 gdot = bough_cross(g, omega);
@@ -346,7 +360,8 @@ static void input_columns_are_the_derivative(void **state) {
         f.s.ops->derivative(f.s.self, 0.2, f.s.state, u, plus);
         u[j] -= 1;
         f.s.ops->derivative(f.s.self, 0.2, f.s.state, u, minus);
-        for (int i = 0; i < n; i++) check_near(columns[n * j + i], plus[i] - minus[i], 1e-9, 1e-11);
+        for (int i = 0; i < n; i++)
+            check_near(columns[n * j + i], plus[i] - minus[i], 1e-9, 1e-11);
     }
     free(columns);
     bough_arena_destroy(f.arena);
@@ -359,11 +374,13 @@ static void newton_solve_inverts_the_linearisation(void **state) {
     int n = f.s.n_state;
     double x[MOST], b[MOST], y[MOST], plus[MOST], minus[MOST], gamma = 0.07, h = 1e-6;
     unsigned seed = 5;
-    for (int i = 0; i < n; i++) x[i] = b[i] = next(&seed);
+    for (int i = 0; i < n; i++)
+        x[i] = b[i] = next(&seed);
     assert_true(f.s.ops->newton_setup(f.s.self, 0.2, f.s.state, some_input, gamma));
     f.s.ops->newton_solve(f.s.self, x);
     for (int side = 0; side < 2; side++) {
-        for (int i = 0; i < n; i++) y[i] = f.s.state[i] + (side == 0 ? h : -h) * x[i];
+        for (int i = 0; i < n; i++)
+            y[i] = f.s.state[i] + (side == 0 ? h : -h) * x[i];
         f.s.ops->derivative(f.s.self, 0.2, y, some_input, side == 0 ? plus : minus);
     }
     for (int i = 0; i < n; i++) {
@@ -384,12 +401,11 @@ static void welded_bodies_move_as_one(void **state) {
     bough_body_def tower = random_body(&seed, "tower", BOUGH_GROUND, BOUGH_JOINT_FIXED);
     bough_body_def parts[3] = {extra, tower, whole}; // children before parents
     parts[2].parent = 1;
-    parts[2].joint =
-        bough_transform_compose(bough_transform_inverse(tower.joint), whole.joint);
+    parts[2].joint = bough_transform_compose(bough_transform_inverse(tower.joint), whole.joint);
     bough_inertia sum = bough_inertia_add(
         bough_inertia_of(whole.mass, whole.mass_centre, whole.inertia),
-        bough_inertia_to_parent(&extra.joint, bough_inertia_of(extra.mass, extra.mass_centre,
-                                                               extra.inertia)));
+        bough_inertia_to_parent(&extra.joint,
+                                bough_inertia_of(extra.mass, extra.mass_centre, extra.inertia)));
     whole.mass = sum.mass;
     whole.mass_centre = bough_scale(1 / sum.mass, sum.first);
     bough_mat3 shift = bough_steiner(bough_scale(-0.5, sum.first), whole.mass_centre);
@@ -401,7 +417,8 @@ static void welded_bodies_move_as_one(void **state) {
     assert_int_equal(b.tree->n_links, 1);
     advance(&a, 1, true);
     advance(&b, 1, true);
-    for (int i = 0; i < 7; i++) check_near(b.s.state[i], a.s.state[i], 0, 1e-6);
+    for (int i = 0; i < 7; i++)
+        check_near(b.s.state[i], a.s.state[i], 0, 1e-6);
     assert_true(fabs(a.s.state[1] - a.tree->initial[1]) > 1e-2);
     bough_arena_destroy(a.arena);
     bough_arena_destroy(b.arena);
@@ -414,16 +431,21 @@ static void root_inertia_is_felt_as_a_welded_body(void **state) {
     bough_body_def b[2] = {random_body(&seed, "hub", BOUGH_GROUND, BOUGH_JOINT_FREE),
                            random_body(&seed, "root", 0, BOUGH_JOINT_FIXED)};
     bough_marker_def marker = {"flange", 0, b[1].joint};
-    bough_port_def port = {"blade", 0,
-                           bough_inertia_of(b[1].mass, b[1].mass_centre, b[1].inertia)};
+    bough_port_def port = {"blade", 0, bough_inertia_of(b[1].mass, b[1].mass_centre, b[1].inertia)};
     bough_tree_def welded = {.gravity = down_z, .n_bodies = 2, .bodies = b};
-    bough_tree_def ported = {.gravity = down_z, .n_bodies = 1, .bodies = b, .n_markers = 1,
-                             .markers = &marker, .n_ports = 1, .ports = &port};
+    bough_tree_def ported = {.gravity = down_z,
+                             .n_bodies = 1,
+                             .bodies = b,
+                             .n_markers = 1,
+                             .markers = &marker,
+                             .n_ports = 1,
+                             .ports = &port};
     fixture f = build(&welded, 1e-6), g = build(&ported, 1e-6);
     double a[MOST], c[MOST], zero[6] = {0};
     f.s.ops->derivative(f.s.self, 0, f.s.state, NULL, a);
     g.s.ops->derivative(g.s.self, 0, g.s.state, zero, c);
-    for (int i = 0; i < f.s.n_state; i++) check_near(c[i], a[i], 1e-12, 1e-12);
+    for (int i = 0; i < f.s.n_state; i++)
+        check_near(c[i], a[i], 1e-12, 1e-12);
     bough_arena_destroy(f.arena);
     bough_arena_destroy(g.arena);
 }
@@ -435,8 +457,13 @@ static void ground_fixed_tree_has_no_states(void **state) {
     b.joint.rotation = turned(0, BOUGH_PI / 2, 0); // x to −z
     bough_marker_def marker = {"clamp", 0, bough_transform_identity()};
     bough_port_def port = {"rod", 0, {.mass = 1}};
-    bough_tree_def def = {.gravity = down_z, .n_bodies = 1, .bodies = &b, .n_markers = 1,
-                          .markers = &marker, .n_ports = 1, .ports = &port};
+    bough_tree_def def = {.gravity = down_z,
+                          .n_bodies = 1,
+                          .bodies = &b,
+                          .n_markers = 1,
+                          .markers = &marker,
+                          .n_ports = 1,
+                          .ports = &port};
     fixture f = build(&def, 1e-6);
     assert_int_equal(f.s.n_state, 0);
     assert_int_equal(f.s.n_input, 6);
@@ -503,7 +530,8 @@ static void restored_copies_repeat_bit_by_bit(void **state) {
     fixture f = everything(1e-7);
     int n = f.s.n_state;
     double coefficient[48] = {0}, first[MOST], second[MOST];
-    for (int i = 0; i < 24; i++) coefficient[i] = some_input[i % 12];
+    for (int i = 0; i < 24; i++)
+        coefficient[i] = some_input[i % 12];
     bough_signal signal = {12, 0, 0.5, coefficient};
     bough_status status = f.s.ops->advance(f.s.self, 0.2, &signal, true);
     assert_int_equal(status.code, BOUGH_OK);
@@ -531,7 +559,8 @@ static void kept_history_keeps_the_accuracy(void **state) {
     fixture f = everything(1e-7), tight = everything(1e-11);
     bough_statistics count;
     double coefficient[48] = {0};
-    for (int i = 0; i < 24; i++) coefficient[i] = some_input[i % 12];
+    for (int i = 0; i < 24; i++)
+        coefficient[i] = some_input[i % 12];
     bough_signal signal = {12, 0, 1, coefficient};
     for (int k = 1; k <= 25; k++) {
         bough_status status = f.s.ops->advance(f.s.self, 0.02 * k, &signal, k == 1);
@@ -539,7 +568,8 @@ static void kept_history_keeps_the_accuracy(void **state) {
     }
     tight.s.ops->advance(tight.s.self, 0.3, &signal, true); // the ramp's end is a kink
     tight.s.ops->advance(tight.s.self, 0.5, &signal, true);
-    for (int i = 0; i < f.s.n_state; i++) check_near(f.s.state[i], tight.s.state[i], 1e-5, 1e-5);
+    for (int i = 0; i < f.s.n_state; i++)
+        check_near(f.s.state[i], tight.s.state[i], 1e-5, 1e-5);
     f.s.ops->statistics(f.s.self, &count);
     assert_int_equal(count.restarts, 1);
     assert_true(count.steps > 0 && count.jacobians > 0 && count.derivatives > count.steps);
@@ -555,11 +585,13 @@ static void external_wrench_acts_as_a_port_does(void **state) {
     bough_tree_set_wrench(f.tree, 2, 0, NULL, NULL);
     f.s.ops->derivative(f.s.self, 0.4, f.s.state, some_input, a);
     for (int m = 0; m < 2; m++) {
-        for (int i = 0; i < 6; i++) later[i] = some_input[6 * m + i] - 0.3 * rate[i];
+        for (int i = 0; i < 6; i++)
+            later[i] = some_input[6 * m + i] - 0.3 * rate[i];
         bough_tree_set_wrench(f.tree, m, 0.1, later, rate);
     }
     f.s.ops->derivative(f.s.self, 0.4, f.s.state, zero, b);
-    for (int i = 0; i < f.s.n_state; i++) check_near(b[i], a[i], 1e-11, 1e-11);
+    for (int i = 0; i < f.s.n_state; i++)
+        check_near(b[i], a[i], 1e-11, 1e-11);
     bough_arena_destroy(f.arena);
 }
 
@@ -572,15 +604,16 @@ static void frame_velocity_is_the_rate_of_the_pose(void **state) {
     bough_transform pose[2];
     f.s.ops->derivative(f.s.self, 0, f.s.state, some_input, rate);
     for (int side = 0; side < 2; side++) {
-        for (int i = 0; i < f.s.n_state; i++) y[i] = f.s.state[i] + (side ? h : -h) * rate[i];
+        for (int i = 0; i < f.s.n_state; i++)
+            y[i] = f.s.state[i] + (side ? h : -h) * rate[i];
         bough_tree_kinematics(f.tree, y, f.data);
         pose[side] = bough_tree_frame_pose(f.data, marker);
     }
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     bough_twist v = bough_tree_frame_velocity(f.data, marker);
     bough_vec3 move = bough_sub(pose[1].position, pose[0].position);
-    bough_vec3 turn = bough_quaternion_logarithm(bough_quaternion_of_matrix(bough_mat3_product(
-        pose[1].rotation, bough_mat3_transpose(pose[0].rotation))));
+    bough_vec3 turn = bough_quaternion_logarithm(bough_quaternion_of_matrix(
+        bough_mat3_product(pose[1].rotation, bough_mat3_transpose(pose[0].rotation))));
     check_near(bough_norm(bough_axpy(-2 * h, v.linear, move)), 0, 0, 1e-8 * 2 * h);
     check_near(bough_norm(bough_axpy(-2 * h, v.angular, turn)), 0, 0, 1e-8 * 2 * h);
     assert_true(bough_norm(v.angular) > 0.1);

@@ -19,7 +19,8 @@ static double entry(int i, int k) {
 
 static N_Vector filled(N_Vector model, int k) {
     N_Vector v = N_VClone(model);
-    for (int i = 0; i < N_VGetLength(v); i++) bough_vector_data(v)[i] = entry(i, k);
+    for (int i = 0; i < N_VGetLength(v); i++)
+        bough_vector_data(v)[i] = entry(i, k);
     return v;
 }
 
@@ -56,9 +57,7 @@ static void destroy(fixture *f) {
     for (int which = 0, n; which < N_LENGTHS; which++)                                             \
         if (n = lengths[which], f = create(n), 1)
 
-static double at(N_Vector v, int i) {
-    return bough_vector_data(v)[i];
-}
+static double at(N_Vector v, int i) { return bough_vector_data(v)[i]; }
 
 static void data_is_aligned_and_cloned(void **state) {
     (void)state;
@@ -86,23 +85,32 @@ static void elementwise_operations(void **state) {
     fixture f;
     for_each_length(f, n) {
         N_VLinearSum(2, f.x, -3, f.y, f.z);
-        for (int i = 0; i < n; i++) check_near(at(f.z, i), 2 * entry(i, 1) - 3 * entry(i, 2), 1e-15, 1e-15);
+        for (int i = 0; i < n; i++)
+            check_near(at(f.z, i), 2 * entry(i, 1) - 3 * entry(i, 2), 1e-15, 1e-15);
         N_VProd(f.x, f.y, f.z);
-        for (int i = 0; i < n; i++) check_near(at(f.z, i), entry(i, 1) * entry(i, 2), 1e-15, 0);
+        for (int i = 0; i < n; i++)
+            check_near(at(f.z, i), entry(i, 1) * entry(i, 2), 1e-15, 0);
         N_VDiv(f.x, f.y, f.z);
-        for (int i = 0; i < n; i++) check_near(at(f.z, i), entry(i, 1) / entry(i, 2), 1e-15, 0);
+        for (int i = 0; i < n; i++)
+            check_near(at(f.z, i), entry(i, 1) / entry(i, 2), 1e-15, 0);
         N_VScale(-1.5, f.x, f.z);
-        for (int i = 0; i < n; i++) check_near(at(f.z, i), -1.5 * entry(i, 1), 1e-15, 0);
+        for (int i = 0; i < n; i++)
+            check_near(at(f.z, i), -1.5 * entry(i, 1), 1e-15, 0);
         N_VAbs(f.x, f.z);
-        for (int i = 0; i < n; i++) check_near(at(f.z, i), fabs(entry(i, 1)), 0, 0);
+        for (int i = 0; i < n; i++)
+            check_near(at(f.z, i), fabs(entry(i, 1)), 0, 0);
         N_VInv(f.x, f.z);
-        for (int i = 0; i < n; i++) check_near(at(f.z, i), 1 / entry(i, 1), 1e-15, 0);
+        for (int i = 0; i < n; i++)
+            check_near(at(f.z, i), 1 / entry(i, 1), 1e-15, 0);
         N_VAddConst(f.x, 0.25, f.z);
-        for (int i = 0; i < n; i++) check_near(at(f.z, i), entry(i, 1) + 0.25, 1e-15, 0);
+        for (int i = 0; i < n; i++)
+            check_near(at(f.z, i), entry(i, 1) + 0.25, 1e-15, 0);
         N_VCompare(0.5, f.x, f.z);
-        for (int i = 0; i < n; i++) check_near(at(f.z, i), fabs(entry(i, 1)) >= 0.5, 0, 0);
+        for (int i = 0; i < n; i++)
+            check_near(at(f.z, i), fabs(entry(i, 1)) >= 0.5, 0, 0);
         N_VConst(7, f.z);
-        for (int i = 0; i < n; i++) check_near(at(f.z, i), 7, 0, 0);
+        for (int i = 0; i < n; i++)
+            check_near(at(f.z, i), 7, 0, 0);
         destroy(&f);
     }
 }
@@ -182,8 +190,8 @@ static void fused_operations(void **state) {
         }
         assert_int_equal(N_VLinearSumVectorArray(COUNT, 2, f.several, -1, f.others, f.results), 0);
         for (int k = 0; k < COUNT; k++) {
-            check_near(at(f.results[k], n - 1), 2 * entry(n - 1, 4 + k) - entry(n - 1, 9 + k), 1e-15,
-                       1e-15);
+            check_near(at(f.results[k], n - 1), 2 * entry(n - 1, 4 + k) - entry(n - 1, 9 + k),
+                       1e-15, 1e-15);
         }
         assert_int_equal(N_VWrmsNormVectorArray(COUNT, f.several, f.others, norms), 0);
         for (int k = 0; k < COUNT; k++) {
@@ -194,12 +202,14 @@ static void fused_operations(void **state) {
             check_near(at(f.results[k], 0), c[k] * entry(0, 4 + k), 1e-15, 0);
         }
         assert_int_equal(N_VConstVectorArray(COUNT, 3, f.results), 0);
-        for (int k = 0; k < COUNT; k++) check_near(at(f.results[k], n - 1), 3, 0, 0);
+        for (int k = 0; k < COUNT; k++)
+            check_near(at(f.results[k], n - 1), 3, 0, 0);
         // the result may be one of the summands
         assert_int_equal(N_VLinearCombination(COUNT, c, f.several, f.several[0]), 0);
         for (int i = 0; i < n; i++) {
             double sum = 0;
-            for (int k = 0; k < COUNT; k++) sum += c[k] * entry(i, 4 + k);
+            for (int k = 0; k < COUNT; k++)
+                sum += c[k] * entry(i, 4 + k);
             check_near(at(f.several[0], i), sum, 1e-14, 1e-14);
         }
         destroy(&f);
@@ -208,8 +218,10 @@ static void fused_operations(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(data_is_aligned_and_cloned), cmocka_unit_test(elementwise_operations),
-        cmocka_unit_test(reductions),                 cmocka_unit_test(tests_with_a_verdict),
+        cmocka_unit_test(data_is_aligned_and_cloned),
+        cmocka_unit_test(elementwise_operations),
+        cmocka_unit_test(reductions),
+        cmocka_unit_test(tests_with_a_verdict),
         cmocka_unit_test(fused_operations),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
