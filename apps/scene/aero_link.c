@@ -1,0 +1,257 @@
+#include "apps/scene/aero_link.h"
+
+#include <string.h>
+
+// A blade's loads at the last sample and the value the load signal has reached, in the body's axes:
+// per vertex force and moment (6 × vertices) of a rod, or the resultant (6) on a rigid body.
+typedef struct blade_loads {
+    const bough_beam *beam;
+    double *sampled, *reached; // (n)
+    int n;
+} blade_loads;
+
+struct bough_aero_link {
+    bough_simulation *simulation;
+    const bough_rotor *rotor;
+    bough_rotor_data data;
+    bough_rotor_motion motion;
+    bough_beam_motion beam_motion; // of all blades, one after the other
+    int n_blade, n_vertex;
+    blade_loads *blade; // (n_blade)
+    double *fresh;      // (6 × vertices) work
+    double factor;      // of the ramp at the last sample
+    bool started;
+};
+
+// -- build ----------------------------------------------------------------------------------------
+
+static bough_status same_mesh(const bough_aero_link *l, const bough_beam *beam) {
+    const bough_beam *first = l->blade[0].beam;
+    if (beam->def.n_segment == first->def.n_segment) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "blades %s and %s have %d and %d segments; the aerodynamics"
+                      " wants the same mesh on all blades", first->body->name, beam->body->name,
+                      first->def.n_segment, beam->def.n_segment);
+}
+
+static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
+    const bough_scene_turbine *turbine = &l->simulation->scene->turbine;
+    l->n_blade = turbine->n_blade;
+    l->blade = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->blade);
+    if (l->blade == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
+    for (int b = 0; b < l->n_blade; b++) {
+        blade_loads *blade = &l->blade[b];
+        blade->beam = bough_simulation_beam(l->simulation, turbine->blade[b]);
+        bough_status status = same_mesh(l, blade->beam);
+        if (!bough_is_ok(&status)) return status;
+        l->n_vertex = blade->beam->def.n_segment + 1;
+        blade->n = blade->beam->rod == NULL ? 6 : 6 * l->n_vertex;
+        blade->sampled = bough_arena_doubles(arena, (size_t)blade->n);
+        blade->reached = bough_arena_doubles(arena, (size_t)blade->n);
+    }
+    return bough_ok();
+}
+
+static void take_motion(bough_arena *arena, bough_aero_link *l) {
+    size_t n = (size_t)l->n_blade * l->n_vertex;
+    l->beam_motion.position = bough_arena_take(arena, n * sizeof(bough_vec3));
+    l->beam_motion.velocity = bough_arena_take(arena, n * sizeof(bough_vec3));
+    l->beam_motion.angular_velocity = bough_arena_take(arena, n * sizeof(bough_vec3));
+    l->beam_motion.rotation = bough_arena_take(arena, n * sizeof(bough_mat3));
+    l->fresh = bough_arena_doubles(arena, 6 * (size_t)l->n_vertex);
+    l->motion.position = l->beam_motion.position;
+    l->motion.velocity = l->beam_motion.velocity;
+    l->motion.angular_velocity = l->beam_motion.angular_velocity;
+    l->motion.rotation = l->beam_motion.rotation;
+}
+
+// Tables of the scene in the rotor's form.
+typedef struct tables {
+    bough_polar_def *polar;
+    bough_station_def *station;
+    bough_mat3 *rotation;
+} tables;
+
+static bool take_tables(bough_arena *arena, const bough_aero_link *l, tables *t) {
+    const bough_scene_aero *aero = &l->simulation->scene->aero;
+    t->polar = bough_arena_take(arena, (size_t)aero->polars.n_polar * sizeof *t->polar);
+    t->station = bough_arena_take(arena, (size_t)aero->blade.n_station * sizeof *t->station);
+    t->rotation = bough_arena_take(arena, (size_t)l->n_vertex * sizeof *t->rotation);
+    if (bough_arena_exhausted(arena)) return false;
+    for (int k = 0; k < aero->polars.n_polar; k++) {
+        const bough_scene_polar *from = &aero->polars.polar[k];
+        double *row = bough_arena_doubles(arena, 4 * (size_t)from->n_row);
+        if (row == NULL) return false;
+        for (int i = 0; i < from->n_row; i++) {
+            const bough_scene_polar_row *r = &from->row[i];
+            const double values[4] = {r->alpha, r->cl, r->cd, r->cm};
+            memcpy(row + 4 * i, values, sizeof values);
+        }
+        t->polar[k] = (bough_polar_def){from->name, from->n_row, row};
+    }
+    for (int k = 0; k < aero->blade.n_station; k++) {
+        const bough_scene_aero_station *from = &aero->blade.station[k];
+        t->station[k] = (bough_station_def){from->span,  from->chord, from->twist,
+                                            from->ac[0], from->ac[1], from->polar};
+    }
+    for (int i = 0; i < l->n_vertex; i++) {
+        t->rotation[i] = bough_rotation_matrix(l->blade[0].beam->def.rotation[i]);
+    }
+    return true;
+}
+
+static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
+    const bough_scene_aero *aero = &l->simulation->scene->aero;
+    const bough_rod_def *mesh = &l->blade[0].beam->def;
+    bough_rotor_def def = bough_rotor_def_default();
+    def.n_blade = l->n_blade;
+    def.density = aero->air_density;
+    def.hub_radius = aero->hub_radius;
+    def.skew = aero->induction.skew == BOUGH_SCENE_PITT_PETERS;
+    def.induction.tip_loss = aero->induction.tip_loss;
+    def.induction.hub_loss = aero->induction.hub_loss;
+    def.induction.tangential = aero->induction.tangential;
+    def.induction.axial_drag = def.induction.tangential_drag = aero->induction.drag;
+    def.wind.speed = aero->wind.speed;
+    def.tower = (bough_tower_def){{0, 0, 0}, aero->tower.node == NULL ? 0 : aero->tower.n_height,
+                                  aero->tower.height, aero->tower.diameter};
+    def.n_polar = aero->polars.n_polar;
+    def.polar = t->polar;
+    def.n_station = aero->blade.n_station;
+    def.station = t->station;
+    def.n_vertex = l->n_vertex;
+    def.vertex_span = mesh->span;
+    def.vertex_position = mesh->position;
+    def.vertex_rotation = t->rotation;
+    return def;
+}
+
+bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation,
+                                   bough_aero_link **link) {
+    bough_aero_link *l = bough_arena_take(arena, sizeof *l);
+    tables t;
+    if (l == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
+    l->simulation = simulation;
+    bough_status status = take_blades(arena, l);
+    if (!bough_is_ok(&status)) return status;
+    take_motion(arena, l);
+    if (!take_tables(arena, l, &t)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
+    }
+    bough_rotor_def def = rotor_def(l, &t);
+    status = bough_rotor_build(arena, &def, &l->rotor);
+    if (bough_is_ok(&status)) status = bough_rotor_data_build(arena, l->rotor, &l->data);
+    if (bough_is_ok(&status)) *link = l;
+    return status;
+}
+
+// -- sample ---------------------------------------------------------------------------------------
+
+static void gather_motion(bough_aero_link *l, double t) {
+    bough_simulation *s = l->simulation;
+    const bough_scene_turbine *turbine = &s->scene->turbine;
+    bough_simulation_update(s);
+    bough_transform rotor = bough_tree_frame_pose(s->view, &s->tree->bodies[turbine->rotor]);
+    const bough_vec3 axes[3] = {rotor.rotation.c1, rotor.rotation.c2, rotor.rotation.c3};
+    l->motion.time = t;
+    l->motion.hub = rotor.position;
+    l->motion.shaft = axes[s->scene->body[turbine->rotor].joint.axis];
+    for (int b = 0; b < l->n_blade; b++) {
+        size_t at = (size_t)b * l->n_vertex;
+        bough_beam_motion part = {l->beam_motion.position + at, l->beam_motion.velocity + at,
+                                  l->beam_motion.angular_velocity + at,
+                                  l->beam_motion.rotation + at};
+        bough_simulation_beam_motion(s, l->blade[b].beam, part);
+    }
+}
+
+static double ramp_factor(const double ramp[2], double t) {
+    if (ramp[1] <= ramp[0]) return 1;
+    return bough_clamp((t - ramp[0]) / (ramp[1] - ramp[0]), 0, 1);
+}
+
+// The blade's sampled loads in the body's axes, times the ramp's factor: l->fresh (blade->n).
+static void blade_fresh(bough_aero_link *l, int b) {
+    const bough_beam *beam = l->blade[b].beam;
+    const bough_frame *frame = &l->simulation->tree->markers[beam->marker];
+    bough_transform pose = bough_tree_frame_pose(l->simulation->view, frame);
+    int n = l->n_vertex;
+    if (beam->rod == NULL) memset(l->fresh, 0, 6 * sizeof *l->fresh);
+    for (int i = 0; i < n; i++) {
+        size_t at = (size_t)b * n + i;
+        bough_vec3 f = bough_scale(l->factor, bough_mat3_tmul(pose.rotation, l->data.force[at]));
+        bough_vec3 m = bough_scale(l->factor, bough_mat3_tmul(pose.rotation, l->data.moment[at]));
+        if (beam->rod == NULL) {
+            m = bough_add(m, bough_cross(beam->def.position[i], f));
+            const double values[6] = {f.x, f.y, f.z, m.x, m.y, m.z};
+            for (int c = 0; c < 6; c++) l->fresh[c] += values[c];
+        } else {
+            const double values[6] = {f.x, f.y, f.z, m.x, m.y, m.z};
+            for (int c = 0; c < 6; c++) l->fresh[c * n + i] = values[c];
+        }
+    }
+}
+
+// Value at t and rate of the load signal until t_next. Linear: from what was reached to the value
+// extrapolated from the last two samples, so that loads are continuous and not late.
+static void load_signal(const bough_aero_link *l, const blade_loads *blade, int k, double span,
+                        double *value, double *rate) {
+    bool held = l->simulation->scene->aero.hold == BOUGH_SCENE_CONSTANT;
+    double fresh = l->fresh[k];
+    if (held || !l->started) {
+        *value = fresh;
+        *rate = 0;
+        return;
+    }
+    *value = blade->reached[k];
+    *rate = (2 * fresh - blade->sampled[k] - *value) / span;
+}
+
+static void apply(bough_aero_link *l, int b, double t, double span) {
+    blade_loads *blade = &l->blade[b];
+    double wrench[6], wrench_rate[6];
+    bough_rod_loads *rod = blade->beam->rod == NULL ? NULL : bough_rod_body_loads(blade->beam->rod);
+    int stride = rod == NULL ? 0 : bough_rod_body_model(blade->beam->rod)->stride;
+    for (int k = 0; k < blade->n; k++) {
+        double value, rate;
+        load_signal(l, blade, k, span, &value, &rate);
+        if (rod == NULL) {
+            wrench[k] = value;
+            wrench_rate[k] = rate;
+        } else {
+            int at = k / l->n_vertex * stride + k % l->n_vertex;
+            rod->value[at] = value;
+            rod->rate[at] = rate;
+        }
+        blade->reached[k] = value + span * rate;
+        blade->sampled[k] = l->fresh[k];
+    }
+    if (rod != NULL) {
+        rod->start = t;
+    } else {
+        bough_tree_set_wrench(l->simulation->tree, blade->beam->marker, t, wrench, wrench_rate);
+    }
+}
+
+static bough_status sample(void *self, double t, double t_next, bool *jumped) {
+    bough_aero_link *l = self;
+    const bough_scene_aero *aero = &l->simulation->scene->aero;
+    gather_motion(l, t);
+    bough_rotor_sample(l->rotor, &l->motion, &l->data);
+    l->factor = ramp_factor(aero->ramp, t);
+    for (int b = 0; b < l->n_blade; b++) {
+        blade_fresh(l, b);
+        apply(l, b, t, t_next - t);
+    }
+    *jumped = !l->started || aero->hold == BOUGH_SCENE_CONSTANT;
+    l->started = true;
+    return bough_ok();
+}
+
+bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
+    return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample};
+}
+
+const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor) {
+    *factor = link->factor;
+    return &link->data;
+}

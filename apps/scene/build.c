@@ -1,0 +1,383 @@
+#include "apps/scene/build.h"
+
+#include "apps/scene/aero_link.h"
+#include "core/tree_subsystem.h"
+#include "flexbody/section.h"
+
+#include <string.h>
+
+// What is gathered while building; the pieces point into the arena.
+typedef struct builder {
+    bough_arena *arena;
+    const bough_scene *scene;
+    bough_simulation *s;
+    bough_body_def *body;          // (n_body): the tree's body i is the scene's body i
+    bough_marker_def *marker;      // (n_beam)
+    bough_port_def *port;          // (n_rod)
+    bough_joint_load_def *load;    // (n_load)
+    bough_member *member;          // trunk, then rods
+    bough_connection *connection;  // two per rod
+    double *event;                 // two per load and two for the aerodynamics
+    int n_event;
+} builder;
+
+static bough_status out_of_memory(void) {
+    return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory while building the scene");
+}
+
+static bough_vec3 unit_axis(int axis) {
+    return bough_v3(axis == BOUGH_SCENE_X, axis == BOUGH_SCENE_Y, axis == BOUGH_SCENE_Z);
+}
+
+static bough_mat3 turn_about(int axis, double angle) {
+    return bough_rotation_matrix(bough_quaternion_exponential(bough_scale(angle, unit_axis(axis))));
+}
+
+// The joint frame in the parent's frame: the steps in order, then the pitch.
+static bough_transform placement(const bough_scene_body *body) {
+    bough_transform x = bough_transform_identity();
+    for (int k = 0; k < body->joint.n_placement; k++) {
+        const bough_scene_step *step = &body->joint.placement[k];
+        bough_transform move = bough_transform_identity();
+        if (step->rotate) {
+            move.rotation = turn_about(step->axis, step->amount);
+        } else {
+            move.position = bough_scale(step->amount, unit_axis(step->axis));
+        }
+        x = bough_transform_compose(x, move);
+    }
+    if (body->pitch != 0) {
+        bough_transform pitch = bough_transform_identity();
+        pitch.rotation = turn_about(BOUGH_SCENE_Z, -body->pitch);
+        x = bough_transform_compose(x, pitch);
+    }
+    return x;
+}
+
+// Columns from the entries Ixx Iyy Izz Ixy Ixz Iyz.
+static bough_mat3 tensor(const double j[6]) {
+    return (bough_mat3){{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
+}
+
+static void set_joint(const bough_scene_body *from, bough_body_def *to) {
+    static const bough_joint_kind kinds[] = {
+        [BOUGH_SCENE_FIXED] = BOUGH_JOINT_FIXED,
+        [BOUGH_SCENE_REVOLUTE] = BOUGH_JOINT_REVOLUTE,
+        [BOUGH_SCENE_PRISMATIC] = BOUGH_JOINT_PRISMATIC,
+        [BOUGH_SCENE_SPHERICAL] = BOUGH_JOINT_SPHERICAL,
+        [BOUGH_SCENE_FREE] = BOUGH_JOINT_FREE};
+    const bough_scene_joint *joint = &from->joint;
+    to->parent = joint->parent == BOUGH_SCENE_GROUND ? BOUGH_GROUND : joint->parent;
+    to->kind = kinds[joint->kind];
+    to->joint = placement(from);
+    to->axis = unit_axis(joint->axis);
+    if (to->kind == BOUGH_JOINT_REVOLUTE || to->kind == BOUGH_JOINT_PRISMATIC) {
+        to->coordinates[0] = joint->position;
+        to->speeds[0] = joint->speed;
+        return;
+    }
+    int angular = to->kind == BOUGH_JOINT_FREE ? 3 : 0; // a free joint's linear speeds come first
+    for (int k = 0; k < 3; k++) {
+        if (angular == 3) to->speeds[k] = joint->velocity[k];
+        to->speeds[angular + k] = joint->angular_velocity[k];
+    }
+}
+
+// The mass of a rigid body, given or integrated from its rod's table.
+static void set_mass(const bough_scene_body *from, const bough_beam *beam, bough_body_def *to) {
+    if (beam == NULL) {
+        to->mass = from->mass;
+        to->mass_centre = bough_v3(from->centre_of_mass[0], from->centre_of_mass[1],
+                                   from->centre_of_mass[2]);
+        to->inertia = tensor(from->inertia);
+        return;
+    }
+    bough_vertex_inertia whole = bough_section_rigid(&beam->def);
+    bough_vec3 centre = bough_scale(1 / whole.mass, whole.moment);
+    bough_mat3 steiner = bough_steiner(bough_scale(-0.5 * whole.mass, centre), centre);
+    to->mass = whole.mass;
+    to->mass_centre = centre;
+    to->inertia = bough_mat3_add(tensor(whole.inertia), steiner);
+}
+
+// -- beams ----------------------------------------------------------------------------------------
+
+static bough_status discretise(builder *b, bough_beam *beam) {
+    const bough_scene_structure *rod = &beam->body->rod.structure;
+    size_t count = (size_t)rod->n_station;
+    bough_section_station *station = bough_arena_take(b->arena, count * sizeof *station);
+    if (station == NULL) return out_of_memory();
+    for (int k = 0; k < rod->n_station; k++) {
+        const bough_scene_station *from = &rod->station[k];
+        bough_section_station *to = &station[k];
+        to->position = bough_v3(from->position[0], from->position[1], from->position[2]);
+        to->twist = from->twist;
+        to->mass = from->mass;
+        memcpy(to->centre, from->mass_centre, sizeof to->centre);
+        memcpy(to->inertia, from->inertia, sizeof to->inertia);
+        for (int i = 0, at = 0; i < 6; i++) {
+            for (int j = i; j < 6; j++) to->stiffness[at++] = from->stiffness[6 * i + j];
+        }
+    }
+    bough_section_table table = {.name = beam->body->name,
+                                 .n_station = rod->n_station,
+                                 .station = station,
+                                 .length = rod->length};
+    memcpy(table.damping, rod->damping, sizeof table.damping);
+    return bough_section_discretise(b->arena, &table, beam->body->rod.n_segment,
+                                    &beam->def);
+}
+
+// The root vertex' inertia in the body's frame, about its origin.
+static bough_inertia root_inertia(const bough_rod_def *def) {
+    const bough_vertex_inertia *v = &def->inertia[0];
+    bough_mat3 r = bough_rotation_matrix(def->rotation[0]);
+    bough_transform x = {{0, 0, 0}, r};
+    return bough_inertia_to_parent(&x, (bough_inertia){v->mass, v->moment, tensor(v->inertia)});
+}
+
+static bough_status add_beam(builder *b, int index) {
+    bough_simulation *s = b->s;
+    bough_beam *beam = &s->beam[s->n_beam];
+    beam->body = &b->scene->body[index];
+    beam->marker = s->n_beam;
+    beam->port = -1;
+    bough_status status = discretise(b, beam);
+    if (!bough_is_ok(&status)) return status;
+    b->marker[s->n_beam++] = (bough_marker_def){beam->body->name, index,
+                                                bough_transform_identity()};
+    if (beam->body->fidelity != BOUGH_SCENE_ROD) return bough_ok();
+    beam->port = s->n_rod;
+    b->port[s->n_rod++] = (bough_port_def){beam->body->name, beam->marker,
+                                           root_inertia(&beam->def)};
+    return bough_ok();
+}
+
+static bough_status hangs_on_rod(const builder *b, int index) {
+    const bough_scene_body *body = &b->scene->body[index];
+    int parent = body->joint.parent;
+    if (parent < 0 || b->scene->body[parent].fidelity != BOUGH_SCENE_ROD) return bough_ok();
+    return bough_fail(BOUGH_INVALID,
+                      "body %s hangs on the rod %s: a rod carries no bodies yet; hang it on the"
+                      " rod's parent or make %s rigid",
+                      body->name, b->scene->body[parent].name, b->scene->body[parent].name);
+}
+
+static bough_status set_bodies(builder *b) {
+    for (int i = 0; i < b->scene->n_body; i++) {
+        const bough_scene_body *from = &b->scene->body[i];
+        bough_body_def *to = &b->body[i];
+        bough_beam *beam = NULL;
+        bough_status status = hangs_on_rod(b, i);
+        if (bough_is_ok(&status) && from->rod.node != NULL) {
+            beam = &b->s->beam[b->s->n_beam];
+            status = add_beam(b, i);
+        }
+        if (!bough_is_ok(&status)) return status;
+        *to = bough_body_def_default();
+        to->name = from->name;
+        set_joint(from, to);
+        if (from->fidelity == BOUGH_SCENE_RIGID) set_mass(from, beam, to);
+    }
+    return bough_ok();
+}
+
+// -- loads and times ------------------------------------------------------------------------------
+
+static void add_ramp(builder *b, const double ramp[2]) {
+    if (ramp[1] <= ramp[0]) return;
+    b->event[b->n_event++] = ramp[0];
+    b->event[b->n_event++] = ramp[1];
+}
+
+static void set_loads(builder *b) {
+    for (int k = 0; k < b->scene->n_load; k++) {
+        const bough_scene_load *load = &b->scene->load[k];
+        b->load[k] = (bough_joint_load_def){load->joint, load->amount, load->ramp[0],
+                                            load->ramp[1]};
+        add_ramp(b, load->ramp);
+    }
+    if (b->scene->aero.node != NULL) add_ramp(b, b->scene->aero.ramp);
+}
+
+// -- parts ----------------------------------------------------------------------------------------
+
+static bough_status build_tree(builder *b) {
+    const bough_scene *scene = b->scene;
+    bough_simulation *s = b->s;
+    bough_tree_def def = {.gravity = bough_v3(scene->gravity[0], scene->gravity[1],
+                                              scene->gravity[2]),
+                          .n_bodies = scene->n_body,
+                          .n_markers = s->n_beam,
+                          .n_ports = s->n_rod,
+                          .n_loads = scene->n_load,
+                          .bodies = b->body,
+                          .markers = b->marker,
+                          .ports = b->port,
+                          .loads = b->load};
+    bough_status status = bough_tree_create(b->arena, &def, &s->tree);
+    if (bough_is_ok(&status)) status = bough_tree_data_create(b->arena, s->tree, &s->view);
+    if (!bough_is_ok(&status)) return status;
+    return bough_tree_subsystem_create(b->arena, s->tree, "tree", 0,
+                                       scene->simulation.master.rtol, &s->trunk);
+}
+
+static bough_status build_rods(builder *b) {
+    bough_simulation *s = b->s;
+    double *motion = bough_arena_doubles(b->arena, (size_t)BOUGH_PORT_OUTPUTS * s->n_rod + 1);
+    if (motion == NULL) return out_of_memory();
+    s->trunk.ops->output(s->trunk.self, 0, s->trunk.state, NULL, motion);
+    for (int k = 0; k < s->n_beam; k++) {
+        bough_beam *beam = &s->beam[k];
+        if (beam->port < 0) continue;
+        bough_rod_model *model = NULL;
+        bough_status status = bough_rod_create(b->arena, &beam->def, &model);
+        if (bough_is_ok(&status)) {
+            status = bough_rod_body_create(b->arena, model, 0, b->scene->simulation.micro.rtol,
+                                           motion + BOUGH_PORT_OUTPUTS * beam->port, &beam->rod);
+        }
+        if (!bough_is_ok(&status)) return status;
+        s->rod[beam->port] = bough_rod_body_subsystem(beam->rod);
+    }
+    return bough_ok();
+}
+
+static void connect(builder *b) {
+    bough_simulation *s = b->s;
+    b->member[0] = (bough_member){&s->trunk, 0};
+    for (int k = 0; k < s->n_rod; k++) {
+        b->member[k + 1] = (bough_member){&s->rod[k], 1};
+        b->connection[2 * k] = (bough_connection){.from = 0,
+                                                  .from_offset = BOUGH_PORT_OUTPUTS * k,
+                                                  .to = k + 1,
+                                                  .count = BOUGH_PORT_OUTPUTS,
+                                                  .kinematic = true};
+        b->connection[2 * k + 1] = (bough_connection){.from = k + 1,
+                                                      .to_offset = BOUGH_PORT_INPUTS * k,
+                                                      .count = BOUGH_PORT_INPUTS};
+    }
+}
+
+static bough_scheme_options scheme_options(const bough_scene *scene) {
+    static const char *const names[] = {[BOUGH_SCENE_FROZEN] = "frozen",
+                                        [BOUGH_SCENE_GAUSS_SEIDEL] = "gauss-seidel",
+                                        [BOUGH_SCENE_EXTRAPOLATED] = "extrapolated",
+                                        [BOUGH_SCENE_RAMP] = "ramp",
+                                        [BOUGH_SCENE_MONOLITHIC] = "monolithic"};
+    bough_scheme_options options = bough_scheme_options_default();
+    options.name = names[scene->simulation.coupling.scheme];
+    options.order = scene->simulation.coupling.order;
+    options.theta = scene->simulation.coupling.theta;
+    options.rtol = scene->simulation.master.rtol;
+    return options;
+}
+
+static bough_status build_master(builder *b) {
+    bough_simulation *s = b->s;
+    const bough_scene_simulation *sim = &b->scene->simulation;
+    bough_master_def def = bough_master_def_default();
+    bough_sampled_load load;
+    def.assembly = (bough_assembly_def){s->n_rod + 1, b->member, 2 * s->n_rod, b->connection};
+    def.scheme = scheme_options(b->scene);
+    def.macro_step = sim->macro_step;
+    def.duration = sim->duration;
+    def.event = b->event;
+    def.n_event = b->n_event;
+    def.threads = sim->threads;
+    if (s->aero != NULL) {
+        load = bough_aero_link_load(s->aero);
+        def.load = &load;
+        def.n_load = 1;
+    }
+    return bough_master_build(b->arena, &def, &s->master);
+}
+
+// -- whole ----------------------------------------------------------------------------------------
+
+static bool take_arrays(builder *b) {
+    size_t bodies = (size_t)b->scene->n_body, loads = (size_t)b->scene->n_load;
+    b->s = bough_arena_take(b->arena, sizeof *b->s);
+    b->body = bough_arena_take(b->arena, bodies * sizeof *b->body);
+    b->marker = bough_arena_take(b->arena, bodies * sizeof *b->marker);
+    b->port = bough_arena_take(b->arena, bodies * sizeof *b->port);
+    b->load = bough_arena_take(b->arena, (loads + 1) * sizeof *b->load);
+    b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);
+    b->connection = bough_arena_take(b->arena, 2 * bodies * sizeof *b->connection);
+    b->event = bough_arena_doubles(b->arena, 2 * loads + 2);
+    if (b->s == NULL) return false;
+    b->s->scene = b->scene;
+    b->s->beam = bough_arena_take(b->arena, bodies * sizeof *b->s->beam);
+    b->s->rod = bough_arena_take(b->arena, bodies * sizeof *b->s->rod);
+    return !bough_arena_exhausted(b->arena);
+}
+
+bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
+                                    bough_simulation **simulation) {
+    builder b = {.arena = arena, .scene = scene};
+    if (!take_arrays(&b)) return out_of_memory();
+    bough_status status = set_bodies(&b);
+    set_loads(&b);
+    if (bough_is_ok(&status)) status = build_tree(&b);
+    if (bough_is_ok(&status)) status = build_rods(&b);
+    connect(&b);
+    if (bough_is_ok(&status)) bough_simulation_update(b.s);
+    if (bough_is_ok(&status) && scene->aero.node != NULL) {
+        status = bough_aero_link_build(arena, b.s, &b.s->aero);
+    }
+    if (bough_is_ok(&status)) status = build_master(&b);
+    if (bough_is_ok(&status) && bough_arena_exhausted(arena)) status = out_of_memory();
+    if (bough_is_ok(&status)) *simulation = b.s;
+    return status;
+}
+
+// -- queries --------------------------------------------------------------------------------------
+
+void bough_simulation_update(bough_simulation *s) {
+    bough_tree_kinematics(s->tree, s->trunk.state, s->view);
+}
+
+bough_beam *bough_simulation_beam(const bough_simulation *s, int body) {
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].body == &s->scene->body[body]) return &s->beam[k];
+    }
+    return NULL;
+}
+
+// A vertex in the body's frame: of a rod from its state, else undeformed and carried along.
+typedef struct vertex {
+    bough_vec3 position, velocity, angular; // angular velocity in body axes
+    bough_mat3 rotation;
+} vertex;
+
+static vertex rigid_vertex(const bough_beam *beam, int i, bough_twist twist) {
+    bough_vec3 x = beam->def.position[i];
+    return (vertex){x, bough_add(twist.linear, bough_cross(twist.angular, x)), twist.angular,
+                    bough_rotation_matrix(beam->def.rotation[i])};
+}
+
+static vertex rod_vertex(const bough_beam *beam, int i) {
+    const double *y = bough_rod_body_state(beam->rod) + i - 1;
+    int n = beam->def.n_segment;
+    bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
+    bough_mat3 r = bough_rotation_matrix(bough_quaternion_normalised(p));
+    bough_vec3 w = {y[10 * n], y[11 * n], y[12 * n]};
+    return (vertex){{y[0], y[n], y[2 * n]},
+                    {y[7 * n], y[8 * n], y[9 * n]},
+                    bough_mat3_mul(r, w),
+                    r};
+}
+
+void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam,
+                                  bough_beam_motion motion) {
+    const bough_frame *frame = &s->tree->markers[beam->marker];
+    bough_transform pose = bough_tree_frame_pose(s->view, frame);
+    bough_twist twist = bough_tree_frame_twist(s->view, frame);
+    for (int i = 0; i <= beam->def.n_segment; i++) {
+        vertex v = i == 0 || beam->rod == NULL ? rigid_vertex(beam, i, twist)
+                                               : rod_vertex(beam, i);
+        motion.position[i] = bough_add(pose.position, bough_mat3_mul(pose.rotation, v.position));
+        motion.rotation[i] = bough_mat3_product(pose.rotation, v.rotation);
+        motion.velocity[i] = bough_mat3_mul(pose.rotation, v.velocity);
+        motion.angular_velocity[i] = bough_mat3_mul(pose.rotation, v.angular);
+    }
+}

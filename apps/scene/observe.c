@@ -1,0 +1,200 @@
+// The channels of a simulation: what each part of the scene gives to be recorded. OpenFAST's names
+// where the quantity is the same.
+#include "apps/scene/aero_link.h"
+#include "apps/scene/build.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define DEGREE (BOUGH_PI / 180)
+#define RPM (BOUGH_PI / 30)
+
+// -- joints ---------------------------------------------------------------------------------------
+
+static void joint_state(const bough_simulation *s, int body, double *coordinate, double *speed) {
+    int q, v;
+    bough_tree_joint_rows(s->tree, body, &q, &v);
+    *coordinate = s->trunk.state[q];
+    *speed = s->trunk.state[v];
+}
+
+static void sample_rotor(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    double angle, speed;
+    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
+    double turn = fmod(angle / DEGREE, 360);
+    value[0] = speed / RPM;
+    value[1] = turn < 0 ? turn + 360 : turn;
+}
+
+static bool has_axis(const bough_scene_body *body) {
+    return body->joint.kind == BOUGH_SCENE_REVOLUTE || body->joint.kind == BOUGH_SCENE_PRISMATIC;
+}
+
+static bool is_rotor(const bough_scene *scene, int body) {
+    return scene->turbine.node != NULL && scene->turbine.rotor == body;
+}
+
+static void sample_joints(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    for (int i = 0; i < s->scene->n_body; i++) {
+        const bough_scene_body *body = &s->scene->body[i];
+        if (!has_axis(body) || is_rotor(s->scene, i)) continue;
+        double scale = body->joint.kind == BOUGH_SCENE_REVOLUTE ? DEGREE : 1;
+        joint_state(s, i, &value[0], &value[1]);
+        value[0] /= scale;
+        value[1] /= scale;
+        value += 2;
+    }
+}
+
+static bough_status add_joints(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_joints, s);
+    for (int i = 0; i < s->scene->n_body && bough_is_ok(&status); i++) {
+        const bough_scene_body *body = &s->scene->body[i];
+        if (!has_axis(body) || is_rotor(s->scene, i)) continue;
+        bool revolute = body->joint.kind == BOUGH_SCENE_REVOLUTE;
+        status = bough_channels_add(list, revolute ? "deg" : "m", "%sPos", body->name);
+        if (!bough_is_ok(&status)) break;
+        status = bough_channels_add(list, revolute ? "deg/s" : "m/s", "%sVel", body->name);
+    }
+    return status;
+}
+
+static bough_status add_rotor(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_rotor, s);
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "rpm", "RotSpeed");
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "deg", "Azimuth");
+    return status;
+}
+
+// -- beams ----------------------------------------------------------------------------------------
+
+// Displacement of the tip and rotation vector of its section against the undeformed one, in the
+// body's axes.
+static void tip(const bough_beam *beam, bough_vec3 *displacement, bough_vec3 *rotation) {
+    int n = beam->def.n_segment;
+    *displacement = *rotation = bough_v3(0, 0, 0);
+    if (beam->rod == NULL) return;
+    const double *y = bough_rod_body_state(beam->rod) + n - 1;
+    bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
+    bough_quaternion undeformed = bough_quaternion_conjugate(beam->def.rotation[n]);
+    bough_quaternion turn =
+        bough_quaternion_product(bough_quaternion_normalised(p), undeformed);
+    *displacement = bough_sub(bough_v3(y[0], y[n], y[2 * n]), beam->def.position[n]);
+    *rotation = bough_quaternion_logarithm(turn);
+}
+
+enum { BLADE_CHANNELS = 12 };
+
+// The root wrench is the blade's on the hub, in blade-root axes; out of and in plane are the tip's
+// displacement along the axes before the pitch.
+static void sample_blades(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    for (int b = 0; b < s->scene->turbine.n_blade; b++, value += BLADE_CHANNELS) {
+        const bough_beam *beam = bough_simulation_beam(s, s->scene->turbine.blade[b]);
+        double c = cos(beam->body->pitch), sine = sin(beam->body->pitch);
+        double input[BOUGH_ROD_INPUTS], root[BOUGH_ROD_OUTPUTS] = {0};
+        bough_vec3 d, turn;
+        tip(beam, &d, &turn);
+        if (beam->rod != NULL) {
+            const bough_subsystem *rod = &s->rod[beam->port];
+            const double *motion = s->master->coupling->output + BOUGH_PORT_OUTPUTS * beam->port;
+            for (int k = 0; k < BOUGH_ROD_INPUTS; k++) input[k] = motion[k];
+            rod->ops->output(rod->self, t, rod->state, input, root);
+        }
+        const double values[BLADE_CHANNELS] = {
+            d.x * c + d.y * sine, d.y * c - d.x * sine, turn.z / DEGREE, d.x, d.y, d.z,
+            root[0] / 1e3, root[1] / 1e3, root[2] / 1e3,
+            root[3] / 1e3, root[4] / 1e3, root[5] / 1e3};
+        for (int k = 0; k < BLADE_CHANNELS; k++) value[k] = values[k];
+    }
+}
+
+static bough_status add_blades(bough_simulation *s, bough_channels *list) {
+    static const struct {
+        const char *name, *unit;
+    } channels[BLADE_CHANNELS] = {
+        {"OoPDefl", "m"},  {"IPDefl", "m"},   {"TwstDefl", "deg"}, {"TipDxb", "m"},
+        {"TipDyb", "m"},   {"TipDzb", "m"},   {"RootFxb", "kN"},   {"RootFyb", "kN"},
+        {"RootFzb", "kN"}, {"RootMxb", "kN-m"}, {"RootMyb", "kN-m"}, {"RootMzb", "kN-m"}};
+    bough_status status = bough_channels_group(list, sample_blades, s);
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) {
+        for (int k = 0; k < BLADE_CHANNELS && bough_is_ok(&status); k++) {
+            status = bough_channels_add(list, channels[k].unit, "%s%d", channels[k].name, b + 1);
+        }
+    }
+    return status;
+}
+
+static bool is_blade(const bough_scene *scene, const bough_scene_body *body) {
+    for (int b = 0; scene->turbine.node != NULL && b < scene->turbine.n_blade; b++) {
+        if (&scene->body[scene->turbine.blade[b]] == body) return true;
+    }
+    return false;
+}
+
+// Where the tip of a rod that is no blade is, in ground axes.
+static void sample_tips(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        if (is_blade(s->scene, beam->body)) continue;
+        bough_transform pose =
+            bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
+        bough_vec3 d, turn;
+        tip(beam, &d, &turn);
+        bough_vec3 x = bough_add(beam->def.position[beam->def.n_segment], d);
+        x = bough_add(pose.position, bough_mat3_mul(pose.rotation, x));
+        value[0] = x.x;
+        value[1] = x.y;
+        value[2] = x.z;
+        value += 3;
+    }
+}
+
+static bough_status add_tips(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_tips, s);
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        if (is_blade(s->scene, beam->body)) continue;
+        for (int c = 0; c < 3 && bough_is_ok(&status); c++) {
+            status = bough_channels_add(list, "m", "%sTip%c", beam->body->name, "XYZ"[c]);
+        }
+    }
+    return status;
+}
+
+// -- aerodynamics ---------------------------------------------------------------------------------
+
+static void sample_aero(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    double factor, angle, speed;
+    const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
+    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
+    value[0] = factor * data->thrust;
+    value[1] = factor * data->torque;
+    value[2] = factor * data->torque * speed;
+}
+
+static bough_status add_aero(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_aero, s);
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "N", "RtAeroFxh");
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "N-m", "RtAeroMxh");
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "W", "RtAeroPwr");
+    return status;
+}
+
+bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels) {
+    bough_status status = bough_ok();
+    if (s->scene->turbine.node != NULL) status = add_rotor(s, channels);
+    if (bough_is_ok(&status)) status = add_joints(s, channels);
+    if (bough_is_ok(&status) && s->scene->turbine.node != NULL) status = add_blades(s, channels);
+    if (bough_is_ok(&status)) status = add_tips(s, channels);
+    if (bough_is_ok(&status) && s->aero != NULL) status = add_aero(s, channels);
+    return status;
+}
