@@ -86,7 +86,7 @@ static void elementwise_operations(void **state) {
     for_each_length(f, n) {
         N_VLinearSum(2, f.x, -3, f.y, f.z);
         for (int i = 0; i < n; i++)
-            check_near(at(f.z, i), 2 * entry(i, 1) - 3 * entry(i, 2), 1e-15, 1e-15);
+            check_near(at(f.z, i), 2 * entry(i, 1) - 3 * entry(i, 2), 1e-14, 1e-14);
         N_VProd(f.x, f.y, f.z);
         for (int i = 0; i < n; i++)
             check_near(at(f.z, i), entry(i, 1) * entry(i, 2), 1e-15, 0);
@@ -184,14 +184,14 @@ static void fused_operations(void **state) {
             double dot = 0;
             for (int i = 0; i < n; i++) {
                 dot += entry(i, 1) * entry(i, 4 + k);
-                check_near(at(f.results[k], i), c[k] * entry(i, 1) + entry(i, 4 + k), 1e-15, 1e-15);
+                check_near(at(f.results[k], i), c[k] * entry(i, 1) + entry(i, 4 + k), 1e-14, 1e-14);
             }
             check_near(dots[k], dot, 1e-13, 1e-13);
         }
         assert_int_equal(N_VLinearSumVectorArray(COUNT, 2, f.several, -1, f.others, f.results), 0);
         for (int k = 0; k < COUNT; k++) {
             check_near(at(f.results[k], n - 1), 2 * entry(n - 1, 4 + k) - entry(n - 1, 9 + k),
-                       1e-15, 1e-15);
+                       1e-14, 1e-14);
         }
         assert_int_equal(N_VWrmsNormVectorArray(COUNT, f.several, f.others, norms), 0);
         for (int k = 0; k < COUNT; k++) {
