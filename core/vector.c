@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { ALIGNMENT = 64, BLOCK = 64 }; // BLOCK sums stay in registers and the nearest cache
+enum { ALIGNMENT = 64 };
 
 typedef struct content {
     int n;
@@ -273,22 +273,25 @@ static double min_quotient(N_Vector vx, N_Vector vy) {
 
 // -- several vectors at once: each is read once ------------------------------------------------
 
-// z = Σ c_k X_k; z may be one of X, so a block is summed before it is written.
+// z += a x + b y
+static void add_two(double a, const double *x, double b, const double *y, double *z, int n) {
+#pragma omp simd
+    for (int i = 0; i < n; i++)
+        z[i] += a * x[i] + b * y[i];
+}
+
+// z = Σ c_k X_k, two at a time; z may be X_0, which is read first.
 static int linear_combination(int count, double *c, N_Vector *vx, N_Vector vz) {
     double *z = bough_vector_data(vz);
-    int n = length(vz);
-    for (int start = 0; start < n; start += BLOCK) {
-        int m = n - start < BLOCK ? n - start : BLOCK;
-        double sum[BLOCK] = {0};
-        for (int k = 0; k < count; k++) {
-            const double *x = bough_vector_data(vx[k]) + start;
-            double ck = c[k];
-#pragma omp simd
-            for (int i = 0; i < m; i++)
-                sum[i] += ck * x[i];
-        }
-        memcpy(z + start, sum, (size_t)m * sizeof(double));
+    int n = length(vz), k = 2;
+    if (count == 1) {
+        scale(c[0], vx[0], vz);
+        return 0;
     }
+    linear_sum(c[0], vx[0], c[1], vx[1], vz);
+    for (; k + 1 < count; k += 2)
+        add_two(c[k], bough_vector_data(vx[k]), c[k + 1], bough_vector_data(vx[k + 1]), z, n);
+    if (k < count) linear_sum(1, vz, c[k], vx[k], vz);
     return 0;
 }
 
