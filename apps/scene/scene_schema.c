@@ -1,6 +1,7 @@
 // The keys of a scene and of its data files.
 #include "apps/scene/scene_parts.h"
 
+// clang-format off: one line a key would become one line a field
 #define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
 #define CHOICES(...)                                                                               \
     (const char *const[]) { __VA_ARGS__, NULL }
@@ -731,6 +732,7 @@ static const bough_key scene_keys[] = {
      .help = "aerodynamics; needs the turbine; left out: none"},
 };
 #undef AT
+// clang-format on
 const bough_schema bough_scene_schema = {SCHEMA("a scene", bough_scene, scene_keys)};
 
 void bough_scene_help(FILE *stream) { bough_schema_help(&bough_scene_schema, 0, stream); }
