@@ -124,7 +124,8 @@ void bough_joint_speed(const bough_joint *joint, const double *q, const double *
 
 void bough_joint_normalise(const bough_joint *joint, double *q) {
     int row = quaternion_row(joint);
-    if (row < 0) return;
+    // A length that is one to rounding stays: normalising twice gives the same bits as once.
+    if (row < 0 || bough_joint_drift(joint, q) < 1e-15) return;
     bough_quaternion p = bough_quaternion_normalised(load(q + row));
     q[row] = p.w, q[row + 1] = p.x, q[row + 2] = p.y, q[row + 3] = p.z;
 }

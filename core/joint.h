@@ -50,7 +50,7 @@ void bough_joint_rate(const bough_joint *joint, const double *q, const double *v
 // along itself is no motion.
 void bough_joint_speed(const bough_joint *joint, const double *q, const double *change, double *v);
 
-// Scales the quaternion, if there is one, to |p| = 1.
+// Scales the quaternion, if there is one, to |p| = 1 within 1e-15. Doing it again changes no bit.
 void bough_joint_normalise(const bough_joint *joint, double *q);
 
 // | |p| − 1 |; 0 without a quaternion.

@@ -1,5 +1,6 @@
 // The rigid tree: analytic motions, and every recursion against another one.
 #include "tests/check.h"
+#include "tests/contract.h"
 
 #include "core/base.h"
 #include "core/dynamics.h"
@@ -525,6 +526,17 @@ static void bad_defs_are_named(void **state) {
 
 // -- the contract ----------------------------------------------------------------------------
 
+static void tree_fulfils_the_contract(void **state) {
+    (void)state;
+    fixture f = everything(1e-8);
+    double y[MOST];
+    memcpy(y, f.s.state, (size_t)f.s.n_state * sizeof(double));
+    contract_point at = {0.2, y, some_input, 1e-5};
+    contract_check(&f.s, at, 0.07, 0.05);
+    contract_set_state(&f.s, at, 1e-4);
+    bough_arena_destroy(f.arena);
+}
+
 static void restored_copies_repeat_bit_by_bit(void **state) {
     (void)state;
     fixture f = everything(1e-7);
@@ -643,6 +655,7 @@ int main(void) {
         cmocka_unit_test(root_inertia_is_felt_as_a_welded_body),
         cmocka_unit_test(ground_fixed_tree_has_no_states),
         cmocka_unit_test(bad_defs_are_named),
+        cmocka_unit_test(tree_fulfils_the_contract),
         cmocka_unit_test(restored_copies_repeat_bit_by_bit),
         cmocka_unit_test(kept_history_keeps_the_accuracy),
         cmocka_unit_test(external_wrench_acts_as_a_port_does),
