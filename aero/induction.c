@@ -35,6 +35,7 @@ typedef struct balance {
     double swirl; // sin φ cos φ/(1 + a')
     double sc;    // sin φ cos φ
     double s2;    // sin²φ
+    double loss;  // F
 } balance;
 
 // (2/π) acos exp(−factor/|sin φ|)
@@ -91,14 +92,15 @@ static balance balance_at(problem *p, double phi) {
     double normal = k.lift * flow_c + (o->axial_drag ? k.drag * flow_s : 0);
     double tangent = k.lift * flow_s - (o->tangential_drag ? k.drag * flow_c : 0);
     double f = loss(p, fabs(s)), density = e->solidity / (4 * f);
-    double loading = density * p->sign_x * normal;
+    double loading = density * e->cone * p->sign_x * normal;
     double swirl = o->tangential ? density * p->sign_y * tangent : 0;
     p->evaluations++;
     if (o->high_thrust == BOUGH_HIGH_THRUST_BUHL) {
-        return (balance){axial_buhl(loading, s, f, p->brake), s * c - swirl, s * c, s * s};
+        return (balance){axial_buhl(loading, s, f, p->brake), s * c - swirl, s * c, s * s, f};
     }
     double axial = axial_smooth(loading, s, f);
-    return (balance){axial, s * c - swirl * swirl_share(loading, s, axial), s * c, s * s};
+    swirl *= swirl_share(loading, s, axial);
+    return (balance){axial, s * c - swirl, s * c, s * s, f};
 }
 
 static double residual(const problem *p, balance b) { return b.axial - p->slope * b.swirl; }
@@ -181,6 +183,7 @@ bough_induction bough_induction_solve(const bough_induction_options *options,
     double swirl = b.swirl != 0 ? b.sc / b.swirl - 1 : -1;
     return (bough_induction){.axial = bough_clamp(1 - b.s2 / b.axial, -1, 1.5),
                              .tangential = options->tangential ? bough_clamp(swirl, -1, 1) : 0,
+                             .loss = b.loss,
                              .evaluations = p.evaluations};
 }
 

@@ -17,10 +17,10 @@
 // How thrust goes on growing with a where momentum theory would have it fall.
 typedef enum bough_high_thrust {
     // From a = 0.35 a parabola, smooth there, to CT = 2 at a = 1 and beyond; the swirl fades with
-    // the momentum share of the thrust. What AeroDyn's newer (polar) formulation does.
+    // the momentum share of the thrust. AeroDyn's newer (polar) formulation does this.
     BOUGH_HIGH_THRUST_SMOOTH,
     // From a = 0.4 the parabola of M. L. Buhl, NREL/TP-500-36834 (2005); for a > 1 the propeller
-    // brake state of momentum theory. What AeroDyn does without it.
+    // brake state of momentum theory. AeroDyn's older formulation does this.
     BOUGH_HIGH_THRUST_BUHL,
 } bough_high_thrust;
 
@@ -40,12 +40,14 @@ typedef struct bough_element {
     const bough_polar *polar;
     double solidity;               // B c/(2 π r) [-]
     double tip_factor, hub_factor; // B (R − r)/(2 r), B (r − R_hub)/(2 R_hub) [-]
+    double cone;                   // cos² of the blade's angle from the rotor plane [-]
     double twist;                  // of the chord from y [rad]
     double inflow_x, inflow_y;     // relative to the blade, without induction [m/s]
 } bough_element;
 
 typedef struct bough_induction {
     double axial, tangential; // a in [−1, 1.5], a' in [−1, 1]; both 0 where no balance exists [-]
+    double loss;              // Prandtl's factor there [-]
     int evaluations;          // of the residual
     bool fixed;               // at the very tip or root, where the loss leaves a = 1, a' = 0
 } bough_induction;

@@ -63,8 +63,8 @@ typedef struct bough_rotor_motion {
     const bough_vec3 *angular_velocity; // (n_blade × n_vertex) [rad/s]
 } bough_rotor_motion;
 
-// What a station reports. x is normal to the deformed blade in the plane of shaft and blade, y
-// tangential, against the rotation.
+// What a station reports. y is tangential, against the rotation; x normal to the deformed blade in
+// the plane of shaft and radius.
 typedef struct bough_station {
     double radius;                   // from the shaft axis [m]
     double inflow_x, inflow_y;       // relative to the station, without induction [m/s]
