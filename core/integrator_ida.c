@@ -41,6 +41,7 @@ static int residual(double t, N_Vector y, N_Vector rate, N_Vector out, void *sel
     return ok && all_finite(r, ida->dae.n) ? 0 : 1; // 1: IDA tries a smaller step
 }
 
+// NOLINTNEXTLINE(readability-function-size): SUNDIALS fixes the parameters
 static int jacobian(double t, double cj, N_Vector y, N_Vector rate, N_Vector r, SUNMatrix j,
                     void *self, N_Vector t1, N_Vector t2, N_Vector t3) {
     (void)r, (void)j, (void)t1, (void)t2, (void)t3;

@@ -17,12 +17,11 @@ static void one_thread(void) {
     if (openblas_set_num_threads) openblas_set_num_threads(1);
 }
 
-// The library's thread count is the process's, so this flag cannot be anyone's but the process's.
-static once_flag library_is_prepared = ONCE_FLAG_INIT;
-
 bool bough_dense_factor(int n, double *a, int *pivot) {
     if (n == 0) return true;
-    call_once(&library_is_prepared, one_thread);
+    // the library's thread count is the process's, and so is this
+    static once_flag prepared = ONCE_FLAG_INIT;
+    call_once(&prepared, one_thread);
     double sum = 0; // a NaN may pass the pivot search
     for (size_t i = 0; i < (size_t)n * (size_t)n; i++)
         sum += fabs(a[i]);
