@@ -28,13 +28,22 @@ typedef struct thing {
 static void read_sum(bough_schema_reader *r, const bough_node *node, void *field) {
     double v[4];
     int n = bough_schema_numbers(r, node, 4, v, "a list of at most 4 numbers");
-    for (int i = 0; i < n; i++) *(int *)field += (int)v[i];
+    for (int i = 0; i < n; i++)
+        *(int *)field += (int)v[i];
 }
 
 static const bough_key part_keys[] = {
-    {.name = "length", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = "> 0",
-     .required = true, .offset = offsetof(part, length), .help = "length of the part"},
-    {.name = "label", .kind = BOUGH_KEY_TEXT, .fallback = "none", .offset = offsetof(part, label),
+    {.name = "length",
+     .kind = BOUGH_KEY_NUMBER,
+     .dimension = BOUGH_LENGTH,
+     .range = "> 0",
+     .required = true,
+     .offset = offsetof(part, length),
+     .help = "length of the part"},
+    {.name = "label",
+     .kind = BOUGH_KEY_TEXT,
+     .fallback = "none",
+     .offset = offsetof(part, label),
      .help = "label of the part"},
 };
 
@@ -47,34 +56,91 @@ static void check_part(bough_schema_reader *r, void *item) {
 static const bough_schema part_schema = {"a part", sizeof(part), 2, part_keys, check_part};
 
 static const bough_key thing_keys[] = {
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .offset = offsetof(thing, kind), .required = true,
-     .choices = (const char *const[]){"turning", "sliding", "fixed", NULL}, .help = "its kind"},
-    {.name = "angle", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "90 deg",
-     .when_key = "kind", .when = "turning", .offset = offsetof(thing, angle), .help = "its angle"},
-    {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGULAR_SPEED,
-     .when_key = "kind", .when = "turning", .offset = offsetof(thing, speed), .help = "turning"},
-    {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .when_key = "kind",
-     .when = "sliding", .offset = offsetof(thing, speed), .help = "sliding"},
-    {.name = "count", .kind = BOUGH_KEY_INTEGER, .range = "[0, 9]", .fallback = "4",
-     .offset = offsetof(thing, count), .help = "how many"},
-    {.name = "share", .kind = BOUGH_KEY_NUMBER, .range = "[0.5, 1]", .word = "auto",
-     .fallback = "auto", .offset = offsetof(thing, share), .help = "how much"},
+    {.name = "kind",
+     .kind = BOUGH_KEY_CHOICE,
+     .offset = offsetof(thing, kind),
+     .required = true,
+     .choices = (const char *const[]){"turning", "sliding", "fixed", NULL},
+     .help = "its kind"},
+    {.name = "angle",
+     .kind = BOUGH_KEY_NUMBER,
+     .dimension = BOUGH_ANGLE,
+     .fallback = "90 deg",
+     .when_key = "kind",
+     .when = "turning",
+     .offset = offsetof(thing, angle),
+     .help = "its angle"},
+    {.name = "speed",
+     .kind = BOUGH_KEY_NUMBER,
+     .dimension = BOUGH_ANGULAR_SPEED,
+     .when_key = "kind",
+     .when = "turning",
+     .offset = offsetof(thing, speed),
+     .help = "turning"},
+    {.name = "speed",
+     .kind = BOUGH_KEY_NUMBER,
+     .dimension = BOUGH_SPEED,
+     .when_key = "kind",
+     .when = "sliding",
+     .offset = offsetof(thing, speed),
+     .help = "sliding"},
+    {.name = "count",
+     .kind = BOUGH_KEY_INTEGER,
+     .range = "[0, 9]",
+     .fallback = "4",
+     .offset = offsetof(thing, count),
+     .help = "how many"},
+    {.name = "share",
+     .kind = BOUGH_KEY_NUMBER,
+     .range = "[0.5, 1]",
+     .word = "auto",
+     .fallback = "auto",
+     .offset = offsetof(thing, share),
+     .help = "how much"},
     {.name = "label", .kind = BOUGH_KEY_TEXT, .offset = offsetof(thing, label), .help = "a label"},
-    {.name = "on", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", .offset = offsetof(thing, on),
+    {.name = "on",
+     .kind = BOUGH_KEY_BOOLEAN,
+     .fallback = "true",
+     .offset = offsetof(thing, on),
      .help = "on or off"},
-    {.name = "vector", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
-     .fallback = "[0, 0, 2 m]", .offset = offsetof(thing, vector), .help = "a vector"},
-    {.name = "weights", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_MASS, .range = ">= 0",
-     .count = 2, .offset = offsetof(thing, weight), .count_offset = offsetof(thing, n_weight),
+    {.name = "vector",
+     .kind = BOUGH_KEY_VECTOR,
+     .count = 3,
+     .dimension = BOUGH_LENGTH,
+     .fallback = "[0, 0, 2 m]",
+     .offset = offsetof(thing, vector),
+     .help = "a vector"},
+    {.name = "weights",
+     .kind = BOUGH_KEY_NUMBERS,
+     .dimension = BOUGH_MASS,
+     .range = ">= 0",
+     .count = 2,
+     .offset = offsetof(thing, weight),
+     .count_offset = offsetof(thing, n_weight),
      .help = "weights"},
-    {.name = "tags", .kind = BOUGH_KEY_TEXTS, .count = 1, .offset = offsetof(thing, tag),
-     .count_offset = offsetof(thing, n_tag), .help = "tags"},
-    {.name = "inner", .kind = BOUGH_KEY_MAPPING, .of = &part_schema,
-     .offset = offsetof(thing, inner), .help = "an inner part"},
-    {.name = "parts", .kind = BOUGH_KEY_LIST, .of = &part_schema, .offset = offsetof(thing, part),
-     .count_offset = offsetof(thing, n_part), .help = "parts"},
-    {.name = "sum", .kind = BOUGH_KEY_CUSTOM, .read = read_sum, .form = "numbers to add",
-     .offset = offsetof(thing, sum), .help = "a sum"},
+    {.name = "tags",
+     .kind = BOUGH_KEY_TEXTS,
+     .count = 1,
+     .offset = offsetof(thing, tag),
+     .count_offset = offsetof(thing, n_tag),
+     .help = "tags"},
+    {.name = "inner",
+     .kind = BOUGH_KEY_MAPPING,
+     .of = &part_schema,
+     .offset = offsetof(thing, inner),
+     .help = "an inner part"},
+    {.name = "parts",
+     .kind = BOUGH_KEY_LIST,
+     .of = &part_schema,
+     .offset = offsetof(thing, part),
+     .count_offset = offsetof(thing, n_part),
+     .help = "parts"},
+    {.name = "sum",
+     .kind = BOUGH_KEY_CUSTOM,
+     .read = read_sum,
+     .form = "numbers to add",
+     .offset = offsetof(thing, sum),
+     .help = "a sum"},
 };
 static const bough_schema thing_schema = {
     "a thing", sizeof(thing), sizeof thing_keys / sizeof thing_keys[0], thing_keys, NULL};
@@ -151,7 +217,8 @@ static void defaults_are_filled(void **state) {
     check_near(f.thing.share, 0, 0, 0);
     assert_true(f.thing.on);
     check_near(f.thing.vector[2], 2, 0, 0);
-    assert_null(f.thing.inner.node); // left out: no error about its required key, its defaults stand
+    assert_null(
+        f.thing.inner.node); // left out: no error about its required key, its defaults stand
     assert_string_equal(f.thing.inner.label, "none");
     assert_int_equal(f.thing.n_part, 0);
     assert_null(f.thing.label);
@@ -242,8 +309,9 @@ static void wrong_types_are_refused(void **state) {
                                          "keys), got '5'\n");
     refuses("kind: fixed\nsum: [1, 2 m]\n", "f:2:10: error: sum[1]: expected a plain number in SI "
                                             "units, got '2 m'\n");
-    refuses("kind: fixed\nsum: [1, 2, 3, 4, 5]\n", "f:2:6: error: sum: expected a list of at most 4 "
-                                                   "numbers, got 5 items\n");
+    refuses("kind: fixed\nsum: [1, 2, 3, 4, 5]\n",
+            "f:2:6: error: sum: expected a list of at most 4 "
+            "numbers, got 5 items\n");
     refuses("- kind\n", "f:1:1: error: expected a thing (a mapping of keys), got a list\n");
 }
 
@@ -257,8 +325,7 @@ static void only_true_and_false_are_booleans(void **state) {
                  others[i]);
         refuses(text, line);
     }
-    refuses("kind: fixed\non: 'true'\n",
-            "f:2:5: error: on: expected true or false, got 'true'\n");
+    refuses("kind: fixed\non: 'true'\n", "f:2:5: error: on: expected true or false, got 'true'\n");
 }
 
 static void missing_keys_are_told_at_the_mapping(void **state) {
@@ -291,7 +358,7 @@ static void keys_depend_on_choices(void **state) {
             "rpm': the unit 'rpm' does not fit\n");
     // A wrong choice raises no errors about the keys that hang on it.
     refuses("kind: xyz\nangle: 1\n", "f:1:7: error: kind: expected one of turning, sliding, "
-                                          "fixed, got 'xyz'\n");
+                                     "fixed, got 'xyz'\n");
 }
 
 static void checks_run_on_clean_mappings_only(void **state) {
@@ -303,9 +370,11 @@ static void checks_run_on_clean_mappings_only(void **state) {
 static void long_values_are_cut(void **state) {
     (void)state;
     char text[400] = "kind: fixed\ncount: ", line[200];
-    for (int i = 0; i < 100; i++) strcat(text, "é");
+    for (int i = 0; i < 100; i++)
+        strcat(text, "é");
     strcpy(line, "f:2:8: error: count: expected a whole number, got '");
-    for (int i = 0; i < 22; i++) strcat(line, "é");
+    for (int i = 0; i < 22; i++)
+        strcat(line, "é");
     strcat(line, "...'\n");
     refuses(text, line);
 }
@@ -377,9 +446,9 @@ static void numbers_are_strict(void **state) {
     quantity_is("+1.E5", BOUGH_PURE_NUMBER, 1e5);
     quantity_is(".5", BOUGH_PURE_NUMBER, 0.5);
     quantity_is("1e-400", BOUGH_PURE_NUMBER, 0);
-    const char *const bad[] = {"0x3d", "010", "00", "nan", ".nan", "inf", "-.inf", "1e", "e5",
-                               "1,5", "1_000", "--1", "", " 1", ".", "-", "1 2", "1.2.3", "1e5.5",
-                               "0b1", "0o7", "1d5", "1:30"};
+    const char *const bad[] = {"0x3d", "010",   "00",    "nan", ".nan", "inf", "-.inf", "1e",
+                               "e5",   "1,5",   "1_000", "--1", "",     " 1",  ".",     "-",
+                               "1 2",  "1.2.3", "1e5.5", "0b1", "0o7",  "1d5", "1:30"};
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         double value;
         char why[160];
@@ -399,7 +468,8 @@ static void numbers_do_not_depend_on_the_locale(void **state) {
     (void)state;
     const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "de_DE"};
     bool set = false;
-    for (int i = 0; i < 4 && !set; i++) set = setlocale(LC_NUMERIC, names[i]) != NULL;
+    for (int i = 0; i < 4 && !set; i++)
+        set = setlocale(LC_NUMERIC, names[i]) != NULL;
     if (!set) skip();
     quantity_is("1.5 m", BOUGH_LENGTH, 1.5);
     setlocale(LC_NUMERIC, "C");
@@ -424,7 +494,8 @@ static void hostile_keys_end_fast(void **state) {
     (void)state;
     enum { N = 300000 };
     char *text = malloc(16 * N + 20), *next = text + sprintf(text, "kind: fixed\n");
-    for (int i = 0; i < N; i++) next += sprintf(next, "cuont%d: 1\n", i);
+    for (int i = 0; i < N; i++)
+        next += sprintf(next, "cuont%d: 1\n", i);
     clock_t begin = clock();
     fixture f = read_thing(text);
     assert_int_equal(f.errors.n + f.errors.dropped, N);

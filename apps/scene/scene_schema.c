@@ -1,10 +1,10 @@
 // The keys of a scene and of its data files.
 #include "apps/scene/scene_parts.h"
 
-// clang-format off: one line a key would become one line a field
+// One line a key would become one line a field:
+// clang-format off
 #define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
-#define CHOICES(...)                                                                               \
-    (const char *const[]) { __VA_ARGS__, NULL }
+#define CHOICES(...) (const char *const[]){__VA_ARGS__, NULL}
 #define SCHEMA(what, type, keys)                                                                   \
     .name = what, .size = sizeof(type), .n_key = COUNT(keys), .key = keys
 
@@ -24,39 +24,18 @@ static const char stiffness_help[] =
 
 #define AT(member) .offset = offsetof(bough_scene_station, member)
 static const bough_key station_keys[] = {
-    {.name = "span",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_LENGTH,
-     .required = true,
+    {.name = "span", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .required = true,
      .offset = offsetof(bough_scene_station, position) + 2 * sizeof(double),
      .help = "position along z, from 0 at the root to the length"},
-    {.name = "twist",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_ANGLE,
-     .fallback = "0",
-     AT(twist),
-     .help = "the section's axes are turned by -twist about z, like pitch"},
-    {.name = "axis",
-     .kind = BOUGH_KEY_CUSTOM,
-     .read = bough_scene_read_axis_offset,
-     .form = "[x, y] in m",
-     .fallback = "[0, 0]",
-     AT(position),
+    {.name = "twist", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
+     AT(twist), .help = "the section's axes are turned by -twist about z, like pitch"},
+    {.name = "axis", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_axis_offset,
+     .form = "[x, y] in m", .fallback = "[0, 0]", AT(position),
      .help = "offset of the reference axis"},
-    {.name = "stiffness",
-     .kind = BOUGH_KEY_CUSTOM,
-     .read = bough_scene_read_stiffness,
-     .form = stiffness_form,
-     .required = true,
-     AT(stiffness),
-     .help = stiffness_help},
-    {.name = "mass",
-     .kind = BOUGH_KEY_CUSTOM,
-     .read = bough_scene_read_section_mass,
-     .form = mass_form,
-     .required = true,
-     .offset = 0,
-     .help = mass_help},
+    {.name = "stiffness", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_stiffness,
+     .form = stiffness_form, .required = true, AT(stiffness), .help = stiffness_help},
+    {.name = "mass", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_section_mass,
+     .form = mass_form, .required = true, .offset = 0, .help = mass_help},
 };
 #undef AT
 static const bough_schema station_schema = {SCHEMA("a station", bough_scene_station, station_keys)};
@@ -64,27 +43,13 @@ static const bough_schema station_schema = {SCHEMA("a station", bough_scene_stat
 #define AT(member) .offset = offsetof(bough_scene_structure, member)
 static const bough_key structure_keys[] = {
     {.name = "source", .kind = BOUGH_KEY_TEXT, AT(source), .help = "where the data come from"},
-    {.name = "length",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_LENGTH,
-     .range = "> 0",
-     AT(length),
-     .help = "extent along z; default the last span, required with one station"},
-    {.name = "damping",
-     .kind = BOUGH_KEY_VECTOR,
-     .count = 6,
-     .dimension = BOUGH_TIME,
-     .range = ">= 0",
-     .fallback = zero6,
-     AT(damping),
+    {.name = "length", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = "> 0",
+     AT(length), .help = "extent along z; default the last span, required with one station"},
+    {.name = "damping", .kind = BOUGH_KEY_VECTOR, .count = 6, .dimension = BOUGH_TIME,
+     .range = ">= 0", .fallback = zero6, AT(damping),
      .help = "per strain: stress = stiffness (strain + damping x strain rate)"},
-    {.name = "stations",
-     .kind = BOUGH_KEY_LIST,
-     .of = &station_schema,
-     .count = 1,
-     .required = true,
-     AT(station),
-     .count_offset = offsetof(bough_scene_structure, n_station),
+    {.name = "stations", .kind = BOUGH_KEY_LIST, .of = &station_schema, .count = 1,
+     .required = true, AT(station), .count_offset = offsetof(bough_scene_structure, n_station),
      .help = "sections along the span, linear between; one station: uniform"},
 };
 #undef AT
@@ -94,133 +59,54 @@ static const bough_schema structure_schema = {
 
 #define AT(member) .offset = offsetof(bough_scene_rod, member)
 static const bough_key rod_keys[] = {
-    {.name = "table",
-     .kind = BOUGH_KEY_FILE,
-     .of = &structure_schema,
-     AT(structure),
+    {.name = "table", .kind = BOUGH_KEY_FILE, .of = &structure_schema, AT(structure),
      .help = "file with the structure, relative to the scene; without it give length, stiffness "
              "and mass of a uniform rod here"},
-    {.name = "segments",
-     .kind = BOUGH_KEY_INTEGER,
-     .range = "[1, 10000]",
-     .fallback = "24",
-     AT(n_segment),
-     .help = "segments of equal length"},
-    {.name = "damping",
-     .kind = BOUGH_KEY_VECTOR,
-     .count = 6,
-     .dimension = BOUGH_TIME,
-     .range = ">= 0",
-     AT(damping),
-     .help = "in place of the table's"},
-    {.name = "length",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_LENGTH,
-     .range = "> 0",
-     AT(length),
-     .help = "of a uniform rod"},
-    {.name = "twist",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_ANGLE,
-     .fallback = "0",
-     AT(uniform.twist),
-     .help = "of a uniform rod"},
-    {.name = "stiffness",
-     .kind = BOUGH_KEY_CUSTOM,
-     .read = bough_scene_read_stiffness,
-     .form = stiffness_form,
-     AT(uniform.stiffness),
-     .help = "of a uniform rod, as in a station"},
-    {.name = "mass",
-     .kind = BOUGH_KEY_CUSTOM,
-     .read = bough_scene_read_section_mass,
-     .form = mass_form,
-     AT(uniform),
-     .help = "of a uniform rod, as in a station"},
+    {.name = "segments", .kind = BOUGH_KEY_INTEGER, .range = "[1, 10000]", .fallback = "24",
+     AT(n_segment), .help = "segments of equal length"},
+    {.name = "damping", .kind = BOUGH_KEY_VECTOR, .count = 6, .dimension = BOUGH_TIME,
+     .range = ">= 0", AT(damping), .help = "in place of the table's"},
+    {.name = "length", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = "> 0",
+     AT(length), .help = "of a uniform rod"},
+    {.name = "twist", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
+     AT(uniform.twist), .help = "of a uniform rod"},
+    {.name = "stiffness", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_stiffness,
+     .form = stiffness_form, AT(uniform.stiffness), .help = "of a uniform rod, as in a station"},
+    {.name = "mass", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_section_mass,
+     .form = mass_form, AT(uniform), .help = "of a uniform rod, as in a station"},
 };
 #undef AT
 static const bough_schema rod_schema = {SCHEMA("a rod", bough_scene_rod, rod_keys),
                                         .check = bough_scene_check_rod};
 
-// -- bodies
-// -----------------------------------------------------------------------------------------
+// -- bodies ----------------------------------------------------------------------------------------
 
 #define AT(member) .offset = offsetof(bough_scene_joint, member)
 static const bough_key joint_keys[] = {
-    {.name = "kind",
-     .kind = BOUGH_KEY_CHOICE,
-     .required = true,
-     AT(kind),
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .required = true, AT(kind),
      .choices = CHOICES("fixed", "revolute", "prismatic", "spherical", "free"),
      .help = "what the joint lets move"},
-    {.name = "parent",
-     .kind = BOUGH_KEY_TEXT,
-     .required = true,
-     AT(parent_name),
+    {.name = "parent", .kind = BOUGH_KEY_TEXT, .required = true, AT(parent_name),
      .help = "name of a body, or ground"},
-    {.name = "placement",
-     .kind = BOUGH_KEY_CUSTOM,
-     .read = bough_scene_read_placement,
-     .form = "list of 'move x|y|z LENGTH' and 'rotate x|y|z ANGLE'",
-     .offset = 0,
+    {.name = "placement", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_placement,
+     .form = "list of 'move x|y|z LENGTH' and 'rotate x|y|z ANGLE'", .offset = 0,
      .help = "from the parent's frame to the joint's, each step in the frame reached so far"},
-    {.name = "axis",
-     .kind = BOUGH_KEY_CHOICE,
-     .choices = CHOICES("x", "y", "z"),
-     .required = true,
-     .when_key = "kind",
-     .when = "revolute|prismatic",
-     AT(axis),
-     .help = "axis of the motion"},
-    {.name = "angle",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_ANGLE,
-     .fallback = "0",
-     .when_key = "kind",
-     .when = "revolute",
-     AT(position),
-     .help = "initial angle"},
-    {.name = "position",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_LENGTH,
-     .fallback = "0",
-     .when_key = "kind",
-     .when = "prismatic",
-     AT(position),
-     .help = "initial displacement"},
-    {.name = "speed",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_ANGULAR_SPEED,
-     .fallback = "0",
-     .when_key = "kind",
-     .when = "revolute",
-     AT(speed),
-     .help = "initial speed"},
-    {.name = "speed",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_SPEED,
-     .fallback = "0",
-     .when_key = "kind",
-     .when = "prismatic",
-     AT(speed),
-     .help = "initial speed"},
-    {.name = "velocity",
-     .kind = BOUGH_KEY_VECTOR,
-     .count = 3,
-     .dimension = BOUGH_SPEED,
-     .fallback = zero3,
-     .when_key = "kind",
-     .when = "free",
-     AT(velocity),
+    {.name = "axis", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("x", "y", "z"), .required = true,
+     .when_key = "kind", .when = "revolute|prismatic", AT(axis), .help = "axis of the motion"},
+    {.name = "angle", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
+     .when_key = "kind", .when = "revolute", AT(position), .help = "initial angle"},
+    {.name = "position", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .fallback = "0",
+     .when_key = "kind", .when = "prismatic", AT(position), .help = "initial displacement"},
+    {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGULAR_SPEED, .fallback = "0",
+     .when_key = "kind", .when = "revolute", AT(speed), .help = "initial speed"},
+    {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .fallback = "0",
+     .when_key = "kind", .when = "prismatic", AT(speed), .help = "initial speed"},
+    {.name = "velocity", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_SPEED,
+     .fallback = zero3, .when_key = "kind", .when = "free", AT(velocity),
      .help = "initial velocity in the joint's frame"},
-    {.name = "angular_velocity",
-     .kind = BOUGH_KEY_VECTOR,
-     .count = 3,
-     .dimension = BOUGH_ANGULAR_SPEED,
-     .fallback = zero3,
-     .when_key = "kind",
-     .when = "spherical|free",
-     AT(angular_velocity),
+    {.name = "angular_velocity", .kind = BOUGH_KEY_VECTOR, .count = 3,
+     .dimension = BOUGH_ANGULAR_SPEED, .fallback = zero3, .when_key = "kind",
+     .when = "spherical|free", AT(angular_velocity),
      .help = "initial angular velocity in the joint's frame"},
 };
 #undef AT
@@ -228,115 +114,60 @@ static const bough_schema joint_schema = {SCHEMA("a joint", bough_scene_joint, j
 
 #define AT(member) .offset = offsetof(bough_scene_body, member)
 static const bough_key body_keys[] = {
-    {.name = "name",
-     .kind = BOUGH_KEY_TEXT,
-     .required = true,
-     AT(name),
+    {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
      .help = "letters, digits, '_' and '-'; unique"},
-    {.name = "fidelity",
-     .kind = BOUGH_KEY_CHOICE,
-     .choices = CHOICES("rigid", "rod"),
-     .required = true,
-     AT(fidelity),
-     .help = "how the body is modelled"},
-    {.name = "joint",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &joint_schema,
-     .required = true,
-     AT(joint),
+    {.name = "fidelity", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("rigid", "rod"),
+     .required = true, AT(fidelity), .help = "how the body is modelled"},
+    {.name = "joint", .kind = BOUGH_KEY_MAPPING, .of = &joint_schema, .required = true, AT(joint),
      .help = "the joint that carries the body"},
-    {.name = "pitch",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_ANGLE,
-     .fallback = "0",
-     AT(pitch),
-     .help = "last rotation of a body with a rod, about its z by -pitch"},
-    {.name = "mass",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_MASS,
-     .range = ">= 0",
-     .fallback = "0",
-     .when_key = "fidelity",
-     .when = "rigid",
-     AT(mass),
+    {.name = "pitch", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
+     AT(pitch), .help = "last rotation of a body with a rod, about its z by -pitch"},
+    {.name = "mass", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_MASS, .range = ">= 0",
+     .fallback = "0", .when_key = "fidelity", .when = "rigid", AT(mass),
      .help = "of a rigid body without a rod"},
-    {.name = "centre_of_mass",
-     .kind = BOUGH_KEY_VECTOR,
-     .count = 3,
-     .dimension = BOUGH_LENGTH,
-     .fallback = zero3,
-     .when_key = "fidelity",
-     .when = "rigid",
-     AT(centre_of_mass),
+    {.name = "centre_of_mass", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
+     .fallback = zero3, .when_key = "fidelity", .when = "rigid", AT(centre_of_mass),
      .help = "in the body's frame"},
-    {.name = "inertia",
-     .kind = BOUGH_KEY_CUSTOM,
-     .read = bough_scene_read_inertia,
-     .form = "[Ixx, Iyy, Izz] or with Ixy, Ixz, Iyz, in kg m^2",
-     .fallback = zero3,
-     .when_key = "fidelity",
-     .when = "rigid",
-     AT(inertia),
+    {.name = "inertia", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_inertia,
+     .form = "[Ixx, Iyy, Izz] or with Ixy, Ixz, Iyz, in kg m^2", .fallback = zero3,
+     .when_key = "fidelity", .when = "rigid", AT(inertia),
      .help = "entries of the inertia matrix about the centre of mass (Ixy = -integral of x y)"},
-    {.name = "rod",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &rod_schema,
-     AT(rod),
+    {.name = "rod", .kind = BOUGH_KEY_MAPPING, .of = &rod_schema, AT(rod),
      .help = "the rod; of a rigid body: integrated to a rigid body"},
 };
 #undef AT
 static const bough_schema body_schema = {SCHEMA("a body", bough_scene_body, body_keys)};
 
-// -- simulation
-// -------------------------------------------------------------------------------------
+// -- simulation ------------------------------------------------------------------------------------
 
 #define AT(member) .offset = offsetof(bough_scene_coupling, member)
 // Order and theta are allowed with any scheme, so that --set may change the scheme alone.
 static const bough_key coupling_keys[] = {
-    {.name = "scheme",
-     .kind = BOUGH_KEY_CHOICE,
-     .fallback = "ramp",
-     AT(scheme),
+    {.name = "scheme", .kind = BOUGH_KEY_CHOICE, .fallback = "ramp", AT(scheme),
      .choices = CHOICES("frozen", "gauss-seidel", "extrapolated", "ramp", "monolithic"),
      .help = "how sub-systems exchange their values"},
-    {.name = "order",
-     .kind = BOUGH_KEY_INTEGER,
-     .range = "[0, 2]",
-     .fallback = "1",
-     AT(order),
-     .help = "of extrapolated: degree of the polynomial"},
-    {.name = "theta",
-     .kind = BOUGH_KEY_NUMBER,
-     .word = "auto",
-     .range = "[0.5, 1]",
-     .fallback = "auto",
-     AT(theta),
-     .help = "of ramp: share of the new value"},
+    {.name = "order", .kind = BOUGH_KEY_INTEGER, .range = "[0, 2]", .fallback = "1",
+     AT(order), .help = "of extrapolated: degree of the polynomial"},
+    {.name = "theta", .kind = BOUGH_KEY_NUMBER, .word = "auto", .range = "[0.5, 1]",
+     .fallback = "auto", AT(theta), .help = "of ramp: share of the new value"},
 };
 #undef AT
 static const bough_schema coupling_schema = {
     SCHEMA("the coupling", bough_scene_coupling, coupling_keys)};
 
 #define RTOL(value)                                                                                \
-    {                                                                                              \
-        .name = "rtol", .kind = BOUGH_KEY_NUMBER, .range = "[1e-14, 0.1]", .fallback = value,      \
-        .offset = offsetof(bough_scene_solver, rtol), .help = "relative tolerance"                 \
-    }
+    {.name = "rtol", .kind = BOUGH_KEY_NUMBER, .range = "[1e-14, 0.1]", .fallback = value,         \
+     .offset = offsetof(bough_scene_solver, rtol), .help = "relative tolerance"}
 #define SOLVER(value)                                                                              \
-    {                                                                                              \
-        .name = "solver", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES(value), .fallback = value,  \
-        .offset = offsetof(bough_scene_solver, solver), .help = "time integrator"                  \
-    }
+    {.name = "solver", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES(value), .fallback = value,     \
+     .offset = offsetof(bough_scene_solver, solver), .help = "time integrator"}
 static const bough_key master_keys[] = {SOLVER("ida"), RTOL("1e-6")};
 static const bough_key micro_keys[] = {SOLVER("cvode-bdf"), RTOL("1e-4")};
 static const bough_schema master_schema = {SCHEMA("a solver", bough_scene_solver, master_keys)};
 static const bough_schema micro_schema = {SCHEMA("a solver", bough_scene_solver, micro_keys)};
 
 static const bough_key output_keys[] = {
-    {.name = "interval",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_TIME,
-     .range = "> 0",
+    {.name = "interval", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .offset = offsetof(bough_scene_output, interval),
      .help = "between recorded values, a multiple of the macro step; default the macro step"},
 };
@@ -344,77 +175,39 @@ static const bough_schema output_schema = {SCHEMA("the output", bough_scene_outp
 
 #define AT(member) .offset = offsetof(bough_scene_simulation, member)
 static const bough_key simulation_keys[] = {
-    {.name = "duration",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_TIME,
-     .range = "> 0",
-     .required = true,
-     AT(duration),
-     .help = "simulated time, a multiple of the macro step"},
-    {.name = "macro_step",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_TIME,
-     .range = "> 0",
-     .required = true,
-     AT(macro_step),
-     .help = "time between exchanges"},
-    {.name = "coupling",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &coupling_schema,
-     AT(coupling),
+    {.name = "duration", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
+     .required = true, AT(duration), .help = "simulated time, a multiple of the macro step"},
+    {.name = "macro_step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
+     .required = true, AT(macro_step), .help = "time between exchanges"},
+    {.name = "coupling", .kind = BOUGH_KEY_MAPPING, .of = &coupling_schema, AT(coupling),
      .help = "the coupling scheme"},
-    {.name = "master",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &master_schema,
-     AT(master),
+    {.name = "master", .kind = BOUGH_KEY_MAPPING, .of = &master_schema, AT(master),
      .help = "integrator of the tree of bodies"},
-    {.name = "micro",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &micro_schema,
-     AT(micro),
+    {.name = "micro", .kind = BOUGH_KEY_MAPPING, .of = &micro_schema, AT(micro),
      .help = "integrator of each rod"},
-    {.name = "threads",
-     .kind = BOUGH_KEY_INTEGER,
-     .range = "[1, 1024]",
-     .fallback = "1",
-     AT(threads),
-     .help = "threads for the rods; --threads overrides"},
-    {.name = "output",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &output_schema,
-     AT(output),
+    {.name = "threads", .kind = BOUGH_KEY_INTEGER, .range = "[1, 1024]", .fallback = "1",
+     AT(threads), .help = "threads for the rods; --threads overrides"},
+    {.name = "output", .kind = BOUGH_KEY_MAPPING, .of = &output_schema, AT(output),
      .help = "what is recorded"},
 };
 #undef AT
 static const bough_schema simulation_schema = {
     SCHEMA("the simulation", bough_scene_simulation, simulation_keys)};
 
-// -- loads and turbine
-// ------------------------------------------------------------------------------
+// -- loads and turbine -----------------------------------------------------------------------------
 
 #define RAMP(type)                                                                                 \
-    {                                                                                              \
-        .name = "ramp", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_TIME,             \
-        .range = ">= 0", .fallback = "[0, 0]", .offset = offsetof(type, ramp),                     \
-        .help = "grows linearly from nothing at the first time to all at the second"               \
-    }
+    {.name = "ramp", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_TIME,                \
+     .range = ">= 0", .fallback = "[0, 0]", .offset = offsetof(type, ramp),                        \
+     .help = "grows linearly from nothing at the first time to all at the second"}
 
 #define AT(member) .offset = offsetof(bough_scene_load, member)
 static const bough_key load_keys[] = {
-    {.name = "joint",
-     .kind = BOUGH_KEY_TEXT,
-     .required = true,
-     AT(joint_name),
+    {.name = "joint", .kind = BOUGH_KEY_TEXT, .required = true, AT(joint_name),
      .help = "name of the body that the joint carries"},
-    {.name = "torque",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_MOMENT,
-     AT(amount),
+    {.name = "torque", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_MOMENT, AT(amount),
      .help = "about the axis of a revolute joint"},
-    {.name = "force",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_FORCE,
-     AT(amount),
+    {.name = "force", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_FORCE, AT(amount),
      .help = "along the axis of a prismatic joint"},
     RAMP(bough_scene_load),
 };
@@ -424,16 +217,9 @@ static const bough_schema load_schema = {SCHEMA("a load", bough_scene_load, load
 
 #define AT(member) .offset = offsetof(bough_scene_turbine, member)
 static const bough_key turbine_keys[] = {
-    {.name = "rotor",
-     .kind = BOUGH_KEY_TEXT,
-     .required = true,
-     AT(rotor_name),
+    {.name = "rotor", .kind = BOUGH_KEY_TEXT, .required = true, AT(rotor_name),
      .help = "body on the revolute joint of the rotor"},
-    {.name = "blades",
-     .kind = BOUGH_KEY_TEXTS,
-     .required = true,
-     .count = 1,
-     AT(blade_name),
+    {.name = "blades", .kind = BOUGH_KEY_TEXTS, .required = true, .count = 1, AT(blade_name),
      .count_offset = offsetof(bough_scene_turbine, n_blade),
      .help = "bodies with a rod, carried by the rotor"},
 };
@@ -441,46 +227,21 @@ static const bough_key turbine_keys[] = {
 static const bough_schema turbine_schema = {
     SCHEMA("the turbine", bough_scene_turbine, turbine_keys)};
 
-// -- aerodynamics
-// -----------------------------------------------------------------------------------
+// -- aerodynamics ----------------------------------------------------------------------------------
 
 #define AT(member) .offset = offsetof(bough_scene_aero_station, member)
 static const bough_key aero_station_keys[] = {
-    {.name = "span",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_LENGTH,
-     .required = true,
-     AT(span),
-     .help = "along z from the root"},
-    {.name = "ac_x",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_LENGTH,
-     .fallback = "0",
-     AT(ac[0]),
-     .help = "aerodynamic centre from the pitch axis, blade-root x (flapwise)"},
-    {.name = "ac_y",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_LENGTH,
-     .fallback = "0",
-     AT(ac[1]),
-     .help = "aerodynamic centre from the pitch axis, blade-root y (edgewise)"},
-    {.name = "twist",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_ANGLE,
-     .fallback = "0",
-     AT(twist),
-     .help = "the airfoil is turned by -twist about z, like pitch"},
-    {.name = "chord",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_LENGTH,
-     .range = "> 0",
-     .required = true,
-     AT(chord),
-     .help = "chord"},
-    {.name = "polar",
-     .kind = BOUGH_KEY_TEXT,
-     .required = true,
-     AT(polar_name),
+    {.name = "span", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .required = true,
+     AT(span), .help = "along z from the root"},
+    {.name = "ac_x", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .fallback = "0",
+     AT(ac[0]), .help = "aerodynamic centre from the pitch axis, blade-root x (flapwise)"},
+    {.name = "ac_y", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .fallback = "0",
+     AT(ac[1]), .help = "aerodynamic centre from the pitch axis, blade-root y (edgewise)"},
+    {.name = "twist", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
+     AT(twist), .help = "the airfoil is turned by -twist about z, like pitch"},
+    {.name = "chord", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = "> 0",
+     .required = true, AT(chord), .help = "chord"},
+    {.name = "polar", .kind = BOUGH_KEY_TEXT, .required = true, AT(polar_name),
      .help = "name of a polar in the polars file"},
 };
 #undef AT
@@ -490,13 +251,8 @@ static const bough_schema aero_station_schema = {
 #define AT(member) .offset = offsetof(bough_scene_aero_blade, member)
 static const bough_key aero_blade_keys[] = {
     {.name = "source", .kind = BOUGH_KEY_TEXT, AT(source), .help = "where the data come from"},
-    {.name = "stations",
-     .kind = BOUGH_KEY_LIST,
-     .of = &aero_station_schema,
-     .count = 2,
-     .required = true,
-     AT(station),
-     .count_offset = offsetof(bough_scene_aero_blade, n_station),
+    {.name = "stations", .kind = BOUGH_KEY_LIST, .of = &aero_station_schema, .count = 2,
+     .required = true, AT(station), .count_offset = offsetof(bough_scene_aero_blade, n_station),
      .help = "blade elements, from the root to the tip"},
 };
 #undef AT
@@ -505,17 +261,11 @@ static const bough_schema aero_blade_schema = {
     .check = bough_scene_check_aero_blade};
 
 #define ROW(key_name, what)                                                                        \
-    {                                                                                              \
-        .name = #key_name, .kind = BOUGH_KEY_NUMBER, .required = true,                             \
-        .offset = offsetof(bough_scene_polar_row, key_name), .help = what                          \
-    }
+    {.name = #key_name, .kind = BOUGH_KEY_NUMBER, .required = true,                                \
+     .offset = offsetof(bough_scene_polar_row, key_name), .help = what}
 static const bough_key polar_row_keys[] = {
-    {.name = "alpha",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_ANGLE,
-     .required = true,
-     .offset = offsetof(bough_scene_polar_row, alpha),
-     .help = "angle of attack"},
+    {.name = "alpha", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .required = true,
+     .offset = offsetof(bough_scene_polar_row, alpha), .help = "angle of attack"},
     ROW(cl, "lift coefficient"),
     ROW(cd, "drag coefficient"),
     ROW(cm, "moment coefficient about the aerodynamic centre, nose up"),
@@ -526,13 +276,8 @@ static const bough_schema polar_row_schema = {
 #define AT(member) .offset = offsetof(bough_scene_polar, member)
 static const bough_key polar_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name), .help = "unique"},
-    {.name = "table",
-     .kind = BOUGH_KEY_LIST,
-     .of = &polar_row_schema,
-     .count = 2,
-     .required = true,
-     AT(row),
-     .count_offset = offsetof(bough_scene_polar, n_row),
+    {.name = "table", .kind = BOUGH_KEY_LIST, .of = &polar_row_schema, .count = 2,
+     .required = true, AT(row), .count_offset = offsetof(bough_scene_polar, n_row),
      .help = "from -180 deg to 180 deg, linear between"},
 };
 #undef AT
@@ -542,14 +287,8 @@ static const bough_schema polar_schema = {SCHEMA("a polar", bough_scene_polar, p
 #define AT(member) .offset = offsetof(bough_scene_polars, member)
 static const bough_key polars_keys[] = {
     {.name = "source", .kind = BOUGH_KEY_TEXT, AT(source), .help = "where the data come from"},
-    {.name = "polars",
-     .kind = BOUGH_KEY_LIST,
-     .of = &polar_schema,
-     .count = 1,
-     .required = true,
-     AT(polar),
-     .count_offset = offsetof(bough_scene_polars, n_polar),
-     .help = "airfoils"},
+    {.name = "polars", .kind = BOUGH_KEY_LIST, .of = &polar_schema, .count = 1, .required = true,
+     AT(polar), .count_offset = offsetof(bough_scene_polars, n_polar), .help = "airfoils"},
 };
 #undef AT
 static const bough_schema polars_schema = {
@@ -557,38 +296,24 @@ static const bough_schema polars_schema = {
 
 #define AT(member) .offset = offsetof(bough_scene_wind, member)
 static const bough_key wind_keys[] = {
-    {.name = "kind",
-     .kind = BOUGH_KEY_CHOICE,
-     .choices = CHOICES("uniform"),
-     .fallback = "uniform",
-     AT(kind),
-     .help = "how the wind varies in space"},
-    {.name = "speed",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_SPEED,
-     .range = ">= 0",
-     .required = true,
-     AT(speed),
-     .help = "along ground x"},
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("uniform"), .fallback = "uniform",
+     AT(kind), .help = "how the wind varies in space"},
+    {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .range = ">= 0",
+     .required = true, AT(speed), .help = "along ground x"},
 };
 #undef AT
 static const bough_schema wind_schema = {SCHEMA("the wind", bough_scene_wind, wind_keys)};
 
 #define SWITCH(member, what)                                                                       \
-    {                                                                                              \
-        .name = #member, .kind = BOUGH_KEY_BOOLEAN, .fallback = "true",                            \
-        .offset = offsetof(bough_scene_induction, member), .help = what                            \
-    }
+    {.name = #member, .kind = BOUGH_KEY_BOOLEAN, .fallback = "true",                               \
+     .offset = offsetof(bough_scene_induction, member), .help = what}
 static const bough_key induction_keys[] = {
     SWITCH(tip_loss, "Prandtl's loss factor at the tip"),
     SWITCH(hub_loss, "Prandtl's loss factor at the hub"),
     SWITCH(tangential, "tangential induction"),
     SWITCH(drag, "drag counts in the induction"),
-    {.name = "skew",
-     .kind = BOUGH_KEY_CHOICE,
-     .choices = CHOICES("none", "pitt-peters"),
-     .fallback = "pitt-peters",
-     .offset = offsetof(bough_scene_induction, skew),
+    {.name = "skew", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "pitt-peters"),
+     .fallback = "pitt-peters", .offset = offsetof(bough_scene_induction, skew),
      .help = "correction for oblique inflow"},
 };
 static const bough_schema induction_schema = {
@@ -596,30 +321,14 @@ static const bough_schema induction_schema = {
 
 #define AT(member) .offset = offsetof(bough_scene_tower, member)
 static const bough_key tower_keys[] = {
-    {.name = "influence",
-     .kind = BOUGH_KEY_CHOICE,
-     .choices = CHOICES("potential"),
-     .fallback = "potential",
-     AT(influence),
-     .help = "how the tower changes the wind"},
-    {.name = "height",
-     .kind = BOUGH_KEY_NUMBERS,
-     .dimension = BOUGH_LENGTH,
-     .range = ">= 0",
-     .count = 2,
-     .required = true,
-     AT(height),
-     .count_offset = offsetof(bough_scene_tower, n_height),
-     .help = "above the ground's origin"},
-    {.name = "diameter",
-     .kind = BOUGH_KEY_NUMBERS,
-     .dimension = BOUGH_LENGTH,
-     .range = "> 0",
-     .count = 2,
-     .required = true,
-     AT(diameter),
-     .count_offset = offsetof(bough_scene_tower, n_diameter),
-     .help = "at each height"},
+    {.name = "influence", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("potential"),
+     .fallback = "potential", AT(influence), .help = "how the tower changes the wind"},
+    {.name = "height", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_LENGTH, .range = ">= 0",
+     .count = 2, .required = true, AT(height),
+     .count_offset = offsetof(bough_scene_tower, n_height), .help = "above the ground's origin"},
+    {.name = "diameter", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_LENGTH, .range = "> 0",
+     .count = 2, .required = true, AT(diameter),
+     .count_offset = offsetof(bough_scene_tower, n_diameter), .help = "at each height"},
 };
 #undef AT
 static const bough_schema tower_schema = {SCHEMA("a tower", bough_scene_tower, tower_keys),
@@ -627,108 +336,45 @@ static const bough_schema tower_schema = {SCHEMA("a tower", bough_scene_tower, t
 
 #define AT(member) .offset = offsetof(bough_scene_aero, member)
 static const bough_key aero_keys[] = {
-    {.name = "rate",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_FREQUENCY,
-     .range = "> 0",
-     .required = true,
-     AT(rate),
-     .help = "samples; their period is a multiple of the macro step"},
-    {.name = "air_density",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_DENSITY,
-     .range = "> 0",
-     .fallback = "1.225",
-     AT(air_density),
-     .help = "density of the air"},
-    {.name = "wind",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &wind_schema,
-     .required = true,
-     AT(wind),
+    {.name = "rate", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_FREQUENCY, .range = "> 0",
+     .required = true, AT(rate), .help = "samples; their period is a multiple of the macro step"},
+    {.name = "air_density", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_DENSITY, .range = "> 0",
+     .fallback = "1.225", AT(air_density), .help = "density of the air"},
+    {.name = "wind", .kind = BOUGH_KEY_MAPPING, .of = &wind_schema, .required = true, AT(wind),
      .help = "the undisturbed wind"},
     RAMP(bough_scene_aero),
-    {.name = "hold",
-     .kind = BOUGH_KEY_CHOICE,
-     .choices = CHOICES("linear", "constant"),
-     .fallback = "linear",
-     AT(hold),
-     .help = "how loads go between samples"},
-    {.name = "blade",
-     .kind = BOUGH_KEY_FILE,
-     .of = &aero_blade_schema,
-     .required = true,
-     AT(blade),
-     .help = "file with the blade elements, relative to the scene"},
-    {.name = "polars",
-     .kind = BOUGH_KEY_FILE,
-     .of = &polars_schema,
-     .required = true,
-     AT(polars),
+    {.name = "hold", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("linear", "constant"),
+     .fallback = "linear", AT(hold), .help = "how loads go between samples"},
+    {.name = "blade", .kind = BOUGH_KEY_FILE, .of = &aero_blade_schema, .required = true,
+     AT(blade), .help = "file with the blade elements, relative to the scene"},
+    {.name = "polars", .kind = BOUGH_KEY_FILE, .of = &polars_schema, .required = true, AT(polars),
      .help = "file with the polars, relative to the scene"},
-    {.name = "induction",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &induction_schema,
-     AT(induction),
+    {.name = "induction", .kind = BOUGH_KEY_MAPPING, .of = &induction_schema, AT(induction),
      .help = "parts of the blade element momentum theory"},
-    {.name = "tower",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &tower_schema,
-     AT(tower),
+    {.name = "tower", .kind = BOUGH_KEY_MAPPING, .of = &tower_schema, AT(tower),
      .help = "vertical tower in front of which the blades pass; left out: no influence"},
-    {.name = "hub_radius",
-     .kind = BOUGH_KEY_NUMBER,
-     .dimension = BOUGH_LENGTH,
-     .range = ">= 0",
-     .required = true,
-     AT(hub_radius),
-     .help = "from the rotor axis to the blade roots"},
+    {.name = "hub_radius", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = ">= 0",
+     .required = true, AT(hub_radius), .help = "from the rotor axis to the blade roots"},
 };
 #undef AT
 static const bough_schema aero_schema = {SCHEMA("the aerodynamics", bough_scene_aero, aero_keys)};
 
-// -- the scene
-// --------------------------------------------------------------------------------------
+// -- the scene -------------------------------------------------------------------------------------
 
 #define AT(member) .offset = offsetof(bough_scene, member)
 static const bough_key scene_keys[] = {
     {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "what the scene shows"},
-    {.name = "gravity",
-     .kind = BOUGH_KEY_VECTOR,
-     .count = 3,
-     .dimension = BOUGH_ACCELERATION,
-     .fallback = "[0, 0, -9.80665]",
-     AT(gravity),
-     .help = "ground axes, z up"},
-    {.name = "simulation",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &simulation_schema,
-     .required = true,
-     AT(simulation),
-     .help = "time, coupling and solvers"},
-    {.name = "bodies",
-     .kind = BOUGH_KEY_LIST,
-     .of = &body_schema,
-     .count = 1,
-     .required = true,
-     AT(body),
-     .count_offset = offsetof(bough_scene, n_body),
-     .help = "the tree of bodies"},
-    {.name = "loads",
-     .kind = BOUGH_KEY_LIST,
-     .of = &load_schema,
-     AT(load),
-     .count_offset = offsetof(bough_scene, n_load),
-     .help = "constant loads on joints"},
-    {.name = "turbine",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &turbine_schema,
-     AT(turbine),
+    {.name = "gravity", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_ACCELERATION,
+     .fallback = "[0, 0, -9.80665]", AT(gravity), .help = "ground axes, z up"},
+    {.name = "simulation", .kind = BOUGH_KEY_MAPPING, .of = &simulation_schema, .required = true,
+     AT(simulation), .help = "time, coupling and solvers"},
+    {.name = "bodies", .kind = BOUGH_KEY_LIST, .of = &body_schema, .count = 1, .required = true,
+     AT(body), .count_offset = offsetof(bough_scene, n_body), .help = "the tree of bodies"},
+    {.name = "loads", .kind = BOUGH_KEY_LIST, .of = &load_schema, AT(load),
+     .count_offset = offsetof(bough_scene, n_load), .help = "constant loads on joints"},
+    {.name = "turbine", .kind = BOUGH_KEY_MAPPING, .of = &turbine_schema, AT(turbine),
      .help = "names what channels and aerodynamics need"},
-    {.name = "aero",
-     .kind = BOUGH_KEY_MAPPING,
-     .of = &aero_schema,
-     AT(aero),
+    {.name = "aero", .kind = BOUGH_KEY_MAPPING, .of = &aero_schema, AT(aero),
      .help = "aerodynamics; needs the turbine; left out: none"},
 };
 #undef AT

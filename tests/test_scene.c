@@ -1,0 +1,805 @@
+#include "apps/scene/scene.h"
+
+#include "tests/check.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#define SCENES BOUGH_SOURCE_DIR "/tests/scenes/"
+
+static const double degree = 3.14159265358979323846 / 180;
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_errors errors;
+    bough_scene *scene;
+    bough_status status;
+    char *printed;
+} fixture;
+
+static fixture read_scene(const char *path, const char *const *sets, int n_set) {
+    fixture f = {.arena = bough_arena_create()};
+    f.errors.arena = f.arena;
+    f.status = bough_scene_read(f.arena, path, sets, n_set, &f.errors, &f.scene);
+    size_t size;
+    FILE *stream = open_memstream(&f.printed, &size);
+    bough_errors_print(&f.errors, stream);
+    fclose(stream);
+    return f;
+}
+
+static void stop(fixture *f) {
+    bough_arena_destroy(f->arena);
+    free(f->printed);
+}
+
+// -- scenes written by the tests: into a directory of their own, so that paths in messages are
+// short
+
+static void write_file(const char *name, const char *text) {
+    FILE *stream = fopen(name, "w");
+    assert_non_null(stream);
+    fputs(text, stream);
+    fclose(stream);
+}
+
+static char directory[] = "/tmp/bough_scene_XXXXXX";
+
+static int enter(void **state) {
+    (void)state;
+    if (mkdtemp(directory) == NULL || chdir(directory) != 0) return -1;
+    return 0;
+}
+
+static int leave(void **state) {
+    (void)state;
+    const char *const names[] = {"s.yaml", "blade.yaml", "aero.yaml", "polars.yaml"};
+    for (int i = 0; i < 4; i++)
+        remove(names[i]);
+    return chdir("/") == 0 && rmdir(directory) == 0 ? 0 : -1;
+}
+
+// Reading the scene must fail with exactly these lines.
+static void refuses(const char *text, const char *lines) {
+    write_file("s.yaml", text);
+    fixture f = read_scene("s.yaml", NULL, 0);
+    assert_string_equal(f.printed, lines);
+    assert_int_equal(f.status.code, lines[0] == '\0' ? BOUGH_OK : BOUGH_INVALID);
+    if (lines[0] != '\0') assert_null(f.scene);
+    stop(&f);
+}
+
+static void accepts(const char *text) { refuses(text, ""); }
+
+// A scene with one body of this text (six spaces deep) in lines 5 and up.
+#define SIMULATION "simulation: {duration: 1 s, macro_step: 10 ms}\n"
+#define JOINT "    joint: {kind: fixed, parent: ground}\n"
+#define ONE_BODY SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n" JOINT
+#define ROD_BODY SIMULATION "bodies:\n  - name: a\n    fidelity: rod\n" JOINT
+
+// -- good scenes
+// --------------------------------------------------------------------------------------
+
+static void check_blade(const bough_scene_body *b) {
+    const bough_scene_structure *s = &b->rod.structure;
+    check_near(b->pitch, 6.5 * degree, 1e-15, 0);
+    assert_int_equal(b->rod.n_segment, 12);
+    assert_string_equal(s->source, "made up");
+    check_near(s->length, 10, 0, 0);
+    check_near(s->damping[3], 1.4e-3, 1e-15, 0);
+    assert_int_equal(s->n_station, 3);
+    check_near(s->station[1].position[2], 5, 0, 0);
+    check_near(s->station[0].twist, 13.308 * degree, 1e-15, 0);
+    check_near(s->station[0].stiffness[7], 9.7e7, 0, 0);
+    check_near(s->station[0].stiffness[1], 0, 0, 0);
+    check_near(s->station[1].stiffness[6 * 3 + 4], 1e6, 0, 0);
+    check_near(s->station[1].stiffness[6 * 4 + 3], 1e6, 0, 0);
+    check_near(s->station[1].stiffness[35], 1e7, 0, 0);
+    check_near(s->station[1].mass, 40, 0, 0);
+    check_near(s->station[1].mass_centre[1], -0.02, 0, 0);
+    check_near(s->station[1].inertia[2], 0.1, 0, 0);
+    check_near(s->station[1].inertia[3], 10, 0, 0);
+    check_near(s->station[0].inertia[3], 22, 0, 0); // Ixx + Iyy
+}
+
+static void turbine_is_read(void **state) {
+    (void)state;
+    fixture f = read_scene(SCENES "example-turbine.yaml", NULL, 0);
+    assert_string_equal(f.printed, "");
+    assert_int_equal(f.status.code, BOUGH_OK);
+    const bough_scene *s = f.scene;
+    assert_string_equal(s->title, "Two-bladed example");
+    check_near(s->gravity[2], -9.80665, 0, 0);
+    check_near(s->simulation.macro_step, 0.01, 1e-15, 0);
+    assert_int_equal(s->simulation.coupling.scheme, BOUGH_SCENE_RAMP);
+    check_near(s->simulation.coupling.theta, 0, 0, 0);
+    check_near(s->simulation.output.interval, 0.05, 1e-15, 0);
+    check_near(s->simulation.micro.rtol, 1e-4, 0, 0);
+    assert_int_equal(s->n_body, 5);
+    const bough_scene_joint *hub = &s->body[2].joint;
+    assert_int_equal(hub->kind, BOUGH_SCENE_REVOLUTE);
+    assert_int_equal(hub->parent, 1);
+    assert_int_equal(hub->axis, BOUGH_SCENE_X);
+    check_near(hub->speed, 0.5, 0, 0);
+    assert_int_equal(hub->n_placement, 3);
+    assert_false(hub->placement[0].rotate);
+    assert_int_equal(hub->placement[0].axis, BOUGH_SCENE_Z);
+    check_near(hub->placement[0].amount, 1.2, 0, 0);
+    assert_true(hub->placement[1].rotate);
+    assert_int_equal(hub->placement[1].axis, BOUGH_SCENE_Y);
+    check_near(hub->placement[1].amount, 5 * degree, 1e-15, 0);
+    check_near(hub->placement[2].amount, -2, 0, 0);
+    check_near(s->body[1].mass, 2000, 0, 0);
+    check_near(s->body[2].inertia[0], 1200, 0, 0);
+    check_near(s->body[2].centre_of_mass[0], 0.1, 0, 0);
+    assert_int_equal(s->body[0].joint.parent, BOUGH_SCENE_GROUND);
+    check_blade(&s->body[3]);
+    assert_ptr_equal(s->body[3].rod.structure.station, s->body[4].rod.structure.station);
+    stop(&f);
+}
+
+static void aerodynamics_are_read(void **state) {
+    (void)state;
+    fixture f = read_scene(SCENES "example-turbine.yaml", NULL, 0);
+    assert_non_null(f.scene);
+    const bough_scene_aero *a = &f.scene->aero;
+    assert_int_equal(f.scene->load[0].joint, 2);
+    check_near(f.scene->load[0].amount, -12e3, 0, 0);
+    check_near(f.scene->load[0].ramp[1], 1, 0, 0);
+    assert_int_equal(f.scene->turbine.rotor, 2);
+    assert_int_equal(f.scene->turbine.n_blade, 2);
+    assert_int_equal(f.scene->turbine.blade[1], 4);
+    check_near(a->rate, 50, 0, 0);
+    check_near(a->wind.speed, 12, 0, 0);
+    check_near(a->ramp[1], 0.5, 0, 0);
+    assert_int_equal(a->hold, BOUGH_SCENE_LINEAR);
+    assert_int_equal(a->induction.skew, BOUGH_SCENE_PITT_PETERS);
+    assert_true(a->induction.drag);
+    assert_int_equal(a->tower.n_height, 2);
+    check_near(a->tower.diameter[1], 1.2, 0, 0);
+    check_near(a->hub_radius, 1.5, 0, 0);
+    assert_int_equal(a->blade.n_station, 3);
+    check_near(a->blade.station[1].ac[1], -0.3, 0, 0);
+    check_near(a->blade.station[1].twist, 6.5 * degree, 1e-15, 0);
+    assert_int_equal(a->blade.station[0].polar, 0);
+    assert_int_equal(a->blade.station[2].polar, 1);
+    assert_int_equal(a->polars.polar[1].n_row, 6);
+    check_near(a->polars.polar[1].row[3].alpha, 10 * degree, 1e-15, 0);
+    check_near(a->polars.polar[1].row[4].cm, -0.2, 0, 0);
+    stop(&f);
+}
+
+static void uniform_beam_needs_no_table(void **state) {
+    (void)state;
+    fixture f = read_scene(SCENES "example-beam.yaml", NULL, 0);
+    assert_string_equal(f.printed, "");
+    const bough_scene *s = f.scene;
+    const bough_scene_structure *beam = &s->body[0].rod.structure;
+    assert_int_equal(beam->n_station, 1);
+    check_near(beam->length, 2, 0, 0);
+    check_near(beam->station[0].stiffness[28], 700, 0, 0);
+    check_near(beam->station[0].mass, 1.5, 0, 0);
+    check_near(beam->damping[0], 0, 0, 0);
+    check_near(s->simulation.output.interval, s->simulation.macro_step, 0, 0);
+    assert_int_equal(s->simulation.threads, 1);
+    assert_int_equal(s->simulation.coupling.scheme, BOUGH_SCENE_RAMP);
+    assert_null(s->aero.node);
+    assert_null(s->turbine.node);
+    check_near(s->gravity[2], -9.80665, 0, 0);
+    stop(&f);
+}
+
+// Every scene that the project ships must be a good one.
+static void shipped_scenes_are_good(void **state) {
+    (void)state;
+    const char *const names[] = {"turbine/runup.yaml", "turbine/runup-rated.yaml",
+                                 "beams/rubber-bar.yaml"};
+    for (int i = 0; i < 3; i++) {
+        char path[300];
+        snprintf(path, sizeof path, "%s/apps/%s", BOUGH_SOURCE_DIR, names[i]);
+        if (access(path, R_OK) != 0) continue;
+        fixture f = read_scene(path, NULL, 0);
+        assert_string_equal(f.printed, "");
+        stop(&f);
+    }
+}
+
+static void parents_come_first_in_the_order(void **state) {
+    (void)state;
+    write_file("s.yaml",
+               SIMULATION "bodies:\n"
+                          "  - {name: c, fidelity: rigid, joint: {kind: fixed, parent: b}}\n"
+                          "  - {name: b, fidelity: rigid, joint: {kind: fixed, parent: a}}\n"
+                          "  - {name: a, fidelity: rigid, joint: {kind: fixed, parent: ground}}\n");
+    fixture f = read_scene("s.yaml", NULL, 0);
+    assert_string_equal(f.printed, "");
+    assert_int_equal(f.scene->order[0], 2);
+    assert_int_equal(f.scene->order[1], 1);
+    assert_int_equal(f.scene->order[2], 0);
+    stop(&f);
+}
+
+static void free_and_sliding_joints_start_moving(void **state) {
+    (void)state;
+    write_file("s.yaml", SIMULATION
+               "bodies:\n"
+               "  - name: a\n    fidelity: rigid\n    mass: 1\n    inertia: [1, 2, 3]\n"
+               "    joint: {kind: free, parent: ground, velocity: [1, 2, 3 km/h],\n"
+               "            angular_velocity: [0, 1 rpm, 0]}\n"
+               "  - name: b\n    fidelity: rigid\n    mass: 2 kg\n"
+               "    joint: {kind: prismatic, parent: a, axis: y, position: 2 cm, speed: -1 m/s}\n");
+    fixture f = read_scene("s.yaml", NULL, 0);
+    assert_string_equal(f.printed, "");
+    const bough_scene_joint *a = &f.scene->body[0].joint, *b = &f.scene->body[1].joint;
+    check_near(a->velocity[2], 3 / 3.6, 1e-15, 0);
+    check_near(a->angular_velocity[1], 6 * degree, 1e-15, 0);
+    check_near(b->position, 0.02, 1e-15, 0);
+    check_near(b->speed, -1, 0, 0);
+    assert_int_equal(b->axis, BOUGH_SCENE_Y);
+    check_near(f.scene->body[0].inertia[2], 3, 0, 0);
+    check_near(f.scene->body[0].inertia[3], 0, 0, 0);
+    stop(&f);
+}
+
+static void rods_may_be_curved(void **state) {
+    (void)state;
+    write_file("blade.yaml", "damping: [1 ms, 0, 0, 0, 0, 0]\n"
+                             "stations:\n"
+                             "  columns: [span, axis, stiffness, mass]\n"
+                             "  rows:\n"
+                             "    - [0, [0, 0], [1, 1, 1, 1, 1, 1], [1, 0, 0, 1, 1, 0]]\n"
+                             "    - [3, [0.1, -0.2], [1, 1, 1, 1, 1, 1], [1, 0, 0, 1, 1, 0]]\n");
+    write_file("s.yaml", ROD_BODY "    rod: {table: blade.yaml, damping: [0, 0, 0, 0, 0, 2 ms]}\n");
+    fixture f = read_scene("s.yaml", NULL, 0);
+    assert_string_equal(f.printed, "");
+    const bough_scene_structure *s = &f.scene->body[0].rod.structure;
+    check_near(s->length, 3, 0, 0); // the last span
+    check_near(s->station[1].position[0], 0.1, 0, 0);
+    check_near(s->station[1].position[1], -0.2, 0, 0);
+    check_near(s->damping[0], 0, 0, 0); // the scene's, not the table's
+    check_near(s->damping[5], 2e-3, 1e-15, 0);
+    stop(&f);
+}
+
+// -- bad scenes
+// ---------------------------------------------------------------------------------------
+
+static void all_errors_are_shown_in_order(void **state) {
+    (void)state;
+    refuses(
+        "titel: x\n"
+        "simulation:\n"
+        "  duration: 1 kg\n"
+        "  coupling: {scheme: rampe}\n"
+        "bodies:\n"
+        "  - name: a\n"
+        "    fidelity: rigid\n"
+        "    joint: {kind: revolute, parent: grond}\n"
+        "    mass: -1\n"
+        "loads:\n"
+        "  - {joint: b, torque: 1}\n",
+        "s.yaml:1:1: error: unknown key 'titel' (did you mean 'title'?)\n"
+        "s.yaml:3:3: error: simulation: required key 'macro_step' is missing\n"
+        "s.yaml:3:13: error: simulation.duration: expected a time (in s, or with a unit, as '20 "
+        "ms'), got '1 kg': the unit 'kg' does not fit\n"
+        "s.yaml:4:22: error: simulation.coupling.scheme: expected one of frozen, gauss-seidel, "
+        "extrapolated, ramp, monolithic, got 'rampe' (did you mean 'ramp'?)\n"
+        "s.yaml:8:12: error: bodies[0].joint: required key 'axis' is missing\n"
+        "s.yaml:8:37: error: bodies[0].joint.parent: there is no body 'grond'\n"
+        "s.yaml:9:11: error: bodies[0].mass: must be >= 0 kg, got '-1'\n"
+        "s.yaml:11:13: error: loads[0].joint: there is no body 'b' (did you mean 'a'?)\n");
+}
+
+static void missing_parts_are_named(void **state) {
+    (void)state;
+    refuses("title: x\n", "s.yaml:1:1: error: required key 'simulation' is missing\n"
+                          "s.yaml:1:1: error: required key 'bodies' is missing\n");
+    refuses(SIMULATION "bodies: []\n", "s.yaml:2:9: error: bodies: expected at least 1 item, got "
+                                       "0\n");
+    refuses(SIMULATION "bodies:\n  - {}\n",
+            "s.yaml:3:5: error: bodies[0]: required key 'name' is missing\n"
+            "s.yaml:3:5: error: bodies[0]: required key 'fidelity' is missing\n"
+            "s.yaml:3:5: error: bodies[0]: required key 'joint' is missing\n");
+}
+
+static void joint_keys_fit_the_kind(void **state) {
+    (void)state;
+    refuses(SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    mass: 1\n"
+                       "    joint: {kind: fixed, parent: ground, axis: x, angle: 0, speed: 1}\n",
+            "s.yaml:6:42: error: bodies[0].joint.axis: only used with 'kind: revolute/prismatic'\n"
+            "s.yaml:6:51: error: bodies[0].joint.angle: only used with 'kind: revolute'\n"
+            "s.yaml:6:61: error: bodies[0].joint.speed: only used with 'kind: "
+            "revolute/prismatic'\n");
+    refuses(
+        SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    mass: 1\n"
+                   "    joint: {kind: prismatic, parent: ground, axis: w, position: 1 deg}\n",
+        "s.yaml:6:52: error: bodies[0].joint.axis: expected one of x, y, z, got 'w' (did you "
+        "mean 'x'?)\n"
+        "s.yaml:6:65: error: bodies[0].joint.position: expected a length (in m, or with a unit, "
+        "as '61.5 m'), got '1 deg': the unit 'deg' does not fit\n");
+}
+
+static void bad_placements_are_refused(void **state) {
+    (void)state;
+    refuses(SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n"
+                       "    joint:\n      kind: fixed\n      parent: ground\n      placement:\n"
+                       "        - shift z 1\n        - move w 1\n        - move z 1 deg\n"
+                       "        - rotate x\n        - rotate x 5 deg 2\n        - [move]\n",
+            "s.yaml:9:11: error: bodies[0].joint.placement[0]: expected 'move x|y|z LENGTH' or "
+            "'rotate x|y|z ANGLE', got 'shift z 1'\n"
+            "s.yaml:10:11: error: bodies[0].joint.placement[1]: expected 'move x|y|z LENGTH' or "
+            "'rotate x|y|z ANGLE', got 'move w 1'\n"
+            "s.yaml:11:11: error: bodies[0].joint.placement[2]: expected 'move x|y|z LENGTH' or "
+            "'rotate x|y|z ANGLE', got 'move z 1 deg': the unit 'deg' does not fit\n"
+            "s.yaml:12:11: error: bodies[0].joint.placement[3]: expected 'move x|y|z LENGTH' or "
+            "'rotate x|y|z ANGLE', got 'rotate x'\n"
+            "s.yaml:13:11: error: bodies[0].joint.placement[4]: expected 'move x|y|z LENGTH' or "
+            "'rotate x|y|z ANGLE', got 'rotate x 5 deg 2': unknown unit '2'\n"
+            "s.yaml:14:11: error: bodies[0].joint.placement[5]: expected 'move x|y|z LENGTH' or "
+            "'rotate x|y|z ANGLE', got a list\n");
+}
+
+static void names_are_checked(void **state) {
+    (void)state;
+#define BODY(name, parent)                                                                         \
+    "  - {name: " name ", fidelity: rigid, joint: {kind: fixed, parent: " parent "}}\n"
+    refuses(SIMULATION "bodies:\n" BODY("a", "ground") BODY("a", "ground") BODY("ground", "a")
+                BODY("a b/c", "a"),
+            "s.yaml:4:12: error: bodies[1].name: body 'a' is given twice\n"
+            "s.yaml:5:12: error: bodies[2].name: 'ground' is no name for a body\n"
+            "s.yaml:6:12: error: bodies[3].name: a name has letters, digits, '_' and '-', got 'a "
+            "b/c'\n");
+    refuses(SIMULATION "bodies:\n" BODY("tower", "ground") BODY("hub", "twoer"),
+            "s.yaml:4:63: error: bodies[1].joint.parent: there is no body 'twoer' (did you mean "
+            "'tower'?)\n");
+}
+
+static void loops_of_parents_are_refused(void **state) {
+    (void)state;
+    refuses(SIMULATION "bodies:\n" BODY("a", "a"),
+            "s.yaml:3:61: error: bodies[0].joint.parent: parents form a loop: a -> a\n");
+    refuses(SIMULATION "bodies:\n" BODY("z", "c") BODY("b", "c") BODY("c", "d") BODY("d", "b")
+                BODY("e", "ground"),
+            "s.yaml:4:61: error: bodies[1].joint.parent: parents form a loop: b -> c -> d -> b\n");
+}
+
+static void moving_joints_need_mass(void **state) {
+    (void)state;
+    refuses(SIMULATION "bodies:\n  - {name: a, fidelity: rigid, joint: {kind: revolute, parent: "
+                       "ground, axis: x}}\n" BODY("b", "a"),
+            "s.yaml:3:5: error: bodies[0]: a joint that moves must carry mass: give 'mass' here or "
+            "to a body that hangs on this one\n");
+    accepts(SIMULATION
+            "bodies:\n  - {name: a, fidelity: rigid, joint: {kind: revolute, parent: "
+            "ground, axis: x}}\n"
+            "  - {name: b, fidelity: rigid, mass: 1, joint: {kind: fixed, parent: a}}\n");
+}
+
+static void body_keys_fit_the_fidelity(void **state) {
+    (void)state;
+    refuses(ROD_BODY,
+            "s.yaml:3:5: error: bodies[0]: required key 'rod' is missing (with 'fidelity: "
+            "rod')\n");
+    refuses(ONE_BODY "    pitch: 1 deg\n", "s.yaml:6:12: error: bodies[0].pitch: only used with a "
+                                           "rod\n");
+    refuses(ROD_BODY "    mass: 1\n"
+                     "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, "
+                     "0]}\n",
+            "s.yaml:6:5: error: bodies[0].mass: only used with 'fidelity: rigid'\n");
+    refuses(ONE_BODY "    mass: 1\n    inertia: [1, 1, 1]\n"
+                     "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, "
+                     "0]}\n",
+            "s.yaml:6:11: error: bodies[0].mass: follows from the body's rod\n"
+            "s.yaml:7:14: error: bodies[0].inertia: follows from the body's rod\n");
+    refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, "
+                     "0]}\n" BODY("b", "a"),
+            "s.yaml:7:61: error: bodies[1].joint.parent: 'a' is a rod; bodies hang on rigid bodies "
+            "only\n");
+    refuses(ONE_BODY "    inertia: [1, 1, 1, 2, 0, 0]\n",
+            "s.yaml:6:14: error: bodies[0].inertia: the inertia matrix must not be negative about "
+            "any axis\n");
+    refuses(ONE_BODY "    inertia: [1, 2]\n",
+            "s.yaml:6:14: error: bodies[0].inertia: expected a list [Ixx, Iyy, Izz] or with Ixy, "
+            "Ixz, Iyz, got 2 items\n");
+}
+
+static void rods_are_complete(void **state) {
+    (void)state;
+    refuses(
+        ROD_BODY "    rod: {segments: 4}\n",
+        "s.yaml:6:10: error: bodies[0].rod: required key 'length' is missing (without a "
+        "table)\n"
+        "s.yaml:6:10: error: bodies[0].rod: required key 'stiffness' is missing (without a "
+        "table)\n"
+        "s.yaml:6:10: error: bodies[0].rod: required key 'mass' is missing (without a table)\n");
+    refuses(
+        ROD_BODY "    rod: {table: none.yaml, segments: 0}\n",
+        "s.yaml:6:18: error: bodies[0].rod.table: file 'none.yaml' cannot be read: No such file "
+        "or directory\n"
+        "s.yaml:6:39: error: bodies[0].rod.segments: must be in [1, 10000], got '0'\n");
+    refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1], mass: [1, 0, 0]}\n",
+            "s.yaml:6:33: error: bodies[0].rod.stiffness: expected a list of 6 (diagonal) or 21 "
+            "(upper triangle) numbers, got 5 items\n"
+            "s.yaml:6:56: error: bodies[0].rod.mass: expected a list [m, cx, cy, Ixx, Iyy, Ixy] or "
+            "with Izz, got 3 items\n");
+    write_file("blade.yaml", "length: 1\nstations: [{span: 0, stiffness: [1, 1, 1, 1, 1, 1], mass: "
+                             "[1, 0, 0, 1, 1, 0]}]\n");
+    refuses(ROD_BODY "    rod: {table: blade.yaml, length: 2}\n",
+            "s.yaml:6:38: error: bodies[0].rod.length: only used without a table\n");
+}
+
+static void section_matrices_are_checked(void **state) {
+    (void)state;
+    refuses(ROD_BODY
+            "    rod:\n      length: 1\n"
+            "      stiffness: [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 1, 0, "
+            "1]\n      mass: [1, 0, 0, 1, 1, 0]\n",
+            "s.yaml:8:18: error: bodies[0].rod.stiffness: the stiffness matrix must be positive "
+            "definite\n");
+    refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 0], mass: [0, 0, 0, 1, 1, "
+                     "0]}\n",
+            "s.yaml:6:33: error: bodies[0].rod.stiffness: the stiffness matrix must be positive "
+            "definite\n"
+            "s.yaml:6:60: error: bodies[0].rod.mass: the mass per length must be > 0 kg/m\n");
+    // About the mass centre nothing is left of Iyy = m cx².
+    refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1, "
+                     "0]}\n",
+            "s.yaml:6:59: error: bodies[0].rod.mass: the inertia about the mass centre must be "
+            "positive definite\n");
+    accepts(ROD_BODY
+            "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1.01, "
+            "0]}\n");
+}
+
+// A structure table with these spans must give these errors.
+static void refuses_spans(const char *length, const char *spans[3], const char *lines) {
+    char text[600];
+    int used = snprintf(text, sizeof text,
+                        "%sstations:\n  columns: [span, stiffness, mass]\n"
+                        "  rows:\n",
+                        length);
+    for (int i = 0; i < 3 && spans[i] != NULL; i++) {
+        used += snprintf(text + used, sizeof text - (size_t)used,
+                         "  - [%s, [1, 1, 1, 1, 1, 1], [1, 0, 0, 1, 1, 0]]\n", spans[i]);
+    }
+    write_file("blade.yaml", text);
+    refuses(ROD_BODY "    rod: {table: blade.yaml}\n", lines);
+}
+
+static void stations_run_from_zero_to_the_length(void **state) {
+    (void)state;
+    refuses_spans("", (const char *[3]){"0", "1", "2"}, "");
+    refuses_spans("length: 200 cm\n", (const char *[3]){"0", "1", "2"}, "");
+    refuses_spans("length: 5\n", (const char *[3]){"0"}, "");
+    refuses_spans("", (const char *[3]){"0", "2", "2"},
+                  "blade.yaml:6:6: error: stations.rows[2].span: must be more than the 2 m before "
+                  "it, got 2 m\n");
+    refuses_spans(
+        "", (const char *[3]){"0.5", "0.1", "2"},
+        "blade.yaml:4:6: error: stations.rows[0].span: the first must be 0 m, got 0.5 m\n"
+        "blade.yaml:5:6: error: stations.rows[1].span: must be more than the 0.5 m before "
+        "it, got 0.1 m\n");
+    refuses_spans("length: 3\n", (const char *[3]){"0", "1", "2"},
+                  "blade.yaml:1:9: error: length: is 3 m, but the last station stands at 2 m\n");
+    refuses_spans("", (const char *[3]){"0"},
+                  "blade.yaml:1:1: error: required key 'length' is missing (with one station)\n");
+}
+
+// Two bodies name the same bad table: its errors are shown once.
+static void errors_of_a_table_are_shown_once(void **state) {
+    (void)state;
+    write_file("blade.yaml", "lenght: 3\n");
+    refuses(ROD_BODY "    rod: {table: blade.yaml}\n"
+                     "  - name: b\n    fidelity: rod\n" JOINT "    rod: {table: blade.yaml}\n",
+            "blade.yaml:1:1: error: required key 'stations' is missing\n"
+            "blade.yaml:1:1: error: unknown key 'lenght' (did you mean 'length'?)\n");
+}
+
+static void times_fit_the_macro_step(void **state) {
+    (void)state;
+    refuses(
+        "simulation: {duration: 1.005, macro_step: 10 ms, output: {interval: 25 ms}}\n"
+        "bodies:\n" BODY("a", "ground"),
+        "s.yaml:1:24: error: simulation.duration: 1.005 s is not a multiple of the macro step, "
+        "0.01 s\n"
+        "s.yaml:1:69: error: simulation.output.interval: 0.025 s is not a multiple of the macro "
+        "step, 0.01 s\n");
+    refuses("simulation: {duration: 1, macro_step: 0.1, output: {interval: 10 ms}}\nbodies:\n" BODY(
+                "a", "ground"),
+            "s.yaml:1:63: error: simulation.output.interval: 0.01 s is not a multiple of the macro "
+            "step, 0.1 s\n");
+    accepts("simulation: {duration: 0.3, macro_step: 0.1}\nbodies:\n" BODY("a", "ground"));
+}
+
+static void loads_fit_their_joints(void **state) {
+    (void)state;
+    refuses(SIMULATION
+            "bodies:\n" BODY("a", "ground") "  - {name: h, mass: 1, fidelity: rigid, joint: {kind: "
+                                            "revolute, parent: a, axis: x}}\n"
+                                            "loads:\n"
+                                            "  - {joint: a, torque: 1}\n"
+                                            "  - {joint: h, force: 1 N}\n"
+                                            "  - {joint: h, force: 1 N m}\n"
+                                            "  - {joint: h}\n"
+                                            "  - {joint: h, torque: 1, force: 2}\n"
+                                            "  - {joint: h, torque: 1, ramp: [2, 1]}\n",
+            "s.yaml:6:13: error: loads[0].joint: the joint of 'a' must be revolute or prismatic to "
+            "take a load\n"
+            "s.yaml:7:23: error: loads[1].force: the joint of 'h' is revolute: give a torque\n"
+            "s.yaml:8:23: error: loads[2].force: expected a force (in N, or with a unit, as '12 "
+            "kN'), got '1 N m': the unit 'N m' does not fit\n"
+            "s.yaml:8:23: error: loads[2].force: the joint of 'h' is revolute: give a torque\n"
+            "s.yaml:9:5: error: loads[3]: expected either 'torque' or 'force'\n"
+            "s.yaml:10:5: error: loads[4]: expected either 'torque' or 'force', got both\n"
+            "s.yaml:10:34: error: loads[4].force: the joint of 'h' is revolute: give a torque\n"
+            "s.yaml:11:33: error: loads[5].ramp: must end after it starts, got [2 s, 1 s]\n");
+}
+
+#define ROTOR                                                                                      \
+    SIMULATION                                                                                     \
+    "bodies:\n  - {name: hub, mass: 1, fidelity: rigid, joint: {kind: revolute, parent: ground, "  \
+    "axis: x}}\n"                                                                                  \
+    "  - {name: b1, fidelity: rod, joint: {kind: fixed, parent: hub}, rod: &r {length: 5,\n"       \
+    "      stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}}\n"                            \
+    "  - {name: b2, fidelity: rod, joint: {kind: fixed, parent: ground}, rod: *r}\n"
+#define AERO                                                                                       \
+    "aero: {rate: 50 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml, hub_radius: "    \
+    "1}\n"
+#define BLADE "stations:\n- {span: 0, chord: 1, polar: p}\n- {span: 5, chord: 1, polar: p}\n"
+#define POLARS                                                                                     \
+    "polars:\n- name: p\n  table: {columns: [alpha deg, cl, cd, cm], rows: [[-180, 0, 0, 0], "     \
+    "[180, 0, 0, 0]]}\n"
+
+static void turbine_names_are_checked(void **state) {
+    (void)state;
+    refuses(ROTOR "turbine: {rotor: hbu, blades: [b1, b3]}\n",
+            "s.yaml:7:18: error: turbine.rotor: there is no body 'hbu' (did you mean 'hub'?)\n"
+            "s.yaml:7:36: error: turbine.blades[1]: there is no body 'b3' (did you mean 'b1'?)\n");
+    refuses(ROTOR "turbine: {rotor: b1, blades: [b1, b1, hub]}\n",
+            "s.yaml:7:18: error: turbine.rotor: the joint of 'b1' must be revolute\n"
+            "s.yaml:7:35: error: turbine.blades[1]: blade 'b1' is given twice\n"
+            "s.yaml:7:39: error: turbine.blades[2]: body 'hub' has no rod, so it is no blade\n");
+    refuses(ROTOR "turbine: {rotor: hub, blades: [b1, b2]}\n",
+            "s.yaml:7:36: error: turbine.blades[1]: body 'b2' does not hang on the rotor 'hub'\n");
+}
+
+static void aerodynamics_are_consistent(void **state) {
+    (void)state;
+    write_file("aero.yaml", BLADE);
+    write_file("polars.yaml", POLARS);
+    accepts(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO);
+    refuses(ROTOR AERO, "s.yaml:7:7: error: aero: needs 'turbine', which names rotor and blades\n");
+    refuses(
+        ROTOR "turbine: {rotor: hub, blades: [b1]}\n"
+              "aero: {rate: 30 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml,\n"
+              "       hub_radius: 1, ramp: [1, 0], tower: {height: [0, 20, 10], diameter: [1, "
+              "2]}}\n",
+        "s.yaml:8:14: error: aero.rate: its period 0.0333333 s is not a multiple of the macro "
+        "step, 0.01 s\n"
+        "s.yaml:9:29: error: aero.ramp: must end after it starts, got [1 s, 0 s]\n"
+        "s.yaml:9:61: error: aero.tower.height[2]: must be more than the 20 m before it, got 10 "
+        "m\n"
+        "s.yaml:9:76: error: aero.tower.diameter: has 2 values, but height has 3\n");
+    write_file("aero.yaml", "stations:\n- {span: 0, chord: 1, polar: p}\n"
+                            "- {span: 6, chord: 0, polar: q}\n");
+    refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO,
+            "s.yaml:8:46: error: aero.blade: the blade elements end at 6 m, but 'b1' is 5 m long\n"
+            "aero.yaml:3:20: error: stations[1].chord: must be > 0 m, got '0'\n"
+            "aero.yaml:3:30: error: stations[1].polar: the polars file has no 'q' (did you mean "
+            "'p'?)\n");
+    write_file("aero.yaml", "stations:\n- {span: 0, chord: 1, polar: p}\n"
+                            "- {span: 0, chord: 1, polar: p}\n");
+    refuses(ROTOR AERO, "s.yaml:7:7: error: aero: needs 'turbine', which names rotor and blades\n"
+                        "aero.yaml:3:10: error: stations[1].span: must be more than the 0 m before "
+                        "it, got 0 m\n");
+}
+
+static void polars_cover_the_circle(void **state) {
+    (void)state;
+    write_file("aero.yaml", BLADE);
+    write_file("polars.yaml", "polars:\n- name: p\n  table:\n    columns: [alpha deg, cl, cd, cm]\n"
+                              "    rows:\n    - [-180, 0, 0, 0]\n    - [-180, 0, 0, 0]\n"
+                              "    - [180, 0, 0, 0]\n");
+    refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO,
+            "polars.yaml:7:8: error: polars[0].table.rows[1].alpha: must be more than the -180 deg "
+            "before it, got -180 deg\n");
+    write_file("polars.yaml", "polars:\n- name: p\n  table:\n    columns: [alpha deg, cl, cd, cm]\n"
+                              "    rows:\n    - [-180, 0, 0, 0]\n    - [90, 0, 0, 0]\n"
+                              "- name: r\n  table:\n    columns: [alpha deg, cl, cd, cm]\n"
+                              "    rows:\n    - [0, 0, 0, 0]\n    - [180, 0, 0, x]\n"
+                              "- name: s\n  table: [{alpha: 0, cl: 0, cd: 0, cm: 0}, "
+                              "{alpha: 180 deg, cl: 0, cd: 0, cm: 0}]\n");
+    refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO,
+            "polars.yaml:7:8: error: polars[0].table.rows[1].alpha: the last must be 180 deg, got "
+            "90 deg\n"
+            "polars.yaml:13:19: error: polars[1].table.rows[1].cm: expected a number, got 'x'\n"
+            "polars.yaml:15:19: error: polars[2].table[0].alpha: the first must be -180 deg, got 0 "
+            "deg\n");
+    write_file("polars.yaml", POLARS "- name: p\n  table: [{alpha: -180 deg, cl: 0, cd: 0, cm: 0}, "
+                                     "{alpha: 180 deg, cl: 0, cd: 0, cm: 0}]\n");
+    refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO,
+            "polars.yaml:4:9: error: polars[1].name: polar 'p' is given twice\n");
+}
+
+// -- replacements
+// -------------------------------------------------------------------------------------
+
+static void values_can_be_replaced_and_added(void **state) {
+    (void)state;
+    const char *const sets[] = {"simulation.coupling.scheme=extrapolated",
+                                "simulation.coupling.order=2",
+                                "bodies[3].pitch=5 deg",
+                                "aero.wind={kind: uniform, speed: 9 m/s}",
+                                "title=now: this",
+                                "turbine.blades[1]=blade2"};
+    fixture f = read_scene(SCENES "example-turbine.yaml", sets, 6);
+    assert_string_equal(f.printed, "--set: error: title: expected text, got a mapping\n");
+    stop(&f);
+    f = read_scene(SCENES "example-turbine.yaml", sets, 4);
+    assert_string_equal(f.printed, "");
+    assert_int_equal(f.scene->simulation.coupling.scheme, BOUGH_SCENE_EXTRAPOLATED);
+    assert_int_equal(f.scene->simulation.coupling.order, 2);
+    check_near(f.scene->body[3].pitch, 5 * degree, 1e-15, 0);
+    check_near(f.scene->body[4].pitch, 6.5 * degree, 1e-15, 0);
+    check_near(f.scene->aero.wind.speed, 9, 0, 0);
+    stop(&f);
+}
+
+static void missing_mappings_are_made(void **state) {
+    (void)state;
+    const char *const sets[] = {"simulation.micro.rtol=1e-8", "simulation.threads=3"};
+    fixture f = read_scene(SCENES "example-beam.yaml", sets, 2);
+    assert_string_equal(f.printed, "");
+    check_near(f.scene->simulation.micro.rtol, 1e-8, 0, 0);
+    assert_int_equal(f.scene->simulation.threads, 3);
+    stop(&f);
+}
+
+// A rod shared by an alias changes for the named body only.
+static void shared_values_are_copied_first(void **state) {
+    (void)state;
+    write_file("s.yaml", ROTOR);
+    const char *const sets[] = {"bodies[1].rod.length=7"};
+    fixture f = read_scene("s.yaml", sets, 1);
+    assert_string_equal(f.printed, "");
+    check_near(f.scene->body[1].rod.structure.length, 7, 0, 0);
+    check_near(f.scene->body[2].rod.structure.length, 5, 0, 0);
+    stop(&f);
+}
+
+static void bad_replacements_are_refused(void **state) {
+    (void)state;
+    const char *const sets[] = {"abc",
+                                "=1",
+                                "title=",
+                                "bodies[7].pitch=1",
+                                "bodies[x].pitch=1",
+                                "bodies[0=1",
+                                "title.x=1",
+                                "title[0]=1",
+                                "bodies.x=1",
+                                "a..b=1",
+                                "bodies[0]x=1",
+                                "title=[1",
+                                "simulation.thread=2",
+                                "bodies[3].pitch=5 kg",
+                                "simulation.macro_step=0"};
+    fixture f = read_scene(SCENES "example-turbine.yaml", sets, 15);
+    assert_string_equal(f.printed,
+                        "--set: error: abc: expected KEY=VALUE\n"
+                        "--set: error: =1: expected KEY=VALUE\n"
+                        "--set: error: title: expected a value after '='\n"
+                        "--set: error: bodies[7].pitch: index [7].pitch is beyond the last, [4]\n"
+                        "--set: error: bodies[x].pitch: expected an index such as [0]\n"
+                        "--set: error: bodies[0: expected an index such as [0]\n"
+                        "--set: error: title.x: key 'x' is looked for in 'Two-bladed example'\n"
+                        "--set: error: title[0]: there is no list to take an index of\n"
+                        "--set: error: bodies.x: key 'x' is looked for in a list\n"
+                        "--set: error: a..b: expected a key\n"
+                        "--set: error: bodies[0]x: expected '.' or '['\n"
+                        "--set: error: title: expected ',' or ']' to end the list\n"
+                        "--set: error: simulation.macro_step: must be > 0 s, got '0'\n"
+                        "--set: error: simulation: unknown key 'thread' (did you mean 'threads'?)\n"
+                        "--set: error: bodies[3].pitch: expected an angle (in rad, or with a unit, "
+                        "as '5 deg'), got "
+                        "'5 kg': the unit 'kg' does not fit\n");
+    assert_int_equal(f.status.code, BOUGH_INVALID);
+    assert_null(f.scene);
+    stop(&f);
+}
+
+// -- the rest
+// -----------------------------------------------------------------------------------------
+
+static void missing_scene_is_told(void **state) {
+    (void)state;
+    fixture f = read_scene("none.yaml", NULL, 0);
+    assert_string_equal(f.printed, "none.yaml: error: cannot be read: No such file or directory\n");
+    assert_int_equal(f.status.code, BOUGH_INVALID);
+    assert_string_equal(f.status.message, "none.yaml: 1 error in the scene");
+    stop(&f);
+}
+
+static void hostile_scenes_end_fast(void **state) {
+    (void)state;
+    FILE *stream = fopen("s.yaml", "w");
+    fputs(SIMULATION "bodies:\n", stream);
+    for (int i = 0; i < 9000; i++)
+        fprintf(stream, "- {name: n%d, joint: {parent: m%d}}\n", i, i);
+    fclose(stream);
+    clock_t begin = clock();
+    fixture f = read_scene("s.yaml", NULL, 0);
+    assert_int_equal(f.errors.n, 100);
+    stop(&f);
+    stream = fopen("s.yaml", "w");
+    fputs(SIMULATION "bodies:\n", stream);
+    for (int i = 0; i < 10001; i++)
+        fputs("- {}\n", stream);
+    fclose(stream);
+    f = read_scene("s.yaml", NULL, 0);
+    assert_string_equal(f.printed, "s.yaml:3:1: error: bodies: expected at most 10000 items, got "
+                                   "10001\n");
+    stop(&f);
+    assert_true((double)(clock() - begin) / CLOCKS_PER_SEC < 10);
+}
+
+static void help_covers_scene_and_files(void **state) {
+    (void)state;
+    char *text;
+    size_t size;
+    FILE *stream = open_memstream(&text, &size);
+    bough_scene_help(stream);
+    fclose(stream);
+    const char *const lines[] = {
+        "\n  macro_step: (number in s, > 0; required)\n",
+        "\n    scheme: (frozen|gauss-seidel|extrapolated|ramp|monolithic; default ramp)\n",
+        "\n    axis: (x|y|z; required; with kind: revolute|prismatic)\n",
+        "\n        alpha: (number in rad; required)\n",
+        "\n        stiffness: (6 numbers, the diagonal, or 21, the upper triangle row by row; "
+        "required)\n",
+    };
+    for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
+        if (strstr(text, lines[i]) == NULL) fail_msg("not in the help: %s", lines[i]);
+    }
+    free(text);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(turbine_is_read),
+        cmocka_unit_test(aerodynamics_are_read),
+        cmocka_unit_test(uniform_beam_needs_no_table),
+        cmocka_unit_test(shipped_scenes_are_good),
+        cmocka_unit_test(parents_come_first_in_the_order),
+        cmocka_unit_test(free_and_sliding_joints_start_moving),
+        cmocka_unit_test(rods_may_be_curved),
+        cmocka_unit_test(all_errors_are_shown_in_order),
+        cmocka_unit_test(missing_parts_are_named),
+        cmocka_unit_test(joint_keys_fit_the_kind),
+        cmocka_unit_test(bad_placements_are_refused),
+        cmocka_unit_test(names_are_checked),
+        cmocka_unit_test(loops_of_parents_are_refused),
+        cmocka_unit_test(moving_joints_need_mass),
+        cmocka_unit_test(body_keys_fit_the_fidelity),
+        cmocka_unit_test(rods_are_complete),
+        cmocka_unit_test(section_matrices_are_checked),
+        cmocka_unit_test(stations_run_from_zero_to_the_length),
+        cmocka_unit_test(errors_of_a_table_are_shown_once),
+        cmocka_unit_test(times_fit_the_macro_step),
+        cmocka_unit_test(loads_fit_their_joints),
+        cmocka_unit_test(turbine_names_are_checked),
+        cmocka_unit_test(aerodynamics_are_consistent),
+        cmocka_unit_test(polars_cover_the_circle),
+        cmocka_unit_test(values_can_be_replaced_and_added),
+        cmocka_unit_test(missing_mappings_are_made),
+        cmocka_unit_test(shared_values_are_copied_first),
+        cmocka_unit_test(bad_replacements_are_refused),
+        cmocka_unit_test(missing_scene_is_told),
+        cmocka_unit_test(hostile_scenes_end_fast),
+        cmocka_unit_test(help_covers_scene_and_files),
+    };
+    return cmocka_run_group_tests(tests, enter, leave);
+}
