@@ -415,12 +415,22 @@ static bough_status choose_theta(bough_coupling *c) {
 
 // -- the step -------------------------------------------------------------------------------------
 
+// Backward Euler's companion: a ramp would bring back the ringing that θ = 1 damps.
+static bool held(const ramp *r) {
+    return r->theta >= 1;
+}
+
 static void set_ramps(bough_coupling *c) {
     ramp *r = c->scheme_data;
     for (int m = 0; m < r->n_lead; m++) {
         int j = r->lead[m], i = member_of_input(c->assembly, j);
         double end = r->start[j] + r->change[m];
-        bough_port_linear(&c->signal[i], j - c->assembly->input_offset[i], 1, &r->start[j], &end);
+        int local = j - c->assembly->input_offset[i];
+        if (held(r)) {
+            bough_port_hold(&c->signal[i], local, 1, &end);
+        } else {
+            bough_port_linear(&c->signal[i], local, 1, &r->start[j], &end);
+        }
         r->start[j] = end;
     }
 }
@@ -431,7 +441,7 @@ static bough_status step(bough_coupling *c) {
     bough_status status = c->theta > 0 ? predict(c) : choose_theta(c);
     if (!bough_is_ok(&status)) return status;
     set_ramps(c);
-    status = bough_coupling_advance_lead(c, 0, c->restart);
+    status = bough_coupling_advance_lead(c, 0, c->restart || held(c->scheme_data));
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) continue;
