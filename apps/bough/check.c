@@ -1,0 +1,189 @@
+// bough check: what a scene builds, and why. Nothing is run or written.
+#include "apps/bough/open.h"
+#include "apps/bough/verb.h"
+#include "apps/output/progress.h"
+
+#include <math.h>
+#include <string.h>
+
+static const char *body_name(const bough_scene *scene, int body) {
+    return body == BOUGH_SCENE_GROUND ? "ground" : scene->body[body].name;
+}
+
+static const char *plural(int n) { return n == 1 ? "" : "s"; }
+
+// -- bodies ---------------------------------------------------------------------------------------
+
+// What a fixed body moves with: the first body below it whose joint moves, or the ground.
+static int carrier(const bough_scene *scene, int body) {
+    while (body != BOUGH_SCENE_GROUND && scene->body[body].joint.kind == BOUGH_SCENE_FIXED) {
+        body = scene->body[body].joint.parent;
+    }
+    return body;
+}
+
+static void print_joint(const bough_scene *scene, int body) {
+    static const char *const names[] = {[BOUGH_SCENE_FIXED] = "fixed",
+                                        [BOUGH_SCENE_REVOLUTE] = "revolute",
+                                        [BOUGH_SCENE_PRISMATIC] = "prismatic",
+                                        [BOUGH_SCENE_SPHERICAL] = "spherical",
+                                        [BOUGH_SCENE_FREE] = "free"};
+    static const int freedoms[] = {[BOUGH_SCENE_FIXED] = 0,
+                                   [BOUGH_SCENE_REVOLUTE] = 1,
+                                   [BOUGH_SCENE_PRISMATIC] = 1,
+                                   [BOUGH_SCENE_SPHERICAL] = 3,
+                                   [BOUGH_SCENE_FREE] = 6};
+    const bough_scene_joint *joint = &scene->body[body].joint;
+    if (joint->kind == BOUGH_SCENE_FIXED) {
+        printf("; fixed to %s, welded to %s: no states in the tree",
+               body_name(scene, joint->parent), body_name(scene, carrier(scene, body)));
+        return;
+    }
+    int n = freedoms[joint->kind];
+    printf("; %s", names[joint->kind]);
+    if (n == 1) {
+        bool turns = joint->kind == BOUGH_SCENE_REVOLUTE;
+        printf(" %s %c", turns ? "about" : "along", "xyz"[joint->axis]);
+    }
+    printf(" on %s: %d degree%s of freedom", body_name(scene, joint->parent), n, plural(n));
+}
+
+static double beam_mass(const bough_beam *beam) {
+    double mass = 0;
+    for (int i = 0; i <= beam->def.n_segment; i++)
+        mass += beam->def.inertia[i].mass;
+    return mass;
+}
+
+static void print_rod(const bough_simulation *s, const bough_beam *beam) {
+    const bough_subsystem *rod = &s->rod[beam->port];
+    printf("; %d segments, %d states, %s, rtol %.6g", beam->def.n_segment, rod->n_state,
+           rod->solver, s->scene->simulation.micro.rtol);
+}
+
+static void print_body(const bough_simulation *s, int body) {
+    const bough_beam *beam = bough_simulation_beam(s, body);
+    bool flexible = beam && beam->rod;
+    printf("body %s: %s", s->scene->body[body].name,
+           flexible ? "rod"
+           : beam   ? "rigid: no states of its own, integrated from its rod"
+                    : "rigid");
+    print_joint(s->scene, body);
+    if (flexible) print_rod(s, beam);
+    printf("; mass %.6g kg", beam ? beam_mass(beam) : s->scene->body[body].mass);
+    if (beam) printf(", length %.6g m", beam->def.span[beam->def.n_segment]);
+    putchar('\n');
+}
+
+static void print_bodies(const bough_simulation *s) {
+    const bough_tree *tree = s->tree;
+    int n = s->scene->n_body;
+    printf("bodies: %d\n", n);
+    for (int i = 0; i < n; i++)
+        print_body(s, i);
+    printf("joints: %d moving, %d fixed\n", tree->n_links, n - tree->n_links);
+    printf("tree: %d state%s (%d of position, %d of speed), %s, rtol %.6g\n", tree->n_q + tree->n_v,
+           plural(tree->n_q + tree->n_v), tree->n_q, tree->n_v, s->trunk.solver,
+           s->scene->simulation.master.rtol);
+    printf("states: %d\n", s->master->assembly->n_state);
+    printf("loads: %d\n", tree->n_loads);
+}
+
+// -- coupling -------------------------------------------------------------------------------------
+
+// Steps of the run: the grid's, and one more for each corner of a load between its points.
+static long count_steps(const bough_master *m) {
+    double eps = 1e-9;
+    long steps = (long)ceil(m->duration / m->macro_step - eps);
+    double last = 0;
+    for (int i = 0; i < m->n_event; i++) {
+        double grid = m->event[i] / m->macro_step;
+        bool inside = m->event[i] > last && m->event[i] < m->duration;
+        if (inside && fabs(grid - round(grid)) > eps) steps++;
+        if (inside) last = m->event[i];
+    }
+    return steps;
+}
+
+static void print_coupling(const bough_simulation *s) {
+    const bough_master *m = s->master;
+    const bough_scheme_options *o = &m->coupling->options;
+    printf("coupling: %s", m->scheme->name);
+    if (strcmp(m->scheme->name, "extrapolated") == 0) printf(", order %d", o->order);
+    if (strcmp(m->scheme->name, "ramp") == 0) {
+        if (o->theta > 0) {
+            printf(", theta %.6g", o->theta);
+        } else {
+            printf(", theta auto: chosen at the first step");
+        }
+    }
+    printf(" (%s)\n", m->scheme->summary);
+    printf("ports: %d, each %d motions and gravities to the rod, %d forces and moments back\n",
+           s->tree->n_ports, BOUGH_PORT_OUTPUTS, BOUGH_PORT_INPUTS);
+    printf("duration: %.9g s\n", m->duration);
+    printf("macro_step: %.9g s\n", m->macro_step);
+    printf("macro_steps: %ld\n", count_steps(m));
+    printf("threads: %d\n", m->coupling->threads);
+}
+
+// -- aerodynamics ---------------------------------------------------------------------------------
+
+static void print_aero(const bough_simulation *s) {
+    const bough_scene_aero *aero = &s->scene->aero;
+    if (!s->aero) {
+        printf("aero: not built: no aero block\n");
+        return;
+    }
+    long every = bough_master_multiple(1 / aero->rate, s->master->macro_step);
+    printf("aero: built, %d blades of %d stations, %d polars, %.6g Hz (every %ld macro step%s), %s "
+           "between samples, tower influence %s\n",
+           s->scene->turbine.n_blade, aero->blade.n_station, aero->polars.n_polar, aero->rate,
+           every, every == 1 ? "" : "s", aero->hold == BOUGH_SCENE_LINEAR ? "linear" : "constant",
+           aero->tower.node ? "on" : "off");
+}
+
+// -- cost -----------------------------------------------------------------------------------------
+
+// Wall time of one evaluation of a member's derivative, the shortest of many [s].
+static double derivative_time(const bough_coupling *c, int member, double *rate) {
+    const bough_assembly *a = c->assembly;
+    const bough_subsystem *s = a->member[member];
+    const double *input = c->input + a->input_offset[member];
+    double shortest = HUGE_VAL;
+    for (int i = 0; i < 200; i++) {
+        double began = bough_wall_clock();
+        s->ops->derivative(s->self, *s->time, s->state, input, rate);
+        shortest = fmin(shortest, bough_wall_clock() - began);
+    }
+    return shortest;
+}
+
+static bough_status print_cost(const bough_simulation *s, bough_arena *arena) {
+    const bough_assembly *a = s->master->assembly;
+    printf("model_bytes: %zu\n", bough_arena_bytes(arena));
+    double *rate = bough_arena_doubles(arena, (size_t)a->n_state + 1);
+    if (!rate) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    for (int i = 0; i < a->n_member; i++) {
+        double time = derivative_time(s->master->coupling, i, rate);
+        printf("derivative_us %s: %.3g\n", a->member[i]->name, 1e6 * time);
+    }
+    return bough_ok();
+}
+
+// -- the command ----------------------------------------------------------------------------------
+
+bough_status bough_verb_check(bough_arena *arena, const bough_options *options) {
+    bough_simulation *s;
+    bough_status status = bough_open(arena, options, &s);
+    if (!bough_is_ok(&status)) return status;
+    bough_channels channels = bough_channels_start(arena);
+    status = bough_simulation_channels(s, &channels);
+    if (!bough_is_ok(&status)) return status;
+    printf("scene: %s\n", s->scene->file);
+    printf("title: %s\n", s->scene->title ? s->scene->title : "");
+    print_bodies(s);
+    print_coupling(s);
+    print_aero(s);
+    printf("channels: %d every %.9g s\n", channels.count, s->scene->simulation.output.interval);
+    return print_cost(s, arena);
+}

@@ -1,0 +1,82 @@
+// bough help, bough --help and bough --version.
+#include "apps/bough/verb.h"
+#include "apps/bough/version.h"
+#include "apps/scene/scene.h"
+#include "cosim/scheme.h"
+
+#include <string.h>
+
+static void help_scene(FILE *stream) {
+    fprintf(stream, "A scene is a YAML file. Values are SI numbers or carry a unit: '12.1 rpm', "
+                    "'5 deg', '20 ms'.\nFiles that it names are relative to it.\n\n");
+    bough_scene_help(stream);
+}
+
+static void help_coupling(FILE *stream) {
+    fprintf(stream, "simulation.coupling.scheme, the exchange between the tree and the flexible "
+                    "bodies:\n");
+    for (const char *const *name = bough_scheme_names(); *name; name++) {
+        fprintf(stream, "  %-13s %s\n", *name, bough_scheme_find(*name)->summary);
+    }
+}
+
+typedef struct topic {
+    const char *name, *summary;
+    void (*write)(FILE *stream);
+} topic;
+
+static const topic topics[] = {
+    {"scene", "every key of a scene with unit, range and default", help_scene},
+    {"coupling", "the coupling schemes", help_coupling},
+};
+static const char *const topic_names[] = {"scene", "coupling", NULL};
+
+static void usage(const bough_verb *verb, const char *before, FILE *stream) {
+    fprintf(stream, "%sbough %s", before, verb->name);
+    bough_options_usage(&verb->syntax, stream);
+    fputc('\n', stream);
+}
+
+void bough_help_verb(const bough_verb *verb, FILE *stream) {
+    usage(verb, "usage: ", stream);
+    fprintf(stream, "%s\n", verb->summary);
+    bough_options_help(&verb->syntax, stream);
+}
+
+void bough_help_overview(FILE *stream) {
+    fprintf(stream, "bough " BOUGH_VERSION ": flexible multibody dynamics\n\n");
+    for (const bough_verb *verb = bough_verbs; verb->name; verb++) {
+        usage(verb, "  ", stream);
+        fprintf(stream, "      %s\n", verb->summary);
+    }
+    fprintf(stream, "\ntopics of help, besides the commands:\n");
+    for (size_t i = 0; i < sizeof topics / sizeof *topics; i++) {
+        fprintf(stream, "  %-13s %s\n", topics[i].name, topics[i].summary);
+    }
+    fprintf(stream, "\nexit codes: 0 done, 2 invalid input or usage, 3 numerical failure, "
+                    "130 interrupted, 1 anything else\n");
+}
+
+bough_status bough_verb_help(bough_arena *arena, const bough_options *options) {
+    (void)arena;
+    if (!options->operand) {
+        bough_help_overview(stdout);
+        return bough_ok();
+    }
+    for (size_t i = 0; i < sizeof topics / sizeof *topics; i++) {
+        if (strcmp(topics[i].name, options->operand) != 0) continue;
+        topics[i].write(stdout);
+        return bough_ok();
+    }
+    const bough_verb *verb = bough_verb_find(options->operand);
+    if (!verb) return bough_verb_unknown("topic", options->operand, topic_names);
+    bough_help_verb(verb, stdout);
+    return bough_ok();
+}
+
+bough_status bough_verb_version(bough_arena *arena, const bough_options *options) {
+    (void)arena;
+    (void)options;
+    printf("bough " BOUGH_VERSION "\n");
+    return bough_ok();
+}

@@ -1,0 +1,59 @@
+// bough: flexible multibody dynamics on the command line.
+#include "apps/bough/verb.h"
+
+#include <errno.h>
+#include <string.h>
+
+const bough_verb bough_verbs[] = {
+    {"run",
+     {BOUGH_OPERAND_REQUIRED, "SCENE",
+      BOUGH_OPTION_SET | BOUGH_OPTION_OUT | BOUGH_OPTION_THREADS | BOUGH_OPTION_QUIET},
+     "simulates a scene and writes its results",
+     bough_verb_run},
+    {"check",
+     {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET},
+     "tells what a scene builds; nothing is run or written",
+     bough_verb_check},
+    {"help",
+     {BOUGH_OPERAND_OPTIONAL, "TOPIC", 0},
+     "explains a command, the keys of a scene or the coupling schemes",
+     bough_verb_help},
+    {"--help", {BOUGH_OPERAND_OPTIONAL, "TOPIC", 0}, "the same", bough_verb_help},
+    {"--version", {BOUGH_OPERAND_NONE, NULL, 0}, "tells the version", bough_verb_version},
+    {0},
+};
+
+static bough_status call(bough_arena *arena, int argc, char **argv) {
+    const bough_verb *verb = bough_verb_find(argv[0]);
+    if (!verb) return bough_verb_unknown("command", argv[0], NULL);
+    if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_options options;
+    bough_status status = bough_options_read(arena, argc, argv, &verb->syntax, &options);
+    if (!bough_is_ok(&status)) return status;
+    if (!options.help) return verb->run(arena, &options);
+    bough_help_verb(verb, stdout);
+    return status;
+}
+
+static bough_status end_output(bough_status status) {
+    errno = 0;
+    bool written = fflush(stdout) == 0 && !ferror(stdout);
+    if (written || !bough_is_ok(&status)) return status;
+    return bough_fail(BOUGH_IO, "cannot write to the standard output: %s",
+                      errno ? strerror(errno) : "an earlier write failed");
+}
+
+int main(int argc, char **argv) {
+    if (argc < 2) {
+        bough_help_overview(stderr);
+        return bough_exit_code(BOUGH_INVALID);
+    }
+    bough_arena *arena = bough_arena_create();
+    bough_status status = end_output(call(arena, argc - 1, argv + 1));
+    bough_arena_destroy(arena);
+    if (!bough_is_ok(&status) && status.message[0]) {
+        const char *grade = status.code == BOUGH_INTERRUPTED ? "" : "error: ";
+        fprintf(stderr, "bough: %s%s\n", grade, status.message);
+    }
+    return bough_exit_code(status.code);
+}

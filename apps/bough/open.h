@@ -1,0 +1,13 @@
+// The way from the command line to a built simulation, the same for every command with a scene.
+#ifndef BOUGH_APPS_BOUGH_OPEN_H
+#define BOUGH_APPS_BOUGH_OPEN_H
+
+#include "apps/bough/options.h"
+#include "apps/scene/build.h"
+
+// Reads the scene with the options' replacements and builds it. Errors in the scene are written to
+// stderr, one a line, and the status then has no message.
+bough_status bough_open(bough_arena *arena, const bough_options *options,
+                        bough_simulation **simulation);
+
+#endif

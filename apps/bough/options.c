@@ -1,0 +1,158 @@
+#include "apps/bough/options.h"
+
+#include "apps/scene/schema.h"
+
+#include <errno.h>
+#include <getopt.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_THREADS = 64, FIRST = 256 }; // FIRST: codes of long options, above every character
+
+typedef struct option_row {
+    bough_option_flag flag;
+    const char *name, *argument; // argument NULL: none
+    bool repeats;
+    const char *help;
+} option_row;
+
+static const option_row rows[] = {
+    {BOUGH_OPTION_SET, "set", "KEY=VALUE", true,
+     "replaces or adds a value of the scene: 'bodies[2].pitch=5 deg'"},
+    {BOUGH_OPTION_OUT, "out", "DIR", false,
+     "folder for the results; default out/<name of the scene>"},
+    {BOUGH_OPTION_THREADS, "threads", "N", false, "1 to 64, instead of what the scene says"},
+    {BOUGH_OPTION_QUIET, "quiet", NULL, false, "no progress line"},
+};
+enum { N_ROW = sizeof rows / sizeof *rows };
+
+// -- errors ---------------------------------------------------------------------------------------
+
+static bough_status unknown_long(const bough_syntax *syntax, const char *word) {
+    const char *names[N_ROW + 1] = {"help"};
+    for (int i = 0; i < N_ROW; i++) {
+        if (syntax->options & rows[i].flag) names[i + 1] = rows[i].name;
+    }
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(word + 2, "="), word + 2);
+    const char *near = bough_nearest(name, names, N_ROW + 1);
+    return bough_fail(BOUGH_INVALID, "unknown option '%.80s'%s%s%s; see --help", word,
+                      near ? " (did you mean '--" : "", near ? near : "", near ? "'?)" : "");
+}
+
+// What getopt_long did not accept; `word` is the argument it stopped at.
+static bough_status refuse(const bough_syntax *syntax, const char *word) {
+    if (optopt >= FIRST) {
+        return bough_fail(BOUGH_INVALID, "option --%s takes no value", rows[optopt - FIRST].name);
+    }
+    if (strncmp(word, "--", 2) == 0) return unknown_long(syntax, word);
+    return bough_fail(BOUGH_INVALID, "unknown option '-%c'; see --help", optopt);
+}
+
+static bough_status missing(void) {
+    const option_row *row = &rows[optopt - FIRST];
+    return bough_fail(BOUGH_INVALID, "option --%s needs a value: --%s %s", row->name, row->name,
+                      row->argument);
+}
+
+// -- reading --------------------------------------------------------------------------------------
+
+static bough_status take_operand(const bough_syntax *syntax, const char *word,
+                                 bough_options *options) {
+    if (syntax->operand == BOUGH_OPERAND_NONE || options->operand) {
+        return bough_fail(BOUGH_INVALID, "unexpected argument '%.200s'", word);
+    }
+    options->operand = word;
+    return bough_ok();
+}
+
+static bough_status take_threads(const char *text, bough_options *options) {
+    char *end;
+    errno = 0;
+    long n = strtol(text, &end, 10);
+    if (end == text || *end != '\0' || errno || n < 1 || n > MAX_THREADS) {
+        return bough_fail(BOUGH_INVALID,
+                          "--threads expects a whole number from 1 to %d, got '%.80s'", MAX_THREADS,
+                          text);
+    }
+    options->threads = (int)n;
+    return bough_ok();
+}
+
+static bough_status take_option(bough_option_flag flag, const char *text, bough_options *options) {
+    switch (flag) {
+    case BOUGH_OPTION_SET: options->set[options->n_set++] = text; break;
+    case BOUGH_OPTION_OUT: options->out = text; break;
+    case BOUGH_OPTION_THREADS: return take_threads(text, options);
+    case BOUGH_OPTION_QUIET: options->quiet = true; break;
+    }
+    return bough_ok();
+}
+
+static void list_options(const bough_syntax *syntax, struct option *list) {
+    *list++ = (struct option){.name = "help", .val = 'h'};
+    for (int i = 0; i < N_ROW; i++) {
+        if (!(syntax->options & rows[i].flag)) continue;
+        *list++ = (struct option){.name = rows[i].name,
+                                  .has_arg = rows[i].argument ? required_argument : no_argument,
+                                  .val = FIRST + i};
+    }
+}
+
+static bough_status take(const bough_syntax *syntax, int code, const char *word,
+                         bough_options *options) {
+    switch (code) {
+    case 1: return take_operand(syntax, optarg, options);
+    case 'h': options->help = true; return bough_ok();
+    case '?': return refuse(syntax, word);
+    case ':': return missing();
+    default: return take_option(rows[code - FIRST].flag, optarg, options);
+    }
+}
+
+bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
+                                const bough_syntax *syntax, bough_options *options) {
+    *options = (bough_options){.set = bough_arena_take(arena, (size_t)argc * sizeof(char *))};
+    if (!options->set) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the arguments");
+    struct option list[N_ROW + 2] = {{0}};
+    list_options(syntax, list);
+    bough_status status = bough_ok();
+    opterr = 0; // messages are ours
+    // "-": operands come in order, whatever POSIXLY_CORRECT says; ":": tell missing from unknown.
+    for (int code;
+         bough_is_ok(&status) && (code = getopt_long(argc, argv, "-:h", list, NULL)) != -1;) {
+        status = take(syntax, code, argv[optind - 1], options);
+    }
+    for (; bough_is_ok(&status) && optind < argc; optind++) {
+        status = take_operand(syntax, argv[optind], options); // after "--"
+    }
+    if (bough_is_ok(&status) && syntax->operand == BOUGH_OPERAND_REQUIRED && !options->operand &&
+        !options->help) {
+        return bough_fail(BOUGH_INVALID, "%s: missing %s; see bough %s --help", argv[0],
+                          syntax->operand_name, argv[0]);
+    }
+    return status;
+}
+
+// -- help -----------------------------------------------------------------------------------------
+
+void bough_options_usage(const bough_syntax *syntax, FILE *stream) {
+    if (syntax->operand == BOUGH_OPERAND_REQUIRED) fprintf(stream, " %s", syntax->operand_name);
+    if (syntax->operand == BOUGH_OPERAND_OPTIONAL) fprintf(stream, " [%s]", syntax->operand_name);
+    for (int i = 0; i < N_ROW; i++) {
+        if (!(syntax->options & rows[i].flag)) continue;
+        fprintf(stream, " [--%s%s%s]%s", rows[i].name, rows[i].argument ? " " : "",
+                rows[i].argument ? rows[i].argument : "", rows[i].repeats ? "..." : "");
+    }
+}
+
+void bough_options_help(const bough_syntax *syntax, FILE *stream) {
+    for (int i = 0; i < N_ROW; i++) {
+        if (!(syntax->options & rows[i].flag)) continue;
+        char left[40];
+        snprintf(left, sizeof left, "--%s %s", rows[i].name,
+                 rows[i].argument ? rows[i].argument : "");
+        fprintf(stream, "  %-18s %s\n", left, rows[i].help);
+    }
+    fprintf(stream, "  %-18s %s\n", "-h, --help", "this text");
+}

@@ -1,0 +1,50 @@
+// What the user asks for on the command line, read by getopt_long.
+#ifndef BOUGH_APPS_BOUGH_OPTIONS_H
+#define BOUGH_APPS_BOUGH_OPTIONS_H
+
+#include "core/arena.h"
+#include "core/status.h"
+
+#include <stdbool.h>
+#include <stdio.h>
+
+// Options that a command may accept; every command accepts --help.
+typedef enum bough_option_flag {
+    BOUGH_OPTION_SET = 1 << 0,
+    BOUGH_OPTION_OUT = 1 << 1,
+    BOUGH_OPTION_THREADS = 1 << 2,
+    BOUGH_OPTION_QUIET = 1 << 3,
+} bough_option_flag;
+
+typedef enum bough_operand {
+    BOUGH_OPERAND_NONE,
+    BOUGH_OPERAND_OPTIONAL,
+    BOUGH_OPERAND_REQUIRED,
+} bough_operand;
+
+// What a command accepts.
+typedef struct bough_syntax {
+    bough_operand operand;
+    const char *operand_name; // "SCENE"; NULL without operand
+    unsigned options;         // set of bough_option_flag
+} bough_syntax;
+
+typedef struct bough_options {
+    const char *operand; // the scene or the topic; NULL: not given
+    int n_set;
+    const char **set; // (n_set) replacements "key=value", in their order
+    const char *out;  // NULL: named after the scene
+    int threads;      // 0: as the scene says
+    bool quiet, help;
+} bough_options;
+
+// Reads argv[1] and what follows; argv[0] is the command's name. BOUGH_INVALID names what is wrong
+// and the nearest valid option. Texts are borrowed from argv.
+bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
+                                const bough_syntax *syntax, bough_options *options);
+
+// Writes " SCENE [--set KEY=VALUE]... [--out DIR]", and one line for each option.
+void bough_options_usage(const bough_syntax *syntax, FILE *stream);
+void bough_options_help(const bough_syntax *syntax, FILE *stream);
+
+#endif

@@ -1,0 +1,146 @@
+// bough run: steps a scene through its duration and records its channels.
+#include "apps/bough/run.h"
+
+#include "apps/bough/open.h"
+#include "apps/bough/stop.h"
+#include "apps/bough/verb.h"
+#include "apps/output/folder.h"
+#include "apps/output/progress.h"
+
+#include <errno.h>
+#include <string.h>
+#include <time.h>
+
+static double cpu_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+// -- recording ------------------------------------------------------------------------------------
+
+// Times closer than this are one [s].
+static double resolution(const bough_run *run) {
+    return 1e-6 * run->simulation->master->macro_step;
+}
+
+static bough_status record(bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    double interval = run->simulation->scene->simulation.output.interval;
+    run->recorded = m->time;
+    while ((double)run->next_row * interval <= m->time + resolution(run))
+        run->next_row++;
+    bough_simulation_update(run->simulation);
+    return bough_recorder_sample(run->recorder, m->time);
+}
+
+static bool row_is_due(const bough_run *run) {
+    double interval = run->simulation->scene->simulation.output.interval;
+    double now = run->simulation->master->time;
+    return now >= (double)run->next_row * interval - resolution(run);
+}
+
+// -- stepping -------------------------------------------------------------------------------------
+
+static bough_status step(bough_run *run) {
+    bough_master *m = run->simulation->master;
+    if (bough_stop_requested()) {
+        return bough_fail(BOUGH_INTERRUPTED,
+                          "interrupted at %.9g s of %.9g s; the results so far "
+                          "are in %.200s",
+                          m->time, m->duration, run->folder);
+    }
+    bough_status status = bough_step(m);
+    if (bough_is_ok(&status) && row_is_due(run)) status = record(run);
+    return status;
+}
+
+// After a numerical failure the state means nothing: only a run that could go on gets a last row.
+static bough_status record_end(bough_run *run, bough_status status) {
+    if (!bough_is_ok(&status) && status.code != BOUGH_INTERRUPTED) return status;
+    if (run->recorded >= run->simulation->master->time) return status;
+    bough_status end = record(run);
+    return bough_is_ok(&end) ? status : end;
+}
+
+static bough_status step_all(bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    bough_progress progress = bough_progress_start(m->time, m->duration, run->options->quiet);
+    double wall = bough_wall_clock(), cpu = cpu_clock();
+    bough_status status = record(run);
+    while (bough_is_ok(&status) && !bough_master_done(m)) {
+        status = step(run);
+        bough_progress_show(&progress, m->time);
+    }
+    status = record_end(run, status);
+    run->wall_s = bough_wall_clock() - wall;
+    run->cpu_s = cpu_clock() - cpu;
+    bough_progress_clear(&progress);
+    return status;
+}
+
+// -- results --------------------------------------------------------------------------------------
+
+// out/ and the scene's file name without its extension.
+static const char *default_folder(bough_arena *arena, const char *scene) {
+    const char *slash = strrchr(scene, '/');
+    const char *name = slash ? slash + 1 : scene;
+    const char *dot = strrchr(name, '.');
+    size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
+    char *folder = bough_arena_take(arena, length + 5);
+    if (folder) snprintf(folder, length + 5, "out/%.*s", (int)length, name);
+    return folder;
+}
+
+// An older summary must not stand beside the new run's channels.
+static bough_status remove_summary(const char *folder) {
+    char path[BOUGH_PATH_MAX];
+    bough_status status = bough_folder_path(folder, "summary.json", path);
+    if (!bough_is_ok(&status) || remove(path) == 0 || errno == ENOENT) return status;
+    return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", path, strerror(errno));
+}
+
+static bough_status open_results(bough_run *run) {
+    run->folder =
+        run->options->out ? run->options->out : default_folder(run->arena, run->options->operand);
+    if (!run->folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_status status = bough_folder_make(run->folder);
+    if (bough_is_ok(&status)) status = remove_summary(run->folder);
+    if (!bough_is_ok(&status)) return status;
+    const bough_scene *scene = run->simulation->scene;
+    bough_recorder_def def = {.folder = run->folder,
+                              .title = scene->title ? scene->title : scene->file,
+                              .channels = &run->channels};
+    return bough_recorder_open(run->arena, &def, &run->recorder);
+}
+
+static bough_status build(bough_run *run) {
+    double began = bough_wall_clock();
+    bough_status status = bough_open(run->arena, run->options, &run->simulation);
+    if (!bough_is_ok(&status)) return status;
+    run->channels = bough_channels_start(run->arena);
+    status = bough_simulation_channels(run->simulation, &run->channels);
+    run->build_s = bough_wall_clock() - began;
+    return status;
+}
+
+// Ends both files; the first thing that went wrong is the outcome that they tell.
+static bough_status close_results(bough_run *run) {
+    bough_status status = bough_recorder_finish(run->recorder, &run->outcome);
+    if (bough_is_ok(&run->outcome)) run->outcome = status;
+    status = bough_run_summarise(run);
+    return bough_is_ok(&run->outcome) ? status : run->outcome;
+}
+
+bough_status bough_verb_run(bough_arena *arena, const bough_options *options) {
+    bough_run run = {.options = options, .arena = arena};
+    bough_status status = build(&run);
+    if (!bough_is_ok(&status)) return status;
+    bough_stop_listen();
+    status = open_results(&run);
+    if (!bough_is_ok(&status)) return status;
+    run.outcome = step_all(&run);
+    status = close_results(&run);
+    bough_run_tell(&run, stdout);
+    return status;
+}

@@ -1,0 +1,153 @@
+// What is said about a run: summary.json and the closing lines.
+#include "apps/bough/run.h"
+#include "apps/bough/version.h"
+#include "apps/output/summary.h"
+
+#include <math.h>
+#include <string.h>
+#include <sys/resource.h>
+
+// -- figures --------------------------------------------------------------------------------------
+
+static const char *outcome_name(const bough_run *run) {
+    if (bough_is_ok(&run->outcome)) return "complete";
+    return run->outcome.code == BOUGH_INTERRUPTED ? "interrupted" : "failed";
+}
+
+static double real_time_factor(const bough_run *run) {
+    return run->simulation->master->time / run->wall_s;
+}
+
+// The process's largest resident memory [bytes].
+static long long peak_memory(void) {
+    struct rusage usage;
+    return getrusage(RUSAGE_SELF, &usage) == 0 ? 1024LL * usage.ru_maxrss : 0;
+}
+
+// -- summary.json ---------------------------------------------------------------------------------
+
+static void write_input(bough_summary *s, const bough_run *run) {
+    const bough_scene *scene = run->simulation->scene;
+    bough_summary_text(s, "bough_version", BOUGH_VERSION);
+    bough_summary_text(s, "scene", scene->file);
+    bough_summary_text(s, "title", scene->title);
+    bough_summary_array(s, "set");
+    for (int i = 0; i < run->options->n_set; i++) {
+        bough_summary_text(s, NULL, run->options->set[i]);
+    }
+    bough_summary_end(s);
+    bough_summary_text(s, "status", outcome_name(run));
+    bough_summary_text(s, "diagnosis", bough_is_ok(&run->outcome) ? NULL : run->outcome.message);
+}
+
+// Order and theta are null where the scheme has none.
+static void write_method(bough_summary *s, const bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    const bough_scene_simulation *sim = &run->simulation->scene->simulation;
+    bool extrapolates = strcmp(m->scheme->name, "extrapolated") == 0;
+    bool ramps = strcmp(m->scheme->name, "ramp") == 0;
+    bough_summary_text(s, "scheme", m->scheme->name);
+    const double none = (double)NAN;
+    bough_summary_number(s, "order", extrapolates ? (double)m->coupling->options.order : none);
+    bough_summary_number(s, "theta", ramps ? m->coupling->theta : none);
+    bough_summary_number(s, "macro_step", m->macro_step);
+    bough_summary_number(s, "master_rtol", sim->master.rtol);
+    bough_summary_number(s, "micro_rtol", sim->micro.rtol);
+    bough_summary_integer(s, "threads", m->coupling->threads);
+}
+
+static void write_cost(bough_summary *s, const bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    bough_summary_number(s, "duration", m->duration);
+    bough_summary_number(s, "time", m->time);
+    bough_summary_number(s, "wall_s", run->wall_s);
+    bough_summary_number(s, "cpu_s", run->cpu_s);
+    bough_summary_number(s, "build_s", run->build_s);
+    bough_summary_number(s, "real_time_factor", real_time_factor(run));
+    bough_summary_integer(s, "peak_memory_bytes", peak_memory());
+    bough_summary_integer(s, "model_bytes", (long long)bough_arena_bytes(run->arena));
+}
+
+static void write_size(bough_summary *s, const bough_run *run) {
+    const bough_simulation *sim = run->simulation;
+    bough_summary_integer(s, "bodies", sim->scene->n_body);
+    bough_summary_integer(s, "joints", sim->tree->n_links);
+    bough_summary_integer(s, "states", sim->master->assembly->n_state);
+    bough_summary_integer(s, "macro_steps", sim->master->steps);
+    bough_summary_integer(s, "rows", bough_recorder_rows(run->recorder));
+    bough_summary_integer(s, "channels", run->channels.count);
+}
+
+static void write_accuracy(bough_summary *s, const bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    bough_coupling_report report = bough_monitor_report(m->monitor, m->coupling);
+    bough_summary_number(s, "defect_max", report.defect_max);
+    bough_summary_number(s, "defect_rms", report.defect_rms);
+    bough_summary_number(s, "energy_residual", report.energy_residual);
+    bough_summary_number(s, "energy_exchanged", report.energy_exchanged);
+}
+
+static void write_subsystem(bough_summary *s, const bough_subsystem *subsystem) {
+    bough_statistics done = {0};
+    subsystem->ops->statistics(subsystem->self, &done);
+    bough_summary_object(s, NULL);
+    bough_summary_text(s, "name", subsystem->name);
+    bough_summary_text(s, "kind", subsystem->kind);
+    bough_summary_text(s, "solver", subsystem->solver);
+    bough_summary_integer(s, "states", subsystem->n_state);
+    bough_summary_integer(s, "steps", done.steps);
+    bough_summary_integer(s, "failed_steps", done.failed_steps);
+    bough_summary_integer(s, "derivatives", done.derivatives);
+    bough_summary_integer(s, "jacobians", done.jacobians);
+    bough_summary_integer(s, "factorisations", done.factorisations);
+    bough_summary_integer(s, "iterations", done.iterations);
+    bough_summary_integer(s, "restarts", done.restarts);
+    bough_summary_end(s);
+}
+
+bough_status bough_run_summarise(const bough_run *run) {
+    bough_summary s;
+    bough_status status = bough_summary_open(&s, run->folder, "summary.json");
+    if (!bough_is_ok(&status)) return status;
+    write_input(&s, run);
+    write_method(&s, run);
+    write_cost(&s, run);
+    write_size(&s, run);
+    write_accuracy(&s, run);
+    const bough_assembly *assembly = run->simulation->master->assembly;
+    bough_summary_array(&s, "subsystems");
+    for (int i = 0; i < assembly->n_member; i++)
+        write_subsystem(&s, assembly->member[i]);
+    bough_summary_end(&s);
+    return bough_summary_close(&s);
+}
+
+// -- closing lines --------------------------------------------------------------------------------
+
+// Channels worth a line: the turbine's main ones, or else the first few.
+static void tell_channels(const bough_run *run, FILE *stream) {
+    static const char *const main_channels[] = {"RotSpeed", "RotThrust", "RotTorq",
+                                                "OoPDefl1", "IPDefl1",   "TwstDefl1"};
+    enum { MAIN = sizeof main_channels / sizeof *main_channels, FIRST_FEW = 4 };
+    const bough_channels *c = &run->channels;
+    double *value = bough_arena_doubles(run->arena, (size_t)c->count + 1);
+    if (!value) return;
+    bough_channels_sample(c, run->simulation->master->time, value);
+    bool turbine = run->simulation->scene->turbine.node != NULL;
+    for (int i = 0; i < (turbine ? MAIN : FIRST_FEW); i++) {
+        int k = turbine ? bough_channels_find(c, main_channels[i]) : i;
+        if (k < 0 || k >= c->count) continue;
+        fprintf(stream, "%s: %.6g %s\n", c->channel[k].name, value[k], c->channel[k].unit);
+    }
+}
+
+void bough_run_tell(const bough_run *run, FILE *stream) {
+    fprintf(stream, "status: %s\n", outcome_name(run));
+    fprintf(stream, "time: %.9g s\n", run->simulation->master->time);
+    fprintf(stream, "real_time_factor: %.3g\n", real_time_factor(run));
+    fprintf(stream, "wall_s: %.3g\n", run->wall_s);
+    fprintf(stream, "peak_memory_mb: %.1f\n", (double)peak_memory() / 1e6);
+    // After a failure the state means nothing.
+    if (strcmp(outcome_name(run), "failed") != 0) tell_channels(run, stream);
+    fprintf(stream, "out: %s\n", run->folder);
+}
