@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { OSCILLATOR_PORT = 2 };
+enum { OSCILLATOR_PORT = 3 };
 
 // ẏ = A y + B u, o = C y + D u; y = (x, v)
 typedef struct oscillator {
@@ -202,6 +202,19 @@ static inline oscillator oscillator_told_motion(spring s, double k, double c, do
                         .n_input = 2,
                         .n_output = 1,
                         .y = {x, 0}};
+}
+
+// The same with 3 ports on either side: the leader takes the sum of three forces and tells
+// (v, x, x), a follower takes the mean of the two positions.
+static inline void oscillator_widen(oscillator *leader, oscillator *follower) {
+    for (int j = 1; j < 3; j++) leader->b[1][j] = leader->b[1][0];
+    leader->c[2][0] = leader->c[1][0];
+    leader->n_input = leader->n_output = 3;
+    follower->b[1][1] /= 2;
+    follower->d[0][1] /= 2;
+    follower->b[1][2] = follower->b[1][1];
+    follower->d[0][2] = follower->d[0][1];
+    follower->n_input = 3;
 }
 
 // The two coupled: (x1, v1, x2, v2) exactly, forwards or backwards in time.

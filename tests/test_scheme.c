@@ -1,0 +1,182 @@
+// The schemes on the two-mass oscillator (m = 1, 1; k = 10, 10, 20; c = .2, .5, .3; x2(0) = .5), in
+// the force–displacement cut: mass 1 takes the force, mass 2 the motion.
+#include "tests/contract.h"
+#include "tests/two_mass.h"
+
+static bough_master_def definition(const char *scheme, double macro_step) {
+    bough_master_def def = bough_master_def_default();
+    def.scheme.name = scheme;
+    def.macro_step = macro_step;
+    def.duration = 10;
+    return def;
+}
+
+static double error_of(two_mass m, bough_master_def def) {
+    bough_status status = two_mass_build(&m, def);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    two_mass_history(&m);
+    double error = two_mass_error(&m);
+    two_mass_destroy(&m);
+    return error;
+}
+
+static void check_errors(bough_master_def def, const double expected[3], double tolerance) {
+    static const double macro_step[3] = {.04, .02, .01};
+    for (int i = 0; i < 3; i++) {
+        def.macro_step = macro_step[i];
+        double error = error_of(two_mass_default(), def);
+        check_near(error, expected[i], tolerance, 0);
+    }
+}
+
+static void exact_solution_is_the_published_one(void **state) {
+    (void)state;
+    two_mass m = two_mass_default();
+    double y[4];
+    two_mass_at(&m, 10, y);
+    check_near(y[0], 0.051040814056560, 0, 1e-13);
+    check_near(y[2], 0.031641338373202, 0, 1e-13);
+}
+
+static void oscillators_fulfil_the_contract(void **state) {
+    (void)state;
+    two_mass m = two_mass_default();
+    two_mass_build(&m, definition("frozen", .1));
+    const double y[2] = {.3, -.7}, u[2] = {.4, .2};
+    for (int i = 0; i < 2; i++) {
+        contract_point at = {.t = .5, .state = y, .input = u, .tolerance = 1e-8};
+        contract_check(&m.subsystem[i], at, .05, .1);
+        contract_set_state(&m.subsystem[i], at, 1e-4);
+    }
+    two_mass_destroy(&m);
+}
+
+static void parallel_errors_and_orders(void **state) {
+    (void)state;
+    static const double expected[3][3] = {{5.00e-2, 2.47e-2, 1.23e-2},
+                                          {8.21e-3, 2.05e-3, 5.10e-4},
+                                          {1.89e-3, 2.37e-4, 2.95e-5}};
+    bough_master_def def = definition("extrapolated", 0);
+    def.scheme.parallel = true;
+    for (int order = 0; order < 3; order++) {
+        def.scheme.order = order;
+        check_errors(def, expected[order], .01);
+    }
+    check_errors(definition("frozen", 0), expected[0], .01);
+}
+
+static void sequential_errors_and_orders(void **state) {
+    (void)state;
+    static const double expected[3][3] = {{5.98e-2, 2.51e-2, 1.23e-2},
+                                          {6.31e-3, 1.57e-3, 3.91e-4},
+                                          {1.80e-3, 2.22e-4, 2.76e-5}};
+    bough_master_def def = definition("extrapolated", 0);
+    def.scheme.interpolation = BOUGH_POLYNOMIAL;
+    for (int order = 0; order < 3; order++) {
+        def.scheme.order = order;
+        check_errors(def, expected[order], .01);
+    }
+}
+
+// Whether 3000 s stay within twice the start.
+static bool stable(bough_master_def def) {
+    two_mass m = two_mass_default();
+    bool bounded = true;
+    def.duration = 3000;
+    bough_status status = two_mass_build(&m, def);
+    assert_true(bough_is_ok(&status));
+    two_mass_history(&m);
+    while (bounded && !bough_master_done(m.master)) {
+        status = bough_step(m.master);
+        bounded = bough_is_ok(&status) && fabs(m.mass[0].y[0]) < 1 && fabs(m.mass[1].y[0]) < 1;
+    }
+    two_mass_destroy(&m);
+    return bounded;
+}
+
+static void check_limit(bough_master_def def, double limit) {
+    def.macro_step = .99 * limit;
+    assert_true(stable(def));
+    def.macro_step = 1.01 * limit;
+    assert_false(stable(def));
+}
+
+static void stability_limits(void **state) {
+    (void)state;
+    static const double parallel[3] = {.2254, .2277, .2501}, first[3] = {.0777, .3175, .2839},
+                        last[3] = {.0777, .3069, .2831};
+    bough_master_def def = definition("extrapolated", 0);
+    for (int order = 0; order < 3; order++) {
+        def.scheme.order = order;
+        def.scheme.parallel = true;
+        check_limit(def, parallel[order]);
+        def.scheme.parallel = false;
+        def.scheme.interpolation = BOUGH_POLYNOMIAL;
+        check_limit(def, first[order]);
+        def.scheme.reversed = true;
+        check_limit(def, last[order]);
+        def.scheme.reversed = false;
+    }
+}
+
+static void ramp_is_of_order_two(void **state) {
+    (void)state;
+    double error[3];
+    for (int i = 0; i < 3; i++) {
+        error[i] = error_of(two_mass_default(), definition("ramp", .04 / (1 << i)));
+    }
+    check_near(log2(error[0] / error[1]), 2, 0, .1);
+    check_near(log2(error[1] / error[2]), 2, 0, .1);
+    assert_true(error[0] < 2e-3); // linear extrapolation: 6.31e-3
+}
+
+static void ramp_is_stable_beyond_every_explicit_limit(void **state) {
+    (void)state;
+    for (double h = .02; h < .6; h *= 1.3) assert_true(stable(definition("ramp", h)));
+}
+
+// Mass 1 without a spring of its own and 1e-4 of mass 2: 59 times lighter than what it moves.
+static two_mass light_case(void) {
+    two_mass m = two_mass_default();
+    m.s1 = (spring){1e-4, 0, 0};
+    return m;
+}
+
+static void ramp_takes_a_light_interface_body(void **state) {
+    (void)state;
+    two_mass m = light_case();
+    bough_status status = two_mass_build(&m, definition("ramp", .02));
+    assert_true(bough_is_ok(&status));
+    check_near(0, two_mass_error(&m), 0, .1);
+    check_near(m.master->coupling->theta, 1, 0, 0);
+    check_near(m.master->coupling->interface_ratio, 59.6, .01, 0);
+    two_mass_destroy(&m);
+}
+
+static void unstable_run_ends_with_a_diagnosis(void **state) {
+    (void)state;
+    two_mass m = light_case();
+    bough_master_def def = definition("gauss-seidel", .02);
+    bough_status status = two_mass_build(&m, def);
+    while (bough_is_ok(&status) && !bough_master_done(m.master)) status = bough_step(m.master);
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_non_null(strstr(status.message, "mass2"));
+    assert_non_null(strstr(status.message, "gauss-seidel"));
+    assert_non_null(strstr(status.message, "scheme: ramp"));
+    two_mass_destroy(&m);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(exact_solution_is_the_published_one),
+        cmocka_unit_test(oscillators_fulfil_the_contract),
+        cmocka_unit_test(parallel_errors_and_orders),
+        cmocka_unit_test(sequential_errors_and_orders),
+        cmocka_unit_test(stability_limits),
+        cmocka_unit_test(ramp_is_of_order_two),
+        cmocka_unit_test(ramp_is_stable_beyond_every_explicit_limit),
+        cmocka_unit_test(ramp_takes_a_light_interface_body),
+        cmocka_unit_test(unstable_run_ends_with_a_diagnosis),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
