@@ -1,0 +1,59 @@
+// The growth watch on Gauss–Seidel coupling of the two-mass oscillator (limit .0777) and of a lightly
+// damped one: slow growth is diagnosed, stable runs never are.
+#include "tests/two_mass.h"
+
+static bough_status run(two_mass m, const char *scheme, double macro_step, double duration,
+                        double *stopped) {
+    bough_master_def def = bough_master_def_default();
+    def.scheme.name = scheme;
+    def.macro_step = macro_step;
+    def.duration = duration;
+    bough_status status = two_mass_build(&m, def);
+    while (bough_is_ok(&status) && !bough_master_done(m.master)) status = bough_step(m.master);
+    *stopped = m.master->time;
+    two_mass_destroy(&m);
+    return status;
+}
+
+// Like a rotor on its shaft: the leader heavier, damping of 0.1 %.
+static two_mass lightly_damped(void) {
+    two_mass m = two_mass_default();
+    m.s1 = (spring){2, 4, .004};
+    m.s2 = (spring){1, 1, .002};
+    m.k = 30;
+    m.c = .03;
+    return m;
+}
+
+static void slow_growth_is_diagnosed(void **state) {
+    (void)state;
+    static const double macro_step[] = {.02, .04, .08, .16}, latest[] = {150, 65, 32, 20};
+    double stopped;
+    for (int k = 0; k < 4; k++) { // growing by .05, .13, .27 and .51 per second
+        bough_status status = run(lightly_damped(), "gauss-seidel", macro_step[k], 400, &stopped);
+        assert_int_equal(status.code, BOUGH_FAILED);
+        assert_non_null(strstr(status.message, "unstable"));
+        assert_true(stopped < latest[k]);
+    }
+    bough_status status = run(lightly_damped(), "gauss-seidel", .01, 400, &stopped);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+}
+
+static void stable_runs_raise_no_alarm(void **state) {
+    (void)state;
+    for (const char *const *name = bough_scheme_names(); *name; name++) {
+        for (double h = .005; h < .077; h *= 1.2) {
+            double stopped;
+            bough_status status = run(two_mass_default(), *name, h, 200, &stopped);
+            if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+        }
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slow_growth_is_diagnosed),
+        cmocka_unit_test(stable_runs_raise_no_alarm),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
