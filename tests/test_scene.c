@@ -444,6 +444,13 @@ static void section_matrices_are_checked(void **state) {
             "s.yaml:6:33: error: bodies[0].rod.stiffness: the stiffness matrix must be positive "
             "definite\n"
             "s.yaml:6:60: error: bodies[0].rod.mass: the mass per length must be > 0 kg/m\n");
+    // Negative in the last pivot only.
+    refuses(ROD_BODY
+            "    rod:\n      length: 1\n"
+            "      stiffness: [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2, "
+            "1]\n      mass: [1, 0, 0, 1, 1, 0]\n",
+            "s.yaml:8:18: error: bodies[0].rod.stiffness: the stiffness matrix must be positive "
+            "definite\n");
     // About the mass centre nothing is left of Iyy = m cx².
     refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1, "
                      "0]}\n",
