@@ -1,0 +1,115 @@
+// Static shapes of the rod: analytic ones first, then order of convergence, then reference values.
+#include "tests/check.h"
+
+#include "flexbody/rod_static.h"
+#include "tests/sample_rod.h"
+
+static const double beam_inertia[4] = {1, 0.01, 0.01, 0.02};
+
+typedef struct bent {
+    bough_rod_model *model;
+    double *state;
+    bough_rod_loads loads;
+    bough_rod_static work;
+} bent;
+
+static bent straight_rod(bough_arena *arena, int n, double length, const double stiffness[6]) {
+    const double at_rest[BOUGH_ROD_INPUTS] = {0};
+    bent b;
+    b.model = sample_uniform(arena, n, length, stiffness, 0, beam_inertia);
+    b.state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * n);
+    assert_true(bough_rod_loads_init(&b.loads, arena, b.model));
+    assert_true(bough_rod_static_init(&b.work, arena, b.model));
+    bough_rod_rest_state(b.model, at_rest, b.state);
+    return b;
+}
+
+static void solve(bent *b, bough_rod_static_options options) {
+    bough_vec3 none = {0, 0, 0};
+    bough_status s = bough_rod_equilibrium(b->model, &b->loads, none, &options, &b->work, b->state);
+    if (!bough_is_ok(&s)) print_error("%s\n", s.message);
+    assert_int_equal(s.code, BOUGH_OK);
+}
+
+static bough_vec3 vertex(const bent *b, int i) {
+    int n = b->model->n;
+    return bough_v3(b->state[i - 1], b->state[n + i - 1], b->state[2 * n + i - 1]);
+}
+
+// An end moment M bends a straight rod to an arc of curvature M/EI, whatever the mesh: full turns
+// close the circle. Curvature φ/h with φ the logarithm makes every vertex' rotation exact, and
+// chords of one length close too.
+static void end_moment_bends_rod_to_circle(void **context) {
+    (void)context;
+    const double stiffness[6] = {1e4, 1e4, 1e4, 100, 100, 100};
+    for (int turns = 1; turns <= 10; turns += 9) {
+        bough_arena *arena = bough_arena_create();
+        int n = 12 * turns;
+        bent b = straight_rod(arena, n, 10, stiffness);
+        b.loads.value[3 * b.model->stride + n] = turns * 2 * BOUGH_PI * 100 / 10; // about x
+        bough_rod_static_options options = bough_rod_static_options_default();
+        options.increments = 4 * turns;
+        solve(&b, options);
+        bough_vec3 tip = vertex(&b, n), quarter = vertex(&b, n / (4 * turns));
+        check_near(tip.x, 0, 0, 1e-9);
+        check_near(tip.y, 0, 0, 1e-8);
+        check_near(tip.z, 0, 0, 1e-8);
+        // the polygon of equal chords through a quarter turn: h Σ (−sin, cos) of mid angles
+        double y = 0, z = 0, h = 10.0 / n;
+        for (int k = 0; k < n / (4 * turns); k++) {
+            double angle = (k + 0.5) * turns * 2 * BOUGH_PI / n;
+            y -= h * sin(angle);
+            z += h * cos(angle);
+        }
+        check_near(quarter.y, y, 1e-9, 1e-9);
+        check_near(quarter.z, z, 1e-9, 1e-9);
+        bough_arena_destroy(arena);
+    }
+}
+
+// Cantilever under a dead tip force, inextensible and without shear: the elastica by elliptic
+// integrals, P L²/EI = 2 (Mattiasson 1981). Second order in h.
+static void dead_tip_force_gives_the_elastica(void **context) {
+    (void)context;
+    const double stiffness[6] = {1e9, 1e9, 1e9, 1, 1, 1};
+    double error[2];
+    for (int k = 0; k < 2; k++) {
+        bough_arena *arena = bough_arena_create();
+        int n = 20 << k;
+        bent b = straight_rod(arena, n, 1, stiffness);
+        b.loads.value[n] = 2;
+        bough_rod_static_options options = bough_rod_static_options_default();
+        options.increments = 4;
+        solve(&b, options);
+        bough_vec3 tip = vertex(&b, n);
+        check_near(1 - tip.z, 0.160641721, 0, 2e-3);
+        error[k] = tip.x - 0.493457480;
+        bough_arena_destroy(arena);
+    }
+    check_near(error[1], 0, 0, 3e-4);
+    check_near(error[0] / error[1], 4, 0, 0.2);
+}
+
+// What has no equilibrium ends with a diagnosis: a spring-soft rod pushed beyond its length.
+static void hopeless_load_is_diagnosed(void **context) {
+    (void)context;
+    const double stiffness[6] = {1, 1, 1, 1, 1, 1};
+    bough_arena *arena = bough_arena_create();
+    bent b = straight_rod(arena, 4, 1, stiffness);
+    b.loads.value[3 * b.model->stride + 4] = 1e3; // 120° per segment is exceeded
+    bough_rod_static_options options = bough_rod_static_options_default();
+    bough_vec3 none = {0, 0, 0};
+    bough_status s = bough_rod_equilibrium(b.model, &b.loads, none, &options, &b.work, b.state);
+    assert_int_equal(s.code, BOUGH_FAILED);
+    assert_non_null(strstr(s.message, "sample"));
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(end_moment_bends_rod_to_circle),
+        cmocka_unit_test(dead_tip_force_gives_the_elastica),
+        cmocka_unit_test(hopeless_load_is_diagnosed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
