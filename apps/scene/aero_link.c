@@ -1,5 +1,7 @@
 #include "apps/scene/aero_link.h"
 
+#include "core/base.h"
+
 #include <string.h>
 
 // A blade's loads at the last sample and the value the load signal has reached, in the body's axes:
@@ -83,7 +85,7 @@ static bool take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
         if (row == NULL) return false;
         for (int i = 0; i < from->n_row; i++) {
             const bough_scene_polar_row *r = &from->row[i];
-            const double values[4] = {r->alpha, r->cl, r->cd, r->cm};
+            const double values[4] = {r->alpha * (180 / BOUGH_PI), r->cl, r->cd, r->cm};
             memcpy(row + 4 * i, values, sizeof values);
         }
         t->polar[k] = (bough_polar_def){from->name, from->n_row, row};
