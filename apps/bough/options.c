@@ -10,19 +10,19 @@
 enum { MAX_THREADS = 64, FIRST = 256 }; // FIRST: codes of long options, above every character
 
 typedef struct option_row {
-    bough_option_flag flag;
     const char *name, *argument; // argument NULL: none
-    bool repeats;
     const char *help;
+    bough_option_flag flag;
+    bool repeats;
 } option_row;
 
 static const option_row rows[] = {
-    {BOUGH_OPTION_SET, "set", "KEY=VALUE", true,
-     "replaces or adds a value of the scene: 'bodies[2].pitch=5 deg'"},
-    {BOUGH_OPTION_OUT, "out", "DIR", false,
-     "folder for the results; default out/<name of the scene>"},
-    {BOUGH_OPTION_THREADS, "threads", "N", false, "1 to 64, instead of what the scene says"},
-    {BOUGH_OPTION_QUIET, "quiet", NULL, false, "no progress line"},
+    {"set", "KEY=VALUE", "replaces or adds a value of the scene: 'bodies[2].pitch=5 deg'",
+     BOUGH_OPTION_SET, true},
+    {"out", "DIR", "folder for the results; default out/<name of the scene>", BOUGH_OPTION_OUT,
+     false},
+    {"threads", "N", "1 to 64, instead of what the scene says", BOUGH_OPTION_THREADS, false},
+    {"quiet", NULL, "no progress line", BOUGH_OPTION_QUIET, false},
 };
 enum { N_ROW = sizeof rows / sizeof *rows };
 

@@ -1,11 +1,11 @@
 // What is said about a run: summary.json and the closing lines.
+#include "apps/bough/memory.h"
 #include "apps/bough/run.h"
 #include "apps/bough/version.h"
 #include "apps/output/summary.h"
 
 #include <math.h>
 #include <string.h>
-#include <sys/resource.h>
 
 // -- figures --------------------------------------------------------------------------------------
 
@@ -16,12 +16,6 @@ static const char *outcome_name(const bough_run *run) {
 
 static double real_time_factor(const bough_run *run) {
     return run->simulation->master->time / run->wall_s;
-}
-
-// The process's largest resident memory [bytes].
-static long long peak_memory(void) {
-    struct rusage usage;
-    return getrusage(RUSAGE_SELF, &usage) == 0 ? 1024LL * usage.ru_maxrss : 0;
 }
 
 // -- summary.json ---------------------------------------------------------------------------------
@@ -64,7 +58,7 @@ static void write_cost(bough_summary *s, const bough_run *run) {
     bough_summary_number(s, "cpu_s", run->cpu_s);
     bough_summary_number(s, "build_s", run->build_s);
     bough_summary_number(s, "real_time_factor", real_time_factor(run));
-    bough_summary_integer(s, "peak_memory_bytes", peak_memory());
+    bough_summary_integer(s, "peak_memory_bytes", bough_peak_memory());
     bough_summary_integer(s, "model_bytes", (long long)bough_arena_bytes(run->arena));
 }
 
@@ -126,8 +120,8 @@ bough_status bough_run_summarise(const bough_run *run) {
 
 // Channels worth a line: the turbine's main ones, or else the first few.
 static void tell_channels(const bough_run *run, FILE *stream) {
-    static const char *const main_channels[] = {"RotSpeed", "RotThrust", "RotTorq",
-                                                "OoPDefl1", "IPDefl1",   "TwstDefl1"};
+    static const char *const main_channels[] = {"RotSpeed",  "RtAeroFxh", "RtAeroMxh",
+                                                "RtAeroPwr", "OoPDefl1",  "IPDefl1"};
     enum { MAIN = sizeof main_channels / sizeof *main_channels, FIRST_FEW = 4 };
     const bough_channels *c = &run->channels;
     double *value = bough_arena_doubles(run->arena, (size_t)c->count + 1);
@@ -146,7 +140,7 @@ void bough_run_tell(const bough_run *run, FILE *stream) {
     fprintf(stream, "time: %.9g s\n", run->simulation->master->time);
     fprintf(stream, "real_time_factor: %.3g\n", real_time_factor(run));
     fprintf(stream, "wall_s: %.3g\n", run->wall_s);
-    fprintf(stream, "peak_memory_mb: %.1f\n", (double)peak_memory() / 1e6);
+    fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);
     // After a failure the state means nothing.
     if (strcmp(outcome_name(run), "failed") != 0) tell_channels(run, stream);
     fprintf(stream, "out: %s\n", run->folder);

@@ -1,0 +1,290 @@
+#!/bin/sh
+# The command line as a user meets it: test_cli.sh PROGRAM SOURCE_FOLDER VERSION
+# Every check that fails says so in one line; the exit code is the test's.
+set -u
+bough=$1
+bar=$2/apps/beams/rubber-bar.yaml
+beam=$2/tests/scenes/example-beam.yaml
+turbine=$2/apps/turbine/runup.yaml
+version=$3
+failures=0
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+mkdir "$scratch/work"
+cd "$scratch/work" || exit 1
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+# expect CODE ARGUMENT...: runs the program; its output is then in ../stdout and ../stderr.
+expect() {
+    code=$1
+    shift
+    said="bough $*"
+    "$bough" "$@" >../stdout 2>../stderr </dev/null
+    got=$?
+    [ "$got" -eq "$code" ] && return
+    fail "$said: exit code $got, expected $code"
+    cat ../stderr
+}
+
+# has FILE PATTERN: a line of the file matches.
+has() {
+    grep -q -e "$2" "$1" && return
+    fail "$said: no '$2' in $1:"
+    head -n 20 "$1"
+}
+
+empty() { [ ! -s "$1" ] || fail "$said: $1 should be empty, has: $(cat "$1")"; }
+exists() { [ -e "$1" ] || fail "$said: no $1"; }
+missing() { [ ! -e "$1" ] || fail "$said: $1 should not exist"; }
+nothing_written() { [ -z "$(ls -A .)" ] || fail "$said: wrote $(ls -A .)"; }
+
+# refused MESSAGE ARGUMENT...: a usage error, told on stderr, and nothing done.
+refused() {
+    message=$1
+    shift
+    expect 2 "$@"
+    has ../stderr "$message"
+    empty ../stdout
+    nothing_written
+}
+
+count() { tr -cd "$1" <"$2" | wc -c; }
+
+# Shape of JSON as far as grep sees it: brackets pair, no comma before a closing one, no NaN.
+json() {
+    exists "$1"
+    [ "$(count '{' "$1")" -eq "$(count '}' "$1")" ] || fail "$said: braces in $1"
+    [ "$(count '[' "$1")" -eq "$(count ']' "$1")" ] || fail "$said: brackets in $1"
+    tr -d ' \n' <"$1" | grep -q '^{.*}$' || fail "$said: $1 is not one object"
+    tr -d ' \n' <"$1" | grep -q ',[]}]' && fail "$said: stray comma in $1"
+    grep -qi ': *-\{0,1\}\(nan\|inf\)' "$1" && fail "$said: not a JSON number in $1"
+    missing "$1.partial"
+}
+
+usage() {
+    "$bough" >../stdout 2>../stderr
+    [ $? -eq 2 ] || fail "no argument: exit code should be 2"
+    said=bough
+    has ../stderr 'bough run SCENE'
+    empty ../stdout
+    refused "unknown command 'rnu' (did you mean 'run'?)" rnu
+    refused 'known: run, check, help' modes
+    refused "unknown option '--treads' (did you mean '--threads'?)" run "$bar" --treads 2
+    refused "unknown option '-x'" run -x "$bar"
+    refused "unknown option '--out'" check "$bar" --out x
+    refused '\-\-quiet takes no value' run "$bar" --quiet=1
+    refused '\-\-set needs a value: --set KEY=VALUE' run "$bar" --set
+    refused 'missing SCENE' run
+    refused "unexpected argument 'more'" run "$bar" more
+    refused "unexpected argument 'more'" run -- "$bar" more
+    for n in 0 65 -1 2x '' 99999999999999999999; do
+        refused 'whole number from 1 to 64' run "$bar" --threads "$n"
+    done
+    POSIXLY_CORRECT=1 refused "unknown option '--bogus'" run "$bar" --bogus
+    refused "unknown topic 'scen' (did you mean 'scene'?)" help scen
+}
+
+help() {
+    expect 0 --version
+    has ../stdout "^bough $version\$"
+    for form in help --help; do
+        expect 0 $form
+        has ../stdout 'bough check SCENE'
+        empty ../stderr
+    done
+    expect 0 help scene
+    has ../stdout 'macro_step: (number.* s'
+    expect 0 help coupling
+    has ../stdout '^ *ramp '
+    for form in 'help run' 'run --help' 'run -h'; do
+        # shellcheck disable=SC2086 # two words
+        expect 0 $form
+        has ../stdout '^usage: bough run SCENE \[--set KEY=VALUE\]\.\.\. \[--out DIR\]'
+    done
+    nothing_written
+    "$bough" help >/dev/full 2>../stderr && fail 'bough help >/dev/full: should fail'
+    has ../stderr 'cannot write to the standard output'
+}
+
+# Errors stand one a line as file:line:col: error: path: text.
+bad_scenes() {
+    sed 's/^gravity:/gravty:/' "$bar" >../bad.yaml
+    for verb in run check; do
+        expect 2 "$verb" ../bad.yaml
+        has ../stderr "^\.\./bad\.yaml:[0-9]*:1: error: .*gravty.*did you mean 'gravity'"
+        [ "$(wc -l <../stderr)" -eq 1 ] || fail "$said: more than the one error"
+        empty ../stdout
+        nothing_written
+    done
+    refused 'error: simulation: unknown key .durration' run "$bar" --set simulation.durration=1
+    refused "error: .*unit" run "$bar" --set 'simulation.duration=1 kg'
+    refused 'absent.yaml: error: ' run absent.yaml
+}
+
+checks() {
+    expect 0 check "$bar" --set 'bodies[0].rod.segments=8'
+    has ../stdout '^body bar: rod; revolute about y on ground: 1 degree of freedom; 8 segments, 104 states'
+    has ../stdout '^tree: 2 states'
+    has ../stdout '^states: 106$'
+    has ../stdout '^macro_steps: 1000$'
+    has ../stdout '^aero: not built: no aero block$'
+    has ../stdout '^model_bytes: [1-9]'
+    empty ../stderr
+    expect 0 check "$turbine" --set 'bodies[3].rod.segments=8' --set 'bodies[4].rod.segments=8' \
+        --set 'bodies[5].rod.segments=8' --set 'bodies[5].fidelity=rigid'
+    has ../stdout '^states: 210$'
+    has ../stdout '^body nacelle: rigid; fixed to tower, welded to ground: no states'
+    has ../stdout '^body blade1: rod; fixed to hub, welded to hub: .*104 states.*mass 168.* length 61.5 m'
+    has ../stdout '^body blade3: rigid: no states of its own'
+    has ../stdout '^joints: 1 moving, 5 fixed$'
+    has ../stdout '^ports: 2,'
+    has ../stdout '^coupling: ramp, theta auto'
+    has ../stdout '^aero: built, 3 blades of '
+    expect 0 check "$bar" --set 'simulation.coupling={scheme: extrapolated, order: 2}' \
+        --set 'simulation.duration=10 ms' --set 'simulation.macro_step=2.5 ms'
+    has ../stdout '^coupling: extrapolated, order 2 '
+    has ../stdout '^macro_steps: 4$'
+    nothing_written
+}
+
+complete_run() {
+    expect 0 run "$bar" --set 'simulation.duration=22 ms' --set 'simulation.output.interval=5 ms' \
+        --threads 2
+    out=out/rubber-bar
+    has ../stdout '^status: complete$'
+    has ../stdout '^real_time_factor: [0-9]'
+    has ../stdout '^peak_memory_mb: [0-9]'
+    has ../stdout "^out: $out\$"
+    empty ../stderr
+    json $out/summary.json
+    has $out/summary.json '"bough_version": "'"$version"'"'
+    has $out/summary.json '"simulation.duration=22 ms"'
+    has $out/summary.json '"status": "complete"'
+    has $out/summary.json '"diagnosis": null'
+    has $out/summary.json '"time": 0.022,'
+    has $out/summary.json '"macro_steps": 22,'
+    has $out/summary.json '"threads": 2,'
+    has $out/summary.json '"states": 522,'
+    for key in scheme order theta macro_step wall_s cpu_s build_s real_time_factor bodies joints \
+        peak_memory_bytes model_bytes defect_max defect_rms energy_residual energy_exchanged; do
+        has $out/summary.json "\"$key\": "
+    done
+    for key in name kind solver steps derivatives jacobians factorisations iterations restarts; do
+        [ "$(grep -c "\"$key\": " $out/summary.json)" -eq 2 ] || fail "$said: $key of 2 subsystems"
+    done
+    missing $out/channels.out.partial
+    has $out/channels.out '^Complete: 6 rows'
+    # t = 0, each interval, and the end that is no multiple of it
+    sed '1,/^ *(s)/d' $out/channels.out | awk '{print $1 * 1000}' | tr '\n' ' ' >../times
+    has ../times '^0 5 10 15 20 22 $'
+    rm -r out
+}
+
+failed_run() {
+    expect 3 run "$bar" --set simulation.coupling.scheme=frozen --set 'simulation.macro_step=5 ms' \
+        --out failed
+    has ../stderr '^bough: error: .*macro step 0.005 s.*try '
+    has ../stdout '^status: failed$'
+    json failed/summary.json
+    has failed/summary.json '"status": "failed"'
+    has failed/summary.json '"diagnosis": ".*macro step 0.005 s.*try '
+    has failed/channels.out '^INCOMPLETE: [1-9][0-9]* rows, then '
+    rm -r failed
+}
+
+# Starts a run that would take hours, in the background, and waits until it steps.
+start_long() {
+    rm -rf long
+    mkdir long
+    echo stale >long/summary.json
+    said="bough run ... --out long"
+    "$bough" run "$beam" --set 'simulation.duration=1000000 s' --out long >../stdout 2>../stderr &
+    long=$!
+    waited=0
+    while [ ! -e long/channels.out.partial ] && [ $waited -lt 20 ]; do
+        sleep 1
+        waited=$((waited + 1))
+    done
+    sleep 1
+}
+
+interrupted_run() {
+    for signal in TERM INT; do
+        start_long
+        kill -s $signal $long
+        wait $long
+        code=$?
+        [ $code -eq 130 ] || fail "SIG$signal: exit code $code, expected 130"
+        has ../stderr '^bough: interrupted at [0-9]'
+        has ../stdout '^status: interrupted$'
+        json long/summary.json
+        has long/summary.json '"status": "interrupted"'
+        has long/channels.out '^INCOMPLETE: [1-9][0-9]* rows, then interrupted'
+        rows=$(sed '1,/^ *(s)/d' long/channels.out | wc -l)
+        has long/summary.json "\"rows\": $rows,"
+    done
+    start_long
+    kill -s KILL $long
+    wait $long 2>/dev/null
+    missing long/summary.json
+    missing long/channels.out
+    has long/channels.out.partial '^INCOMPLETE'
+    rm -r long
+}
+
+bad_output() {
+    short='simulation.duration=5 ms'
+    echo mine >taken
+    for out in taken taken/below; do
+        expect 1 run "$bar" --set "$short" --out $out
+        has ../stderr '^bough: error: .*taken.* is a file'
+        empty ../stdout
+    done
+    has taken '^mine$'
+    expect 1 run "$bar" --set "$short" --out /proc/no-folder-can-be-made-here
+    has ../stderr '^bough: error: cannot create the folder'
+    expect 2 run "$bar" --set "$short" --out ''
+    mkdir full
+    ln -s /dev/full full/summary.json.partial
+    expect 1 run "$bar" --set "$short" --out full
+    has ../stderr '^bough: error: .*No space left'
+    missing full/summary.json
+    rm -r full/*
+    ln -s /dev/full full/channels.out.partial
+    expect 1 run "$bar" --set "$short" --out full
+    has ../stderr '^bough: error: .*No space left'
+    rm -r full taken
+}
+
+# The number of threads changes no byte of the results.
+threads() {
+    for scheme in ramp frozen; do
+        for n in 1 2 3; do
+            expect 0 run "$turbine" --set 'simulation.duration=0.2 s' --threads $n --out out$n \
+                --set simulation.coupling.scheme=$scheme --set 'simulation.macro_step=1 ms'
+            has out$n/summary.json "\"threads\": $n,"
+        done
+        for n in 2 3; do
+            cmp out1/channels.out out$n/channels.out || fail "$scheme: 1 and $n threads differ"
+        done
+        [ "$(wc -l <out1/channels.out)" -ge 10 ] || fail "$scheme: too few rows to compare"
+    done
+    rm -r out1 out2 out3
+}
+
+usage
+help
+bad_scenes
+checks
+complete_run
+failed_run
+interrupted_run
+bad_output
+threads
+[ $failures -eq 0 ] && echo "all checks passed"
+[ $failures -eq 0 ]
