@@ -152,6 +152,9 @@ checks() {
     nothing_written
 }
 
+# The times of the rows in ms.
+row_times() { sed '1,/^ *(s)/d' "$1" | awk '{print $1 * 1000}' | tr '\n' ' '; }
+
 complete_run() {
     expect 0 run "$bar" --set 'simulation.duration=22 ms' --set 'simulation.output.interval=5 ms' \
         --threads 2
@@ -180,8 +183,11 @@ complete_run() {
     missing $out/channels.out.partial
     has $out/channels.out '^Complete: 6 rows'
     # t = 0, each interval, and the end that is no multiple of it
-    sed '1,/^ *(s)/d' $out/channels.out | awk '{print $1 * 1000}' | tr '\n' ' ' >../times
+    row_times $out/channels.out >../times
     has ../times '^0 5 10 15 20 22 $'
+    expect 0 run "$bar" --set 'simulation.duration=20 ms' --set 'simulation.output.interval=10 ms'
+    row_times $out/channels.out >../times
+    has ../times '^0 10 20 $'
     rm -r out
 }
 
