@@ -122,35 +122,10 @@ static void integrate(stretch x, void (*visit)(void *context, double s, double w
 
 // -- stiffness ------------------------------------------------------------------------------------
 
-typedef struct compliance_sum {
-    const axis *axis;
-    double twist; // of the segment's mid frame [rad]
-    double sum[21];
-    bool definite;
-} compliance_sum;
+typedef double matrix6[6][6];
 
-static void add_compliance(void *context, double s, double weight) {
-    compliance_sum *c = context;
-    bough_section_station x = section_at(c->axis, s);
-    double compliance[21];
-    if (!bough_symmetric6_inverse(x.stiffness, compliance)) {
-        c->definite = false;
-        return;
-    }
-    bough_symmetric6_turn(compliance, -(x.twist - c->twist), compliance);
-    for (int i = 0; i < 21; i++) c->sum[i] += weight * compliance[i];
-}
-
-// Mean compliance of the segment, inverted: exact where force and moment are constant.
-static bool segment_stiffness(const axis *a, double from, double to, double *stiffness) {
-    compliance_sum c = {.axis = a, .definite = true};
-    c.twist = 0.5 * (section_at(a, from).twist + section_at(a, to).twist);
-    integrate((stretch){a, from, to}, add_compliance, &c);
-    for (int i = 0; i < 21; i++) c.sum[i] /= to - from;
-    return c.definite && bough_symmetric6_inverse(c.sum, stiffness);
-}
-
-static void segment_damping(const double mu[6], const double *stiffness, double *damping) {
+// D = diag(√μ) C diag(√μ)
+static void section_damping(const double mu[6], const double *stiffness, double *damping) {
     for (int i = 0; i < 6; i++) {
         for (int j = i; j < 6; j++) {
             int k = bough_symmetric6_index(i, j);
@@ -159,14 +134,95 @@ static void segment_damping(const double mu[6], const double *stiffness, double 
     }
 }
 
-// -- inertia --------------------------------------------------------------------------------------
+static void unpack(const double *upper, matrix6 full) {
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) full[i][j] = upper[bough_symmetric6_index(i, j)];
+    }
+}
 
-typedef struct inertia_sum {
+// sum += weight·aᵀ b a for symmetric b, upper triangle only
+static void add_congruent(double weight, matrix6 a, matrix6 b, double *sum) {
+    matrix6 ba;
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) {
+            ba[i][j] = 0;
+            for (int k = 0; k < 6; k++) ba[i][j] += b[i][k] * a[k][j];
+        }
+    }
+    for (int i = 0; i < 6; i++) {
+        for (int j = i; j < 6; j++) {
+            double entry = 0;
+            for (int k = 0; k < 6; k++) entry += a[k][i] * ba[k][j];
+            sum[bough_symmetric6_index(i, j)] += weight * entry;
+        }
+    }
+}
+
+// The stress at s from the one at the middle: n(s) = n, m(s) = m − (s − s_mid) d₃×n.
+static void carry(double distance, matrix6 t) {
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) t[i][j] = i == j;
+    }
+    t[3][1] = distance;
+    t[4][0] = -distance;
+}
+
+typedef struct segment_sum {
     const axis *axis;
-    bough_vec3 position; // of the vertex
-    bough_mat3 rotation;
-    bough_vertex_inertia sum;
-} inertia_sum;
+    double middle, twist; // of the segment's mid frame [m, rad]
+    double compliance[21]; // ∫ Tᵀ F T
+    double loss[21];       // ∫ Tᵀ F D F T
+    bool definite;
+} segment_sum;
+
+static void add_compliance(void *context, double s, double weight) {
+    segment_sum *c = context;
+    bough_section_station x = section_at(c->axis, s);
+    double compliance[21], damping[21], turn = -(x.twist - c->twist);
+    matrix6 t, f, d, ft;
+    if (!bough_symmetric6_inverse(x.stiffness, compliance)) {
+        c->definite = false;
+        return;
+    }
+    section_damping(c->axis->table->damping, x.stiffness, damping);
+    bough_symmetric6_turn(compliance, turn, compliance);
+    bough_symmetric6_turn(damping, turn, damping);
+    unpack(compliance, f);
+    unpack(damping, d);
+    carry(s - c->middle, t);
+    add_congruent(weight, t, f, c->compliance);
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) {
+            ft[i][j] = 0;
+            for (int k = 0; k < 6; k++) ft[i][j] += f[i][k] * t[k][j];
+        }
+    }
+    add_congruent(weight, ft, d, c->loss);
+}
+
+// Stiffness and damping of a segment whose end forces are met exactly in linear statics: the
+// inverse of the compliance that the stress, constant force and linear moment, meets on its way
+// through the section tables. Bending within the segment appears as compliance in shear
+// (MacNeal's residual bending flexibility). Damping dissipates what the sections would.
+static bool segment_matrices(const axis *a, double from, double to, double *stiffness,
+                             double *damping) {
+    segment_sum c = {.axis = a, .middle = 0.5 * (from + to), .definite = true};
+    matrix6 k, loss;
+    c.twist = 0.5 * (section_at(a, from).twist + section_at(a, to).twist);
+    integrate((stretch){a, from, to}, add_compliance, &c);
+    for (int i = 0; i < 21; i++) {
+        c.compliance[i] /= to - from;
+        c.loss[i] /= to - from;
+    }
+    if (!c.definite || !bough_symmetric6_inverse(c.compliance, stiffness)) return false;
+    unpack(stiffness, k);
+    unpack(c.loss, loss);
+    memset(damping, 0, 21 * sizeof *damping);
+    add_congruent(1, k, loss, damping);
+    return true;
+}
+
+// -- inertia --------------------------------------------------------------------------------------
 
 // Adds weight·(2 (a·b) E − a bᵀ − b aᵀ)/2, the inertia of a product of offsets.
 static void add_offsets(double *j, double weight, bough_vec3 a, bough_vec3 b) {
@@ -179,14 +235,12 @@ static void add_offsets(double *j, double weight, bough_vec3 a, bough_vec3 b) {
     j[5] -= weight * 0.5 * (a.y * b.z + a.z * b.y);
 }
 
-// Adds weight·R I Rᵀ for the section's tensor (Ixx Iyy Ixy Izz).
-static void add_turned(double *j, double weight, bough_mat3 r, const double inertia[4]) {
-    double xx = inertia[0], yy = inertia[1], xy = inertia[2], zz = inertia[3];
-    bough_vec3 rx = bough_add(bough_scale(xx, r.c1), bough_scale(xy, r.c2));
-    bough_vec3 ry = bough_add(bough_scale(xy, r.c1), bough_scale(yy, r.c2));
-    bough_vec3 rz = bough_scale(zz, r.c3);
-    const bough_vec3 left[3] = {rx, ry, rz}, right[3] = {r.c1, r.c2, r.c3};
-    for (int k = 0; k < 3; k++) {
+// Adds weight·R I Rᵀ for a tensor with the columns given.
+static void add_turned(double *j, double weight, bough_mat3 r, bough_mat3 tensor) {
+    const bough_vec3 left[3] = {bough_mat3_mul(r, tensor.c1), bough_mat3_mul(r, tensor.c2),
+                                bough_mat3_mul(r, tensor.c3)};
+    const bough_vec3 right[3] = {r.c1, r.c2, r.c3};
+    for (int k = 0; k < 3; k++) { // R I Rᵀ = Σ (R I eₖ) (R eₖ)ᵀ
         j[0] += weight * left[k].x * right[k].x;
         j[1] += weight * left[k].y * right[k].y;
         j[2] += weight * left[k].z * right[k].z;
@@ -196,30 +250,104 @@ static void add_turned(double *j, double weight, bough_mat3 r, const double iner
     }
 }
 
-static void add_inertia(void *context, double s, double weight) {
-    inertia_sum *c = context;
-    bough_section_station x = section_at(c->axis, s);
-    bough_mat3 section = bough_rotation_matrix(rotation_at(c->axis, s));
-    bough_mat3 r = bough_mat3_product(bough_mat3_transpose(c->rotation), section);
-    bough_vec3 d = bough_mat3_tmul(c->rotation, bough_sub(x.position, c->position));
-    bough_vec3 centre = bough_mat3_mul(r, bough_v3(x.centre[0], x.centre[1], 0));
-    double mass = weight * x.mass;
-    c->sum.mass += mass;
-    c->sum.moment = bough_axpy(mass, bough_add(d, centre), c->sum.moment);
-    add_turned(c->sum.inertia, weight, r, x.inertia);
-    add_offsets(c->sum.inertia, mass, d, d);
-    add_offsets(c->sum.inertia, 2 * mass, d, centre);
+static bough_mat3 section_tensor(const double inertia[4]) {
+    return (bough_mat3){{inertia[0], inertia[2], 0}, {inertia[2], inertia[1], 0}, {0, 0, inertia[3]}};
 }
 
-static bough_vertex_inertia vertex_inertia(const axis *a, const bough_rod_def *def, int i) {
+typedef struct lumping {
+    const axis *axis;
+    const bough_rod_def *def;
+    bough_vertex_inertia *vertex;
+    int segment;
+    double curvature; // ∫ ρ (s − a)(b − s) over the segment [kg m²]
+} lumping;
+
+// The share of a mass element at s that vertex i takes, where the chord would carry it.
+static void lump(lumping *c, int i, double share, bough_vec3 offset, double s, double weight) {
+    bough_section_station x = section_at(c->axis, s);
+    bough_vertex_inertia *v = &c->vertex[i];
+    bough_mat3 vertex = bough_mat3_transpose(bough_rotation_matrix(c->def->rotation[i]));
+    bough_mat3 section = bough_rotation_matrix(rotation_at(c->axis, s));
+    bough_mat3 r = bough_mat3_product(vertex, section);
+    bough_vec3 d = bough_mat3_mul(vertex, offset);
+    bough_vec3 centre = bough_mat3_mul(r, bough_v3(x.centre[0], x.centre[1], 0));
+    double mass = share * weight * x.mass;
+    v->mass += mass;
+    v->moment = bough_axpy(mass, bough_add(d, centre), v->moment);
+    add_turned(v->inertia, share * weight, r, section_tensor(x.inertia));
+    add_offsets(v->inertia, mass, d, d);
+    add_offsets(v->inertia, 2 * mass, d, centre);
+}
+
+static void add_mass(void *context, double s, double weight) {
+    lumping *c = context;
+    const bough_rod_def *def = c->def;
+    int k = c->segment;
+    double a = def->span[k], b = def->span[k + 1], share = (s - a) / (b - a);
+    bough_section_station x = section_at(c->axis, s);
+    bough_vec3 chord = mix3(share, def->position[k], def->position[k + 1]);
+    bough_vec3 offset = bough_sub(x.position, chord);
+    lump(c, k, 1 - share, offset, s, weight);
+    lump(c, k + 1, share, offset, s, weight);
+    c->curvature += weight * x.mass * (s - a) * (b - s);
+}
+
+// What a vertex lacks in inertia across its axis for a positive mass matrix, with a margin.
+static double lacking_inertia(const bough_vertex_inertia *v) {
+    double own = fmin(v->inertia[0], v->inertia[1]);
+    return fmax(0, 1.1 * bough_dot(v->moment, v->moment) / v->mass - own);
+}
+
+// Gives vertex i an inertia across direction d, and takes its second moment back by masses
+// (ε, −2ε, ε) on three neighbours, which change neither mass nor first moment.
+static void add_spread(lumping *c, int i, double spread, bough_vec3 d) {
+    int n = c->def->n_segment, middle = i == 0 ? 1 : i == n ? n - 1 : i;
+    add_offsets(c->vertex[i].inertia, spread, d, d);
+    if (n < 2) return;
+    double h = 0.5 * (c->def->span[middle + 1] - c->def->span[middle - 1]);
+    double mass = 0.5 * spread / (h * h);
+    c->vertex[middle - 1].mass -= mass;
+    c->vertex[middle].mass += 2 * mass;
+    c->vertex[middle + 1].mass -= mass;
+}
+
+// First moments of one vertex from the curvature integrals of its segments.
+static void add_end_terms(lumping *c, int i, const double *curvature) {
+    const bough_rod_def *def = c->def;
+    bough_vertex_inertia *v = &c->vertex[i];
+    bough_mat3 vertex = bough_rotation_matrix(def->rotation[i]);
+    bough_vec3 sum = {0, 0, 0};
+    for (int k = i - 1; k <= i; k++) {
+        if (k < 0 || k >= def->n_segment) continue;
+        double h = def->span[k + 1] - def->span[k], sign = k < i ? -1 : 1;
+        bough_vec3 chord = bough_sub(def->position[k + 1], def->position[k]);
+        sum = bough_axpy(sign * 0.5 * curvature[k] / (h * h), chord, sum);
+    }
+    v->moment = bough_add(v->moment, bough_mat3_tmul(vertex, sum));
+    double spread = lacking_inertia(v);
+    if (spread > 0) {
+        bough_vec3 along = bough_mat3_tmul(vertex, sum);
+        add_spread(c, i, spread, bough_scale(1 / bough_norm(along), along));
+    }
+}
+
+// Lumped inertia with exact total mass, first and second moments, whose kinetic energy of bending
+// waves errs only at fourth order: hat functions give each vertex its mass; their error, that of
+// the trapezoidal rule for ρ w², is a difference of end values (Euler–Maclaurin) and is removed by
+// first moments ±½∫ρ(s−a)(b−s)/h of each segment at its two vertices.
+static bool lump_inertia(bough_arena *arena, const axis *a, const bough_rod_def *def,
+                         bough_vertex_inertia *vertex) {
+    lumping c = {.axis = a, .def = def, .vertex = vertex};
     int n = def->n_segment;
-    double from = i == 0 ? 0 : 0.5 * (def->span[i - 1] + def->span[i]);
-    double to = i == n ? def->span[n] : 0.5 * (def->span[i] + def->span[i + 1]);
-    inertia_sum c = {.axis = a,
-                     .position = def->position[i],
-                     .rotation = bough_rotation_matrix(def->rotation[i])};
-    integrate((stretch){a, from, to}, add_inertia, &c);
-    return c.sum;
+    double *curvature = bough_arena_doubles(arena, (size_t)n);
+    if (curvature == NULL) return false;
+    for (c.segment = 0; c.segment < n; c.segment++) {
+        c.curvature = 0;
+        integrate((stretch){a, def->span[c.segment], def->span[c.segment + 1]}, add_mass, &c);
+        curvature[c.segment] = c.curvature;
+    }
+    for (int i = 0; i <= n; i++) add_end_terms(&c, i, curvature);
+    return true;
 }
 
 // -- whole ----------------------------------------------------------------------------------------
@@ -257,14 +385,15 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
         m.position[i] = section_at(&a, m.span[i]).position;
         m.rotation[i] = rotation_at(&a, m.span[i]);
     }
-    for (int i = 0; i <= n_segment; i++) m.inertia[i] = vertex_inertia(&a, def, i);
+    if (!lump_inertia(arena, &a, def, m.inertia)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", table->name);
+    }
     for (int k = 0; k < n_segment; k++) {
-        double *stiffness = m.stiffness + 21 * (size_t)k;
-        if (!segment_stiffness(&a, m.span[k], m.span[k + 1], stiffness)) {
+        if (!segment_matrices(&a, m.span[k], m.span[k + 1], m.stiffness + 21 * (size_t)k,
+                              m.damping + 21 * (size_t)k)) {
             return bough_fail(BOUGH_INVALID, "rod %s: the stiffness between %g m and %g m is not"
                               " positive definite", table->name, m.span[k], m.span[k + 1]);
         }
-        segment_damping(table->damping, stiffness, m.damping + 21 * (size_t)k);
     }
     return bough_ok();
 }
@@ -276,15 +405,8 @@ bough_vertex_inertia bough_section_rigid(const bough_rod_def *def) {
         bough_mat3 r = bough_rotation_matrix(def->rotation[i]);
         bough_vec3 d = def->position[i], moment = bough_mat3_mul(r, v->moment);
         const double *j = v->inertia;
-        const bough_vec3 column[3] = {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
-        const bough_vec3 axes[3] = {r.c1, r.c2, r.c3};
-        double turned[6] = {0};
-        for (int k = 0; k < 3; k++) { // R I Rᵀ = Σ (R I eₖ) (R eₖ)ᵀ
-            bough_vec3 l = bough_mat3_mul(r, column[k]), x = axes[k];
-            const double add[6] = {l.x * x.x, l.y * x.y, l.z * x.z, l.x * x.y, l.x * x.z, l.y * x.z};
-            for (int c = 0; c < 6; c++) turned[c] += add[c];
-        }
-        for (int c = 0; c < 6; c++) sum.inertia[c] += turned[c];
+        bough_mat3 tensor = {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
+        add_turned(sum.inertia, 1, r, tensor);
         add_offsets(sum.inertia, v->mass, d, d);
         add_offsets(sum.inertia, 2, d, moment);
         sum.mass += v->mass;
