@@ -1,0 +1,40 @@
+// bough study: many runs of one scene, compared.
+#include "apps/study/study_perform.h"
+
+#include "apps/bough/stop.h"
+#include "apps/bough/verb.h"
+
+#include <string.h>
+
+// out/ and the study's file name without its extension.
+static const char *default_folder(bough_arena *arena, const char *study) {
+    const char *slash = strrchr(study, '/');
+    const char *name = slash ? slash + 1 : study;
+    const char *dot = strrchr(name, '.');
+    size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
+    char *folder = bough_arena_take(arena, length + 5);
+    if (folder) snprintf(folder, length + 5, "out/%.*s", (int)length, name);
+    return folder;
+}
+
+bough_status bough_verb_study(bough_arena *arena, const bough_options *options) {
+    bough_errors errors = {.arena = arena};
+    bough_study *study;
+    bough_status status =
+        bough_study_read(arena, options->operand, options->threads, &errors, &study);
+    if (errors.n > 0 && status.code == BOUGH_INVALID) {
+        bough_errors_print(&errors, stderr);
+        status.message[0] = '\0';
+    }
+    if (!bough_is_ok(&status)) return status;
+    bough_study_options how = {.folder = options->out ? options->out
+                                                      : default_folder(arena, options->operand),
+                               .quiet = options->quiet,
+                               .stop = bough_stop_requested,
+                               .stream = stdout};
+    if (!how.folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_stop_listen();
+    status = bough_study_perform(arena, study, &how);
+    if (bough_is_ok(&status)) printf("out: %s\n", how.folder);
+    return status;
+}

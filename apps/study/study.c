@@ -1,0 +1,278 @@
+// The keys of a study and their reading.
+#include "apps/study/study.h"
+
+#include "apps/scene/schema.h"
+#include "apps/study/study_parts.h"
+
+#include <errno.h>
+#include <string.h>
+
+// -- replacements ---------------------------------------------------------------------------------
+
+// "key=value" in YAML: a value that was quoted is quoted again, so that it stays what it is.
+static const char *write_set(bough_arena *arena, const char *key, const bough_node *value) {
+    size_t size = strlen(key) + 2 * strlen(value->text) + 4;
+    char *set = bough_arena_take(arena, size);
+    if (!set) return NULL;
+    char *end = set + snprintf(set, size, "%s=%s", key, value->quoted ? "'" : "");
+    for (const char *c = value->text; *c; c++) {
+        if (value->quoted && *c == '\'') *end++ = '\'';
+        *end++ = *c;
+    }
+    if (value->quoted) *end = '\'';
+    return set;
+}
+
+static void read_setting(bough_schema_reader *r, const char *key, const bough_node *value,
+                         bough_study_setting *setting) {
+    char shown[64];
+    if (value->kind != BOUGH_SCALAR || value->text[0] == '\0') {
+        bough_schema_error(r, value, key, "expected one value, got %s",
+                           bough_node_shown(value, shown));
+        return;
+    }
+    *setting = (bough_study_setting){value, key, value->text, write_set(r->arena, key, value)};
+}
+
+static bool is_mapping(bough_schema_reader *r, const bough_node *node, const char *what) {
+    char shown[64];
+    if (node->kind == BOUGH_MAPPING && node->n > 0) return true;
+    bough_schema_error(r, node, "", "expected %s, got %s", what, bough_node_shown(node, shown));
+    return false;
+}
+
+static void read_settings(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_study_settings *settings = field;
+    if (!is_mapping(r, node, "keys of the scene with their values")) return;
+    settings->item = bough_arena_take(r->arena, (size_t)node->n * sizeof *settings->item);
+    if (!settings->item) return;
+    settings->n = node->n;
+    for (int i = 0; i < node->n; i++)
+        read_setting(r, node->key[i]->text, node->value[i], &settings->item[i]);
+}
+
+// -- grid -----------------------------------------------------------------------------------------
+
+static void read_axis(bough_schema_reader *r, const bough_node *key, const bough_node *values,
+                      bough_study_axis *axis) {
+    char shown[64];
+    *axis = (bough_study_axis){.node = key, .key = key->text, .label = key->text};
+    if (values->kind != BOUGH_SEQUENCE || values->n == 0) {
+        bough_schema_error(r, values, key->text, "expected a list of values, got %s",
+                           bough_node_shown(values, shown));
+        return;
+    }
+    axis->value.item = bough_arena_take(r->arena, (size_t)values->n * sizeof *axis->value.item);
+    if (!axis->value.item) return;
+    axis->value.n = values->n;
+    for (int i = 0; i < values->n; i++)
+        read_setting(r, key->text, values->value[i], &axis->value.item[i]);
+}
+
+static bool ends_with(const char *text, const char *end) {
+    size_t length = strlen(text), n = strlen(end);
+    return n <= length && strcmp(text + length - n, end) == 0;
+}
+
+// The last part of the key, or as many parts as tell it from the other axes' keys.
+static const char *short_label(const bough_study_grid *grid, int axis) {
+    const char *key = grid->axis[axis].key;
+    for (const char *label = key + strlen(key); label > key; label--) {
+        bool unique = label[-1] == '.' && *label;
+        for (int i = 0; unique && i < grid->n; i++)
+            unique = i == axis || !ends_with(grid->axis[i].key, label);
+        if (unique) return label;
+    }
+    return key;
+}
+
+static void read_grid(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_study_grid *grid = field;
+    if (!is_mapping(r, node, "keys of the scene, each with a list of values")) return;
+    if (node->n > BOUGH_STUDY_AXES) {
+        bough_schema_error(r, node, "", "expected at most %d keys, got %d", BOUGH_STUDY_AXES,
+                           node->n);
+        return;
+    }
+    grid->axis = bough_arena_take(r->arena, (size_t)node->n * sizeof *grid->axis);
+    if (!grid->axis) return;
+    grid->n = node->n;
+    for (int i = 0; i < node->n; i++)
+        read_axis(r, node->key[i], node->value[i], &grid->axis[i]);
+    for (int i = 0; i < node->n; i++)
+        grid->axis[i].label = short_label(grid, i);
+}
+
+// -- measures -------------------------------------------------------------------------------------
+
+static const char channels_form[] = "[A, B, C], or several such lists";
+
+static void read_vector(bough_schema_reader *r, const bough_node *node,
+                        bough_study_vector *vector) {
+    vector->channel = bough_arena_take(r->arena, (size_t)node->n * sizeof *vector->channel);
+    if (!vector->channel) return;
+    vector->n = node->n;
+    for (int i = 0; i < node->n; i++) {
+        char shown[64];
+        const bough_node *name = node->value[i];
+        vector->channel[i] = name->kind == BOUGH_SCALAR ? name->text : "";
+        if (name->kind == BOUGH_SCALAR && name->text[0] != '\0') continue;
+        bough_schema_error(r, name, "", "expected a channel's name, got %s",
+                           bough_node_shown(name, shown));
+    }
+}
+
+static void read_channels(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_study_vectors *vectors = field;
+    bool nested =
+        node->kind == BOUGH_SEQUENCE && node->n > 0 && node->value[0]->kind == BOUGH_SEQUENCE;
+    int n = nested ? node->n : 1;
+    vectors->item = bough_arena_take(r->arena, (size_t)n * sizeof *vectors->item);
+    if (!vectors->item) return;
+    vectors->n = n;
+    for (int i = 0; i < n; i++) {
+        char shown[64];
+        const bough_node *list = nested ? node->value[i] : node;
+        if (list->kind == BOUGH_SEQUENCE && list->n > 0) {
+            read_vector(r, list, &vectors->item[i]);
+        } else {
+            bough_schema_error(r, list, "", "expected %s, got %s", channels_form,
+                               bough_node_shown(list, shown));
+        }
+    }
+}
+
+static void check_measure(bough_schema_reader *r, void *item) {
+    bough_study_measure *m = item;
+    bool several = m->channels.n > 0;
+    if ((m->channel != NULL) == several) {
+        bough_schema_error(r, m->node, "", "expected one of 'channel' and 'channels'");
+    }
+    if (bough_node_find(m->node, "scale") && !m->unit) {
+        bough_schema_error(r, m->node, "scale", "needs a 'unit': of the scaled difference");
+    }
+    if (several || !m->channel) return;
+    m->channels.item = bough_arena_take(r->arena, sizeof *m->channels.item);
+    const char **names = bough_arena_take(r->arena, sizeof *names);
+    if (!m->channels.item || !names) return;
+    names[0] = m->channel;
+    m->channels.item[0] = (bough_study_vector){1, names};
+    m->channels.n = 1;
+}
+
+// -- keys -----------------------------------------------------------------------------------------
+
+// One line a key would become one line a field:
+// clang-format off
+#define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
+#define CHOICES(...) (const char *const[]){__VA_ARGS__, NULL}
+
+#define AT(member) .offset = offsetof(bough_study_measure, member)
+static const bough_key measure_keys[] = {
+    {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
+     .help = "heads its column"},
+    {.name = "channel", .kind = BOUGH_KEY_TEXT, AT(channel), .help = "name of a channel"},
+    {.name = "channels", .kind = BOUGH_KEY_CUSTOM, .read = read_channels, .form = channels_form,
+     AT(channels), .help = "components of a vector; of several vectors the largest counts"},
+    {.name = "norm", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("euclid", "largest"),
+     .fallback = "euclid", AT(norm), .help = "of a vector"},
+    {.name = "scale", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .fallback = "1", AT(scale),
+     .help = "from the channels' unit to the unit"},
+    {.name = "unit", .kind = BOUGH_KEY_TEXT, AT(unit),
+     .help = "of the difference after scaling; default the channels'"},
+};
+#undef AT
+static const bough_schema measure_schema = {
+    .name = "a measure", .size = sizeof(bough_study_measure), .n_key = COUNT(measure_keys),
+    .key = measure_keys, .check = check_measure};
+
+#define AT(member) .offset = offsetof(bough_study, member)
+static const bough_key study_keys[] = {
+    {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line: what is asked"},
+    {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
+     .help = "file of the scene, relative to the study"},
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("work-precision"),
+     .required = true, AT(kind),
+     .help = "work-precision: time and difference to the reference of every cell of the grid"},
+    {.name = "reference", .kind = BOUGH_KEY_CUSTOM, .read = read_settings, .required = true,
+     .form = "{KEY: VALUE, ...}", AT(reference), .help = "replacements that make the reference"},
+    {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = read_grid, .required = true,
+     .form = "{KEY: [VALUE, ...], ...}", AT(grid),
+     .help = "a run for each combination of the values"},
+    {.name = "common", .kind = BOUGH_KEY_CUSTOM, .read = read_settings,
+     .form = "{KEY: VALUE, ...}", AT(common), .help = "replacements for every run"},
+    {.name = "measures", .kind = BOUGH_KEY_LIST, .of = &measure_schema, .count = 1,
+     .required = true, AT(measure), .count_offset = offsetof(bough_study, n_measure),
+     .help = "largest differences to the reference at the common output times"},
+    {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 99]", .fallback = "1", AT(repeat),
+     .help = "runs of each cell; the times are their medians"},
+};
+#undef AT
+
+static void check_study(bough_schema_reader *r, void *item) {
+    const bough_study *s = item;
+    if (s->n_measure <= BOUGH_STUDY_MEASURES) return;
+    bough_schema_error(r, s->measure[BOUGH_STUDY_MEASURES].node, "measures",
+                       "expected at most %d, got %d", BOUGH_STUDY_MEASURES, s->n_measure);
+}
+
+static const bough_schema study_schema = {
+    .name = "a study", .size = sizeof(bough_study), .n_key = COUNT(study_keys),
+    .key = study_keys, .check = check_study};
+// clang-format on
+
+// -- reading --------------------------------------------------------------------------------------
+
+// The scene's path from the study's.
+static const char *scene_path(bough_arena *arena, const char *study, const char *scene) {
+    const char *slash = scene[0] == '/' ? NULL : strrchr(study, '/');
+    int length = slash ? (int)(slash - study) + 1 : 0;
+    size_t size = (size_t)length + strlen(scene) + 1;
+    char *path = bough_arena_take(arena, size);
+    if (path) snprintf(path, size, "%.*s%s", length, study, scene);
+    return path;
+}
+
+static bool find_scene(bough_arena *arena, bough_study *s, bough_errors *errors) {
+    s->scene = scene_path(arena, s->file, s->scene_name);
+    FILE *file = s->scene ? fopen(s->scene, "rb") : NULL;
+    if (!file) {
+        bough_errors_add(errors, bough_node_find(s->node, "scene"), "scene",
+                         "file '%.200s' cannot be read: %s", s->scene ? s->scene : s->scene_name,
+                         strerror(errno));
+        return false;
+    }
+    fclose(file);
+    return true;
+}
+
+static bough_status finish(const char *path, bough_arena *arena, bough_errors *errors) {
+    if (bough_arena_exhausted(arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: memory is exhausted", path);
+    }
+    int n = errors->n + errors->dropped;
+    if (n == 0) return bough_ok();
+    bough_errors_sort(errors, path);
+    return bough_fail(BOUGH_INVALID, "%s: %d error%s in the study", path, n, n == 1 ? "" : "s");
+}
+
+bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
+                              bough_errors *errors, bough_study **study) {
+    *study = NULL;
+    bough_study *s = bough_arena_take(arena, sizeof *s);
+    bough_node *root = bough_text_read(arena, path, errors);
+    if (!s || !root) return finish(path, arena, errors);
+    bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
+    bough_schema_read(&reader, &study_schema, root, s);
+    s->file = bough_arena_string(arena, path);
+    s->threads = threads;
+    bough_status status = finish(path, arena, errors);
+    if (!bough_is_ok(&status)) return status;
+    if (find_scene(arena, s, errors)) {
+        bough_study_expand(arena, s, errors);
+        status = bough_study_check(arena, s, errors);
+    }
+    if (bough_is_ok(&status)) status = finish(path, arena, errors);
+    if (bough_is_ok(&status)) *study = s;
+    return status;
+}

@@ -1,0 +1,251 @@
+// What cannot be seen in the study file alone: whether the scene takes every replacement, whether
+// all runs share their output times, and whether the channels exist. Found before the first run,
+// since the last one may start hours later.
+#include "apps/study/study_parts.h"
+
+#include "apps/scene/build.h"
+#include "apps/scene/schema.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// -- fingerprint ----------------------------------------------------------------------------------
+
+// FNV-1a: a fingerprint against mistakes, not against malice.
+static void mix(uint64_t *hash, const char *bytes, size_t n) {
+    for (size_t i = 0; i < n; i++)
+        *hash = (*hash ^ (unsigned char)bytes[i]) * UINT64_C(1099511628211);
+}
+
+static void mix_text(uint64_t *hash, const char *text) { mix(hash, text, strlen(text) + 1); }
+
+static void mix_file(uint64_t *hash, const char *path) {
+    char block[4096];
+    FILE *file = fopen(path, "rb");
+    if (!file) return;
+    for (size_t n; (n = fread(block, 1, sizeof block, file)) > 0;)
+        mix(hash, block, n);
+    fclose(file);
+}
+
+static void mix_node_file(uint64_t *hash, const bough_node *node) {
+    if (node) mix_file(hash, node->file);
+}
+
+static void mix_scene(uint64_t *hash, const bough_scene *scene) {
+    mix_file(hash, scene->file);
+    for (int i = 0; i < scene->n_body; i++)
+        mix_node_file(hash, scene->body[i].rod.structure.node);
+    mix_node_file(hash, scene->aero.blade.node);
+    mix_node_file(hash, scene->aero.polars.node);
+}
+
+static void mix_measure(uint64_t *hash, const bough_study_measure *m) {
+    char numbers[80];
+    for (int i = 0; i < m->channels.n; i++) {
+        for (int k = 0; k < m->channels.item[i].n; k++)
+            mix_text(hash, m->channels.item[i].channel[k]);
+        mix_text(hash, "");
+    }
+    snprintf(numbers, sizeof numbers, "%d %.17g", m->norm, m->scale);
+    mix_text(hash, numbers);
+}
+
+// The title and the grid's values are not in it: a grid may grow and keeps what was run. The
+// program is, where the system shows it: results of another one are not to be mixed in.
+static uint64_t fingerprint(const bough_study *s, const bough_scene *scene) {
+    uint64_t hash = UINT64_C(14695981039346656037);
+    char numbers[80];
+    mix_file(&hash, "/proc/self/exe");
+    mix_scene(&hash, scene);
+    for (int i = 0; i < s->reference_cell->n_set; i++)
+        mix_text(&hash, s->reference_cell->set[i]);
+    for (int i = 0; i < s->common.n; i++)
+        mix_text(&hash, s->common.item[i].set);
+    for (int i = 0; i < s->grid.n; i++)
+        mix_text(&hash, s->grid.axis[i].key);
+    for (int i = 0; i < s->n_measure; i++)
+        mix_measure(&hash, &s->measure[i]);
+    snprintf(numbers, sizeof numbers, "%d %d", s->repeat, s->threads);
+    mix_text(&hash, numbers);
+    return hash;
+}
+
+// -- scenes ---------------------------------------------------------------------------------------
+
+// Whether an error in a scene speaks of this replacement: its path is the key, or the key's parent
+// when the key itself is unknown and therefore named in the text.
+static bool concerns(const bough_error *e, const bough_study_setting *setting) {
+    if (strcmp(e->path, setting->key) == 0) return true;
+    char word[96];
+    const char *dot = strrchr(setting->key, '.');
+    snprintf(word, sizeof word, "'%.80s'", dot ? dot + 1 : setting->key);
+    size_t parent = dot ? (size_t)(dot - setting->key) : 0;
+    return strlen(e->path) == parent && strncmp(e->path, setting->key, parent) == 0 &&
+           strstr(e->text, word) != NULL;
+}
+
+static const bough_study_setting *find_concerned(const bough_study_settings *settings,
+                                                 const bough_error *e) {
+    for (int i = 0; i < settings->n; i++) {
+        if (concerns(e, &settings->item[i])) return &settings->item[i];
+    }
+    return NULL;
+}
+
+// Where the study says what the error in the cell's scene is about.
+static const bough_node *origin(const bough_study *s, const bough_study_cell *cell,
+                                const bough_error *e) {
+    for (int i = 0; i < s->grid.n && cell->index[0] >= 0; i++) {
+        const bough_study_setting *value = &s->grid.axis[i].value.item[cell->index[i]];
+        if (concerns(e, value)) return value->node;
+    }
+    const bough_study_setting *found = NULL;
+    if (cell->index[0] < 0) found = find_concerned(&s->reference, e);
+    if (!found) found = find_concerned(&s->common, e);
+    return found ? found->node
+                 : bough_node_find(s->node, cell->index[0] < 0 ? "reference" : "grid");
+}
+
+static bool is_told(const bough_errors *errors, const bough_error *e) {
+    for (int i = 0; i < errors->n; i++) {
+        const bough_error *old = &errors->item[i];
+        if (old->line == e->line && old->column == e->column && strcmp(old->file, e->file) == 0 &&
+            strcmp(old->path, e->path) == 0 && strcmp(old->text, e->text) == 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// An error of a cell's scene, once for all cells that have it; one in a replacement is moved to
+// where the study gives it.
+static void tell(const bough_study *s, const bough_study_cell *cell, const bough_error *e,
+                 bough_errors *errors) {
+    bough_node where = {.file = e->file, .line = e->line, .column = e->column};
+    if (e->line == 0 && strcmp(e->file, s->scene) != 0) where = *origin(s, cell, e);
+    bough_error moved = *e;
+    moved.file = where.file;
+    moved.line = where.line;
+    moved.column = where.column;
+    if (!is_told(errors, &moved)) bough_errors_add(errors, &where, e->path, "%s", e->text);
+}
+
+static bough_scene *read_scene(bough_arena *arena, const bough_study *s,
+                               const bough_study_cell *cell, bough_errors *errors) {
+    bough_errors own = {.arena = arena};
+    bough_scene *scene;
+    bough_scene_read(arena, s->scene, cell->set, cell->n_set, &own, &scene);
+    for (int i = 0; i < own.n; i++)
+        tell(s, cell, &own.item[i], errors);
+    return scene;
+}
+
+static void check_times(const bough_study *s, const bough_study_cell *cell,
+                        const bough_scene_simulation *sim, bough_errors *errors) {
+    const bough_node *grid = bough_node_find(s->node, "grid");
+    if (fabs(sim->output.interval - s->interval) > 1e-9 * s->interval) {
+        bough_errors_add(errors, grid, "grid",
+                         "%s: records every %.9g s, the reference every %.9g s; "
+                         "set simulation.output.interval in 'common'",
+                         cell->settings, sim->output.interval, s->interval);
+    }
+    if (fabs(sim->duration - s->duration) > 1e-9 * s->duration) {
+        bough_errors_add(errors, grid, "grid", "%s: lasts %.9g s, the reference %.9g s",
+                         cell->settings, sim->duration, s->duration);
+    }
+}
+
+static bough_status check_cells(bough_study *s, bool times, bough_errors *errors) {
+    for (int i = 0; i < s->n_cell && errors->dropped == 0; i++) {
+        bough_arena *arena = bough_arena_create();
+        if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+        const bough_scene *scene = read_scene(arena, s, &s->cell[i], errors);
+        if (scene && times) check_times(s, &s->cell[i], &scene->simulation, errors);
+        bough_arena_destroy(arena);
+    }
+    return bough_ok();
+}
+
+// -- channels -------------------------------------------------------------------------------------
+
+static void unknown_channel(const bough_study_measure *m, const char *name,
+                            const bough_channels *channels, bough_arena *arena,
+                            bough_errors *errors) {
+    const char **names = bough_arena_take(arena, (size_t)(channels->count + 1) * sizeof *names);
+    if (!names) return;
+    for (int i = 0; i < channels->count; i++)
+        names[i] = channels->channel[i].name;
+    const char *near = bough_nearest(name, names, channels->count);
+    bough_errors_add(errors, m->node, "measures", "the scene has no channel '%.80s'%s%s%s", name,
+                     near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
+}
+
+static void check_unit(bough_study_measure *m, const bough_channel *channel, bough_arena *arena,
+                       bough_errors *errors) {
+    if (!m->unit) m->unit = bough_arena_string(arena, channel->unit);
+    if (bough_node_find(m->node, "scale") || !m->unit || strcmp(m->unit, channel->unit) == 0)
+        return;
+    bough_errors_add(errors, m->node, "measures", "channel %s is in %s, not %s: give a 'scale'",
+                     channel->name, channel->unit, m->unit);
+}
+
+static int count_channels(const bough_study *s) {
+    int n = 0;
+    for (int i = 0; i < s->n_measure; i++) {
+        for (int k = 0; k < s->measure[i].channels.n; k++)
+            n += s->measure[i].channels.item[k].n;
+    }
+    return n;
+}
+
+static void check_vector(bough_study *s, bough_study_measure *m, const bough_study_vector *vector,
+                         const bough_channels *channels, bough_errors *errors) {
+    for (int i = 0; i < vector->n; i++) {
+        int k = bough_channels_find(channels, vector->channel[i]);
+        if (k < 0) {
+            unknown_channel(m, vector->channel[i], channels, errors->arena, errors);
+        } else {
+            check_unit(m, &channels->channel[k], errors->arena, errors);
+        }
+        s->channel[s->n_channel++] = vector->channel[i];
+    }
+}
+
+static bough_status check_channels(bough_arena *arena, bough_study *s, const bough_scene *scene,
+                                   bough_errors *errors) {
+    bough_simulation *simulation;
+    bough_status status = bough_simulation_build(arena, scene, &simulation);
+    if (!bough_is_ok(&status)) return status;
+    bough_channels channels = bough_channels_start(arena);
+    status = bough_simulation_channels(simulation, &channels);
+    for (int i = 0; i < s->n_measure && bough_is_ok(&status); i++) {
+        for (int k = 0; k < s->measure[i].channels.n; k++)
+            check_vector(s, &s->measure[i], &s->measure[i].channels.item[k], &channels, errors);
+    }
+    return status;
+}
+
+bough_status bough_study_check(bough_arena *arena, bough_study *s, bough_errors *errors) {
+    assert(errors->arena == arena);
+    s->channel = bough_arena_take(arena, (size_t)count_channels(s) * sizeof *s->channel);
+    bough_arena *own = bough_arena_create();
+    if (!own) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!s->reference_cell || !s->channel) {
+        bough_arena_destroy(own);
+        return bough_ok(); // the caller sees the error of the grid, or the exhausted arena
+    }
+    bough_status status = bough_ok();
+    const bough_scene *scene = read_scene(own, s, s->reference_cell, errors);
+    if (scene) {
+        s->duration = scene->simulation.duration;
+        s->interval = scene->simulation.output.interval;
+        s->fingerprint = fingerprint(s, scene);
+        status = check_channels(own, s, scene, errors);
+    }
+    bough_arena_destroy(own);
+    if (bough_is_ok(&status)) status = check_cells(s, scene != NULL, errors);
+    return status;
+}

@@ -1,0 +1,93 @@
+// From the grid to the runs: the cartesian product of its values.
+#include "apps/study/study_parts.h"
+
+#include <assert.h>
+#include <stdio.h>
+#include <string.h>
+
+static int count_cells(const bough_study_grid *grid) {
+    long n = 1;
+    for (int i = 0; i < grid->n && n <= BOUGH_STUDY_CELLS; i++)
+        n *= grid->axis[i].value.n;
+    return n <= BOUGH_STUDY_CELLS ? (int)n : -1;
+}
+
+static void add_set(bough_study_cell *cell, const bough_study_setting *setting) {
+    cell->set[cell->n_set++] = setting->set;
+}
+
+static bool take_sets(bough_arena *arena, const bough_study *s, int n_own, bough_study_cell *cell) {
+    cell->set = bough_arena_take(arena, (size_t)(s->common.n + n_own) * sizeof *cell->set);
+    for (int i = 0; cell->set && i < s->common.n; i++)
+        add_set(cell, &s->common.item[i]);
+    return cell->set != NULL;
+}
+
+// "scheme=ramp, macro_step=5 ms"
+static const char *write_settings(bough_arena *arena, const bough_study *s,
+                                  const bough_study_cell *cell) {
+    size_t size = 1, used = 0;
+    for (int i = 0; i < s->grid.n; i++)
+        size += strlen(s->grid.axis[i].key) + strlen(bough_study_value(s, cell, i)) + 3;
+    char *text = bough_arena_take(arena, size);
+    for (int i = 0; text && i < s->grid.n; i++) {
+        used += (size_t)snprintf(text + used, size - used, "%s%s=%s", i ? ", " : "",
+                                 s->grid.axis[i].label, bough_study_value(s, cell, i));
+    }
+    return text;
+}
+
+static void make_cell(bough_arena *arena, const bough_study *s, int number,
+                      bough_study_cell *cell) {
+    for (int i = s->grid.n - 1; i >= 0; i--) {
+        int n = s->grid.axis[i].value.n;
+        cell->index[i] = number % n;
+        number /= n;
+    }
+    if (!take_sets(arena, s, s->grid.n, cell)) return;
+    for (int i = 0; i < s->grid.n; i++)
+        add_set(cell, &s->grid.axis[i].value.item[cell->index[i]]);
+    cell->settings = write_settings(arena, s, cell);
+}
+
+static bough_study_cell *make_reference(bough_arena *arena, const bough_study *s) {
+    bough_study_cell *cell = bough_arena_take(arena, sizeof *cell);
+    if (!cell || !take_sets(arena, s, s->reference.n, cell)) return NULL;
+    for (int i = 0; i < BOUGH_STUDY_AXES; i++)
+        cell->index[i] = -1;
+    for (int i = 0; i < s->reference.n; i++)
+        add_set(cell, &s->reference.item[i]);
+    cell->settings = "reference";
+    return cell;
+}
+
+void bough_study_expand(bough_arena *arena, bough_study *s, bough_errors *errors) {
+    int n = count_cells(&s->grid);
+    if (n < 0) {
+        bough_errors_add(errors, bough_node_find(s->node, "grid"), "grid",
+                         "expected at most %d combinations", BOUGH_STUDY_CELLS);
+        return;
+    }
+    s->reference_cell = make_reference(arena, s);
+    s->cell = bough_arena_take(arena, (size_t)n * sizeof *s->cell);
+    if (!s->reference_cell || !s->cell) return;
+    s->n_cell = n;
+    for (int i = 0; i < n; i++)
+        make_cell(arena, s, i, &s->cell[i]);
+}
+
+static const char *find_value(const bough_study_settings *settings, const char *key) {
+    for (int i = 0; i < settings->n; i++) {
+        if (strcmp(settings->item[i].key, key) == 0) return settings->item[i].value;
+    }
+    return NULL;
+}
+
+const char *bough_study_value(const bough_study *study, const bough_study_cell *cell, int axis) {
+    assert(axis < study->grid.n);
+    const bough_study_axis *a = &study->grid.axis[axis];
+    if (cell->index[axis] >= 0) return a->value.item[cell->index[axis]].value;
+    const char *value = find_value(&study->reference, a->key);
+    if (!value) value = find_value(&study->common, a->key);
+    return value ? value : "";
+}

@@ -1,0 +1,13 @@
+// What the files that read a study share among themselves.
+#ifndef BOUGH_APPS_STUDY_STUDY_PARTS_H
+#define BOUGH_APPS_STUDY_STUDY_PARTS_H
+
+#include "apps/study/study.h"
+
+// Makes the cells of the grid and the reference cell.
+void bough_study_expand(bough_arena *arena, bough_study *study, bough_errors *errors);
+
+// Reads the scene with every cell's replacements and looks up the measures' channels.
+bough_status bough_study_check(bough_arena *arena, bough_study *study, bough_errors *errors);
+
+#endif
