@@ -49,7 +49,7 @@ static bool invert(double *restrict a) {
                                       {0, 0, 0, 0, 0, 1}};
     for (int k = 0; k < 6; k++) {
         double pivot = 1 / a[W * k + k];
-        if (!isfinite(pivot)) return false;
+        if (!isfinite(pivot) || pivot == 0) return false; // zero: of an infinite entry
         double r[W];
 #pragma omp simd
         for (int j = 0; j < W; j++) {
