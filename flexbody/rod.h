@@ -4,7 +4,7 @@
 // says. Vertices 1..N carry the states. Velocities are ABSOLUTE velocities resolved in moving
 // axes, so that inputs are the BRF's twist and gravity only, no acceleration:
 //     x  position relative to the BRF, in BRF axes [m]              ẋ = u − u₀ − ω×x
-//     p  rotation BRF ← section, quaternion                         ṗ = ½ (p∘(0,W) − (0,ω)∘p)
+//     p  rotation BRF ← section, quaternion      ṗ = ½ (p∘(0,W) − (0,ω)∘p) + κ(1 − |p|²)p
 //     u  absolute velocity, in BRF axes [m/s]                       (11)
 //     W  absolute angular velocity, in section axes [rad/s]         (11)
 // State arrays are component-major: state[c·N + i], c = x₁₋₃ p₀₋₃ u₁₋₃ W₁₋₃, i = vertex − 1.
@@ -21,6 +21,9 @@ enum {
     BOUGH_ROD_INPUTS = 9,  // BRF velocity, angular velocity, gravity, each in BRF axes
     BOUGH_ROD_OUTPUTS = 6, // root wrench on the carrier: force, moment about the BRF origin
 };
+
+// κ: restores |p| = 1 at this rate, far from the rod's stiff ones [1/s].
+#define BOUGH_ROD_NORM_RATE 1.0
 
 // Offsets of the state's parts, in components.
 enum { BOUGH_ROD_X = 0, BOUGH_ROD_P = 3, BOUGH_ROD_U = 7, BOUGH_ROD_W = 10 };

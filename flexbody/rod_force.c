@@ -127,7 +127,8 @@ static void vertex_accelerations(const bough_rod_model *m, const bough_rod_scrat
     }
 }
 
-// ẋ = u − u₀ − ω×x and ṗ = ½ (p∘(0,W) − (0,ω)∘p)
+// ẋ = u − u₀ − ω×x and ṗ = ½ (p∘(0,W) − (0,ω)∘p) + κ(1 − |p|²)p: the last term takes back what
+// integration errors do to the norm, in about a second, and does not turn the section.
 static void vertex_kinematics(int n, const double *restrict state, const double *input,
                               double *restrict rate) {
     bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
@@ -140,9 +141,10 @@ static void vertex_kinematics(int n, const double *restrict state, const double 
         bough_vec3 v = {p.x, p.y, p.z};
         bough_vec3 difference = bough_sub(w, omega), sum = bough_add(w, omega);
         bough_vec3 turn = bough_axpy(p.w, difference, bough_cross(v, sum));
+        double restore = BOUGH_ROD_NORM_RATE * (1 - p.w * p.w - bough_dot(v, v));
         store3(rate, n, i, bough_sub(bough_sub(u, u0), bough_cross(omega, x)));
-        rate[3 * n + i] = -0.5 * bough_dot(v, difference);
-        store3(rate + 4 * n, n, i, bough_scale(0.5, turn));
+        rate[3 * n + i] = -0.5 * bough_dot(v, difference) + restore * p.w;
+        store3(rate + 4 * n, n, i, bough_axpy(restore, v, bough_scale(0.5, turn)));
     }
 }
 

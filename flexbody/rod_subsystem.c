@@ -27,6 +27,20 @@ static bool micro_derivative(void *self, double t, const double *y, double *rate
     return bough_rod_derivative(b->model, &b->loads, t, y, input, &b->scratch, rate);
 }
 
+// |p| = 1 to rounding in what others see; the integrator's own history is not touched.
+static void normalise(bough_rod_body *b) {
+    int n = b->model->n;
+    double *p = b->state + BOUGH_ROD_P * n;
+    for (int i = 0; i < n; i++) {
+        bough_quaternion unit = bough_quaternion_normalised(
+            (bough_quaternion){p[i], p[n + i], p[2 * n + i], p[3 * n + i]});
+        p[i] = unit.w;
+        p[n + i] = unit.x;
+        p[2 * n + i] = unit.y;
+        p[3 * n + i] = unit.z;
+    }
+}
+
 static bool micro_linearise(void *self, double t, const double *y) {
     bough_rod_body *b = self;
     double input[BOUGH_ROD_INPUTS];
@@ -89,6 +103,7 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
     b->input = input;
     bough_status status = bough_micro_cvode_advance(b->micro, b->time, t1, restart || b->moved,
                                                     b->state);
+    normalise(b);
     b->moved = !bough_is_ok(&status);
     b->time = t1;
     return status;

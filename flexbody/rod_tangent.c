@@ -281,18 +281,31 @@ static bough_vec3 solve_cross(bough_vec3 a, bough_vec3 y) {
     return bough_scale(1 / (1 + bough_dot(a, a)), sum);
 }
 
-// A of one vertex: δx = (E + γξ(ω))⁻¹ …, δφ = (E + ξ(a) + qqᵀ)⁻¹ … with a = ½γ(W + Rᵀω) and
-// q = ½γ(W − Rᵀω), by Sherman–Morrison.
+// The norm's restoring term κ(1 − |p|²)p, linearised: δφ sees γκ(1 − |p|²), the scale of p also
+// −2γκ|p|².
+typedef struct norm_terms {
+    double turn, scale; // factors of δφ and of σ on the left-hand side
+} norm_terms;
+
+static norm_terms restoring(bough_quaternion p, double gamma) {
+    double square = p.w * p.w + p.x * p.x + p.y * p.y + p.z * p.z;
+    double turn = 1 - gamma * BOUGH_ROD_NORM_RATE * (1 - square);
+    return (norm_terms){turn, turn + 2 * gamma * BOUGH_ROD_NORM_RATE * square};
+}
+
+// A of one vertex: δx = (E + γξ(ω))⁻¹ …, δφ = (eE + ξ(a) + qqᵀ)⁻¹ … with a = ½γ(W + Rᵀω) and
+// q = ½γ(W − Rᵀω), by Sherman–Morrison; e and the weight of qqᵀ from the norm's restoring.
 static void elimination(const vertex_kept *v, bough_vec3 omega, double gamma, double *block) {
     bough_vec3 g = bough_scale(gamma, omega);
-    bough_vec3 a = bough_scale(0.5 * gamma, bough_add(v->w, v->rtomega));
+    norm_terms e = restoring(v->p, gamma);
+    bough_vec3 a = bough_scale(0.5 * gamma / e.turn, bough_add(v->w, v->rtomega));
     bough_vec3 q = bough_scale(0.5 * gamma, bough_sub(v->w, v->rtomega));
-    bough_vec3 bq = solve_cross(a, q);
-    double denominator = 1 + bough_dot(q, bq);
+    bough_vec3 bq = bough_scale(1 / e.turn, solve_cross(a, q));
+    double denominator = e.scale + bough_dot(q, bq);
     const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int j = 0; j < W8 * 6; j++) block[j] = 0;
     for (int j = 0; j < 3; j++) {
-        bough_vec3 b = solve_cross(a, unit[j]);
+        bough_vec3 b = bough_scale(1 / e.turn, solve_cross(a, unit[j]));
         add_column3(block, 0, j, solve_cross(g, unit[j]));
         add_column3(block, 3, 3 + j, bough_axpy(-bough_dot(q, b) / denominator, bq, b));
     }
@@ -355,7 +368,8 @@ static void eliminate_residual(const bough_rod_model *m, const bough_rod_tangent
         bough_vec3 rho;
         bough_quaternion r = {x[3 * n + i], x[4 * n + i], x[5 * n + i], x[6 * n + i]};
         to_tangent(v->p, r, &scalar, &rho);
-        rho = bough_axpy(k->gamma * scalar, bough_sub(v->w, v->rtomega), rho);
+        double scale = restoring(v->p, k->gamma).scale;
+        rho = bough_axpy(k->gamma * scalar / scale, bough_sub(v->w, v->rtomega), rho);
         const double residual[W8] = {x[i], x[n + i], x[2 * n + i], rho.x, rho.y, rho.z, 0, 0};
         for (int c = 0; c < 6; c++) q[c] = 0;
         bough_block_subtract(k->eliminate + (size_t)i * BOUGH_BLOCK, residual, q);
@@ -393,6 +407,7 @@ static void recover(const bough_rod_model *m, const bough_rod_tangent *k, const 
         bough_block_subtract(k->eliminate + (size_t)i * BOUGH_BLOCK, minus, d);
         bough_vec3 phi = {d[3], d[4], d[5]};
         double scalar = q[6] - 0.25 * k->gamma * bough_dot(bough_sub(v->w, v->rtomega), phi);
+        scalar /= restoring(v->p, k->gamma).scale;
         bough_quaternion step = {scalar, 0.5 * phi.x, 0.5 * phi.y, 0.5 * phi.z};
         bough_quaternion dp = bough_quaternion_product(v->p, step);
         const double values[BOUGH_ROD_STATES] = {
