@@ -121,12 +121,13 @@ static void solves_as_the_dense_matrix_does(void **context) {
 static void subtract_takes_away_the_product(void **context) {
     (void)context;
     static const int sizes[] = {1, 2, 7, MOST};
-    double x[W * MOST], y[W * MOST], start[W * MOST];
+    double room[W + W * MOST], *x = room + W, y[W * MOST], start[W * MOST];
+    for (int i = 0; i < W; i++) room[i] = 99; // row 0 couples to nothing before it
     for (size_t k = 0; k < sizeof sizes / sizeof *sizes; k++) {
         int n = sizes[k];
         fixture f = take(n);
         fill(&f.m, 1);
-        for (int i = 0; i < 6; i++) f.m.lower[W * i] = 99; // row 0 couples to nothing
+        for (int i = 0; i < BOUGH_BLOCK; i++) f.m.lower[i] = 99;
         double *dense = dense_of(&f.m);
         random_rows(n, 3, x);
         random_rows(n, 8, start);
