@@ -108,7 +108,9 @@ bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
     scratch->vertex = bough_arena_doubles(arena, BOUGH_ROD_STATES * s);
     scratch->segment = bough_arena_doubles(arena, 9 * s);
     scratch->load = bough_arena_doubles(arena, 6 * s);
-    return scratch->vertex != NULL && scratch->segment != NULL && scratch->load != NULL;
+    scratch->follower = bough_arena_doubles(arena, 6 * s);
+    return scratch->vertex != NULL && scratch->segment != NULL && scratch->load != NULL &&
+           scratch->follower != NULL;
 }
 
 bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
@@ -116,7 +118,33 @@ bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
     loads->start = 0;
     loads->value = bough_arena_doubles(arena, 6 * (size_t)model->stride);
     loads->rate = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    loads->ramped = NULL;
     return loads->value != NULL && loads->rate != NULL;
+}
+
+double *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
+                               const bough_rod_model *model, bool follower, const double ramp[2]) {
+    for (bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        if (l->follower == follower && l->start == ramp[0] && l->end == ramp[1]) return l->value;
+    }
+    bough_rod_ramped_load *fresh = bough_arena_take(arena, sizeof *fresh);
+    double *value = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    if (fresh == NULL || value == NULL) return NULL;
+    *fresh = (bough_rod_ramped_load){loads->ramped, ramp[0], ramp[1], follower, value};
+    loads->ramped = fresh;
+    return value;
+}
+
+double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t) {
+    if (load->end <= load->start) return 1;
+    return bough_clamp((t - load->start) / (load->end - load->start), 0, 1);
+}
+
+bool bough_rod_loads_follow(const bough_rod_loads *loads) {
+    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        if (l->follower) return true;
+    }
+    return false;
 }
 
 void bough_rod_rest_state(const bough_rod_model *m, const double *input, double *state) {

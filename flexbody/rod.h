@@ -66,11 +66,22 @@ typedef struct bough_rod_model {
     bough_vertex_inertia *vertex; // (n + 1); vertex 0 belongs to the carrier
 } bough_rod_model;
 
-// Loads on the vertices, linear in time: value + (t − start)·rate, resolved in BRF axes.
+// Loads on the vertices that grow: value × factor, the factor rising linearly from 0 at `start` to 1
+// at `end` (end <= start: always 1). Dead ones are resolved in BRF axes, followers in the section
+// axes of each vertex, with which they turn.
+typedef struct bough_rod_ramped_load {
+    struct bough_rod_ramped_load *next;
+    double start, end; // [s]
+    bool follower;
+    double *value; // force then moment (6 × stride), vertex 0 included [N, N m]
+} bough_rod_ramped_load;
+
+// Loads on the vertices: value + (t − start)·rate, resolved in BRF axes, and all ramped loads.
 typedef struct bough_rod_loads {
     double start;  // [s]
     double *value; // force then moment (6 × stride), vertex 0 included [N, N m]
     double *rate;  // (6 × stride) [N/s, N m/s]
+    bough_rod_ramped_load *ramped; // NULL: none
 } bough_rod_loads;
 
 // Work arrays of one evaluation; every array is (· × stride).
@@ -78,7 +89,8 @@ typedef struct bough_rod_scratch {
     double *vertex;  // x p u W of vertices 0..n, p normalised (13 × stride)
     double *segment; // force on the left vertex in BRF axes, moments on the left and the right
                      // vertex in their section axes (9 × stride), zero at n
-    double *load;    // loads at the time of evaluation (6 × stride)
+    double *load;    // loads at the time of evaluation (6 × stride), in BRF axes
+    double *follower; // the followers among them in section axes (6 × stride); set if there are any
 } bough_rod_scratch;
 
 // Builds the constant model. BOUGH_INVALID names the segment or vertex that is not usable.
@@ -89,6 +101,16 @@ bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
                             const bough_rod_model *model);
 bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
                           const bough_rod_model *model);
+
+// The values (6 × stride) of the ramped load of this kind and ramp, a new one of zeros if there is
+// none yet. NULL when memory is exhausted.
+double *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
+                               const bough_rod_model *model, bool follower, const double ramp[2]);
+
+// Share of a ramped load at time t.
+double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t);
+
+bool bough_rod_loads_follow(const bough_rod_loads *loads); // whether any load is a follower
 
 // The undeformed rod moving rigidly with its BRF: state (13 n), input (9).
 void bough_rod_rest_state(const bough_rod_model *m, const double *input, double *state);

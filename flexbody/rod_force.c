@@ -72,7 +72,36 @@ bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_s
     return least >= 0.5;
 }
 
-// Loads at time t into scratch->load.
+static inline bough_mat3 matrix_of(bough_quaternion p) {
+    double w = p.w, x = p.x, y = p.y, z = p.z;
+    return (bough_mat3){{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
+                        {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
+                        {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
+}
+
+// Adds the ramped loads; followers are resolved by the sections in scratch->vertex.
+static void add_ramped(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                       bough_rod_scratch *scratch) {
+    int s = m->stride;
+    bool follow = bough_rod_loads_follow(loads);
+    if (follow) memset(scratch->follower, 0, 6 * (size_t)s * sizeof(double));
+    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        double factor = bough_rod_ramp_factor(l, t);
+        double *to = l->follower ? scratch->follower : scratch->load;
+        for (int k = 0; k < 6 * s; k++) to[k] += factor * l->value[k];
+    }
+    if (!follow) return;
+    for (int i = 0; i <= m->n; i++) {
+        bough_mat3 r = matrix_of(load_vertex(scratch->vertex, s, i).p);
+        for (int part = 0; part < 6; part += 3) {
+            double *load = scratch->load + part * s;
+            bough_vec3 f = bough_mat3_mul(r, load3(scratch->follower + part * s, s, i));
+            store3(load, s, i, bough_add(load3(load, s, i), f));
+        }
+    }
+}
+
+// Loads at time t into scratch->load, after the gathering.
 static void loads_at(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                      bough_rod_scratch *scratch) {
     double elapsed = t - loads->start;
@@ -81,13 +110,7 @@ static void loads_at(const bough_rod_model *m, const bough_rod_loads *loads, dou
     int count = 6 * m->stride;
 #pragma omp simd
     for (int k = 0; k < count; k++) load[k] = value[k] + elapsed * rate[k];
-}
-
-static inline bough_mat3 matrix_of(bough_quaternion p) {
-    double w = p.w, x = p.x, y = p.y, z = p.z;
-    return (bough_mat3){{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-                        {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-                        {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
+    if (loads->ramped != NULL) add_ramped(m, loads, t, scratch);
 }
 
 // I W for the tensor entries Ixx Iyy Izz Ixy Ixz Iyz.
@@ -168,15 +191,13 @@ void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *load
                            double *wrench) {
     int s = m->stride;
     bough_rod_gather(m, state, input, scratch);
+    loads_at(m, loads, t, scratch);
     bough_rod_forces(m, 0, 1, scratch);
     const double *f = scratch->segment;
     bough_vec3 moment = bough_mat3_mul(bough_rotation_matrix(m->rotation0[0]),
                                        bough_v3(f[3 * s], f[4 * s], f[5 * s]));
     const double inner[6] = {f[0], f[s], f[2 * s], moment.x, moment.y, moment.z};
-    for (int c = 0; c < 6; c++) {
-        double load = loads->value[c * s] + (t - loads->start) * loads->rate[c * s];
-        wrench[c] = inner[c] + load;
-    }
+    for (int c = 0; c < 6; c++) wrench[c] = inner[c] + scratch->load[c * s];
 }
 
 double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch) {

@@ -252,6 +252,24 @@ static void add_vertices(const bough_rod_model *m, const double *input, const do
     }
 }
 
+// Followers turn with their vertex: δ(R f) = R (δφ×f), and the moment in section axes stays, where
+// add_vertices took it for a dead one.
+static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                          bough_rod_tangent *k) {
+    int s = m->stride;
+    const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int i = 0; i < m->n; i++) {
+        bough_mat3 r = kept(k, i)->r;
+        double *position = k->position.diagonal + (size_t)i * BOUGH_BLOCK;
+        bough_vec3 force = load3(scratch->follower, s, i + 1);
+        bough_vec3 moment = load3(scratch->follower + 3 * s, s, i + 1);
+        for (int j = 0; j < 3; j++) {
+            add_column3(position, 0, 3 + j, bough_mat3_mul(r, bough_cross(unit[j], force)));
+            add_column3(position, 3, 3 + j, bough_cross(unit[j], moment));
+        }
+    }
+}
+
 bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                          const double *state, const double *input, bough_rod_scratch *scratch,
                          bough_rod_tangent *k) {
@@ -263,6 +281,7 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
     clear_blocks(&k->velocity);
     keep_vertices(m, state, k, scratch->vertex);
     add_vertices(m, input, rate + (size_t)BOUGH_ROD_U * n, scratch, k);
+    if (bough_rod_loads_follow(loads)) add_followers(m, scratch, k);
     position_variations(m, scratch->vertex, 0, n, k->variation);
     velocity_variations(m, scratch->vertex, 0, n, k->variation);
     for (int i = 0; i < n; i++) {

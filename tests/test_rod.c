@@ -106,8 +106,7 @@ static void forces_are_the_gradient_of_the_energy(void **context) {
     check_near(power, -(energy[1] - energy[0]) / 2e-6, 1e-7, 0);
 }
 
-static void newton_solution_inverts_the_jacobian(void **context) {
-    fixture *f = *context;
+static void check_newton(fixture *f) {
     const double gammas[] = {1e-3, 0.07, 0.4};
     for (int g = 0; g < 3; g++) {
         unsigned seed = 3;
@@ -121,6 +120,69 @@ static void newton_solution_inverts_the_jacobian(void **context) {
         bough_rod_solve(f->model, &f->tangent, b);
         for (int k = 0; k < STATES; k++) check_near(b[k], d[k], 0, 2e-7);
     }
+}
+
+static void newton_solution_inverts_the_jacobian(void **context) {
+    check_newton(*context);
+}
+
+// Half of the ramp is reached at the time of evaluation.
+static double *ramped(fixture *f, bool follower) {
+    const double ramp[2] = {0.25, 0.75};
+    double *value = bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp);
+    assert_non_null(value);
+    assert_ptr_equal(value, bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp));
+    return value;
+}
+
+static void newton_solution_knows_follower_loads(void **context) {
+    fixture *f = *context;
+    unsigned seed = 21;
+    double *follower = ramped(f, true), *dead = ramped(f, false);
+    for (int k = 0; k < 6 * f->model->stride; k++) {
+        follower[k] = 5 * sample_random(&seed);
+        dead[k] = 5 * sample_random(&seed);
+    }
+    check_newton(f);
+}
+
+// A follower load is at every state the dead load that its section's rotation makes of it.
+static void follower_load_turns_with_its_section(void **context) {
+    fixture *f = *context;
+    int s = f->model->stride;
+    unsigned seed = 8;
+    double with[STATES], same[STATES], wrench[2][6];
+    double *value = ramped(f, true);
+    for (int k = 0; k < 6 * s; k++) value[k] = sample_random(&seed);
+    derivative(f, f->state, f->input, with);
+    bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, wrench[0]);
+    f->loads.ramped = NULL;
+    for (int i = 0; i <= N; i++) {
+        bough_quaternion p = f->model->rotation0[0];
+        const double *y = f->state + i - 1;
+        if (i > 0) p = (bough_quaternion){y[3 * N], y[4 * N], y[5 * N], y[6 * N]};
+        bough_mat3 r = bough_rotation_matrix(bough_quaternion_normalised(p));
+        for (int c = 0; c < 6; c += 3) {
+            bough_vec3 part = {value[c * s + i], value[(c + 1) * s + i], value[(c + 2) * s + i]};
+            part = bough_scale(0.5, bough_mat3_mul(r, part));
+            f->loads.value[c * s + i] += part.x;
+            f->loads.value[(c + 1) * s + i] += part.y;
+            f->loads.value[(c + 2) * s + i] += part.z;
+        }
+    }
+    derivative(f, f->state, f->input, same);
+    bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, wrench[1]);
+    for (int k = 0; k < STATES; k++) check_near(with[k], same[k], 1e-12, 1e-12);
+    for (int k = 0; k < 6; k++) check_near(wrench[0][k], wrench[1][k], 1e-12, 1e-12);
+}
+
+static void ramped_load_grows_between_its_times(void **context) {
+    (void)context;
+    const bough_rod_ramped_load step = {.start = 2, .end = 2}, ramp = {.start = 1, .end = 3};
+    check_near(bough_rod_ramp_factor(&step, 0), 1, 0, 0);
+    check_near(bough_rod_ramp_factor(&ramp, 0.5), 0, 0, 0);
+    check_near(bough_rod_ramp_factor(&ramp, 1.5), 0.25, 0, 1e-15);
+    check_near(bough_rod_ramp_factor(&ramp, 4), 1, 0, 0);
 }
 
 static void input_columns_match_differences(void **context) {
@@ -194,6 +256,9 @@ int main(void) {
                                         teardown),
         cmocka_unit_test_setup_teardown(forces_are_the_gradient_of_the_energy, setup, teardown),
         cmocka_unit_test_setup_teardown(newton_solution_inverts_the_jacobian, setup, teardown),
+        cmocka_unit_test_setup_teardown(newton_solution_knows_follower_loads, setup, teardown),
+        cmocka_unit_test_setup_teardown(follower_load_turns_with_its_section, setup, teardown),
+        cmocka_unit_test(ramped_load_grows_between_its_times),
         cmocka_unit_test_setup_teardown(input_columns_match_differences, setup, teardown),
         cmocka_unit_test_setup_teardown(wrench_tangent_matches_differences, setup, teardown),
         cmocka_unit_test_setup_teardown(quaternion_sign_does_not_matter, setup, teardown),
