@@ -109,14 +109,20 @@ static const char channels_form[] = "[A, B, C], or several such lists";
 
 static void read_vector(bough_schema_reader *r, const bough_node *node,
                         bough_study_vector *vector) {
+    char shown[64];
+    if (node->kind != BOUGH_SEQUENCE || node->n == 0) {
+        bough_schema_error(r, node, "", "expected %s, got %s", channels_form,
+                           node->kind == BOUGH_SEQUENCE ? "an empty list"
+                                                        : bough_node_shown(node, shown));
+        return;
+    }
     vector->channel = bough_arena_take(r->arena, (size_t)node->n * sizeof *vector->channel);
     if (!vector->channel) return;
     vector->n = node->n;
     for (int i = 0; i < node->n; i++) {
-        char shown[64];
         const bough_node *name = node->value[i];
         vector->channel[i] = name->kind == BOUGH_SCALAR ? name->text : "";
-        if (name->kind == BOUGH_SCALAR && name->text[0] != '\0') continue;
+        if (vector->channel[i][0] != '\0') continue;
         bough_schema_error(r, name, "", "expected a channel's name, got %s",
                            bough_node_shown(name, shown));
     }
@@ -130,16 +136,8 @@ static void read_channels(bough_schema_reader *r, const bough_node *node, void *
     vectors->item = bough_arena_take(r->arena, (size_t)n * sizeof *vectors->item);
     if (!vectors->item) return;
     vectors->n = n;
-    for (int i = 0; i < n; i++) {
-        char shown[64];
-        const bough_node *list = nested ? node->value[i] : node;
-        if (list->kind == BOUGH_SEQUENCE && list->n > 0) {
-            read_vector(r, list, &vectors->item[i]);
-        } else {
-            bough_schema_error(r, list, "", "expected %s, got %s", channels_form,
-                               bough_node_shown(list, shown));
-        }
-    }
+    for (int i = 0; i < n; i++)
+        read_vector(r, nested ? node->value[i] : node, &vectors->item[i]);
 }
 
 static void check_measure(bough_schema_reader *r, void *item) {

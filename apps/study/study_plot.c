@@ -202,13 +202,16 @@ static void draw_panel(panel *p) {
 
 // -- legend ---------------------------------------------------------------------------------------
 
+// The settings that tell the line from others.
 static void put_line_name(FILE *svg, const bough_study *s, int line) {
     const bough_study_cell *cell = &s->cell[line * along(s)];
+    int said = 0;
     for (int i = 0; i + 1 < s->grid.n; i++) {
-        if (i) fputs(", ", svg);
+        if (s->grid.axis[i].value.n < 2) continue;
+        if (said++) fputs(", ", svg);
         put_text(svg, bough_study_value(s, cell, i));
     }
-    if (s->grid.n == 1) put_text(svg, s->grid.axis[0].label);
+    if (!said) put_text(svg, s->grid.axis[s->grid.n - 1].label);
 }
 
 // Runs of the line that have no point, and why.
@@ -246,7 +249,8 @@ static void begin(FILE *svg, const bough_study *s, int width, int height) {
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
             "viewBox=\"0 0 %d %d\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\">\n"
             "<style>.grid{stroke:#ddd}.axis{stroke:#222;fill:none}"
-            ".point{font-size:10px;fill:#555}</style>\n"
+            ".point{font-size:10px;fill:#555;paint-order:stroke;stroke:#fff;"
+            "stroke-width:2px}</style>\n"
             "<rect width=\"%d\" height=\"%d\" fill=\"white\"/>\n",
             width, height, width, height, width, height);
     fprintf(svg, "<text x=\"%d\" y=\"22\" font-size=\"15\" font-weight=\"bold\">", LEFT);
@@ -262,7 +266,7 @@ static void draw(FILE *svg, const bough_study_results *results) {
     int height = panels_end + (count_lines(s) + 1) * LEGEND_LINE;
     begin(svg, s, n_column * PANEL_WIDTH, height);
     for (int i = 0; i < s->n_measure; i++) {
-        double x = i % PER_ROW * PANEL_WIDTH, y = TITLE_HEIGHT + i / PER_ROW * PANEL_HEIGHT;
+        int x = i % PER_ROW * PANEL_WIDTH, y = TITLE_HEIGHT + i / PER_ROW * PANEL_HEIGHT;
         panel p = {.results = results,
                    .measure = i,
                    .x = {.from = x + LEFT, .to = x + PANEL_WIDTH - RIGHT},

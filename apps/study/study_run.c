@@ -136,7 +136,7 @@ static bool ends_study(bough_code code) {
 bough_status bough_study_run(const bough_study *study, const bough_study_cell *cell, int repeat,
                              bough_study_drive *drive, bough_study_series *series,
                              bough_study_result *result) {
-    double wall[MAX_REPEAT], cpu[MAX_REPEAT];
+    double wall[MAX_REPEAT] = {0}, cpu[MAX_REPEAT] = {0};
     int n = 0;
     assert(repeat >= 1 && repeat <= MAX_REPEAT);
     *result = (bough_study_result){.outcome = bough_ok()};
@@ -163,12 +163,15 @@ bough_status bough_study_run(const bough_study *study, const bough_study_cell *c
 
 // -- differences ----------------------------------------------------------------------------------
 
+// The larger of the two; a NaN wins and stays.
+static double larger(double a, double b) { return isnan(b) || b > a ? b : a; }
+
 // Of n components in one row.
 static double difference(const double *a, const double *b, int n, int norm) {
     double sum = 0, largest = 0;
     for (int i = 0; i < n; i++) {
         sum += (a[i] - b[i]) * (a[i] - b[i]);
-        largest = fmax(largest, fabs(a[i] - b[i]));
+        largest = larger(largest, fabs(a[i] - b[i]));
     }
     return norm == BOUGH_STUDY_EUCLID ? sqrt(sum) : largest;
 }
@@ -179,8 +182,7 @@ static double largest_difference(const bough_study_series *a, const bough_study_
     double largest = 0;
     for (int i = 0; i < a->n_row; i++) {
         size_t at = (size_t)i * (size_t)a->n_channel + (size_t)first;
-        double d = difference(a->value + at, b->value + at, n, norm);
-        if (!(d <= largest)) largest = d; // a NaN stays
+        largest = larger(largest, difference(a->value + at, b->value + at, n, norm));
     }
     return largest;
 }
@@ -194,8 +196,7 @@ void bough_study_compare(const bough_study *study, const bough_study_series *ser
         error[i] = 0;
         for (int k = 0; k < m->channels.n; k++) {
             int n = m->channels.item[k].n;
-            double d = largest_difference(series, reference, first, n, m->norm);
-            if (!(d <= error[i])) error[i] = d;
+            error[i] = larger(error[i], largest_difference(series, reference, first, n, m->norm));
             first += n;
         }
         error[i] *= m->scale;

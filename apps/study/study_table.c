@@ -47,7 +47,7 @@ static void put(line *l, const char *format, ...) {
 }
 
 static void put_number(line *l, bool known, double value) {
-    if (known && isfinite(value)) {
+    if (known) {
         put(l, "%.3g", value);
     } else {
         put(l, "-");
@@ -88,11 +88,12 @@ static void put_row(line *l, const bough_study_results *results, int row) {
     put(l, "%s", status);
     put_number(l, r->done, r->wall);
     put_number(l, r->done, r->cpu);
-    put_number(l, r->done, real_time_factor(r));
+    put_number(l, r->done && r->wall > 0, real_time_factor(r));
     for (int i = 0; i < s->n_measure; i++)
         put_number(l, good, r->error[i]);
     put_number(l, r->done, r->coupling.defect_rms);
-    put_number(l, r->done, r->coupling.energy_residual / r->coupling.energy_exchanged);
+    double exchanged = r->coupling.energy_exchanged;
+    put_number(l, r->done && exchanged > 0, r->coupling.energy_residual / exchanged);
 }
 
 // Characters, not bytes.
