@@ -10,6 +10,10 @@ extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *
 extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
                     const int *lda, const int *pivot, double *b, const int *ldb, int *info,
                     size_t trans_length);
+extern void dgeev_(const char *left, const char *right, const int *n, double *a, const int *lda,
+                   double *real, double *imaginary, double *vl, const int *ldvl, double *vr,
+                   const int *ldvr, double *work, const int *lwork, int *info, size_t left_length,
+                   size_t right_length);
 // Only OpenBLAS has it; other libraries leave the symbol null.
 extern void openblas_set_num_threads(int n) __attribute__((weak));
 
@@ -17,15 +21,24 @@ static void one_thread(void) {
     if (openblas_set_num_threads) openblas_set_num_threads(1);
 }
 
-bool bough_dense_factor(int n, double *a, int *pivot) {
-    if (n == 0) return true;
+static void prepare(void) {
     // the library's thread count is the process's, and so is this
     static once_flag prepared = ONCE_FLAG_INIT;
     call_once(&prepared, one_thread);
-    double sum = 0; // a NaN may pass the pivot search
+}
+
+// A NaN may pass LAPACK's pivot search.
+static bool finite_matrix(int n, const double *a) {
+    double sum = 0;
     for (size_t i = 0; i < (size_t)n * (size_t)n; i++)
         sum += fabs(a[i]);
-    if (!isfinite(sum)) return false;
+    return isfinite(sum);
+}
+
+bool bough_dense_factor(int n, double *a, int *pivot) {
+    if (n == 0) return true;
+    prepare();
+    if (!finite_matrix(n, a)) return false;
     int info = 0;
     dgetrf_(&n, &n, a, &n, pivot, &info);
     return info == 0;
@@ -35,6 +48,16 @@ void bough_dense_solve(int n, int n_right, const double *factor, const int *pivo
     if (n == 0 || n_right == 0) return;
     int info = 0;
     dgetrs_("N", &n, &n_right, factor, &n, pivot, b, &n, &info, 1);
+}
+
+bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *work) {
+    if (n == 0) return true;
+    prepare();
+    if (!finite_matrix(n, a)) return false;
+    int info = 0, one = 1, n_work = 8 * n;
+    dgeev_("N", "V", &n, a, &n, value, value + n, NULL, &one, vector, &n, work, &n_work, &info, 1,
+           1);
+    return info == 0;
 }
 
 bool bough_cholesky_factor(int n, double *a) {

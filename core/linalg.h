@@ -12,6 +12,12 @@ bool bough_dense_factor(int n, double *a, int *pivot);
 // Solves a x = b in place with those factors: b (n × n_right, column-major).
 void bough_dense_solve(int n, int n_right, const double *factor, const int *pivot, double *b);
 
+// Eigenvalues of a (n × n, column-major; overwritten): value (2 × n), real parts before imaginary
+// ones, conjugate pairs in sequence. vector (n × n, column-major): the right eigenvectors of length
+// 1, of a pair its real and imaginary part in two columns. work (8 n). False when a is not finite
+// or the iteration does not converge.
+bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *work);
+
 // The Cholesky factor L of a symmetric matrix (n × n, row-major; its lower triangle) in place,
 // a = L Lᵀ. False unless it is positive definite, with every pivot above 1e-12 of its diagonal.
 bool bough_cholesky_factor(int n, double *a);

@@ -34,6 +34,30 @@ static void lu_refuses_singular_and_nan(void **state) {
     bough_dense_solve(0, 1, NULL, NULL, NULL);
 }
 
+// A rotation scaled by 0.5 beside the number 3, seen through a change of basis.
+static void eigenvalues_and_vectors(void **state) {
+    (void)state;
+    const double a[9] = {0, 0.5, 0, -0.5, 0, 0, 1, 1, 3};
+    double copy[9], value[6], v[9], work[24];
+    memcpy(copy, a, sizeof a);
+    assert_true(bough_dense_eigen(3, copy, value, v, work));
+    for (int k = 0; k < 3; k++) {
+        bool pair = value[3 + k] != 0;
+        check_near(hypot(value[k], value[3 + k]), pair ? 0.5 : 3, 1e-14, 0);
+        const double *real = v + 3 * k, *imaginary = v + 3 * k + 3;
+        for (int i = 0; i < 3; i++) {
+            double product = 0, expected = value[k] * real[i];
+            for (int j = 0; j < 3; j++)
+                product += a[3 * j + i] * real[j];
+            if (pair) expected -= value[3 + k] * imaginary[i];
+            check_near(product, expected, 0, 1e-14);
+        }
+        if (pair) k++;
+    }
+    copy[0] = NAN;
+    assert_false(bough_dense_eigen(3, copy, value, v, work));
+}
+
 // A = L Lᵀ with L known; only the lower triangle of A is given.
 static void cholesky_finds_the_factor(void **state) {
     (void)state;
@@ -74,6 +98,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lu_solves_with_interchanges),
         cmocka_unit_test(lu_refuses_singular_and_nan),
+        cmocka_unit_test(eigenvalues_and_vectors),
         cmocka_unit_test(cholesky_finds_the_factor),
         cmocka_unit_test(cholesky_refuses_indefinite_and_nearly_singular),
     };
