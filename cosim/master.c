@@ -49,6 +49,16 @@ static bough_status check(const bough_master_def *def) {
     return bough_ok();
 }
 
+// Nothing to say when the judgement fails: the run will show why.
+static void judge(bough_master *m) {
+    if (!m->scheme->explicit_forces) return;
+    bough_stability_advice advice;
+    const bough_scheme_options *options = &m->coupling->options;
+    bough_status status = bough_stability_advise(m->assembly, options, m->macro_step, &advice);
+    if (!bough_is_ok(&status)) return;
+    bough_stability_describe(m->assembly, &advice, options, m->macro_step, m->verdict);
+}
+
 bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
                                 bough_master **master) {
     bough_status status = check(def);
@@ -69,7 +79,9 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     if (bough_is_ok(&status)) {
         status = bough_monitor_create(arena, m->scheme, m->coupling, &m->monitor);
     }
-    if (bough_is_ok(&status)) *master = m;
+    if (!bough_is_ok(&status)) return status;
+    judge(m);
+    *master = m;
     return status;
 }
 

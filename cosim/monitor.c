@@ -8,7 +8,14 @@
 //   - the defect is no longer small against the force itself.
 // It sees growth over the time that growth takes: at +0.8 per second about nine seconds. It cannot
 // tell a numerical from a physical exponential growth, nor see one that beats within its windows.
+//
+// An instability that the start-up's own error hides, or that saturates before it has grown so far,
+// is caught by the bound on the error itself (error_bound.h). That the coupling is the cause is
+// confirmed by its eigenvalues about the current state before the run is ended.
 #include "cosim/monitor.h"
+
+#include "cosim/error_bound.h"
+#include "cosim/stability.h"
 
 #include <math.h>
 #include <string.h>
@@ -32,8 +39,16 @@ typedef struct group {
     bool kinematic;
     double defect_max, defect_sum; // Σ of squares over the steps
     double magnitude;   // largest norm of the obtained value so far
+    double window_sum;  // Σ of squares over the open window of the error bound
     window scale[N_SCALE];
 } group;
+
+// The error of one interface.
+typedef struct account {
+    double residual;         // ∫ (obtained − used wrench) · twist dt [J]
+    double gross, exchanged; // in the open window: Σ|residual of a step|, ∫ |wrench · twist| dt [J]
+    bough_error_bound bound;
+} account;
 
 struct bough_monitor {
     const bough_scheme *scheme;
@@ -41,10 +56,18 @@ struct bough_monitor {
     group *group;
     long steps;
     double *previous;      // (n_input) obtained at the last synchronisation point
-    double *residual;      // (n_interface) ∫ (obtained − used wrench) · twist dt [J]
+    account *account;      // (n_interface)
     double exchanged;      // [J]
+    int window_steps;      // in the open window
+    double window_time;    // its length so far [s]
     double *start;         // (n_input) scratch
 };
+
+static int receiver(const bough_assembly *a, int input) {
+    int i = 0;
+    while (input >= a->input_offset[i + 1]) i++;
+    return i;
+}
 
 static void make_groups(bough_monitor *m, const bough_assembly *a) {
     for (int i = 0; i < a->n_member; i++) {
@@ -76,7 +99,7 @@ bough_status bough_monitor_create(bough_arena *arena, const bough_scheme *scheme
     m->group = bough_arena_take(arena, n_input * sizeof *m->group);
     m->previous = bough_arena_doubles(arena, n_input);
     m->start = bough_arena_doubles(arena, n_input);
-    m->residual = bough_arena_doubles(arena, (size_t)a->n_interface);
+    m->account = bough_arena_take(arena, (size_t)a->n_interface * sizeof *m->account);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     make_groups(m, a);
     memcpy(m->previous, coupling->input, n_input * sizeof(double));
@@ -130,10 +153,11 @@ static void close_window(window *w, double floor) {
 // Growth per window [ratio] when the run is exponential and long enough, else 0.
 static double exponential_growth(const window *w) {
     for (int span = SHORTEST; span < w->n; span++) {
-        double later = back(w, 0) - back(w, span / 2);
-        double total = back(w, 0) - back(w, 2 * (span / 2));
+        int half = span / 2;
+        double later = back(w, 0) - back(w, half);
+        double total = back(w, 0) - back(w, 2 * half);
         if (total >= log(total_growth) && later >= 0.7 * (total - later)) {
-            return exp(total / (2 * (span / 2)));
+            return exp(total / (2.0 * half));
         }
     }
     return 0;
@@ -182,6 +206,7 @@ static bough_status judge_group(const bough_monitor *m, const bough_coupling *c,
     g->magnitude = fmax(g->magnitude, norm(c->input + g->first, g->count));
     g->defect_max = fmax(g->defect_max, defect);
     g->defect_sum += defect * defect;
+    g->window_sum += defect * defect;
     return watch(m, c, g, defect);
 }
 
@@ -194,7 +219,7 @@ static double dot(const double *x, const double *y, int n) {
 }
 
 // Trapezoidal work of the wrench that came out, and of its difference from the one used.
-static void account(bough_monitor *m, const bough_coupling *c) {
+static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     double half = (c->t1 - c->t0) / 2;
     for (int i = 0; i < a->n_member; i++) {
@@ -207,21 +232,89 @@ static void account(bough_monitor *m, const bough_coupling *c) {
         double obtained1 = dot(c->input + f->wrench, v1, f->count);
         double used = dot(m->start + f->wrench, v0, f->count) +
                       dot(c->used + f->wrench, v1, f->count);
-        m->residual[k] += half * (obtained0 + obtained1 - used);
-        m->exchanged += half * (fabs(obtained0) + fabs(obtained1));
+        double residual = half * (obtained0 + obtained1 - used);
+        double exchanged = half * (fabs(obtained0) + fabs(obtained1));
+        m->account[k].residual += residual;
+        m->account[k].gross += fabs(residual);
+        m->account[k].exchanged += exchanged;
+        m->exchanged += exchanged;
     }
 }
+
+// -- error bound ----------------------------------------------------------------------------------
+
+// The worst relative defect of an interface's wrench in the window.
+static double window_defect(const bough_monitor *m, const bough_interface *f) {
+    double worst = 0;
+    for (int k = 0; k < m->n_group; k++) {
+        const group *g = &m->group[k];
+        if (g->first < f->wrench || g->first >= f->wrench + f->count || g->magnitude == 0) continue;
+        worst = fmax(worst, sqrt(g->window_sum / m->window_steps) / g->magnitude);
+    }
+    return worst;
+}
+
+static bough_status lost(const bough_monitor *m, const bough_coupling *c, int interface,
+                         double try_step) {
+    const bough_assembly *a = c->assembly;
+    const bough_interface *f = &a->interface[interface];
+    const bough_error_bound *b = &m->account[interface].bound;
+    return bough_fail(BOUGH_FAILED,
+                      "the coupling of %.32s and %.32s is unstable and has lost the solution at "
+                      "%.6g s (scheme %s, macro step %.4g s): interface error %.2g of the largest "
+                      "force, growing by %.4g per step, and %.2g of the exchanged energy; good "
+                      "until %.4g s; try macro_step: %.3g s%s",
+                      a->member[f->body]->name, a->member[receiver(a, f->wrench)]->name, c->t1,
+                      m->scheme->name, c->t1 - c->t0, b->last.defect, b->growth, b->last.energy,
+                      b->good_time, try_step,
+                      m->scheme->explicit_forces ? " or scheme: ramp" : "");
+}
+
+// The eigenvalues about the current state tell a coupling that is unstable from one that is coarse.
+static bough_status confirm(const bough_monitor *m, const bough_coupling *c, int interface) {
+    bough_scheme_options options = c->options;
+    bough_stability_advice advice = {0};
+    double h = c->t1 - c->t0;
+    if (c->theta > 0) options.theta = c->theta;
+    bough_status status = bough_stability_advise(c->assembly, &options, h, &advice);
+    bool unstable = bough_is_ok(&status) && advice.unstable;
+    if (!unstable && !bough_error_bound_hopeless(&m->account[interface].bound)) return bough_ok();
+    return lost(m, c, interface, advice.macro_step > 0 ? advice.macro_step : h / 2);
+}
+
+// Windows are of at least 64 steps and a second.
+static bough_status judge_error(bough_monitor *m, const bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    m->window_steps++;
+    m->window_time += c->t1 - c->t0;
+    if (m->window_steps < 64 || m->window_time < 1 - 1e-9) return bough_ok();
+    int broken = -1;
+    for (int k = 0; k < a->n_interface; k++) {
+        account *x = &m->account[k];
+        bough_error_window closed = {.defect = window_defect(m, &a->interface[k]),
+                                     .energy = x->exchanged > 0 ? x->gross / x->exchanged : 0};
+        bough_error_bound_close(&x->bound, closed, m->window_steps, c->t1);
+        x->gross = x->exchanged = 0;
+        if (broken < 0 && bough_error_bound_broken(&x->bound)) broken = k;
+    }
+    for (int k = 0; k < m->n_group; k++) m->group[k].window_sum = 0;
+    m->window_steps = 0;
+    m->window_time = 0;
+    return broken < 0 ? bough_ok() : confirm(m, c, broken);
+}
+
+// -- the step -------------------------------------------------------------------------------------
 
 bough_status bough_monitor_step(bough_monitor *m, const bough_coupling *c) {
     bough_status status = check_finite(m, c);
     if (!bough_is_ok(&status)) return status;
     m->steps++;
-    account(m, c);
+    keep_accounts(m, c);
     memcpy(m->previous, c->input, (size_t)c->assembly->n_input * sizeof(double));
     for (int k = 0; k < m->n_group && bough_is_ok(&status); k++) {
         status = judge_group(m, c, &m->group[k]);
     }
-    return status;
+    return bough_is_ok(&status) ? judge_error(m, c) : status;
 }
 
 bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_coupling *c) {
@@ -234,11 +327,11 @@ bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_c
         report.defect_rms = fmax(report.defect_rms, rms / g->magnitude);
     }
     for (int k = 0; k < c->assembly->n_interface; k++) {
-        report.energy_residual += fabs(m->residual[k]);
+        report.energy_residual += fabs(m->account[k].residual);
     }
     return report;
 }
 
 double bough_monitor_energy_residual(const bough_monitor *m, int interface) {
-    return m->residual[interface];
+    return m->account[interface].residual;
 }

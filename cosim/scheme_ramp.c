@@ -41,7 +41,6 @@ typedef struct ramp {
     double *gain;   // (n_lead × n_lead, column-major) the leaders' inputs' answer to themselves
     double *square; // (n_lead × n_lead)
     double *change; // (n_lead) right side, then the predicted increments
-    double *start;  // (n_input) start values of the leaders' ramps
     int *pivot;     // (n_lead)
     double theta;
     bool chosen; // θ is final
@@ -117,7 +116,6 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     if (!r) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     r->of = bough_arena_take(arena, (size_t)a->n_member * sizeof *r->of);
     r->lead = bough_arena_take(arena, (size_t)a->n_input * sizeof(int));
-    r->start = bough_arena_doubles(arena, (size_t)a->n_input);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {
         take_answer(c, arena, &r->of[i], i);
@@ -133,7 +131,6 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     r->change = bough_arena_doubles(arena, n);
     r->pivot = bough_arena_take(arena, n * sizeof(int));
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    memcpy(r->start, c->input, (size_t)a->n_input * sizeof(double));
     r->chosen = c->options.theta > 0;
     r->theta = r->chosen ? c->options.theta : 0.5;
     c->scheme_data = r;
@@ -142,10 +139,9 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
 
 // -- the θ-step of every member -------------------------------------------------------------------
 
-static double *base_input(bough_coupling *c, int member) {
-    ramp *r = c->scheme_data;
-    int first = c->assembly->input_offset[member];
-    return leads(c, member) ? r->start + first : c->input + first;
+// A leader's ramp starts where the last one ended: that is what it used.
+static const double *base_input(const bough_coupling *c, int member) {
+    return (leads(c, member) ? c->used : c->input) + c->assembly->input_offset[member];
 }
 
 static void add_columns(const answer *w, const bough_subsystem *s, double factor,
@@ -351,7 +347,7 @@ static bool solve_interface(bough_coupling *c) {
         }
         int from = a->source_member[r->lead[m]];
         double predicted = r->of[from].output[a->source[r->lead[m]] - a->output_offset[from]];
-        r->change[m] = predicted - r->start[r->lead[m]];
+        r->change[m] = predicted - c->used[r->lead[m]];
     }
     if (n == 0) return true;
     if (!bough_dense_factor(n, r->matrix, r->pivot)) return false;
@@ -424,14 +420,13 @@ static void set_ramps(bough_coupling *c) {
     ramp *r = c->scheme_data;
     for (int m = 0; m < r->n_lead; m++) {
         int j = r->lead[m], i = member_of_input(c->assembly, j);
-        double end = r->start[j] + r->change[m];
+        double start = c->used[j], end = start + r->change[m];
         int local = j - c->assembly->input_offset[i];
         if (held(r)) {
             bough_port_hold(&c->signal[i], local, 1, &end);
         } else {
-            bough_port_linear(&c->signal[i], local, 1, &r->start[j], &end);
+            bough_port_linear(&c->signal[i], local, 1, &start, &end);
         }
-        r->start[j] = end;
     }
 }
 

@@ -1,0 +1,429 @@
+#include "cosim/stability.h"
+
+#include "core/base.h"
+#include "core/linalg.h"
+#include "cosim/scheme.h"
+#include "cosim/shadow.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { DIMENSION = 48, WARM_UP = 2, MOST_REPEATED = 24 };
+static const double span = 0.06;      // this time passes per Arnoldi vector [s]
+static const double sub_step = 5e-3;  // of the shadows at most [s]
+static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
+
+// The map z → z after `repeat` macro steps; z = (states, inputs one and two steps ago, used inputs).
+typedef struct map {
+    bough_arena *arena;
+    const bough_scheme *scheme;
+    bough_assembly assembly;    // of the shadows
+    bough_subsystem *shadow;    // (n_member)
+    bough_coupling *coupling;
+    double macro_step;
+    int repeat;
+    int n;          // n_state + 3 n_input
+    double *weight; // (n) makes the components comparable
+    // Arnoldi
+    int dimension;
+    double *basis;      // ((dimension + 1) × n)
+    double *hessenberg; // (dimension × dimension, column-major)
+    double *below;      // (dimension) its subdiagonal
+    double *value, *vector, *work; // for the eigenvalues
+    double *z, *image;  // (n)
+    double *pair;       // (2 × n) real and imaginary part of a vector
+} map;
+
+// -- building -------------------------------------------------------------------------------------
+
+static bough_status build_shadows(map *m, const bough_assembly *a, const double *input) {
+    m->assembly = *a;
+    m->shadow = bough_arena_take(m->arena, (size_t)a->n_member * sizeof *m->shadow);
+    m->assembly.member = bough_arena_take(m->arena, (size_t)a->n_member * sizeof(void *));
+    if (bough_arena_exhausted(m->arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    double longest = fmin(m->macro_step, sub_step);
+    for (int i = 0; i < a->n_member; i++) {
+        bough_status status = bough_shadow_create(m->arena, a->member[i],
+                                                  input + a->input_offset[i], longest,
+                                                  &m->shadow[i]);
+        if (!bough_is_ok(&status)) return status;
+        m->assembly.member[i] = &m->shadow[i];
+    }
+    return bough_ok();
+}
+
+static bough_status take(map *m) {
+    size_t n = (size_t)m->n, k = (size_t)m->dimension;
+    m->weight = bough_arena_doubles(m->arena, n);
+    m->basis = bough_arena_doubles(m->arena, (k + 1) * n);
+    m->hessenberg = bough_arena_doubles(m->arena, k * k);
+    m->below = bough_arena_doubles(m->arena, k);
+    m->value = bough_arena_doubles(m->arena, 2 * k);
+    m->vector = bough_arena_doubles(m->arena, k * k);
+    m->work = bough_arena_doubles(m->arena, 8 * k);
+    m->z = bough_arena_doubles(m->arena, n);
+    m->image = bough_arena_doubles(m->arena, n);
+    m->pair = bough_arena_doubles(m->arena, 2 * n);
+    return bough_arena_exhausted(m->arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
+                                           : bough_ok();
+}
+
+static bough_status build(map *m, const bough_assembly *a, const bough_scheme_options *options) {
+    double *output = bough_arena_doubles(m->arena, (size_t)a->n_output);
+    double *input = bough_arena_doubles(m->arena, (size_t)a->n_input);
+    if (bough_arena_exhausted(m->arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_assembly_outputs(a, *a->member[0]->time, output, input);
+    bough_status status = build_shadows(m, a, input);
+    if (!bough_is_ok(&status)) return status;
+    bough_coupling *c = NULL;
+    status = bough_coupling_create(m->arena, &m->assembly, options, 1, &c);
+    if (!bough_is_ok(&status) || !c) return status;
+    m->coupling = c;
+    m->scheme = bough_scheme_find(options->name);
+    if (m->scheme->create) status = m->scheme->create(c, m->arena);
+    if (!bough_is_ok(&status)) return status;
+    m->n = a->n_state + 3 * a->n_input;
+    m->dimension = m->n < DIMENSION ? m->n : DIMENSION;
+    m->repeat = (int)fmin(ceil(span / m->macro_step - 1e-6), MOST_REPEATED);
+    return take(m);
+}
+
+// -- the map --------------------------------------------------------------------------------------
+
+static void load(map *m, const double *z) {
+    bough_coupling *c = m->coupling;
+    const bough_assembly *a = &m->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_subsystem *s = a->member[i];
+        s->ops->set_state(s->self, 0, z + a->state_offset[i]);
+    }
+    size_t size = (size_t)a->n_input * sizeof(double);
+    bough_assembly_outputs(a, 0, c->output, c->input);
+    memcpy(c->past[0], c->input, size);
+    memcpy(c->past[1], z + a->n_state, size);
+    memcpy(c->past[2], z + a->n_state + a->n_input, size);
+    memcpy(c->used, z + a->n_state + 2 * a->n_input, size);
+    for (int p = 0; p < BOUGH_HISTORY; p++) c->past_time[p] = -p * m->macro_step;
+    c->n_past = BOUGH_HISTORY;
+    c->t1 = 0;
+}
+
+static void store(const map *m, double *z) {
+    const bough_coupling *c = m->coupling;
+    const bough_assembly *a = &m->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_subsystem *s = a->member[i];
+        memcpy(z + a->state_offset[i], s->state, (size_t)s->n_state * sizeof(double));
+    }
+    size_t size = (size_t)a->n_input * sizeof(double);
+    memcpy(z + a->n_state, c->past[1], size);
+    memcpy(z + a->n_state + a->n_input, c->past[2], size);
+    memcpy(z + a->n_state + 2 * a->n_input, c->used, size);
+}
+
+// image = z after `count` macro steps
+static bough_status apply(map *m, int count, const double *z, double *image) {
+    bough_coupling *c = m->coupling;
+    bough_status status = bough_ok();
+    load(m, z);
+    for (int k = 0; k < count && bough_is_ok(&status); k++) {
+        c->t0 = c->t1;
+        c->t1 = (k + 1) * m->macro_step;
+        status = m->scheme->step(c);
+        bough_coupling_exchange(c);
+    }
+    store(m, image);
+    return status;
+}
+
+// The same on weighted vectors.
+static bough_status apply_weighted(map *m, int count, const double *x, double *image) {
+    for (int k = 0; k < m->n; k++) m->z[k] = x[k] / m->weight[k];
+    bough_status status = apply(m, count, m->z, image);
+    for (int k = 0; k < m->n; k++) image[k] *= m->weight[k];
+    return status;
+}
+
+// -- vectors --------------------------------------------------------------------------------------
+
+static double dot(int n, const double *x, const double *y) {
+    double sum = 0;
+    for (int k = 0; k < n; k++) sum += x[k] * y[k];
+    return sum;
+}
+
+static void add(int n, double factor, const double *x, double *sum) {
+    for (int k = 0; k < n; k++) sum[k] += factor * x[k];
+}
+
+static void divide(int n, double divisor, double *x) {
+    for (int k = 0; k < n; k++) x[k] /= divisor;
+}
+
+// Inputs weigh what they do to the whole against the states: each member's as its largest.
+static void choose_weights(map *m, const double *z) {
+    const bough_assembly *a = &m->assembly;
+    double sum = 0;
+    for (int i = 0, k = 0; i < a->n_member; i++) {
+        for (int j = 0; j < a->member[i]->n_state; j++, k++) {
+            m->weight[k] = 1 / a->member[i]->scale[j];
+            sum += z[k] * z[k] * m->weight[k] * m->weight[k];
+        }
+    }
+    for (int i = 0; i < a->n_member; i++) {
+        int first = a->input_offset[i], last = a->input_offset[i + 1];
+        double largest = 0;
+        for (int j = first; j < last; j++) {
+            largest = fmax(largest, fabs(z[a->n_state + 2 * a->n_input + j]));
+        }
+        double weight = largest > 0 ? sqrt(sum / a->n_input) / largest : 1;
+        for (int j = first; j < last; j++) {
+            for (int p = 0; p < 3; p++) m->weight[a->n_state + p * a->n_input + j] = weight;
+        }
+    }
+}
+
+// A start in which every mode takes part, the stiff ones damped away: fixed pseudo-random numbers
+// after a few macro steps.
+static bough_status start(map *m) {
+    const bough_assembly *a = &m->assembly;
+    double *x = m->basis;
+    unsigned seed = 1;
+    for (int i = 0, k = 0; i < a->n_member; i++) {
+        for (int j = 0; j < a->member[i]->n_state; j++, k++) {
+            seed = seed * 1664525u + 1013904223u;
+            x[k] = a->member[i]->scale[j] * ((double)seed / 2147483648.0 - 1);
+        }
+    }
+    for (int k = 0; k < WARM_UP; k++) {
+        bough_status status = apply(m, m->repeat, x, m->image);
+        if (!bough_is_ok(&status)) return status;
+        memcpy(x, m->image, (size_t)m->n * sizeof(double));
+        divide(m->n, sqrt(dot(a->n_state, x, x)), x);
+    }
+    choose_weights(m, x);
+    for (int k = 0; k < m->n; k++) x[k] *= m->weight[k];
+    divide(m->n, sqrt(dot(m->n, x, x)), x);
+    return bough_ok();
+}
+
+// -- Arnoldi --------------------------------------------------------------------------------------
+
+static bough_status arnoldi(map *m) {
+    int n = m->n, most = m->dimension;
+    for (int j = 0; j < most; j++) {
+        double *next = m->basis + (size_t)(j + 1) * (size_t)n;
+        bough_status status = apply_weighted(m, m->repeat, next - n, next);
+        if (!bough_is_ok(&status)) return status;
+        double before = sqrt(dot(n, next, next));
+        for (int pass = 0; pass < 2; pass++) {
+            for (int i = 0; i <= j; i++) {
+                const double *q = m->basis + (size_t)i * (size_t)n;
+                double h = dot(n, q, next);
+                m->hessenberg[j * most + i] += h;
+                add(n, -h, q, next);
+            }
+        }
+        m->below[j] = sqrt(dot(n, next, next));
+        if (!(m->below[j] > 1e-12 * before)) { // the space is complete
+            m->below[j] = 0;
+            m->dimension = j + 1;
+            break;
+        }
+        divide(n, m->below[j], next);
+    }
+    return bough_ok();
+}
+
+// The Hessenberg matrix of the dimension reached, packed for the eigenvalue solver.
+static void pack(map *m, int most) {
+    int n = m->dimension;
+    for (int j = 0; j < n; j++) {
+        for (int i = 0; i < n; i++) {
+            double h = i <= j ? m->hessenberg[j * most + i] : i == j + 1 ? m->below[j] : 0;
+            m->hessenberg[j * n + i] = h;
+        }
+    }
+}
+
+// x (n) = basis · column of the eigenvectors
+static void ritz_vector(const map *m, int column, double *x) {
+    memset(x, 0, (size_t)m->n * sizeof(double));
+    for (int j = 0; j < m->dimension; j++) {
+        add(m->n, m->vector[column * m->dimension + j], m->basis + (size_t)j * (size_t)m->n, x);
+    }
+}
+
+// -- verdict --------------------------------------------------------------------------------------
+
+// An eigenvalue of the Hessenberg matrix: first column of its vector and how well it is found.
+typedef struct ritz {
+    int column;
+    bool pair;
+    double modulus, residual;
+} ritz;
+
+// Whether it is known well enough to say on which side of 1 it lies. Unfinished values of the many
+// slow modes may exceed 1 by a little.
+static bool settled(const ritz *r) {
+    return r->residual < 0.3 * fabs(r->modulus - 1) && r->residual < 0.05;
+}
+
+static ritz ritz_value(const map *m, int column) {
+    int n = m->dimension;
+    const double *last = m->vector + column * n + n - 1;
+    ritz r = {.column = column, .pair = m->value[n + column] != 0};
+    r.modulus = hypot(m->value[column], m->value[n + column]);
+    r.residual = m->below[n - 1] * (r.pair ? hypot(last[0], last[n]) : fabs(last[0]));
+    return r;
+}
+
+// The member of the vector's largest part, of those that hang on an interface.
+static int largest_body(const map *m, const double *real, const double *imaginary) {
+    const bough_assembly *a = &m->assembly;
+    double largest = -1;
+    int body = 0;
+    for (int k = 0; k < a->n_interface; k++) {
+        int i = a->interface[k].body, first = a->state_offset[i], count = a->member[i]->n_state;
+        double part = dot(count, real + first, real + first) +
+                      dot(count, imaginary + first, imaginary + first);
+        if (part <= 1.01 * largest) continue; // of equals the first
+        largest = part;
+        body = i;
+    }
+    return body;
+}
+
+// One macro step of the vector x: λ = xᴴ M x / xᴴ x, whose angle is not folded over.
+static bough_status refine(map *m, const ritz *r, bough_stability *result) {
+    int n = m->n;
+    double *real = m->pair, *imaginary = m->pair + n;
+    memset(imaginary, 0, (size_t)n * sizeof(double));
+    ritz_vector(m, r->column, real);
+    if (r->pair) ritz_vector(m, r->column + 1, imaginary);
+    bough_status status = apply_weighted(m, 1, real, m->image);
+    if (!bough_is_ok(&status)) return status;
+    double a = dot(n, real, m->image), b = -dot(n, imaginary, m->image);
+    if (r->pair) status = apply_weighted(m, 1, imaginary, m->image);
+    if (!bough_is_ok(&status)) return status;
+    if (r->pair) {
+        a += dot(n, imaginary, m->image);
+        b += dot(n, real, m->image);
+    }
+    double time = m->repeat * m->macro_step;
+    result->growth = log(r->modulus) / time;
+    result->frequency = fabs(atan2(b, a)) / (2 * BOUGH_PI * m->macro_step);
+    result->body = largest_body(m, real, imaginary);
+    return bough_ok();
+}
+
+static int descending(const void *a, const void *b) {
+    double x = ((const ritz *)a)->modulus, y = ((const ritz *)b)->modulus;
+    return (x < y) - (x > y);
+}
+
+// The fastest growing oscillation among the eigenvalues. What grows by more than it turns is no
+// oscillation: a free rotation, whose double eigenvalue 1 splits by rounding, or a fall.
+static bough_status choose(map *m, bough_stability *result) {
+    ritz found[DIMENSION];
+    int count = 0;
+    for (int k = 0; k < m->dimension; k++) {
+        ritz r = ritz_value(m, k);
+        if (r.pair) k++;
+        if (settled(&r)) found[count++] = r;
+    }
+    qsort(found, (size_t)count, sizeof *found, descending);
+    *result = (bough_stability){.growth = -1 / (m->repeat * m->macro_step)};
+    for (int k = 0; k < count; k++) {
+        bough_status status = refine(m, &found[k], result);
+        if (!bough_is_ok(&status) || 2 * BOUGH_PI * result->frequency > result->growth) {
+            return status;
+        }
+    }
+    return bough_ok();
+}
+
+static bough_status judge(map *m, const bough_assembly *a, const bough_scheme_options *options,
+                          bough_stability *result) {
+    bough_status status = build(m, a, options);
+    if (bough_is_ok(&status)) status = start(m);
+    if (!bough_is_ok(&status)) return status;
+    int most = m->dimension;
+    status = arnoldi(m);
+    if (!bough_is_ok(&status)) return status;
+    pack(m, most);
+    if (!bough_dense_eigen(m->dimension, m->hessenberg, m->value, m->vector, m->work)) {
+        return bough_fail(BOUGH_FAILED, "the eigenvalues of the coupling were not found");
+    }
+    return choose(m, result);
+}
+
+bough_status bough_stability_judge(const bough_assembly *a, const bough_scheme_options *options,
+                                   double macro_step, bough_stability *result) {
+    if (strcmp(options->name, bough_scheme_monolithic.name) == 0) {
+        return bough_fail(BOUGH_INVALID, "the monolithic scheme has no coupling to judge");
+    }
+    map m = {.arena = bough_arena_create(), .macro_step = macro_step};
+    if (!m.arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_status status = judge(&m, a, options, result);
+    bough_arena_destroy(m.arena);
+    return status;
+}
+
+// -- advice ---------------------------------------------------------------------------------------
+
+bool bough_stability_grows(const bough_stability *s) {
+    return s->growth > threshold;
+}
+
+// Judges an alternative; true when it holds. The least growth seen is kept.
+static bool holds(const bough_assembly *a, const bough_scheme_options *options, double macro_step,
+                  double *least) {
+    bough_stability other = {0};
+    bough_status status = bough_stability_judge(a, options, macro_step, &other);
+    if (!bough_is_ok(&status)) return false;
+    *least = fmin(*least, other.growth);
+    return !bough_stability_grows(&other);
+}
+
+bough_status bough_stability_advise(const bough_assembly *a, const bough_scheme_options *options,
+                                    double macro_step, bough_stability_advice *advice) {
+    // divisors, so that periods which are multiples of the macro step stay so; stability need not
+    // be monotone in the macro step, so none is skipped
+    static const int divisor[] = {2, 3, 4, 5, 6, 8, 10, 12, 16};
+    *advice = (bough_stability_advice){0};
+    bough_status status = bough_stability_judge(a, options, macro_step, &advice->now);
+    if (!bough_is_ok(&status) || !bough_stability_grows(&advice->now)) return status;
+    bough_scheme_options ramp = *options;
+    ramp.name = bough_scheme_ramp.name;
+    ramp.theta = 0;
+    double least = advice->now.growth;
+    advice->ramp_holds = holds(a, &ramp, macro_step, &least);
+    for (size_t k = 0; k < sizeof divisor / sizeof *divisor && advice->macro_step == 0; k++) {
+        double smaller = macro_step / divisor[k];
+        if (holds(a, options, smaller, &least)) advice->macro_step = smaller;
+    }
+    // what grows as fast whatever the coupling does is the mechanics' own
+    advice->unstable = advice->now.growth > 2 * least;
+    return status;
+}
+
+void bough_stability_describe(const bough_assembly *a, const bough_stability_advice *advice,
+                              const bough_scheme_options *options, double macro_step, char *text) {
+    text[0] = 0;
+    if (!advice->unstable) return;
+    int length = snprintf(text, BOUGH_VERDICT,
+                          "scheme %s at a macro step of %.6g s is unstable without the damping of "
+                          "outer loads: %.3g Hz in %.40s grow by %.3g per second",
+                          options->name, macro_step, advice->now.frequency,
+                          a->member[advice->now.body]->name, advice->now.growth);
+    if (advice->macro_step > 0) {
+        length += snprintf(text + length, (size_t)(BOUGH_VERDICT - length),
+                           "; macro_step: %.4g s holds", advice->macro_step);
+    }
+    if (advice->ramp_holds) {
+        snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: ramp holds");
+    }
+}
