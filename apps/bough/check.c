@@ -86,7 +86,7 @@ static void print_bodies(const bough_simulation *s) {
            plural(tree->n_q + tree->n_v), tree->n_q, tree->n_v, s->trunk.solver,
            s->scene->simulation.master.rtol);
     printf("states: %d\n", s->master->assembly->n_state);
-    printf("loads: %d\n", tree->n_loads);
+    printf("loads: %d\n", s->scene->n_load);
 }
 
 // -- coupling -------------------------------------------------------------------------------------

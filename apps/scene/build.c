@@ -1,6 +1,7 @@
 #include "apps/scene/build.h"
 
 #include "apps/scene/aero_link.h"
+#include "apps/scene/load_link.h"
 #include "core/tree_subsystem.h"
 #include "flexbody/section.h"
 
@@ -14,7 +15,8 @@ typedef struct builder {
     bough_body_def *body;          // (n_body): the tree's body i is the scene's body i
     bough_marker_def *marker;      // (n_beam)
     bough_port_def *port;          // (n_rod)
-    bough_joint_load_def *load;    // (n_load)
+    bough_joint_load_def *load;    // (n_load): those on joints
+    int n_load;
     bough_member *member;          // trunk, then rods
     bough_connection *connection;  // two per rod
     double *event;                 // two per load and two for the aerodynamics
@@ -193,9 +195,10 @@ static void add_ramp(builder *b, const double ramp[2]) {
 static void set_loads(builder *b) {
     for (int k = 0; k < b->scene->n_load; k++) {
         const bough_scene_load *load = &b->scene->load[k];
-        b->load[k] = (bough_joint_load_def){load->joint, load->amount, load->ramp[0],
-                                            load->ramp[1]};
         add_ramp(b, load->ramp);
+        if (load->body_name != NULL) continue;
+        b->load[b->n_load++] = (bough_joint_load_def){load->joint, load->amount, load->ramp[0],
+                                                      load->ramp[1]};
     }
     if (b->scene->aero.node != NULL) add_ramp(b, b->scene->aero.ramp);
 }
@@ -210,7 +213,7 @@ static bough_status build_tree(builder *b) {
                           .n_bodies = scene->n_body,
                           .n_markers = s->n_beam,
                           .n_ports = s->n_rod,
-                          .n_loads = scene->n_load,
+                          .n_loads = b->n_load,
                           .bodies = b->body,
                           .markers = b->marker,
                           .ports = b->port,
@@ -321,6 +324,7 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
     if (bough_is_ok(&status)) status = build_rods(&b);
     connect(&b);
     if (bough_is_ok(&status)) bough_simulation_update(b.s);
+    if (bough_is_ok(&status)) status = bough_load_link_build(arena, b.s);
     if (bough_is_ok(&status) && scene->aero.node != NULL) {
         status = bough_aero_link_build(arena, b.s, &b.s->aero);
     }

@@ -139,13 +139,36 @@ typedef struct bough_scene_body {
     bough_scene_rod rod;      // fidelity rod, or rigid: integrated to a rigid body
 } bough_scene_body;
 
-// Factor in time: 0 before ramp[0], 1 after ramp[1], linear between; {0, 0}: always 1.
+typedef enum bough_scene_load_frame {
+    BOUGH_SCENE_LOAD_GROUND,   // ground axes; the rod's root must be at rest
+    BOUGH_SCENE_LOAD_BODY,     // axes of the body's frame
+    BOUGH_SCENE_LOAD_FOLLOWER, // section axes, with which the load turns
+} bough_scene_load_frame;
+
+// Where a load acts on a rod, in arc length.
+typedef enum bough_scene_load_place {
+    BOUGH_SCENE_AT_TIP,
+    BOUGH_SCENE_AT_VERTEX,
+    BOUGH_SCENE_AT_SPAN,
+    BOUGH_SCENE_ALONG, // distributed
+} bough_scene_load_place;
+
+// On a joint, or on a rod. Factor in time: 0 before ramp[0], 1 after ramp[1], linear between; {0, 0}:
+// always 1.
 typedef struct bough_scene_load {
     const bough_node *node;
-    const char *joint_name;
-    int joint;      // index of the body that the joint carries
-    double amount;  // torque [N m] of a revolute joint, force [N] of a prismatic one
-    double ramp[2]; // [s]
+    const char *joint_name; // NULL: the load acts on a rod
+    int joint;              // index of the body that the joint carries
+    double amount;          // torque [N m] of a revolute joint, force [N] of a prismatic one
+    const char *body_name;  // NULL: the load acts on a joint
+    int body;               // index of a body with fidelity rod
+    int place;              // bough_scene_load_place
+    int vertex;             // AT_VERTEX: 0 is the root
+    double span[2];         // AT_SPAN: the first; ALONG: from, to [m]
+    double force[3];        // [N]; ALONG: [N/m]
+    double moment[3];       // [N m]; ALONG: [N m/m]
+    int frame;              // bough_scene_load_frame
+    double ramp[2];         // [s]
 } bough_scene_load;
 
 typedef struct bough_scene_turbine {

@@ -195,7 +195,7 @@ static void link_bodies(bough_schema_reader *r, bough_scene *s) {
 // -- loads and turbine
 // ------------------------------------------------------------------------------
 
-static void link_load(bough_schema_reader *r, const bough_scene *s, bough_scene_load *load) {
+static void link_joint_load(bough_schema_reader *r, const bough_scene *s, bough_scene_load *load) {
     const bough_node *joint = value_of(load->node, "joint");
     load->joint = resolve(r, s, joint, "joint", load->joint_name);
     if (load->joint < 0) return;
@@ -213,6 +213,16 @@ static void link_load(bough_schema_reader *r, const bough_scene *s, bough_scene_
     if (given != NULL) {
         bough_schema_error(r, given, wrong, "the joint of '%s' is %s: give a %s", load->joint_name,
                            revolute ? "revolute" : "prismatic", revolute ? "torque" : "force");
+    }
+}
+
+static void link_load(bough_schema_reader *r, const bough_scene *s, bough_scene_load *load) {
+    load->joint = load->body = UNRESOLVED;
+    if (load->body_name != NULL) {
+        load->body = resolve(r, s, value_of(load->node, "body"), "body", load->body_name);
+        if (load->body >= 0) bough_scene_check_rod_load(r, s, load);
+    } else {
+        link_joint_load(r, s, load);
     }
 }
 

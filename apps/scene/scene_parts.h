@@ -14,6 +14,9 @@ void bough_scene_read_axis_offset(bough_schema_reader *r, const bough_node *node
 void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
 
 // Checks within one mapping or file; `item` is the struct that was read.
 void bough_scene_check_structure(bough_schema_reader *r, void *item);
@@ -24,6 +27,10 @@ void bough_scene_check_polars(bough_schema_reader *r, void *item);
 void bough_scene_check_tower(bough_schema_reader *r, void *item);
 void bough_scene_check_load(bough_schema_reader *r, void *item);
 void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]);
+
+// Checks a load against the rod, load->body, that it acts on.
+void bough_scene_check_rod_load(bough_schema_reader *r, const bough_scene *scene,
+                                const bough_scene_load *load);
 
 // Resolves names and checks what spans several parts of the scene.
 void bough_scene_link(bough_schema_reader *r, bough_scene *scene);

@@ -203,12 +203,26 @@ static const bough_schema simulation_schema = {
 
 #define AT(member) .offset = offsetof(bough_scene_load, member)
 static const bough_key load_keys[] = {
-    {.name = "joint", .kind = BOUGH_KEY_TEXT, .required = true, AT(joint_name),
-     .help = "name of the body that the joint carries"},
+    {.name = "joint", .kind = BOUGH_KEY_TEXT, AT(joint_name),
+     .help = "loads a joint: name of the body that the joint carries"},
     {.name = "torque", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_MOMENT, AT(amount),
      .help = "about the axis of a revolute joint"},
-    {.name = "force", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_FORCE, AT(amount),
-     .help = "along the axis of a prismatic joint"},
+    {.name = "body", .kind = BOUGH_KEY_TEXT, AT(body_name),
+     .help = "loads a rod: name of the body"},
+    {.name = "at", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_place,
+     .form = "tip, a vertex' number or a length as '30 m'", .offset = 0,
+     .help = "where on the rod, counted from the root"},
+    {.name = "along", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_LENGTH,
+     .range = ">= 0", AT(span), .help = "in place of 'at': from where to where the load is spread"},
+    {.name = "force", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_force,
+     .form = "number in N, or 3 numbers in N, in N/m with 'along'", .offset = 0,
+     .help = "along the axis of a prismatic joint, or on the rod"},
+    {.name = "moment", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_moment,
+     .form = "3 numbers in N m, in N m/m with 'along'", .offset = 0, .help = "on the rod"},
+    {.name = "frame", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("ground", "body", "follower"),
+     .fallback = "ground", AT(frame),
+     .help = "axes of a rod's load: ground (of rods whose root does not move), body, or follower: "
+             "section axes, with which it turns"},
     RAMP(bough_scene_load),
 };
 #undef AT
@@ -371,7 +385,7 @@ static const bough_key scene_keys[] = {
     {.name = "bodies", .kind = BOUGH_KEY_LIST, .of = &body_schema, .count = 1, .required = true,
      AT(body), .count_offset = offsetof(bough_scene, n_body), .help = "the tree of bodies"},
     {.name = "loads", .kind = BOUGH_KEY_LIST, .of = &load_schema, AT(load),
-     .count_offset = offsetof(bough_scene, n_load), .help = "constant loads on joints"},
+     .count_offset = offsetof(bough_scene, n_load), .help = "loads on joints and rods"},
     {.name = "turbine", .kind = BOUGH_KEY_MAPPING, .of = &turbine_schema, AT(turbine),
      .help = "names what channels and aerodynamics need"},
     {.name = "aero", .kind = BOUGH_KEY_MAPPING, .of = &aero_schema, AT(aero),

@@ -298,7 +298,7 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
     }
 }
 
-// -- rods and loads
+// -- rods and ramps
 // ---------------------------------------------------------------------------------
 
 // A table, or a uniform section given here, never parts of both.
@@ -339,15 +339,4 @@ void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, cons
         bough_schema_error(r, given, "ramp", "must end after it starts, got [%g s, %g s]", ramp[0],
                            ramp[1]);
     }
-}
-
-void bough_scene_check_load(bough_schema_reader *r, void *item) {
-    const bough_scene_load *load = item;
-    const bough_node *torque = bough_node_find(load->node, "torque");
-    const bough_node *force = bough_node_find(load->node, "force");
-    if ((torque == NULL) == (force == NULL)) {
-        bough_schema_error(r, load->node, "", "expected either 'torque' or 'force'%s",
-                           torque == NULL ? "" : ", got both");
-    }
-    bough_scene_check_ramp(r, load->node, load->ramp);
 }

@@ -22,6 +22,8 @@ typedef enum bough_dimension {
     BOUGH_FORCE,
     BOUGH_MOMENT,
     BOUGH_STIFFNESS,
+    BOUGH_LINE_FORCE,
+    BOUGH_LINE_MOMENT,
 } bough_dimension;
 
 // How a value is written, and what its field in the struct is.

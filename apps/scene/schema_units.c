@@ -61,6 +61,8 @@ static const struct {
     [BOUGH_FORCE] = {"a force", "N", "12 kN", {1, 1, -2, 0}},
     [BOUGH_MOMENT] = {"a moment", "N m", "11.9 MN m", {2, 1, -2, 0}},
     [BOUGH_STIFFNESS] = {"a stiffness", "N/m", "3 kN/m", {0, 1, -2, 0}},
+    [BOUGH_LINE_FORCE] = {"a force per length", "N/m", "2 kN/m", {0, 1, -2, 0}},
+    [BOUGH_LINE_MOMENT] = {"a moment per length", "N m/m", "5 kN m/m", {1, 1, -2, 0}},
 };
 
 const char *bough_dimension_unit(bough_dimension dimension) { return dimensions[dimension].si; }

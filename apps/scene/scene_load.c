@@ -1,0 +1,177 @@
+// Loads of a scene: on a joint's axis, or on a rod at a place or along a stretch.
+#include "apps/scene/scene_parts.h"
+
+#include "apps/scene/schema_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+// -- reading --------------------------------------------------------------------------------------
+
+// field: the load
+void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_load *load = field;
+    const char *text = node->kind == BOUGH_SCALAR ? node->text : "";
+    char shown[64], why[160] = "";
+    double plain;
+    load->place = BOUGH_SCENE_AT_TIP;
+    if (strcmp(text, "tip") == 0) return;
+    load->place = BOUGH_SCENE_AT_VERTEX;
+    if (bough_whole_number(text, &load->vertex)) return;
+    load->place = BOUGH_SCENE_AT_SPAN;
+    bool unit = !bough_quantity(text, BOUGH_PURE_NUMBER, &plain, why);
+    if (unit && bough_quantity(text, BOUGH_LENGTH, &load->span[0], why)) return;
+    bough_schema_error(r, node, "", "expected 'tip', the number of a vertex or a length with its "
+                       "unit, as '30 m', got %s", bough_node_shown(node, shown));
+}
+
+static bool is_spread(const bough_scene_load *load) {
+    return bough_node_find(load->node, "along") != NULL;
+}
+
+// Three numbers, with or without a unit.
+static void read_three(bough_schema_reader *r, const bough_node *node, bough_dimension dimension,
+                       double *values) {
+    char shown[64];
+    size_t length = strlen(r->path);
+    if (node->kind != BOUGH_SEQUENCE || node->n != 3) {
+        bough_schema_error(r, node, "", "expected a list of 3 numbers, got %s",
+                           bough_node_shown(node, shown));
+        return;
+    }
+    for (int i = 0; i < 3; i++) {
+        snprintf(r->path + length, sizeof r->path - length, "[%d]", i);
+        values[i] = bough_schema_number(r, node->value[i], dimension);
+        r->path[length] = '\0';
+    }
+}
+
+void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_load *load = field;
+    if (bough_node_find(load->node, "body") == NULL) {
+        load->amount = bough_schema_number(r, node, BOUGH_FORCE);
+    } else {
+        read_three(r, node, is_spread(load) ? BOUGH_LINE_FORCE : BOUGH_FORCE, load->force);
+    }
+}
+
+void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_load *load = field;
+    read_three(r, node, is_spread(load) ? BOUGH_LINE_MOMENT : BOUGH_MOMENT, load->moment);
+}
+
+// -- checks within a load -------------------------------------------------------------------------
+
+// Exactly one of two keys must be given.
+static bool check_either(bough_schema_reader *r, const bough_node *load, const char *a,
+                         const char *b) {
+    const bough_node *first = bough_node_find(load, a), *second = bough_node_find(load, b);
+    if ((first == NULL) != (second == NULL)) return true;
+    bough_schema_error(r, load, "", "expected either '%s' or '%s'%s", a, b,
+                       first == NULL ? "" : ", got both");
+    return false;
+}
+
+static void refuse_keys(bough_schema_reader *r, const bough_node *load, const char *const *keys,
+                        const char *with) {
+    for (; *keys != NULL; keys++) {
+        const bough_node *given = bough_node_find(load, *keys);
+        if (given != NULL) bough_schema_error(r, given, *keys, "only used with '%s'", with);
+    }
+}
+
+static void check_joint_keys(bough_schema_reader *r, const bough_node *load) {
+    static const char *const of_rods[] = {"at", "along", "moment", "frame", NULL};
+    check_either(r, load, "torque", "force");
+    refuse_keys(r, load, of_rods, "body");
+}
+
+static void check_rod_keys(bough_schema_reader *r, bough_scene_load *load) {
+    static const char *const of_joints[] = {"torque", NULL};
+    refuse_keys(r, load->node, of_joints, "joint");
+    if (!check_either(r, load->node, "at", "along")) return;
+    if (bough_node_find(load->node, "force") == NULL &&
+        bough_node_find(load->node, "moment") == NULL) {
+        bough_schema_error(r, load->node, "", "expected a 'force' or a 'moment' or both");
+    }
+    if (!is_spread(load)) return;
+    load->place = BOUGH_SCENE_ALONG;
+    if (load->span[1] > load->span[0]) return;
+    bough_schema_error(r, bough_node_find(load->node, "along"), "along",
+                       "must end after it starts, got [%g m, %g m]", load->span[0], load->span[1]);
+}
+
+void bough_scene_check_load(bough_schema_reader *r, void *item) {
+    bough_scene_load *load = item;
+    if (!check_either(r, load->node, "joint", "body")) return;
+    if (load->body_name == NULL) {
+        check_joint_keys(r, load->node);
+    } else {
+        check_rod_keys(r, load);
+    }
+    bough_scene_check_ramp(r, load->node, load->ramp);
+}
+
+// -- checks against the rod -----------------------------------------------------------------------
+
+static double arc_length(const bough_scene_structure *s) {
+    double sum = 0;
+    if (s->n_station == 1) return s->length;
+    for (int k = 1; k < s->n_station; k++) {
+        const double *a = s->station[k - 1].position, *b = s->station[k].position;
+        sum += sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) +
+                    (b[2] - a[2]) * (b[2] - a[2]));
+    }
+    return sum;
+}
+
+// The place must be on the rod, up to rounding of its length.
+static void check_place(bough_schema_reader *r, const bough_scene_load *load,
+                        const bough_scene_rod *rod) {
+    const bough_node *at = bough_node_find(load->node, "at");
+    const bough_node *along = bough_node_find(load->node, "along");
+    double length = arc_length(&rod->structure), most = length * (1 + 1e-9);
+    if (load->place == BOUGH_SCENE_AT_VERTEX && at != NULL &&
+        (load->vertex < 0 || load->vertex > rod->n_segment)) {
+        bough_schema_error(r, at, "at", "'%s' has the vertices 0 to %d, got %d", load->body_name,
+                           rod->n_segment, load->vertex);
+    }
+    bool beyond = load->place == BOUGH_SCENE_AT_SPAN &&
+                  (load->span[0] > most || load->span[0] < 0);
+    if (beyond && at != NULL) {
+        bough_schema_error(r, at, "at", "'%s' is %g m long, got %g m", load->body_name, length,
+                           load->span[0]);
+    }
+    if (along != NULL && load->span[1] > most) {
+        bough_schema_error(r, along, "along", "'%s' is %g m long, got %g m", load->body_name,
+                           length, load->span[1]);
+    }
+}
+
+// The name of a body below `body` or itself whose joint moves; NULL when there is none.
+static const char *moving_joint(const bough_scene *scene, int body) {
+    for (int steps = 0; body >= 0 && steps <= scene->n_body; steps++) {
+        if (scene->body[body].joint.kind > BOUGH_SCENE_FIXED) return scene->body[body].name;
+        body = scene->body[body].joint.parent;
+    }
+    return NULL;
+}
+
+void bough_scene_check_rod_load(bough_schema_reader *r, const bough_scene *scene,
+                                const bough_scene_load *load) {
+    const bough_scene_body *body = &scene->body[load->body];
+    const bough_node *name = bough_node_find(load->node, "body");
+    if (body->fidelity != BOUGH_SCENE_ROD) {
+        if (body->fidelity < 0) return;
+        bough_schema_error(r, name, "body", "'%s' is rigid: loads act on joints and on rods",
+                           load->body_name);
+        return;
+    }
+    if (body->rod.structure.n_station > 0) check_place(r, load, &body->rod);
+    const char *joint = moving_joint(scene, load->body);
+    if (load->frame != BOUGH_SCENE_LOAD_GROUND || joint == NULL) return;
+    const bough_node *frame = bough_node_find(load->node, "frame");
+    bough_schema_error(r, frame == NULL ? name : frame, "frame",
+                       "'%s' moves with the joint of '%s'; loads in ground axes are built for rods "
+                       "at rest: give 'frame: body' or 'frame: follower'", load->body_name, joint);
+}
