@@ -73,7 +73,7 @@ usage() {
     has ../stderr 'bough run SCENE'
     empty ../stdout
     refused "unknown command 'rnu' (did you mean 'run'?)" rnu
-    refused 'known: run, check, help' modes
+    refused 'known: run, check, study, help' modes
     refused "unknown option '--treads' (did you mean '--threads'?)" run "$bar" --treads 2
     refused "unknown option '-x'" run -x "$bar"
     refused "unknown option '--out'" check "$bar" --out x
