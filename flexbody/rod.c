@@ -26,6 +26,7 @@ static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
     m->strain0 = bough_arena_doubles(arena, 6 * s);
     m->stiffness = bough_arena_doubles(arena, 21 * s);
     m->damping = bough_arena_doubles(arena, 21 * s);
+    m->mass = bough_arena_doubles(arena, s);
     m->moment = bough_arena_doubles(arena, 3 * s);
     m->inertia = bough_arena_doubles(arena, 6 * s);
     m->inverse_mass = bough_arena_doubles(arena, 21 * s);
@@ -72,6 +73,7 @@ static bough_status set_vertex(bough_rod_model *m, const bough_rod_def *def, int
     }
     for (int k = 0; k < 21; k++) m->inverse_mass[k * s + i - 1] = inverse[k];
     for (int k = 0; k < 6; k++) m->inertia[k * s + i - 1] = v->inertia[k];
+    m->mass[i - 1] = v->mass;
     m->moment[i - 1] = v->moment.x;
     m->moment[s + i - 1] = v->moment.y;
     m->moment[2 * s + i - 1] = v->moment.z;

@@ -60,6 +60,7 @@ typedef struct bough_rod_model {
     double *strain0;            // V⁰, U⁰ (6 × stride)
     double *stiffness;          // C (21 × stride)
     double *damping;            // D (21 × stride)
+    double *mass;               // of moving vertices (stride) [kg]
     double *moment;             // first moment s = mζ of moving vertices (3 × stride) [kg m]
     double *inertia;            // of moving vertices (6 × stride) [kg m²]
     double *inverse_mass;       // of the 6×6 mass in section axes (21 × stride)

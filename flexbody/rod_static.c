@@ -1,10 +1,14 @@
 #include "flexbody/rod_static.h"
 
+#include "flexbody/rod_linear.h"
+
 #include <string.h>
 
 enum { W8 = 8 };
 
 static const double most_turn = 0.5; // of a vertex in one Newton step [rad]
+
+enum { EASY = 8 }; // iterations of an increment that encourage a larger one
 
 bough_rod_static_options bough_rod_static_options_default(void) {
     return (bough_rod_static_options){1e-10, 1, 12, 30};
@@ -14,10 +18,13 @@ bool bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
     size_t states = (size_t)BOUGH_ROD_STATES * m->n;
     bool ok = bough_rod_scratch_init(&work->scratch, arena, m);
     ok = bough_rod_tangent_init(&work->tangent, arena, m) && ok;
+    ok = bough_rod_blocks_init(&work->blocks, arena, m) && ok;
     ok = bough_rod_loads_init(&work->scaled, arena, m) && ok;
     work->rate = bough_arena_doubles(arena, states);
     work->trial = bough_arena_doubles(arena, states);
     work->step = bough_arena_doubles(arena, (size_t)W8 * m->n);
+    work->follower.follower = true;
+    work->follower.value = bough_arena_doubles(arena, 6 * (size_t)m->stride);
     return ok && !bough_arena_exhausted(arena);
 }
 
@@ -32,7 +39,7 @@ static double residual(const bough_rod_model *m, bough_rod_static *w, double ref
         const double minus[W8] = {-a[i],         -a[n + i],     -a[2 * n + i], -a[3 * n + i],
                                   -a[4 * n + i], -a[5 * n + i], 0,             0};
         memset(row, 0, W8 * sizeof *row);
-        bough_block_subtract(w->tangent.mass + (size_t)i * BOUGH_BLOCK, minus, row);
+        bough_block_subtract(w->blocks.mass + (size_t)i * BOUGH_BLOCK, minus, row);
         for (int c = 0; c < 6; c++) largest = fmax(largest, fabs(row[c]));
     }
     return largest / reference;
@@ -77,64 +84,84 @@ static double update(const bough_rod_model *m, const double *step, double *state
     return fmax(turn, shift);
 }
 
-// −K δq = residual, in place in step.
-static bool newton_step(bough_rod_static *w) {
-    bough_block_tridiagonal *k = &w->tangent.position, *a = &w->tangent.matrix;
-    size_t count = (size_t)k->n * BOUGH_BLOCK;
-    for (size_t j = 0; j < count; j++) {
-        a->lower[j] = -k->lower[j];
-        a->diagonal[j] = -k->diagonal[j];
-        a->upper[j] = -k->upper[j];
-    }
+// K δq = residual, in place in step.
+static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const double *state) {
+    bough_block_tridiagonal *a = &w->tangent.matrix;
+    bough_rod_linear_stiffness(m, &w->tangent, state, a);
     if (!bough_block_tridiagonal_factor(a)) return false;
     bough_block_tridiagonal_solve(a, w->step);
     return true;
 }
 
 // Newton's method under w->scaled. False when it does not converge.
-static bool converge(const bough_rod_model *m, bough_vec3 gravity,
+static bool converge(const bough_rod_model *m, const double *input,
                      const bough_rod_static_options *options, bough_rod_static *w, double *state) {
-    const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, gravity.x, gravity.y, gravity.z};
     for (int k = 0; k < options->iterations; k++) {
         w->iterations++;
+        bough_rod_ride(m, input, state);
         if (!bough_rod_linearise(m, &w->scaled, 0, state, input, &w->scratch, &w->tangent)) {
             return false;
         }
         bough_rod_derivative(m, &w->scaled, 0, state, input, &w->scratch, w->rate);
         if (residual(m, w, magnitude(m, w)) < options->tolerance) return true;
-        if (!newton_step(w)) return false;
+        if (!newton_step(m, w, state)) return false;
         // rounding in a stiff rod keeps the residual up; then the steps tell
-        if (update(m, w->step, state) < options->tolerance) return true;
+        if (update(m, w->step, state) < options->tolerance) {
+            bough_rod_ride(m, input, state);
+            return true;
+        }
     }
     return false;
 }
 
 static void scale_loads(const bough_rod_model *m, const bough_rod_loads *loads, double share,
                         bough_rod_static *w) {
-    for (int k = 0; k < 6 * m->stride; k++) w->scaled.value[k] = share * loads->value[k];
+    int count = 6 * m->stride;
+    for (int k = 0; k < count; k++) w->scaled.value[k] = share * loads->value[k];
+    memset(w->follower.value, 0, (size_t)count * sizeof(double));
+    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        double *to = l->follower ? w->follower.value : w->scaled.value;
+        for (int k = 0; k < count; k++) to[k] += share * l->value[k];
+    }
+    w->scaled.ramped = bough_rod_loads_follow(loads) ? &w->follower : NULL;
+}
+
+// Centrifugal forces grow with the square of the twist.
+static void scale_input(const double *input, double share, double *scaled) {
+    for (int k = 0; k < BOUGH_ROD_INPUTS; k++) {
+        scaled[k] = (k < BOUGH_ROD_INPUTS - 3 ? sqrt(share) : share) * input[k];
+    }
+}
+
+bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *loads,
+                              const double *input, const bough_rod_static_options *options,
+                              bough_rod_static *work, double *state) {
+    size_t bytes = (size_t)BOUGH_ROD_STATES * m->n * sizeof *state;
+    double reached = 0, largest = 1.0 / options->increments, increment = largest;
+    double least = ldexp(largest, -options->halvings);
+    work->iterations = 0;
+    while (reached < 1) {
+        double target = fmin(reached + increment, 1), scaled[BOUGH_ROD_INPUTS];
+        int before = work->iterations;
+        scale_loads(m, loads, target, work);
+        scale_input(input, target, scaled);
+        memcpy(work->trial, state, bytes);
+        if (converge(m, scaled, options, work, work->trial)) {
+            memcpy(state, work->trial, bytes);
+            reached = target;
+            if (work->iterations - before <= EASY) increment = fmin(2 * increment, largest);
+        } else if ((increment /= 2) < least) {
+            return bough_fail(BOUGH_FAILED, "rod %s: no static equilibrium found beyond %.4g %% of"
+                              " the load; the rod may buckle there, or more segments are needed",
+                              m->name, 100 * reached);
+        }
+    }
+    return bough_ok();
 }
 
 bough_status bough_rod_equilibrium(const bough_rod_model *m, const bough_rod_loads *loads,
                                    bough_vec3 gravity, const bough_rod_static_options *options,
                                    bough_rod_static *work, double *state) {
-    size_t bytes = (size_t)BOUGH_ROD_STATES * m->n * sizeof *state;
-    memset(state + (size_t)BOUGH_ROD_U * m->n, 0, 6 * (size_t)m->n * sizeof *state);
-    double reached = 0, increment = 1.0 / options->increments;
-    work->iterations = 0;
-    for (int halvings = 0; reached < 1;) {
-        double target = fmin(reached + increment, 1);
-        scale_loads(m, loads, target, work);
-        memcpy(work->trial, state, bytes);
-        if (converge(m, bough_scale(target, gravity), options, work, work->trial)) {
-            memcpy(state, work->trial, bytes);
-            reached = target;
-        } else if (++halvings > options->halvings) {
-            return bough_fail(BOUGH_FAILED, "rod %s: no static equilibrium found beyond %.4g %% of"
-                              " the load; the rod may buckle there, or more segments are needed",
-                              m->name, 100 * reached);
-        } else {
-            increment /= 2;
-        }
-    }
-    return bough_ok();
+    const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, gravity.x, gravity.y, gravity.z};
+    return bough_rod_steady(m, loads, input, options, work, state);
 }

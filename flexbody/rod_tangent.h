@@ -2,35 +2,50 @@
 // solution of (I − γ ∂f/∂y) x = b through the 6×6 block-tridiagonal system in the velocities
 //     (M − γ(Dᵥ + γ K A)) δv = M r_v + γ K A r_q,
 // K, Dᵥ the tangents of force with respect to configuration and velocity, A the elimination of the
-// configuration increments.
+// configuration increments. Tangents are kept per segment and per vertex as structures of arrays;
+// blocks are formed only for factoring.
 #ifndef BOUGH_FLEXBODY_ROD_TANGENT_H
 #define BOUGH_FLEXBODY_ROD_TANGENT_H
 
 #include "core/block_tridiagonal.h"
 #include "flexbody/rod.h"
 
-// A linearisation and its factorisation; several may exist for one rod.
+// A linearisation and its factorisation; several may exist for one rod. Arrays over segments and
+// vertices have the model's stride; moving vertex v is at index v = 1..n.
 typedef struct bough_rod_tangent {
     // computed by bough_rod_linearise
-    double *variation; // tangents of segment forces: (9 forces × 18 directions × stride)
-    bough_block_tridiagonal position; // ∂(vertex force)/∂(x, φ); row 0's lower: the root's
-    bough_block_tridiagonal velocity; // ∂(vertex force)/∂(u, W)
-    double *mass;                     // (11) with force in BRF axes (n × block)
-    double *vertex;                   // x p(state, not normalised) u W and R of each vertex
-    bough_vec3 omega;                 // of the BRF
+    double *variation;      // of segment forces (2 × 9 directions × 9 forces × stride)
+    double *mass;           // (11) with force in BRF axes (36 × stride)
+    double *local_velocity; // tangents of a vertex' own terms, by u, W (36 × stride)
+    double *local_position; // by rotation (18 × stride)
+    double *vertex;         // see rod_tangent.c
+    bough_vec3 omega;       // of the BRF
+    double *rate;           // f (13 × stride)
     // computed by bough_rod_factor
     double gamma;
-    double *eliminate; // A (n × block)
+    double *combined;       // γ(Dᵥ + γ K A) of segments (9 × 9 × stride)
     bough_block_tridiagonal matrix;
-    double *work; // (4 × n × 8)
+    double *work;           // of a solution
+    double *packed;         // (n × 8)
 } bough_rod_tangent;
 
+// The tangents as blocks, for statics and eigenvalues: M v̇ = K δq + Dᵥ δv.
+typedef struct bough_rod_blocks {
+    bough_block_tridiagonal position; // K: ∂(vertex force)/∂(x, φ)
+    bough_block_tridiagonal velocity; // Dᵥ: ∂(vertex force)/∂(u, W)
+    double *mass;                     // (n × block)
+} bough_rod_blocks;
+
 bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m);
+bool bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m);
 
 // Tangents at a state. False when they are not finite there.
 bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                          const double *state, const double *input, bough_rod_scratch *scratch,
                          bough_rod_tangent *k);
+
+// The blocks of the last linearisation.
+void bough_rod_assemble(const bough_rod_model *m, const bough_rod_tangent *k, bough_rod_blocks *b);
 
 // Factors I − γ ∂f/∂y of the last linearisation. False when singular.
 bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma);
