@@ -2,6 +2,7 @@
 #include "apps/bough/verb.h"
 
 #include <errno.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -50,16 +51,20 @@ static bough_status end_output(bough_status status) {
                       errno ? strerror(errno) : "an earlier write failed");
 }
 
-// GNU OpenMP's threads wait spinning for up to 15 ms, longer than a hundred macro steps: on a busy
-// machine a run on two threads took ten times as long as on one. The limit is read from the
-// environment before main begins, so the program starts itself once more with it.
-static void limit_spinning(char **argv) {
-    if (getenv("GOMP_SPINCOUNT") || getenv("OMP_WAIT_POLICY")) return;
-    if (setenv("GOMP_SPINCOUNT", "10000", 1) == 0) execv("/proc/self/exe", argv);
+// Two libraries read from the environment, before main begins, how their threads wait; so the
+// program sets what the user has not and starts itself once more. GNU OpenMP's threads spin for up
+// to 15 ms, a hundred macro steps: on a busy machine a run on two threads took ten times as long as
+// on one. OpenBLAS starts threads that we never use and that spin at first.
+static void quiet_threads(char **argv) {
+    bool openmp = !getenv("GOMP_SPINCOUNT") && !getenv("OMP_WAIT_POLICY");
+    bool blas = !getenv("OPENBLAS_NUM_THREADS");
+    if (openmp && setenv("GOMP_SPINCOUNT", "10000", 1) != 0) return;
+    if (blas && setenv("OPENBLAS_NUM_THREADS", "1", 1) != 0) return;
+    if (openmp || blas) execv("/proc/self/exe", argv);
 }
 
 int main(int argc, char **argv) {
-    limit_spinning(argv);
+    quiet_threads(argv);
     if (argc < 2) {
         bough_help_overview(stderr);
         return bough_exit_code(BOUGH_INVALID);
