@@ -137,4 +137,9 @@ void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *load
 // Elastic energy [J] of the configuration in scratch->vertex.
 double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch);
 
+// Elastic force and moment (6) in the middle of segment n, in section axes there, of the
+// configuration in scratch->vertex [N, N m].
+void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n,
+                      double stress[6]);
+
 #endif

@@ -200,18 +200,29 @@ void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *load
     for (int c = 0; c < 6; c++) wrench[c] = inner[c] + scratch->load[c * s];
 }
 
-double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch) {
+static strain elastic_strain(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
     int s = m->stride;
-    double energy = 0;
-    for (int n = 0; n < m->n; n++) {
-        vertex_state l = load_vertex(scratch->vertex, s, n);
-        vertex_state r = load_vertex(scratch->vertex, s, n + 1);
-        segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
-        strain e = {bough_sub(shape.stretch, load3(m->strain0, s, n)),
+    vertex_state l = load_vertex(scratch->vertex, s, n);
+    vertex_state r = load_vertex(scratch->vertex, s, n + 1);
+    segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
+    return (strain){bough_sub(shape.stretch, load3(m->strain0, s, n)),
                     bough_axpy(m->inverse_length[n], shape.phi,
                                bough_scale(-1, load3(m->strain0 + 3 * s, s, n)))};
-        strain stress = symmetric_times(m->stiffness, s, n, e);
+}
+
+double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch) {
+    double energy = 0;
+    for (int n = 0; n < m->n; n++) {
+        strain e = elastic_strain(m, scratch, n);
+        strain stress = symmetric_times(m->stiffness, m->stride, n, e);
         energy += 0.5 * m->length[n] * (bough_dot(e.v, stress.v) + bough_dot(e.u, stress.u));
     }
     return energy;
+}
+
+void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n,
+                      double stress[6]) {
+    strain s = symmetric_times(m->stiffness, m->stride, n, elastic_strain(m, scratch, n));
+    const double values[6] = {s.v.x, s.v.y, s.v.z, s.u.x, s.u.y, s.u.z};
+    memcpy(stress, values, sizeof values);
 }

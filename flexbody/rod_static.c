@@ -85,9 +85,10 @@ static double update(const bough_rod_model *m, const double *step, double *state
 }
 
 // K δq = residual, in place in step.
-static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const double *state) {
+static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const double *input,
+                        const double *state) {
     bough_block_tridiagonal *a = &w->tangent.matrix;
-    bough_rod_linear_stiffness(m, &w->tangent, state, a);
+    bough_rod_linear_stiffness(m, &w->blocks, input, state, a);
     if (!bough_block_tridiagonal_factor(a)) return false;
     bough_block_tridiagonal_solve(a, w->step);
     return true;
@@ -102,9 +103,10 @@ static bool converge(const bough_rod_model *m, const double *input,
         if (!bough_rod_linearise(m, &w->scaled, 0, state, input, &w->scratch, &w->tangent)) {
             return false;
         }
+        bough_rod_assemble(m, &w->tangent, &w->blocks);
         bough_rod_derivative(m, &w->scaled, 0, state, input, &w->scratch, w->rate);
         if (residual(m, w, magnitude(m, w)) < options->tolerance) return true;
-        if (!newton_step(m, w, state)) return false;
+        if (!newton_step(m, w, input, state)) return false;
         // rounding in a stiff rod keeps the residual up; then the steps tell
         if (update(m, w->step, state) < options->tolerance) {
             bough_rod_ride(m, input, state);
