@@ -65,6 +65,7 @@ static bough_status record_end(bough_run *run, bough_status status) {
 
 static bough_status step_all(bough_run *run) {
     const bough_master *m = run->simulation->master;
+    if (m->verdict[0]) fprintf(stderr, "bough: warning: %s\n", m->verdict);
     bough_progress progress = bough_progress_start(m->time, m->duration, run->options->quiet);
     double wall = bough_wall_clock(), cpu = cpu_clock();
     bough_status status = record(run);

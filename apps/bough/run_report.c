@@ -31,6 +31,8 @@ static void write_input(bough_summary *s, const bough_run *run) {
     }
     bough_summary_end(s);
     bough_summary_text(s, "status", outcome_name(run));
+    const char *verdict = run->simulation->master->verdict;
+    bough_summary_text(s, "verdict", verdict[0] ? verdict : NULL);
     bough_summary_text(s, "diagnosis", bough_is_ok(&run->outcome) ? NULL : run->outcome.message);
 }
 
