@@ -23,8 +23,8 @@ bool bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
     work->rate = bough_arena_doubles(arena, states);
     work->trial = bough_arena_doubles(arena, states);
     work->step = bough_arena_doubles(arena, (size_t)W8 * m->n);
-    work->follower.follower = true;
-    work->follower.value = bough_arena_doubles(arena, 6 * (size_t)m->stride);
+    work->follower = (bough_rod_ramped_load){
+        .follower = true, .value = bough_arena_doubles(arena, 6 * (size_t)m->stride)};
     return ok && !bough_arena_exhausted(arena);
 }
 

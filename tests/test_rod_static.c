@@ -90,6 +90,59 @@ static void dead_tip_force_gives_the_elastica(void **context) {
     check_near(error[0] / error[1], 4, 0, 0.2);
 }
 
+// Tip of the follower cantilever of Argyris and Symeonidis (1981), displacement along the rod and
+// across it, with 100·2^mesh segments.
+static void follower_tip(double force, int mesh, double tip[2]) {
+    const double stiffness[6] = {1.61538e8, 1.61538e8, 3.2307e8, 3.5e7, 3.5e7, 3.5e7};
+    const double constant[2] = {0, 0};
+    bough_arena *arena = bough_arena_create();
+    int n = 100 << mesh;
+    bent b = straight_rod(arena, n, 100, stiffness);
+    bough_rod_loads_ramped(&b.loads, arena, b.model, true, constant)[n] = force;
+    solve(&b, bough_rod_static_options_default());
+    tip[0] = vertex(&b, n).z - 100;
+    tip[1] = vertex(&b, n).x;
+    bough_arena_destroy(arena);
+}
+
+// References by shooting; the tip turns beyond 180°, where only small increments converge. Second
+// order in h, so that two meshes extrapolate to 1e-5 of the length.
+static void follower_force_bends_the_rod_beyond_a_half_turn(void **context) {
+    (void)context;
+    const double force[4] = {20e3, 60e3, 100e3, 134e3};
+    const double exact[4][2] = {{-92.0292110, 75.3857493},
+                                {-85.7679471, 40.0633388},
+                                {-50.7541937, -11.6260703},
+                                {-80.1635764, -49.5251013}};
+    for (int k = 0; k < 4; k++) {
+        double coarse[2], fine[2];
+        follower_tip(force[k], 0, coarse);
+        follower_tip(force[k], 1, fine);
+        for (int c = 0; c < 2; c++) {
+            check_near(fine[c], exact[k][c], 0, 2e-2);
+            check_near((4 * fine[c] - coarse[c]) / 3, exact[k][c], 0, 1e-3);
+        }
+    }
+}
+
+// A bar turning about its root stretches: tip by mass Ω² L³/(3 EA) for small strains.
+static void turning_bar_stretches(void **context) {
+    (void)context;
+    const double stiffness[6] = {1e9, 1e9, 1e9, 100, 100, 100};
+    const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 20, 0, 0, 0, 0, 0};
+    bough_arena *arena = bough_arena_create();
+    bent b = straight_rod(arena, 100, 10, stiffness);
+    bough_rod_static_options options = bough_rod_static_options_default();
+    bough_status s = bough_rod_steady(b.model, &b.loads, input, &options, &b.work, b.state);
+    assert_int_equal(s.code, BOUGH_OK);
+    check_near(vertex(&b, 100).z - 10, 400 * 1000 / (3 * 1e9), 5e-4, 0);
+    for (int i = 0; i < 100; i++) { // velocities ride along: ω×x
+        check_near(b.state[(BOUGH_ROD_U + 1) * 100 + i], -20 * b.state[200 + i], 1e-12, 0);
+        check_near(b.state[BOUGH_ROD_W * 100 + i], 20, 1e-12, 0);
+    }
+    bough_arena_destroy(arena);
+}
+
 // What has no equilibrium ends with a diagnosis: a spring-soft rod pushed beyond its length.
 static void hopeless_load_is_diagnosed(void **context) {
     (void)context;
@@ -109,6 +162,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(end_moment_bends_rod_to_circle),
         cmocka_unit_test(dead_tip_force_gives_the_elastica),
+        cmocka_unit_test(follower_force_bends_the_rod_beyond_a_half_turn),
+        cmocka_unit_test(turning_bar_stretches),
         cmocka_unit_test(hopeless_load_is_diagnosed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
