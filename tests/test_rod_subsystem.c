@@ -115,6 +115,21 @@ static void set_and_restored_states_start_anew(void **context) {
     bough_arena_destroy(b.arena);
 }
 
+static void quaternions_leave_a_step_normalised(void **context) {
+    (void)context;
+    double state[STATES];
+    rod r = general(1e-4, swaying);
+    sample_state(r.model, swaying, state);
+    r.s.ops->set_state(r.s.self, 0, state);
+    advance(&r, 0.1, swaying, NULL);
+    for (int i = 0; i < N; i++) {
+        double square = 0;
+        for (int c = 0; c < 4; c++) square += pow(r.s.state[(BOUGH_ROD_P + c) * N + i], 2);
+        check_near(square, 1, 1e-14, 0);
+    }
+    bough_arena_destroy(r.arena);
+}
+
 // Contiguous steps with questions between them are as steps without.
 static void questions_do_not_disturb_the_steps(void **context) {
     (void)context;
@@ -449,6 +464,7 @@ int main(void) {
         cmocka_unit_test(operations_agree_on_a_deformed_loaded_rod),
         cmocka_unit_test(starts_at_rest_relative_to_its_frame),
         cmocka_unit_test(set_and_restored_states_start_anew),
+        cmocka_unit_test(quaternions_leave_a_step_normalised),
         cmocka_unit_test(questions_do_not_disturb_the_steps),
         cmocka_unit_test(steady_rotation_stretches_and_stays),
         cmocka_unit_test(free_fall_strains_nothing),
