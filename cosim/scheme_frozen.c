@@ -31,12 +31,28 @@ static void hold(bough_coupling *c, int member) {
     }
 }
 
+// A held value jumps at every synchronisation point; a motion held by its rate only bends there, so
+// a member that sees nothing else keeps its integrator's history.
+static bool sees_jumps(const bough_coupling *c, int member) {
+    const bough_assembly *a = c->assembly;
+    for (int j = a->input_offset[member]; j < a->input_offset[member + 1]; j++) {
+        if (!a->kinematic[j]) return true;
+    }
+    return false;
+}
+
+static void advance(bough_coupling *c, int member) {
+    const bough_subsystem *s = c->assembly->member[member];
+    bool restart = c->restart || sees_jumps(c, member);
+    c->status[member] = s->ops->advance(s->self, c->t1, &c->signal[member], restart);
+}
+
 static bough_status step(bough_coupling *c) {
     bough_coupling_begin(c);
     bough_status status = bough_coupling_each(c, BOUGH_ALL_STAGES, find_rates);
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < c->assembly->n_member; i++) hold(c, i);
-    return bough_coupling_advance(c, BOUGH_ALL_STAGES, true);
+    return bough_coupling_each(c, BOUGH_ALL_STAGES, advance);
 }
 
 const bough_scheme bough_scheme_frozen = {
