@@ -73,7 +73,7 @@ usage() {
     has ../stderr 'bough run SCENE'
     empty ../stdout
     refused "unknown command 'rnu' (did you mean 'run'?)" rnu
-    refused 'known: run, check, study, help' modes
+    refused 'known: run, check, static' frobnicate
     refused "unknown option '--treads' (did you mean '--threads'?)" run "$bar" --treads 2
     refused "unknown option '-x'" run -x "$bar"
     refused "unknown option '--out'" check "$bar" --out x
@@ -267,6 +267,38 @@ bad_output() {
     rm -r full taken
 }
 
+# near FILE PATTERN N VALUE TOLERANCE: word N of the line that matches.
+near() {
+    grep -e "$2" "$1" | awk -v n="$3" -v want="$4" -v by="$5" \
+        '{ d = $n - want; if (d < 0) d = -d; if (d <= by) good = 1 } END { exit !good }' ||
+        fail "$said: word $3 of '$(grep -e "$2" "$1")' is not $4"
+}
+
+# The blade under 100 kN at its tip: reference of a geometrically exact beam by shooting.
+statics() {
+    blade=$2/tests/scenes/blade.yaml
+    expect 0 static "$blade" --set 'loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]'
+    has ../stdout '^rod blade: 48 segments, 61.5 m, [0-9]* iterations$'
+    near ../stdout '^tip blade: u ' 4 7.68969 0.0015
+    near ../stdout '^tip blade: u ' 5 -0.414706 0.0015
+    near ../stdout '^tip blade: u ' 6 -1.122878 0.0015
+    near ../stdout '^root blade: force ' 4 100000 0.01
+    has ../stdout '^out: out/blade$'
+    empty ../stderr
+    [ "$(wc -l <out/blade/static.csv)" -eq 50 ] || fail "$said: static.csv has not 50 lines"
+    has out/blade/static.csv '^rod,span (m),ux (m),'
+    has out/blade/static.csv '^blade,61.5,7.6'
+    rm -r out
+    refused "the joint of 'hub' moves; static equilibrium of moving trees is not built yet" \
+        static "$turbine"
+    refused "'x' is not\|there is no body 'x'" static "$blade" \
+        --set 'loads=[{body: x, at: tip, force: [1, 0, 0]}]'
+    expect 3 static "$blade" --set 'bodies[0].rod.segments=4' --out failed \
+        --set 'loads=[{body: blade, at: tip, moment: [0, 1e9, 0]}]'
+    has ../stderr '^bough: error: rod blade: no static equilibrium found beyond .* % of the load'
+    nothing_written
+}
+
 # The number of threads changes no byte of the results.
 threads() {
     for scheme in ramp frozen; do
@@ -289,6 +321,7 @@ bad_scenes
 checks
 complete_run
 failed_run
+statics "$@"
 interrupted_run
 bad_output
 threads

@@ -1,5 +1,7 @@
 #include "apps/bough/open.h"
 
+#include <string.h>
+
 static bough_status read_scene(bough_arena *arena, const bough_options *options,
                                bough_scene **scene) {
     bough_errors errors = {.arena = arena};
@@ -19,4 +21,15 @@ bough_status bough_open(bough_arena *arena, const bough_options *options,
     if (!bough_is_ok(&status)) return status;
     if (options->threads > 0) scene->simulation.threads = options->threads;
     return bough_simulation_build(arena, scene, simulation);
+}
+
+const char *bough_out_folder(bough_arena *arena, const bough_options *options) {
+    if (options->out) return options->out;
+    const char *slash = strrchr(options->operand, '/');
+    const char *name = slash ? slash + 1 : options->operand;
+    const char *dot = strrchr(name, '.');
+    size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
+    char *folder = bough_arena_take(arena, length + 5);
+    if (folder) snprintf(folder, length + 5, "out/%.*s", (int)length, name);
+    return folder;
 }

@@ -82,17 +82,6 @@ static bough_status step_all(bough_run *run) {
 
 // -- results --------------------------------------------------------------------------------------
 
-// out/ and the scene's file name without its extension.
-static const char *default_folder(bough_arena *arena, const char *scene) {
-    const char *slash = strrchr(scene, '/');
-    const char *name = slash ? slash + 1 : scene;
-    const char *dot = strrchr(name, '.');
-    size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
-    char *folder = bough_arena_take(arena, length + 5);
-    if (folder) snprintf(folder, length + 5, "out/%.*s", (int)length, name);
-    return folder;
-}
-
 // An older summary must not stand beside the new run's channels.
 static bough_status remove_summary(const char *folder) {
     char path[BOUGH_PATH_MAX];
@@ -102,8 +91,7 @@ static bough_status remove_summary(const char *folder) {
 }
 
 static bough_status open_results(bough_run *run) {
-    run->folder =
-        run->options->out ? run->options->out : default_folder(run->arena, run->options->operand);
+    run->folder = bough_out_folder(run->arena, run->options);
     if (!run->folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = bough_folder_make(run->folder);
     if (bough_is_ok(&status)) status = remove_summary(run->folder);

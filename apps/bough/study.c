@@ -1,21 +1,9 @@
 // bough study: many runs of one scene, compared.
 #include "apps/study/study_perform.h"
 
+#include "apps/bough/open.h"
 #include "apps/bough/stop.h"
 #include "apps/bough/verb.h"
-
-#include <string.h>
-
-// out/ and the study's file name without its extension.
-static const char *default_folder(bough_arena *arena, const char *study) {
-    const char *slash = strrchr(study, '/');
-    const char *name = slash ? slash + 1 : study;
-    const char *dot = strrchr(name, '.');
-    size_t length = dot && dot > name ? (size_t)(dot - name) : strlen(name);
-    char *folder = bough_arena_take(arena, length + 5);
-    if (folder) snprintf(folder, length + 5, "out/%.*s", (int)length, name);
-    return folder;
-}
 
 bough_status bough_verb_study(bough_arena *arena, const bough_options *options) {
     bough_errors errors = {.arena = arena};
@@ -27,8 +15,7 @@ bough_status bough_verb_study(bough_arena *arena, const bough_options *options) 
         status.message[0] = '\0';
     }
     if (!bough_is_ok(&status)) return status;
-    bough_study_options how = {.folder = options->out ? options->out
-                                                      : default_folder(arena, options->operand),
+    bough_study_options how = {.folder = bough_out_folder(arena, options),
                                .quiet = options->quiet,
                                .stop = bough_stop_requested,
                                .stream = stdout};

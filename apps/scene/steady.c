@@ -1,0 +1,60 @@
+#include "apps/scene/steady.h"
+
+const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_beam *beam) {
+    const bough_scene_body *body = beam->body;
+    while (body->joint.kind == BOUGH_SCENE_FIXED) {
+        if (body->joint.parent == BOUGH_SCENE_GROUND) return NULL;
+        body = &s->scene->body[body->joint.parent];
+    }
+    return body;
+}
+
+static void set3(double *to, bough_vec3 v) {
+    to[0] = v.x;
+    to[1] = v.y;
+    to[2] = v.z;
+}
+
+// Twist and gravity of the body's frame.
+static void set_input(const bough_simulation *s, const bough_turning *turning, bough_steady *x) {
+    const bough_frame *frame = &s->tree->markers[x->beam->marker];
+    bough_transform pose = bough_tree_frame_pose(s->view, frame);
+    bough_vec3 gravity = s->tree->gravity;
+    bough_vec3 omega = bough_scale(turning->speed, turning->axis);
+    bough_vec3 arm = bough_sub(pose.position, turning->centre);
+    if (turning->speed != 0) {
+        gravity = bough_scale(bough_dot(gravity, turning->axis), turning->axis);
+    }
+    set3(x->input, bough_mat3_tmul(pose.rotation, bough_cross(omega, arm)));
+    set3(x->input + 3, bough_mat3_tmul(pose.rotation, omega));
+    set3(x->input + 6, bough_mat3_tmul(pose.rotation, gravity));
+}
+
+bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,
+                               const bough_beam *beam, const bough_turning *turning,
+                               bough_steady *steady) {
+    steady->beam = beam;
+    steady->model = bough_rod_body_model(beam->rod);
+    steady->state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * steady->model->n);
+    if (!bough_rod_static_init(&steady->work, arena, steady->model)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", steady->model->name);
+    }
+    set_input(s, turning, steady);
+    bough_rod_rest_state(steady->model, steady->input, steady->state);
+    bough_rod_static_options options = bough_rod_static_options_default();
+    return bough_rod_steady(steady->model, bough_rod_body_loads(beam->rod), steady->input, &options,
+                            &steady->work, steady->state);
+}
+
+void bough_steady_displacement(const bough_steady *steady, int i, bough_vec3 *shift,
+                               bough_vec3 *turn) {
+    const bough_rod_model *m = steady->model;
+    const double *y = steady->state + i - 1;
+    int n = m->n;
+    *shift = *turn = bough_v3(0, 0, 0);
+    if (i == 0) return;
+    bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
+    bough_quaternion undeformed = bough_quaternion_conjugate(m->rotation0[i]);
+    *shift = bough_sub(bough_v3(y[0], y[n], y[2 * n]), m->position0[i]);
+    *turn = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
+}

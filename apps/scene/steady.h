@@ -1,0 +1,37 @@
+// A scene's rods one by one, root held, at rest or turning steadily: their equilibrium, for statics
+// and eigenvalues.
+#ifndef BOUGH_APPS_SCENE_STEADY_H
+#define BOUGH_APPS_SCENE_STEADY_H
+
+#include "apps/scene/build.h"
+#include "flexbody/rod_static.h"
+
+typedef struct bough_steady {
+    const bough_beam *beam;
+    const bough_rod_model *model;
+    double input[BOUGH_ROD_INPUTS]; // constant twist and gravity of the body's frame, in its axes
+    double *state;                  // in equilibrium (13 n)
+    bough_rod_static work;          // work.scaled: the loads, all of them
+} bough_steady;
+
+// A steady rotation of a rod's frame; speed 0: rest.
+typedef struct bough_turning {
+    double speed;      // [rad/s]
+    bough_vec3 axis;   // unit vector, ground axes
+    bough_vec3 centre; // a point of the axis, in the ground [m]
+} bough_turning;
+
+// The body whose joint moves the rod's root; NULL when its root is at rest.
+const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_beam *beam);
+
+// Equilibrium of the rod in the simulation's initial pose under gravity and its loads, each grown to
+// the whole. In rotation gravity is taken in its mean over a revolution, along the axis.
+bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,
+                               const bough_beam *beam, const bough_turning *turning,
+                               bough_steady *steady);
+
+// Displacement [m] and rotation vector [rad] of vertex i from the undeformed rod, in body axes.
+void bough_steady_displacement(const bough_steady *steady, int i, bough_vec3 *shift,
+                               bough_vec3 *turn);
+
+#endif
