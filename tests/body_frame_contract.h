@@ -128,7 +128,7 @@ static inline void structure_check_transformation(const structure_case *c, bough
 // Virtual power: v̇ᵀ of (12)'s residual is aᵀ of (11)'s for every a = F v̇, weight included.
 static inline void structure_check_projection(const structure_case *c, bough_body_frame *b) {
     int n = c->structure->n_vertex, n_e = 6 * (n - 1), at = 31;
-    double x[2][6 + 6 * STRUCTURE_MAX], zero[6 * STRUCTURE_MAX] = {0};
+    double x[2][6 + 6 * STRUCTURE_MAX] = {{0}}, zero[6 * STRUCTURE_MAX] = {0};
     bough_twist a[2][STRUCTURE_MAX], g[STRUCTURE_MAX];
     structure_evaluate(c, false, b);
     for (int k = 0; k < 2 * (6 + n_e); k++)
