@@ -3,20 +3,7 @@
 #ifndef BOUGH_FLEXBODY_MICRO_CVODE_H
 #define BOUGH_FLEXBODY_MICRO_CVODE_H
 
-#include "core/arena.h"
-#include "core/status.h"
-#include "core/subsystem.h"
-
-// What is integrated: ẏ = f(t, y). Callbacks return false where there is no finite value.
-typedef struct bough_ode {
-    const char *name; // of the body, for messages
-    int n;
-    void *self;
-    bool (*derivative)(void *self, double t, const double *y, double *rate);
-    bool (*linearise)(void *self, double t, const double *y); // tangents of f
-    bool (*factor)(void *self, double gamma);                 // I − γ ∂f/∂y of the last tangents
-    void (*solve)(void *self, double *x);                     // in place
-} bough_ode;
+#include "flexbody/micro.h"
 
 typedef struct bough_micro_cvode bough_micro_cvode;
 

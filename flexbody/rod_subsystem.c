@@ -1,6 +1,5 @@
 #include "flexbody/rod_subsystem.h"
 
-#include "flexbody/micro_cvode.h"
 #include "flexbody/rod_tangent.h"
 
 #include <string.h>
@@ -15,7 +14,7 @@ struct bough_rod_body {
     bough_rod_scratch scratch;
     bough_rod_tangent micro_tangent; // of the sub-solver
     bough_rod_tangent newton;        // of newton_setup
-    bough_micro_cvode *micro;
+    bough_micro micro;
 };
 
 // -- the sub-solver's view --------------------------------------------------------------------------
@@ -101,8 +100,8 @@ static void newton_solve(void *self, double *x) {
 static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
     bough_rod_body *b = self;
     b->input = input;
-    bough_status status = bough_micro_cvode_advance(b->micro, b->time, t1, restart || b->moved,
-                                                    b->state);
+    bough_status status = b->micro.advance(b->micro.self, b->time, t1, restart || b->moved,
+                                            b->state);
     normalise(b);
     b->moved = !bough_is_ok(&status);
     b->time = t1;
@@ -117,7 +116,7 @@ static size_t save_size(void *self) {
     return sizeof(double) + state_bytes(self);
 }
 
-// CVODE gives no access to its history: a restored rod starts anew at order 1.
+// CVODE gives no access to its history: a restored rod starts anew.
 static void save(void *self, void *copy) {
     const bough_rod_body *b = self;
     memcpy(copy, &b->time, sizeof b->time);
@@ -140,7 +139,7 @@ static void restore(void *self, const void *copy) {
 
 static void statistics(void *self, bough_statistics *sum) {
     const bough_rod_body *b = self;
-    bough_micro_cvode_statistics(b->micro, sum);
+    b->micro.statistics(b->micro.self, sum);
 }
 
 // -- life -------------------------------------------------------------------------------------------
@@ -157,7 +156,8 @@ static bool take_memory(bough_rod_body *b, bough_arena *arena) {
 }
 
 bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *model, double start,
-                                   double rtol, const double *input, bough_rod_body **body) {
+                                   bough_micro_options micro, const double *input,
+                                   bough_rod_body **body) {
     // error scales of x, p, u, W: a tenth of a radian weighs as a metre
     static const double scale[BOUGH_ROD_STATES] = {1, 1, 1, 0.1, 0.1, 0.1, 0.1,
                                                    1, 1, 1, 0.1, 0.1, 0.1};
@@ -174,7 +174,7 @@ bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *mo
     for (int k = 0; k < BOUGH_ROD_STATES * n; k++) b->scale[k] = scale[k / n];
     bough_ode ode = {model->name, BOUGH_ROD_STATES * n, b,           micro_derivative,
                      micro_linearise, micro_factor,       micro_solve};
-    bough_status status = bough_micro_cvode_create(arena, &ode, b->scale, rtol, &b->micro);
+    bough_status status = bough_micro_create(arena, &ode, b->scale, micro, &b->micro);
     if (bough_is_ok(&status)) *body = b;
     return status;
 }
@@ -185,7 +185,7 @@ bough_subsystem bough_rod_body_subsystem(bough_rod_body *body) {
         save_size,  save,   restore,        set_state,     statistics};
     return (bough_subsystem){.name = body->model->name,
                              .kind = "rod",
-                             .solver = "CVODE BDF",
+                             .solver = body->micro.name,
                              .n_state = BOUGH_ROD_STATES * body->model->n,
                              .n_input = BOUGH_ROD_INPUTS,
                              .n_output = BOUGH_ROD_OUTPUTS,

@@ -4,14 +4,16 @@
 #define BOUGH_FLEXBODY_ROD_SUBSYSTEM_H
 
 #include "core/subsystem.h"
+#include "flexbody/micro.h"
 #include "flexbody/rod.h"
 
 typedef struct bough_rod_body bough_rod_body;
 
 // Builds state, solvers and scratch in the arena. Starts at rest relative to its frame, which moves
-// with `input` (9) at time `start`; tolerance rtol relative to 1 m, 0.1 rad, 1 m/s, 0.1 rad/s.
+// with `input` (9) at time `start`; tolerances are relative to 1 m, 0.1 rad, 1 m/s, 0.1 rad/s.
 bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *model, double start,
-                                   double rtol, const double *input, bough_rod_body **body);
+                                   bough_micro_options micro, const double *input,
+                                   bough_rod_body **body);
 
 // The contract's view; valid as long as the arena.
 bough_subsystem bough_rod_body_subsystem(bough_rod_body *body);

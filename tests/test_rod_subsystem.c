@@ -21,7 +21,8 @@ static const double at_rest[BOUGH_ROD_INPUTS] = {0};
 
 static rod make(bough_arena *arena, bough_rod_model *model, double rtol, const double *input) {
     rod r = {.arena = arena, .model = model};
-    bough_status status = bough_rod_body_create(arena, model, 0, rtol, input, &r.body);
+    bough_status status = bough_rod_body_create(
+        arena, model, 0, (bough_micro_options){.rtol = rtol}, input, &r.body);
     assert_int_equal(status.code, BOUGH_OK);
     r.s = bough_rod_body_subsystem(r.body);
     return r;

@@ -225,6 +225,15 @@ static bough_status build_tree(builder *b) {
                                        scene->simulation.master.rtol, &s->trunk);
 }
 
+static bough_micro_options micro_options(const bough_scene_solver *micro) {
+    bool alpha = micro->solver == BOUGH_SCENE_GENERALIZED_ALPHA;
+    return (bough_micro_options){.kind = alpha ? BOUGH_MICRO_GENERALIZED_ALPHA
+                                               : BOUGH_MICRO_CVODE_BDF,
+                                 .rtol = micro->rtol,
+                                 .step = micro->step,
+                                 .rho = micro->rho};
+}
+
 static bough_status build_rods(builder *b) {
     bough_simulation *s = b->s;
     double *motion = bough_arena_doubles(b->arena, (size_t)BOUGH_PORT_OUTPUTS * s->n_rod + 1);
@@ -236,7 +245,8 @@ static bough_status build_rods(builder *b) {
         bough_rod_model *model = NULL;
         bough_status status = bough_rod_create(b->arena, &beam->def, &model);
         if (bough_is_ok(&status)) {
-            status = bough_rod_body_create(b->arena, model, 0, b->scene->simulation.micro.rtol,
+            status = bough_rod_body_create(b->arena, model, 0,
+                                           micro_options(&b->scene->simulation.micro),
                                            motion + BOUGH_PORT_OUTPUTS * beam->port, &beam->rod);
         }
         if (!bough_is_ok(&status)) return status;

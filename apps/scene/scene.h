@@ -37,12 +37,17 @@ typedef struct bough_scene_coupling {
 } bough_scene_coupling;
 
 typedef enum bough_scene_master_kind { BOUGH_SCENE_IDA } bough_scene_master_kind;
-typedef enum bough_scene_micro_kind { BOUGH_SCENE_CVODE_BDF } bough_scene_micro_kind;
+typedef enum bough_scene_micro_kind {
+    BOUGH_SCENE_CVODE_BDF,
+    BOUGH_SCENE_GENERALIZED_ALPHA,
+} bough_scene_micro_kind;
 
 typedef struct bough_scene_solver {
     const bough_node *node;
     int solver;  // bough_scene_master_kind or bough_scene_micro_kind
     double rtol; // [-]
+    double step; // micro, generalised-α: longest step [s]
+    double rho;  // its spectral radius at infinite frequency [-]
 } bough_scene_solver;
 
 typedef struct bough_scene_output {

@@ -162,7 +162,18 @@ static const bough_schema coupling_schema = {
     {.name = "solver", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES(value), .fallback = value,     \
      .offset = offsetof(bough_scene_solver, solver), .help = "time integrator"}
 static const bough_key master_keys[] = {SOLVER("ida"), RTOL("1e-6")};
-static const bough_key micro_keys[] = {SOLVER("cvode-bdf"), RTOL("1e-4")};
+#define AT(field) .offset = offsetof(bough_scene_solver, field)
+static const bough_key micro_keys[] = {
+    {.name = "solver", .kind = BOUGH_KEY_CHOICE, .fallback = "cvode-bdf",
+     .choices = CHOICES("cvode-bdf", "generalized-alpha"), AT(solver),
+     .help = "time integrator of each rod"},
+    RTOL("1e-4"),
+    {.name = "step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "[1e-7, 10]",
+     .fallback = "5e-3", AT(step), .help = "of generalized-alpha: longest step"},
+    {.name = "rho", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.8", AT(rho),
+     .help = "of generalized-alpha: what a step leaves of the highest frequencies"},
+};
+#undef AT
 static const bough_schema master_schema = {SCHEMA("a solver", bough_scene_solver, master_keys)};
 static const bough_schema micro_schema = {SCHEMA("a solver", bough_scene_solver, micro_keys)};
 

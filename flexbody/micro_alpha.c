@@ -1,0 +1,180 @@
+#include "flexbody/micro_alpha.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST_ITERATIONS = 10, MOST_HALVINGS = 8 };
+
+static const double slow = 0.3;     // contraction beyond which the tangents are renewed
+static const double newton_share = 0.1; // of rtol: what Newton's method may leave
+
+struct bough_micro_alpha {
+    bough_ode ode;
+    const double *scale; // (n)
+    bough_micro_alpha_options options;
+    double am, af, gamma;  // α_m, α_f, γ
+    double factored;       // γ of I − γ ∂f/∂y in the factors; 0: none
+    bool stale;            // the tangents are to be renewed
+    bool started;
+    double *rate;          // ẏ₀ (n)
+    double *next, *next_rate, *middle, *residual; // y₁, ẏ₁, y_f, work (n)
+    bough_statistics sum;
+};
+
+bough_status bough_micro_alpha_create(bough_arena *arena, const bough_ode *ode,
+                                      const double *scale, bough_micro_alpha_options options,
+                                      bough_micro_alpha **micro) {
+    bough_micro_alpha *m = bough_arena_take(arena, sizeof *m);
+    size_t n = (size_t)ode->n;
+    if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
+    m->ode = *ode;
+    m->scale = scale;
+    m->options = options;
+    m->am = 0.5 * (3 - options.rho) / (1 + options.rho);
+    m->af = 1 / (1 + options.rho);
+    m->gamma = 0.5 + m->am - m->af;
+    m->rate = bough_arena_doubles(arena, n);
+    m->next = bough_arena_doubles(arena, n);
+    m->next_rate = bough_arena_doubles(arena, n);
+    m->middle = bough_arena_doubles(arena, n);
+    m->residual = bough_arena_doubles(arena, n);
+    if (bough_arena_exhausted(arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
+    }
+    *micro = m;
+    return bough_ok();
+}
+
+// y₁ and ẏ₁ with ẏ unchanged over the step.
+static void predict(bough_micro_alpha *m, const double *restrict y, double h) {
+    double *restrict next = m->next, *restrict next_rate = m->next_rate;
+    const double *restrict rate = m->rate;
+#pragma omp simd
+    for (int i = 0; i < m->ode.n; i++) {
+        next_rate[i] = rate[i];
+        next[i] = y[i] + h * rate[i];
+    }
+}
+
+static bool renew_factors(bough_micro_alpha *m, double t, const double *y, double gamma) {
+    if (m->stale) {
+        m->sum.jacobians++;
+        if (!m->ode.linearise(m->ode.self, t, y)) return false;
+        m->stale = false;
+        m->factored = 0;
+    }
+    // equal steps differ by rounding of the time
+    if (fabs(m->factored - gamma) <= 1e-9 * gamma) return true;
+    m->sum.factorisations++;
+    m->factored = gamma;
+    return m->ode.factor(m->ode.self, gamma);
+}
+
+// f(t + α_f h, y_f) − ẏ_m into residual
+static bool balance(bough_micro_alpha *m, double t, const double *restrict y, double h) {
+    double *restrict middle = m->middle, *restrict residual = m->residual;
+    const double *restrict next = m->next, *restrict rate = m->rate;
+    const double *restrict next_rate = m->next_rate;
+    double af = m->af, am = m->am;
+#pragma omp simd
+    for (int i = 0; i < m->ode.n; i++) middle[i] = y[i] + af * (next[i] - y[i]);
+    m->sum.derivatives++;
+    if (!m->ode.derivative(m->ode.self, t + af * h, middle, residual)) return false;
+#pragma omp simd
+    for (int i = 0; i < m->ode.n; i++) residual[i] -= rate[i] + am * (next_rate[i] - rate[i]);
+    return true;
+}
+
+// Adds the solved step to ẏ₁ and y₁; returns its size against scale, root mean square.
+static double correct(bough_micro_alpha *m, double h) {
+    double *restrict next = m->next, *restrict next_rate = m->next_rate;
+    const double *restrict step = m->residual, *restrict scale = m->scale;
+    double inverse = 1 / m->am, weight = m->gamma * h, sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (int i = 0; i < m->ode.n; i++) {
+        double d = inverse * step[i];
+        next_rate[i] += d;
+        next[i] += weight * d;
+        double part = weight * d / scale[i];
+        sum += part * part;
+    }
+    return sqrt(sum / m->ode.n);
+}
+
+// Newton's method for one step. False when it does not converge.
+static bool converge(bough_micro_alpha *m, double t, const double *y, double h) {
+    double limit = newton_share * m->options.rtol, before = 0;
+    for (int k = 0; k < MOST_ITERATIONS; k++) {
+        m->sum.iterations++;
+        if (!balance(m, t, y, h)) return false;
+        m->ode.solve(m->ode.self, m->residual);
+        double size = correct(m, h);
+        if (!isfinite(size)) return false;
+        double contraction = k > 0 ? size / before : 0;
+        if (contraction > slow) m->stale = true;
+        if (size < limit || (k > 0 && size * contraction < limit * (1 - contraction))) return true;
+        if (contraction > 2) return false;
+        before = size;
+    }
+    return false;
+}
+
+// One step from y at t; y receives y₁. With stale tangents a failed step is tried once more.
+static bool take_step(bough_micro_alpha *m, double t, double h, double *y) {
+    double gamma = m->af * m->gamma * h / m->am;
+    for (int attempt = 0; attempt < 2; attempt++) {
+        if (attempt > 0) m->stale = true;
+        bool fresh = m->stale;
+        predict(m, y, h);
+        if (!renew_factors(m, t, y, gamma)) return false;
+        if (converge(m, t, y, h)) {
+            memcpy(y, m->next, (size_t)m->ode.n * sizeof *y);
+            memcpy(m->rate, m->next_rate, (size_t)m->ode.n * sizeof *y);
+            m->sum.steps++;
+            return true;
+        }
+        m->sum.failed_steps++;
+        if (fresh) return false;
+    }
+    return false;
+}
+
+static bool start(bough_micro_alpha *m, double t, const double *y) {
+    if (m->started) m->sum.restarts++;
+    m->started = true;
+    m->stale = true;
+    m->sum.derivatives++;
+    return m->ode.derivative(m->ode.self, t, y, m->rate);
+}
+
+bough_status bough_micro_alpha_advance(bough_micro_alpha *micro, double t, double t1, bool restart,
+                                       double *y) {
+    bough_micro_alpha *m = micro;
+    double at = t, longest = m->options.step;
+    bool ok = (!restart && m->started) || start(m, t, y);
+    for (int halvings = 0; ok && at < t1;) {
+        double parts = ceil((t1 - at) / longest * (1 - 1e-12));
+        double h = (t1 - at) / parts;
+        if (take_step(m, at, h, y)) {
+            at = parts <= 1 ? t1 : at + h;
+        } else {
+            ok = ++halvings <= MOST_HALVINGS;
+            longest = 0.5 * h;
+        }
+    }
+    if (ok) return bough_ok();
+    m->started = false;
+    return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: generalised-α cannot go on: Newton's method"
+                      " does not converge with steps of %.2g s; try a shorter micro step",
+                      m->ode.name, at, longest);
+}
+
+void bough_micro_alpha_statistics(const bough_micro_alpha *micro, bough_statistics *sum) {
+    sum->steps += micro->sum.steps;
+    sum->failed_steps += micro->sum.failed_steps;
+    sum->derivatives += micro->sum.derivatives;
+    sum->jacobians += micro->sum.jacobians;
+    sum->factorisations += micro->sum.factorisations;
+    sum->iterations += micro->sum.iterations;
+    sum->restarts += micro->sum.restarts;
+}
