@@ -1,0 +1,253 @@
+// Between rotor and bodies: the loads put on rods and rigid blades, and how they go on between
+// samples. The scene has a flexible and a rigid blade.
+#include "tests/built_scene.h"
+
+#include "apps/scene/aero_link.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char turbine[] = "tests/scenes/example-turbine.yaml";
+
+static const double period = 0.02, ramp_end = 0.5; // of the scene's aerodynamics [s]
+
+enum { SEGMENTS = 12, LOADS = 6 * (SEGMENTS + 1), FLEXIBLE = 0, RIGID = 1, HUB = 2 };
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_simulation *s;
+    bough_sampled_load load;
+} fixture;
+
+static fixture open_turbine(const char *const *sets) {
+    fixture f = {.arena = bough_arena_create()};
+    f.s = scene_build(f.arena, turbine, sets);
+    f.load = bough_aero_link_load(f.s->aero);
+    return f;
+}
+
+static void close_turbine(fixture *f) { bough_arena_destroy(f->arena); }
+
+static bool sample(fixture *f, double t, double t_next) {
+    bool jumped = false;
+    bough_status status = f->load.sample(f->load.self, t, t_next, &jumped);
+    assert_int_equal(status.code, BOUGH_OK);
+    return jumped;
+}
+
+// A blade's load signal: value and rate per second, LOADS of a rod or 6 of a rigid blade, in the
+// order that bodies keep them.
+typedef struct signal {
+    int n;
+    double start, value[LOADS], rate[LOADS];
+} signal;
+
+static signal signal_of(const fixture *f, int blade) {
+    const bough_beam *beam = &f->s->beam[blade];
+    signal x = {.n = 6};
+    if (beam->rod == NULL) {
+        const bough_external *e = &f->s->tree->external[beam->marker];
+        bough_wrench_store(e->value, x.value);
+        bough_wrench_store(e->rate, x.rate);
+        x.start = e->start;
+        return x;
+    }
+    const bough_rod_loads *loads = bough_rod_body_loads(beam->rod);
+    int stride = bough_rod_body_model(beam->rod)->stride;
+    x.n = LOADS;
+    x.start = loads->start;
+    for (int k = 0; k < LOADS; k++) {
+        int at = k / (SEGMENTS + 1) * stride + k % (SEGMENTS + 1);
+        x.value[k] = loads->value[at];
+        x.rate[k] = loads->rate[at];
+    }
+    return x;
+}
+
+static double largest(const double *x, int n) {
+    double most = 0;
+    for (int k = 0; k < n; k++) most = fmax(most, fabs(x[k]));
+    return most;
+}
+
+// -- balance --------------------------------------------------------------------------------------
+
+// Force and moment about the ground's origin that a blade's body receives.
+static bough_wrench received(const fixture *f, int blade) {
+    const bough_beam *beam = &f->s->beam[blade];
+    bough_transform pose =
+        bough_tree_frame_pose(f->s->view, &f->s->tree->markers[beam->marker]);
+    signal x = signal_of(f, blade);
+    if (beam->rod == NULL) return bough_wrench_to_parent(&pose, bough_wrench_load(x.value));
+    bough_vec3 position[SEGMENTS + 1], velocity[SEGMENTS + 1], angular[SEGMENTS + 1];
+    bough_mat3 rotation[SEGMENTS + 1];
+    bough_simulation_beam_motion(f->s, beam, (bough_beam_motion){position, velocity, angular,
+                                                                 rotation});
+    bough_wrench sum = {{0, 0, 0}, {0, 0, 0}};
+    for (int i = 0; i <= SEGMENTS; i++) {
+        double w[6];
+        for (int c = 0; c < 6; c++) w[c] = x.value[c * (SEGMENTS + 1) + i];
+        bough_transform at = {position[i], pose.rotation};
+        sum = bough_wrench_add(sum, bough_wrench_to_parent(&at, bough_wrench_load(w)));
+    }
+    return sum;
+}
+
+static void check_vec3(bough_vec3 value, bough_vec3 expected, double tolerance) {
+    check_near(value.x, expected.x, 0, tolerance);
+    check_near(value.y, expected.y, 0, tolerance);
+    check_near(value.z, expected.z, 0, tolerance);
+}
+
+// On the turbine in motion, its flexible blade bent and the rotor turned on.
+static void bodies_receive_what_the_rotor_gives(void **context) {
+    (void)context;
+    static const char *const sets[] = {"aero.hold=constant", "bodies[2].joint.angle=40 deg", NULL};
+    fixture f = open_turbine(sets);
+    for (int k = 0; k < 80; k++) scene_step(f.s);
+    sample(&f, 0.8, 0.82);
+    double factor;
+    const bough_rotor_data *data = bough_aero_link_data(f.s->aero, &factor);
+    bough_transform hub = bough_tree_frame_pose(f.s->view, &f.s->tree->bodies[HUB]);
+    bough_vec3 shaft = hub.rotation.c1, force = {0, 0, 0}, moment = {0, 0, 0};
+    for (int b = 0; b < 2; b++) {
+        bough_wrench w = received(&f, b);
+        bough_vec3 sum = {0, 0, 0};
+        for (int i = 0; i <= SEGMENTS; i++) {
+            sum = bough_add(sum, data->force[b * (SEGMENTS + 1) + i]);
+        }
+        check_vec3(w.force, sum, 1e-9 * bough_norm(sum));
+        force = bough_add(force, w.force);
+        moment = bough_add(moment, w.moment);
+    }
+    check_near(factor, 1, 0, 0);
+    moment = bough_sub(moment, bough_cross(hub.position, force)); // about the hub
+    check_near(bough_dot(force, shaft), data->thrust, 1e-9, 0);
+    check_near(bough_dot(moment, shaft), data->torque, 1e-9, 0);
+    assert_true(data->thrust > 1000 && fabs(data->torque) > 100);
+    assert_true(bough_rod_body_state(f.s->beam[FLEXIBLE].rod)[SEGMENTS - 1] > 5e-4);
+    close_turbine(&f);
+}
+
+// The rotor sees the hub turn and the wind meet it under the shaft's tilt of 5°: at the root of the
+// upright blade the turning comes from the side, the wind, little disturbed, from ahead.
+static void rotor_sees_the_motion_of_the_hub(void **context) {
+    (void)context;
+    static const char *const sets[] = {"bodies[2].joint.speed=3 rad/s", NULL};
+    fixture f = open_turbine(sets);
+    sample(&f, 0, period);
+    double factor, degree = BOUGH_PI / 180;
+    const bough_rotor_data *data = bough_aero_link_data(f.s->aero, &factor);
+    const bough_station *root = &data->station[0];
+    check_near(root->radius, 1.5 * cos(2.5 * degree), 2e-2, 0);
+    check_near(root->inflow_y, 3 * root->radius, 1e-9, 0);
+    check_near(root->inflow_x, 12 * cos(5 * degree), 0.03, 0);
+    close_turbine(&f);
+}
+
+// -- between samples ------------------------------------------------------------------------------
+
+enum { SAMPLES = 30 };
+
+static void check_continuous(const signal *before, const signal *now) {
+    double allowed = 1e-12 * largest(now->value, now->n);
+    for (int i = 0; i < now->n; i++) {
+        double reached = before->value[i] + (now->start - before->start) * before->rate[i];
+        check_near(now->value[i], reached, 0, allowed);
+    }
+}
+
+// Value and rate as shares of the whole load.
+static void check_share(const signal *now, const signal *whole, double value, double rate) {
+    double allowed = 1e-12 * largest(whole->value, whole->n);
+    assert_true(allowed > 0);
+    for (int i = 0; i < now->n; i++) {
+        check_near(now->value[i], value * whole->value[i], 0, allowed);
+        check_near(now->rate[i], rate * whole->value[i], 0, allowed / period);
+    }
+}
+
+// The motion stands still, so that loads grow with the ramp: linearly, to its end at sample 25.
+static void linear_hold_is_continuous_and_exact_for_linear_loads(void **context) {
+    (void)context;
+    static const char *const ramped[] = {NULL};
+    static const char *const full[] = {"aero.ramp=[0 s, 0 s]", NULL};
+    fixture f = open_turbine(ramped), g = open_turbine(full);
+    sample(&g, 0, period);
+    const signal whole[2] = {signal_of(&g, FLEXIBLE), signal_of(&g, RIGID)};
+    signal last[2];
+    for (int k = 0; k < SAMPLES; k++) {
+        assert_int_equal(sample(&f, k * period, (k + 1) * period), k == 0);
+        for (int b = 0; b < 2; b++) {
+            signal now = signal_of(&f, b);
+            if (k > 0) check_continuous(&last[b], &now);
+            if (k >= 2 && k < 25) check_share(&now, &whole[b], k * period / ramp_end, 1 / ramp_end);
+            last[b] = now;
+        }
+    }
+    // two periods after the ramp's end the corner is forgotten
+    for (int b = 0; b < 2; b++) check_share(&last[b], &whole[b], 1, 0);
+    close_turbine(&f);
+    close_turbine(&g);
+}
+
+static void constant_hold_takes_each_sample_at_once(void **context) {
+    (void)context;
+    static const char *const sets[] = {"aero.hold=constant", NULL};
+    fixture f = open_turbine(sets);
+    double factor;
+    sample(&f, ramp_end, ramp_end + period);
+    const signal full[2] = {signal_of(&f, FLEXIBLE), signal_of(&f, RIGID)};
+    for (int k = 0; k < SAMPLES; k++) {
+        double t = k * period, share = fmin(t / ramp_end, 1);
+        assert_true(sample(&f, t, t + period));
+        bough_aero_link_data(f.s->aero, &factor);
+        check_near(factor, share, 1e-14, 0);
+        for (int b = 0; b < 2; b++) {
+            signal now = signal_of(&f, b);
+            for (int i = 0; i < now.n; i++) {
+                check_near(now.value[i], share * full[b].value[i], 1e-12, 1e-12);
+                check_near(now.rate[i], 0, 0, 0);
+            }
+        }
+    }
+    close_turbine(&f);
+}
+
+// Samples come every fourth macro step, here, and what they leave stays until the next.
+static void loads_are_sampled_at_their_rate(void **context) {
+    (void)context;
+    static const char *const sets[] = {"simulation.macro_step=5 ms", NULL};
+    fixture f = open_turbine(sets);
+    for (int k = 0; k < 20; k++) {
+        scene_step(f.s);
+        check_near(signal_of(&f, FLEXIBLE).start, k / 4 * period, 1e-14, 1e-15);
+        check_near(signal_of(&f, RIGID).start, k / 4 * period, 1e-14, 1e-15);
+    }
+    close_turbine(&f);
+}
+
+static void blades_want_one_mesh(void **context) {
+    (void)context;
+    static const char *const sets[] = {"bodies[4].rod.segments=10", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = NULL;
+    bough_status status = bough_simulation_build(arena, scene_read(arena, turbine, sets), &s);
+    assert_int_equal(status.code, BOUGH_INVALID);
+    assert_string_equal(status.message, "blades blade1 and blade2 have 12 and 10 segments; the"
+                                        " aerodynamics wants the same mesh on all blades");
+    assert_null(s);
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(bodies_receive_what_the_rotor_gives),
+        cmocka_unit_test(rotor_sees_the_motion_of_the_hub),
+        cmocka_unit_test(linear_hold_is_continuous_and_exact_for_linear_loads),
+        cmocka_unit_test(constant_hold_takes_each_sample_at_once),
+        cmocka_unit_test(loads_are_sampled_at_their_rate),
+        cmocka_unit_test(blades_want_one_mesh),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
