@@ -1,4 +1,4 @@
-// Build allocates, stepping never does: every allocation of the process is counted while macro steps
+// Build allocates, stepping never does: every allocation of the process is counted while steps
 // are taken, those inside libraries included.
 //
 // To see where one comes from: break on note_allocation in a debugger when counting is set.

@@ -174,8 +174,8 @@ static void beams_move_with_the_hub_at_first(void **context) {
     bough_simulation *s = scene_build(arena, arms, no_sets);
     for (int k = 0; k < 3; k++) {
         bough_transform root = pose_of(s, names[k]);
-        bough_simulation_beam_motion(s, &s->beam[k], (bough_beam_motion){position, velocity, angular,
-                                                                         rotation});
+        bough_beam_motion motion = {position, velocity, angular, rotation};
+        bough_simulation_beam_motion(s, &s->beam[k], motion);
         for (int i = 0; i < 5; i++) {
             bough_vec3 expected = bough_axpy(0.5 * i, root.rotation.c3, root.position);
             check_vec3(position[i], expected, 1e-14);
@@ -276,7 +276,8 @@ static void rigid_blades_have_the_inertia_of_their_table(void **context) {
 // Arms of a uniform section, one with its mass beside the axis, in the hub's axes.
 static void rigid_arms_have_their_mass_where_the_section_says(void **context) {
     (void)context;
-    static const char *const sets[] = {"bodies[0].fidelity=rigid", "bodies[3].fidelity=rigid", NULL};
+    static const char *const sets[] = {"bodies[0].fidelity=rigid", "bodies[3].fidelity=rigid",
+                                       NULL};
     static const double angle[] = {4 * BOUGH_PI / 3, 2 * BOUGH_PI / 3, 0}, radius[] = {3, 2, 1};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, arms, sets);

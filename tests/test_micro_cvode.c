@@ -9,7 +9,7 @@
 
 enum { N = 3 };
 
-// ẏ = Q Λ (w(t) − Qᵀy) with Q orthogonal and w = (cos t, cos t, cos t): each mode follows the cosine
+// ẏ = Q Λ (w(t) − Qᵀy) with Q orthogonal, w = (cos t, cos t, cos t): each mode follows the cosine
 // with its own rate.
 static const double rates[N] = {0.7, 40, 3000}; // Λ [1/s]
 static const double columns[N][N] = {{2.0 / 3, 2.0 / 3, 1.0 / 3},
