@@ -1,7 +1,7 @@
 // Right-hand side of the rod: gather, segment forces, vertex balances.
 #include "flexbody/rod.h"
 
-#include "flexbody/rod_segment.h"
+#include "flexbody/rod_lanes.h"
 
 #include <string.h>
 
@@ -30,23 +30,6 @@ void bough_rod_gather(const bough_rod_model *m, const double *state, const doubl
     }
 }
 
-static inline vertex_state load_vertex(const double *restrict v, int s, int i) {
-    return (vertex_state){{v[i], v[s + i], v[2 * s + i]},
-                          {v[7 * s + i], v[8 * s + i], v[9 * s + i]},
-                          {v[10 * s + i], v[11 * s + i], v[12 * s + i]},
-                          {v[3 * s + i], v[4 * s + i], v[5 * s + i], v[6 * s + i]}};
-}
-
-static inline void store3(double *restrict a, int s, int i, bough_vec3 v) {
-    a[i] = v.x;
-    a[s + i] = v.y;
-    a[2 * s + i] = v.z;
-}
-
-static inline bough_vec3 load3(const double *restrict a, int s, int i) {
-    return (bough_vec3){a[i], a[s + i], a[2 * s + i]};
-}
-
 bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
     int s = m->stride;
     const double *restrict vertex = scratch->vertex, *restrict e0 = m->strain0;
@@ -70,13 +53,6 @@ bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_s
         least = shape.w < least ? shape.w : least;
     }
     return least >= 0.5;
-}
-
-static inline bough_mat3 matrix_of(bough_quaternion p) {
-    double w = p.w, x = p.x, y = p.y, z = p.z;
-    return (bough_mat3){{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-                        {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-                        {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
 }
 
 // Adds the ramped loads; followers are resolved by the sections in scratch->vertex.
@@ -111,14 +87,6 @@ static void loads_at(const bough_rod_model *m, const bough_rod_loads *loads, dou
 #pragma omp simd
     for (int k = 0; k < count; k++) load[k] = value[k] + elapsed * rate[k];
     if (loads->ramped != NULL) add_ramped(m, loads, t, scratch);
-}
-
-// I W for the tensor entries Ixx Iyy Izz Ixy Ixz Iyz.
-static inline bough_vec3 inertia_times(const double *restrict j, int s, int i, bough_vec3 w) {
-    double xx = j[i], yy = j[s + i], zz = j[2 * s + i], xy = j[3 * s + i], xz = j[4 * s + i];
-    double yz = j[5 * s + i];
-    return (bough_vec3){xx * w.x + xy * w.y + xz * w.z, xy * w.x + yy * w.y + yz * w.z,
-                        xz * w.x + yz * w.y + zz * w.z};
 }
 
 // (11) solved for the accelerations, all vertices: the linear part goes out in BRF axes.

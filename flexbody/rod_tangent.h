@@ -18,7 +18,7 @@ typedef struct bough_rod_tangent {
     double *mass;           // (11) with force in BRF axes (36 × stride)
     double *local_velocity; // tangents of a vertex' own terms, by u, W (36 × stride)
     double *local_position; // by rotation (18 × stride)
-    double *vertex;         // see rod_tangent.c
+    double *vertex;         // see rod_tangent_layout.h
     bough_vec3 omega;       // of the BRF
     double *rate;           // f (13 × stride)
     // computed by bough_rod_factor

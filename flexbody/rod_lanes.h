@@ -1,0 +1,74 @@
+// Vertices and segments in structures of arrays: loads and stores for loops over vector lanes.
+#ifndef BOUGH_FLEXBODY_ROD_LANES_H
+#define BOUGH_FLEXBODY_ROD_LANES_H
+
+#include "flexbody/rod.h"
+#include "flexbody/rod_segment.h"
+
+static inline vertex_state load_vertex(const double *restrict v, int s, int i) {
+    return (vertex_state){{v[i], v[s + i], v[2 * s + i]},
+                          {v[7 * s + i], v[8 * s + i], v[9 * s + i]},
+                          {v[10 * s + i], v[11 * s + i], v[12 * s + i]},
+                          {v[3 * s + i], v[4 * s + i], v[5 * s + i], v[6 * s + i]}};
+}
+
+static inline bough_vec3 load3(const double *restrict a, int s, int i) {
+    return (bough_vec3){a[i], a[s + i], a[2 * s + i]};
+}
+
+static inline void store3(double *restrict a, int s, int i, bough_vec3 v) {
+    a[i] = v.x;
+    a[s + i] = v.y;
+    a[2 * s + i] = v.z;
+}
+
+static inline bough_mat3 load_matrix(const double *restrict a, int s, int v) {
+    return (bough_mat3){load3(a, s, v), load3(a + 3 * s, s, v), load3(a + 6 * s, s, v)};
+}
+
+static inline bough_mat3 matrix_of(bough_quaternion p) {
+    double w = p.w, x = p.x, y = p.y, z = p.z;
+    return (bough_mat3){{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
+                        {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
+                        {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
+}
+
+// I W for the tensor entries Ixx Iyy Izz Ixy Ixz Iyz.
+static inline bough_vec3 inertia_times(const double *restrict j, int s, int i, bough_vec3 w) {
+    double xx = j[i], yy = j[s + i], zz = j[2 * s + i], xy = j[3 * s + i], xz = j[4 * s + i];
+    double yz = j[5 * s + i];
+    return (bough_vec3){xx * w.x + xy * w.y + xz * w.z, xy * w.x + yy * w.y + yz * w.z,
+                        xz * w.x + yz * w.y + zz * w.z};
+}
+
+static inline bough_vec3 unit_vector(int j) {
+    return (bough_vec3){j == 0, j == 1, j == 2};
+}
+
+static inline strain add_strain(strain a, strain b) {
+    return (strain){bough_add(a.v, b.v), bough_add(a.u, b.u)};
+}
+
+// Derivative of the forces of segment n along variations of its vertices.
+static inline segment_force segment_tangent(const bough_rod_model *m, const double *vertex, int n,
+                                            const vertex_variation *dl,
+                                            const vertex_variation *dr) {
+    int s = m->stride;
+    double h = m->length[n], inverse = m->inverse_length[n];
+    vertex_state l = load_vertex(vertex, s, n), r = load_vertex(vertex, s, n + 1);
+    segment_geometry shape = segment_shape(l, r, inverse);
+    segment_rate motion = segment_motion(shape, l, r);
+    strain e = {bough_sub(shape.stretch, load3(m->strain0, s, n)),
+                bough_axpy(inverse, shape.phi, bough_scale(-1, load3(m->strain0 + 3 * s, s, n)))};
+    strain rate = strain_rate(shape, motion, inverse);
+    strain stress = add_strain(symmetric_times(m->stiffness, s, n, e),
+                               symmetric_times(m->damping, s, n, rate));
+    segment_variation d = shape_variation(shape, *dl, *dr, inverse);
+    strain de = {d.stretch, bough_scale(inverse, d.phi)};
+    strain drate = rate_variation(shape, motion, d, dl, dr, inverse);
+    strain dstress = add_strain(symmetric_times(m->stiffness, s, n, de),
+                                symmetric_times(m->damping, s, n, drate));
+    return force_variation(shape, d, stress, dstress, h);
+}
+
+#endif

@@ -1,0 +1,275 @@
+// Newton's matrix of the rod: elimination of the kinematic rows, factors, solution.
+#include "flexbody/rod_tangent.h"
+
+#include "flexbody/rod_lanes.h"
+#include "flexbody/rod_tangent_layout.h"
+
+// (E + ξ(a))⁻¹ y = (y + a (a·y) − a×y)/(1 + |a|²)
+static inline bough_vec3 solve_cross(bough_vec3 a, bough_vec3 y) {
+    bough_vec3 sum = bough_axpy(bough_dot(a, y), a, bough_sub(y, bough_cross(a, y)));
+    return bough_scale(1 / (1 + bough_dot(a, a)), sum);
+}
+
+// -- elimination and factorisation ----------------------------------------------------------------
+
+// A_φ = (eE + ξ(a) + qqᵀ/f)⁻¹ of every vertex, a = ½γ(W + Rᵀω), q = ½γ(W − Rᵀω), by
+// Sherman–Morrison; e and f are 1 but for the norm's restoring κ(1 − |p|²)p, linearised.
+static void eliminate_rotations(const bough_rod_model *m, bough_rod_tangent *k) {
+    int n = m->n, s = m->stride;
+    double gamma = k->gamma;
+    double *restrict kept = k->vertex;
+#pragma omp simd
+    for (int v = 1; v <= n; v++) {
+        bough_vec3 w = load3(kept + KEPT_W * s, s, v), o = load3(kept + KEPT_OMEGA * s, s, v);
+        bough_vec3 vector = load3(kept + (KEPT_P + 1) * s, s, v);
+        double scalar = kept[KEPT_P * s + v];
+        double square = scalar * scalar + bough_dot(vector, vector);
+        double e = 1 - gamma * BOUGH_ROD_NORM_RATE * (1 - square);
+        double f = e + 2 * gamma * BOUGH_ROD_NORM_RATE * square;
+        bough_vec3 a = bough_scale(0.5 * gamma / e, bough_add(w, o));
+        bough_vec3 q = bough_scale(0.5 * gamma, bough_sub(w, o));
+        bough_vec3 bq = bough_scale(1 / e, solve_cross(a, q));
+        double weight = 1 / (f + bough_dot(q, bq));
+        for (int j = 0; j < 3; j++) {
+            bough_vec3 b = bough_scale(1 / e, solve_cross(a, unit_vector(j)));
+            b = bough_axpy(-weight * bough_dot(q, b), bq, b);
+            kept[(KEPT_TURN + j) * s + v] = b.x;
+            kept[(KEPT_TURN + 3 + j) * s + v] = b.y;
+            kept[(KEPT_TURN + 6 + j) * s + v] = b.z;
+        }
+        kept[KEPT_SCALE * s + v] = 1 / f;
+    }
+}
+
+// Combines three directions of one force: out = γ(D + γ K A), A (3×3 by rows) for each segment at
+// `a` with stride s, or one for all when s is 0.
+static inline void combine(const double *restrict position, const double *restrict velocity,
+                           const double *restrict a, int sa, double gamma, int n, int s,
+                           double *restrict out) {
+    size_t step = (size_t)FORCES * s;
+    const double *restrict p1 = position + step, *restrict p2 = p1 + step;
+    const double *restrict d1 = velocity + step, *restrict d2 = d1 + step;
+    double *restrict o1 = out + step, *restrict o2 = o1 + step;
+#define A(i, j) a[(3 * (i) + (j)) * (sa == 0 ? 1 : sa) + (sa == 0 ? 0 : k)]
+#pragma omp simd
+    for (int k = 0; k < n; k++) {
+        double x = gamma * position[k], y = gamma * p1[k], z = gamma * p2[k];
+        out[k] = gamma * (velocity[k] + x * A(0, 0) + y * A(1, 0) + z * A(2, 0));
+        o1[k] = gamma * (d1[k] + x * A(0, 1) + y * A(1, 1) + z * A(2, 1));
+        o2[k] = gamma * (d2[k] + x * A(0, 2) + y * A(1, 2) + z * A(2, 2));
+    }
+#undef A
+}
+
+// γ(Dᵥ + γ K A) of all segments.
+static void combine_segments(const bough_rod_model *m, bough_rod_tangent *k) {
+    int n = m->n, s = m->stride;
+    const double *position = k->variation, *velocity = position + (size_t)TANGENTS * s;
+    const double *turn = k->vertex + (size_t)KEPT_TURN * s;
+    double shift[9];
+    bough_vec3 g = bough_scale(k->gamma, k->omega);
+    for (int j = 0; j < 3; j++) {
+        bough_vec3 column = solve_cross(g, unit_vector(j));
+        shift[j] = column.x;
+        shift[3 + j] = column.y;
+        shift[6 + j] = column.z;
+    }
+    for (int force = 0; force < FORCES; force++) {
+        size_t x = (size_t)force * s, l = x + (size_t)LEFT * FORCES * s;
+        size_t r = x + (size_t)RIGHT * FORCES * s;
+        combine(position + x, velocity + x, shift, 0, k->gamma, n, s, k->combined + x);
+        combine(position + l, velocity + l, turn, s, k->gamma, n, s, k->combined + l);
+        combine(position + r, velocity + r, turn + 1, s, k->gamma, n, s, k->combined + r);
+    }
+}
+
+// Where entry (i, j) of the blocks comes from among the segments' combined tangents.
+typedef struct entry_source {
+    const double *right; // of the segment whose right vertex it is
+    const double *left;  // of the segment whose left vertex it is
+    const double *lower, *upper;
+    double right_sign, left_sign, lower_sign;
+} entry_source;
+
+static const double *combined_at(const bough_rod_tangent *k, int s, int direction, int force) {
+    return k->combined + (size_t)(FORCES * direction + force) * s;
+}
+
+static entry_source source_of(const bough_rod_tangent *k, int s, int i, int j) {
+    bool force = i < 3, shift = j < 3;
+    int right = force ? F + i : LR + i - 3, left = force ? F + i : LL + i - 3;
+    int turn = j - 3;
+    return (entry_source){.right = combined_at(k, s, shift ? DELTA + j : RIGHT + turn, right),
+                          .left = combined_at(k, s, shift ? DELTA + j : LEFT + turn, left),
+                          .lower = combined_at(k, s, shift ? DELTA + j : LEFT + turn, right),
+                          .upper = combined_at(k, s, shift ? DELTA + j : RIGHT + turn, left),
+                          .right_sign = force ? 1 : -1,
+                          .left_sign = shift ? 1 : -1,
+                          .lower_sign = force == shift ? -1 : 1};
+}
+
+// Entry (i, j) of every block, vertex after vertex: blocks are formed by strided stores, whole
+// arrays at a time.
+static void store_entry(bough_rod_tangent *k, int n, int s, int i, int j) {
+    entry_source from = source_of(k, s, i, j);
+    const double *restrict right = from.right, *restrict left = from.left;
+    const double *restrict below = from.lower, *restrict above = from.upper;
+    const double *restrict mass = k->mass + (6 * i + j) * s;
+    const double *restrict own = k->local_velocity + (6 * i + j) * s;
+    double *restrict diagonal = k->matrix.diagonal + W8 * i + j;
+    double *restrict lower = k->matrix.lower + W8 * i + j;
+    double *restrict upper = k->matrix.upper + W8 * i + j;
+    double gamma = k->gamma;
+#pragma omp simd
+    for (int v = 1; v <= n; v++) {
+        double segments = from.right_sign * right[v - 1] + from.left_sign * left[v];
+        diagonal[BOUGH_BLOCK * (v - 1)] = mass[v] - gamma * own[v] + segments;
+    }
+#pragma omp simd
+    for (int v = 1; v < n; v++) {
+        lower[BOUGH_BLOCK * v] = from.lower_sign * below[v];
+        upper[BOUGH_BLOCK * (v - 1)] = -above[v];
+    }
+}
+
+// Takes γ² times the vertices' own rotation tangents, eliminated, off entry (i, 3 + j).
+static void subtract_rotation(bough_rod_tangent *k, int n, int s, int i, int j) {
+    const double *restrict x = k->local_position + i * s;
+    const double *restrict y = x + 6 * s, *restrict z = y + 6 * s;
+    const double *restrict turn = k->vertex + (size_t)(KEPT_TURN + j) * s;
+    double *restrict diagonal = k->matrix.diagonal + W8 * i + 3 + j;
+    double square = k->gamma * k->gamma;
+#pragma omp simd
+    for (int v = 1; v <= n; v++) {
+        double sum = x[v] * turn[v] + y[v] * turn[3 * s + v] + z[v] * turn[6 * s + v];
+        diagonal[BOUGH_BLOCK * (v - 1)] -= square * sum;
+    }
+}
+
+bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma) {
+    k->gamma = gamma;
+    eliminate_rotations(m, k);
+    combine_segments(m, k);
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) store_entry(k, m->n, m->stride, i, j);
+        for (int j = 0; j < 3; j++) subtract_rotation(k, m->n, m->stride, i, j);
+    }
+    return bough_block_tridiagonal_factor(&k->matrix);
+}
+
+// -- solution -------------------------------------------------------------------------------------
+
+// A r_q of every vertex and the scalar part of the quaternion residual p⁻¹∘r.
+static void eliminate_residual(const bough_rod_model *m, const bough_rod_tangent *k,
+                               const double *restrict x, double *restrict q) {
+    int n = m->n, s = m->stride;
+    const double *restrict kept = k->vertex, *restrict turn = kept + KEPT_TURN * s;
+    bough_vec3 g = bough_scale(k->gamma, k->omega);
+    double gamma = k->gamma, gg = 1 / (1 + bough_dot(g, g));
+#pragma omp simd
+    for (int v = 1; v <= n; v++) {
+        bough_vec3 rx = load3(x, n, v - 1), rp = load3(x + 4 * n, n, v - 1);
+        bough_vec3 p = load3(kept + (KEPT_P + 1) * s, s, v);
+        double rw = x[3 * n + v - 1], pw = kept[KEPT_P * s + v];
+        double inverse = 1 / (pw * pw + bough_dot(p, p));
+        double scalar = inverse * (pw * rw + bough_dot(p, rp));
+        bough_vec3 rho = bough_axpy(pw, rp, bough_axpy(-rw, p, bough_cross(rp, p)));
+        rho = bough_scale(2 * inverse, rho);
+        bough_vec3 slip = bough_sub(load3(kept + KEPT_W * s, s, v),
+                                    load3(kept + KEPT_OMEGA * s, s, v));
+        rho = bough_axpy(gamma * scalar * kept[KEPT_SCALE * s + v], slip, rho);
+        bough_vec3 shift = bough_axpy(bough_dot(g, rx), g, bough_sub(rx, bough_cross(g, rx)));
+        store3(q, s, v, bough_scale(gg, shift));
+        for (int i = 0; i < 3; i++) {
+            q[(3 + i) * s + v] = turn[3 * i * s + v] * rho.x + turn[(3 * i + 1) * s + v] * rho.y +
+                                 turn[(3 * i + 2) * s + v] * rho.z;
+        }
+        q[WORK_SCALAR * s + v] = scalar;
+    }
+}
+
+// γ K A r_q of every segment.
+static void segment_residual(const bough_rod_model *m, const bough_rod_tangent *k,
+                             const double *restrict q, double *restrict force) {
+    int n = m->n, s = m->stride;
+    double gamma = k->gamma;
+    for (int f = 0; f < FORCES; f++) {
+        const double *restrict t = k->variation + (size_t)f * s;
+        double *restrict out = force + (size_t)f * s;
+#define T(direction) t[FORCES * (direction)*s + k2]
+#pragma omp simd
+        for (int k2 = 0; k2 < n; k2++) {
+            double sum = T(0) * (q[k2 + 1] - q[k2]) + T(1) * (q[s + k2 + 1] - q[s + k2]) +
+                         T(2) * (q[2 * s + k2 + 1] - q[2 * s + k2]);
+            sum += T(3) * q[3 * s + k2] + T(4) * q[4 * s + k2] + T(5) * q[5 * s + k2];
+            sum += T(6) * q[3 * s + k2 + 1] + T(7) * q[4 * s + k2 + 1] + T(8) * q[5 * s + k2 + 1];
+            out[k2] = gamma * sum;
+        }
+#undef T
+    }
+}
+
+// M r_v + γ K A r_q of every vertex, packed for the block solver.
+static void velocity_residual(const bough_rod_model *m, const bough_rod_tangent *k,
+                              const double *restrict x, const double *restrict work,
+                              double *restrict packed) {
+    int n = m->n, s = m->stride;
+    const double *restrict mass = k->mass, *restrict own = k->local_position;
+    const double *restrict force = work + WORK_FORCE * s;
+    const double *restrict r = x + (size_t)BOUGH_ROD_U * n;
+    for (int i = 0; i < 6; i++) {
+        const double *restrict row = mass + (size_t)6 * i * s;
+        const double *restrict here = force + (size_t)i * s; // f, or the left moment
+        const double *restrict there = i < 3 ? here : here + (size_t)3 * s;
+        double sign = i < 3 ? -1 : 1, gamma = k->gamma;
+#pragma omp simd
+        for (int v = 1; v <= n; v++) {
+            double sum = here[v] + sign * there[v - 1];
+            sum += gamma * (own[i * s + v] * work[3 * s + v] + own[(6 + i) * s + v] * work[4 * s + v] +
+                            own[(12 + i) * s + v] * work[5 * s + v]);
+            for (int j = 0; j < 6; j++) sum += row[j * s + v] * r[j * n + v - 1];
+            packed[W8 * (v - 1) + i] = sum;
+        }
+    }
+}
+
+// Velocities and the configuration that belongs to them back into the state's layout.
+static void recover(const bough_rod_model *m, const bough_rod_tangent *k,
+                    const double *restrict q, const double *restrict packed, double *restrict x) {
+    int n = m->n, s = m->stride;
+    const double *restrict kept = k->vertex, *restrict turn = kept + KEPT_TURN * s;
+    bough_vec3 g = bough_scale(k->gamma, k->omega);
+    double gamma = k->gamma, gg = 1 / (1 + bough_dot(g, g));
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        int v = i + 1;
+        const double *restrict dv = packed + W8 * i;
+        bough_vec3 du = {dv[0], dv[1], dv[2]}, dw = {gamma * dv[3], gamma * dv[4], gamma * dv[5]};
+        bough_vec3 gu = bough_scale(gamma, du);
+        bough_vec3 shift = bough_axpy(bough_dot(g, gu), g, bough_sub(gu, bough_cross(g, gu)));
+        store3(x, n, i, bough_axpy(gg, shift, load3(q, s, v)));
+        bough_vec3 phi = {turn[v] * dw.x + turn[s + v] * dw.y + turn[2 * s + v] * dw.z,
+                          turn[3 * s + v] * dw.x + turn[4 * s + v] * dw.y + turn[5 * s + v] * dw.z,
+                          turn[6 * s + v] * dw.x + turn[7 * s + v] * dw.y + turn[8 * s + v] * dw.z};
+        phi = bough_add(phi, load3(q + 3 * s, s, v));
+        bough_vec3 slip = bough_sub(load3(kept + KEPT_W * s, s, v),
+                                    load3(kept + KEPT_OMEGA * s, s, v));
+        double scalar = q[WORK_SCALAR * s + v] - 0.25 * gamma * bough_dot(slip, phi);
+        scalar *= kept[KEPT_SCALE * s + v];
+        bough_vec3 p = load3(kept + (KEPT_P + 1) * s, s, v), half = bough_scale(0.5, phi);
+        double pw = kept[KEPT_P * s + v];
+        x[3 * n + i] = pw * scalar - bough_dot(p, half);
+        bough_vec3 vector = bough_axpy(pw, half, bough_axpy(scalar, p, bough_cross(p, half)));
+        store3(x + 4 * n, n, i, vector);
+        store3(x + 7 * n, n, i, du);
+        store3(x + 10 * n, n, i, bough_v3(dv[3], dv[4], dv[5]));
+    }
+}
+
+void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
+    eliminate_residual(m, k, x, k->work);
+    segment_residual(m, k, k->work, k->work + (size_t)WORK_FORCE * m->stride);
+    velocity_residual(m, k, x, k->work, k->packed);
+    bough_block_tridiagonal_solve(&k->matrix, k->packed);
+    recover(m, k, k->work, k->packed, x);
+}
