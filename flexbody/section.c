@@ -259,7 +259,8 @@ typedef struct lumping {
     const bough_rod_def *def;
     bough_vertex_inertia *vertex;
     int segment;
-    double curvature; // ∫ ρ (s − a)(b − s) over the segment [kg m²]
+    double curvature;          // ∫ ρ (s − a)(b − s) over the segment [kg m²]
+    bough_vec3 offset_curvature; // ∫ ρ c (s − a)(b − s), c the mass centre's offset, BRF [kg m³]
 } lumping;
 
 // The share of a mass element at s that vertex i takes, where the chord would carry it.
@@ -289,13 +290,20 @@ static void add_mass(void *context, double s, double weight) {
     bough_vec3 offset = bough_sub(x.position, chord);
     lump(c, k, 1 - share, offset, s, weight);
     lump(c, k + 1, share, offset, s, weight);
-    c->curvature += weight * x.mass * (s - a) * (b - s);
+    double bubble = weight * x.mass * (s - a) * (b - s);
+    bough_mat3 section = bough_rotation_matrix(rotation_at(c->axis, s));
+    bough_vec3 centre = bough_mat3_mul(section, bough_v3(x.centre[0], x.centre[1], 0));
+    c->curvature += bubble;
+    c->offset_curvature = bough_axpy(bubble, centre, c->offset_curvature);
 }
 
-// What a vertex lacks in inertia across its axis for a positive mass matrix, with a margin.
-static double lacking_inertia(const bough_vertex_inertia *v) {
-    double own = fmin(v->inertia[0], v->inertia[1]);
-    return fmax(0, 1.1 * bough_dot(v->moment, v->moment) / v->mass - own);
+// Least inertia across z about the mass centre.
+static double central_inertia(const bough_vertex_inertia *v) {
+    bough_vec3 c = bough_scale(1 / v->mass, v->moment);
+    double xx = v->inertia[0] - v->mass * (c.y * c.y + c.z * c.z);
+    double yy = v->inertia[1] - v->mass * (c.x * c.x + c.z * c.z);
+    double xy = v->inertia[3] + v->mass * c.x * c.y, half = 0.5 * (xx - yy);
+    return 0.5 * (xx + yy) - sqrt(half * half + xy * xy);
 }
 
 // Gives vertex i an inertia across direction d, and takes its second moment back by masses
@@ -311,24 +319,25 @@ static void add_spread(lumping *c, int i, double spread, bough_vec3 d) {
     c->vertex[middle + 1].mass -= mass;
 }
 
-// First moments of one vertex from the curvature integrals of its segments.
-static void add_end_terms(lumping *c, int i, const double *curvature) {
+// First moments of one vertex from the curvature integrals of its segments, and what they make of
+// the mass centre's offset in the products of inertia.
+static void add_end_terms(lumping *c, int i, const double *curvature, const bough_vec3 *offset) {
     const bough_rod_def *def = c->def;
     bough_vertex_inertia *v = &c->vertex[i];
     bough_mat3 vertex = bough_rotation_matrix(def->rotation[i]);
-    bough_vec3 sum = {0, 0, 0};
+    double own = central_inertia(v);
+    bough_vec3 shift = {0, 0, 0};
     for (int k = i - 1; k <= i; k++) {
         if (k < 0 || k >= def->n_segment) continue;
         double h = def->span[k + 1] - def->span[k], sign = k < i ? -1 : 1;
         bough_vec3 chord = bough_sub(def->position[k + 1], def->position[k]);
-        sum = bough_axpy(sign * 0.5 * curvature[k] / (h * h), chord, sum);
+        bough_vec3 along = bough_mat3_tmul(vertex, bough_scale(sign * 0.5 / (h * h), chord));
+        shift = bough_axpy(curvature[k], along, shift);
+        add_offsets(v->inertia, 2, along, bough_mat3_tmul(vertex, offset[k]));
     }
-    v->moment = bough_add(v->moment, bough_mat3_tmul(vertex, sum));
-    double spread = lacking_inertia(v);
-    if (spread > 0) {
-        bough_vec3 along = bough_mat3_tmul(vertex, sum);
-        add_spread(c, i, spread, bough_scale(1 / bough_norm(along), along));
-    }
+    v->moment = bough_add(v->moment, shift);
+    double length = bough_norm(shift), spread = 1.1 * length * length / v->mass - own;
+    if (spread > 0) add_spread(c, i, spread, bough_scale(1 / length, shift));
 }
 
 // Lumped inertia with exact total mass, first and second moments, whose kinetic energy of bending
@@ -340,13 +349,16 @@ static bool lump_inertia(bough_arena *arena, const axis *a, const bough_rod_def 
     lumping c = {.axis = a, .def = def, .vertex = vertex};
     int n = def->n_segment;
     double *curvature = bough_arena_doubles(arena, (size_t)n);
-    if (curvature == NULL) return false;
+    bough_vec3 *offset = bough_arena_take(arena, (size_t)n * sizeof *offset);
+    if (curvature == NULL || offset == NULL) return false;
     for (c.segment = 0; c.segment < n; c.segment++) {
         c.curvature = 0;
+        c.offset_curvature = bough_v3(0, 0, 0);
         integrate((stretch){a, def->span[c.segment], def->span[c.segment + 1]}, add_mass, &c);
         curvature[c.segment] = c.curvature;
+        offset[c.segment] = c.offset_curvature;
     }
-    for (int i = 0; i <= n; i++) add_end_terms(&c, i, curvature);
+    for (int i = 0; i <= n; i++) add_end_terms(&c, i, curvature, offset);
     return true;
 }
 

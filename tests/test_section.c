@@ -65,6 +65,32 @@ static void slender_rod_keeps_positive_inertia(void **context) {
     bough_arena_destroy(arena);
 }
 
+// A mass centre off the axis, on coarse and fine meshes: accepted, with exact products of inertia
+// for offsets that vary along the rod.
+static void offset_mass_centre_keeps_exact_products(void **context) {
+    (void)context;
+    for (int segments = 1; segments <= 64; segments *= 4) {
+        bough_arena *arena = bough_arena_create();
+        bough_section_station s[2] = {station(0, 1.5), station(2, 1.5)};
+        for (int k = 0; k < 2; k++) {
+            s[k].centre[0] = 0.3 * k; // c = 0.15 s
+            s[k].centre[1] = 0;
+            s[k].inertia[0] = 2e-3;
+            s[k].inertia[1] = s[k].inertia[3] = 2e-3 + 1.5 * 0.3 * 0.3;
+        }
+        bough_rod_def def = discretised(arena, s, 2, segments);
+        bough_rod_model *model;
+        bough_status status = bough_rod_create(arena, &def, &model);
+        if (!bough_is_ok(&status)) print_error("%s\n", status.message);
+        assert_int_equal(status.code, BOUGH_OK);
+        bough_vertex_inertia whole = bough_section_rigid(&def);
+        check_near(whole.moment.x, 1.5 * 0.15 * 2, 1e-12, 0);
+        check_near(whole.inertia[4], -1.5 * 0.15 * 8 / 3, 1e-12, 0); // −∫ρ x z
+        if (segments > 1) check_near(whole.inertia[0], 1.5 * 8 / 3 + 4e-3, 1e-12, 0);
+        bough_arena_destroy(arena);
+    }
+}
+
 // A uniform segment meets end forces exactly: bending h/EI, shear h/GA + h³/12EI.
 static void segment_is_exact_for_end_forces(void **context) {
     (void)context;
@@ -115,6 +141,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lumped_moments_are_exact_for_linear_tables),
         cmocka_unit_test(slender_rod_keeps_positive_inertia),
+        cmocka_unit_test(offset_mass_centre_keeps_exact_products),
         cmocka_unit_test(segment_is_exact_for_end_forces),
         cmocka_unit_test(damping_weighs_the_sections),
         cmocka_unit_test(twist_turns_sections),
