@@ -20,6 +20,7 @@ struct bough_micro_cvode {
     void *cvode;
     double gamma;
     bool started;
+    bool refused; // f had no value somewhere during the last advance
     char text[200]; // CVODE's last complaint
     bough_statistics past; // of the integrations before the last restart
 };
@@ -94,6 +95,7 @@ static int right_hand_side(sunrealtype t, N_Vector y, N_Vector rate, void *user)
     bough_micro_cvode *micro = user;
     bool ok = micro->ode.derivative(micro->ode.self, t, bough_vector_data(y),
                                     bough_vector_data(rate));
+    micro->refused = micro->refused || !ok;
     return ok ? 0 : 1;
 }
 
@@ -146,7 +148,7 @@ static bool create_parts(bough_micro_cvode *micro) {
            micro->solver != NULL && micro->cvode != NULL;
 }
 
-enum { MOST_STEPS = 200000 }; // per macro step; CVODE's own 500 would stop a long macro step
+enum { MOST_STEPS = 20000 }; // per macro step; CVODE's own 500 would stop a long macro step
 
 static bool configure(bough_micro_cvode *micro) {
     void *cvode = micro->cvode;
@@ -207,9 +209,11 @@ static bough_status start(bough_micro_cvode *micro, double t) {
     return bough_ok();
 }
 
-static const char *reason(int flag) {
+static const char *reason(const bough_micro_cvode *micro, int flag) {
+    // ever smaller steps towards a state without forces end as too much work
+    if (flag == CV_TOO_MUCH_WORK && micro->refused) flag = CV_RHSFUNC_FAIL;
     switch (flag) {
-    case CV_TOO_MUCH_WORK: return "it took 200000 steps";
+    case CV_TOO_MUCH_WORK: return "it took 20000 steps in one macro step";
     case CV_TOO_MUCH_ACC: return "the tolerance is below rounding error";
     case CV_ERR_FAILURE: return "the error test failed down to the smallest step";
     case CV_CONV_FAILURE: return "Newton's method did not converge down to the smallest step";
@@ -221,7 +225,7 @@ static const char *reason(int flag) {
     case CV_UNREC_RHSFUNC_ERR:
         return "the deformation has no finite forces (a segment turned by more than 120°, or a"
                " value overflowed)";
-    default: return "CVODE gave up";
+    default: return micro->text[0] ? micro->text : "CVODE gave up";
     }
 }
 
@@ -233,12 +237,13 @@ bough_status bough_micro_cvode_advance(bough_micro_cvode *micro, double t, doubl
         bough_status status = start(micro, t);
         if (!bough_is_ok(&status)) return status;
     }
+    micro->refused = false;
     CVodeSetStopTime(micro->cvode, t1);
     int flag = CVode(micro->cvode, t1, micro->y, &reached, CV_NORMAL);
     if (flag < 0) {
         CVodeGetCurrentTime(micro->cvode, &reached);
         return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: CVODE BDF cannot go on: %s",
-                          micro->ode.name, reached, reason(flag));
+                          micro->ode.name, reached, reason(micro, flag));
     }
     memcpy(y, own, (size_t)micro->ode.n * sizeof *own);
     return bough_ok();
