@@ -5,6 +5,8 @@
 
 enum { W8 = 8 };
 
+static const double rounding = 1e-11; // damping ratios below it are none
+
 static bough_mat3 rotation_of(const double *state, int n, int i) {
     bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]};
     return bough_rotation_matrix(bough_quaternion_normalised(p));
@@ -71,10 +73,10 @@ static void set_shape(const bough_rod_model *m, const bough_eigen_pair *pair, co
 
 static bool fill_mode(bough_arena *arena, const bough_rod_model *m, const bough_eigen_pair *pair,
                       const double *state, bough_rod_mode *mode) {
-    double modulus = hypot(pair->real, pair->imaginary);
+    double modulus = hypot(pair->real, pair->imaginary), ratio = -pair->real / modulus;
     *mode = (bough_rod_mode){.frequency = modulus / (2 * BOUGH_PI),
                              .damped_frequency = pair->imaginary / (2 * BOUGH_PI),
-                             .damping = -pair->real / modulus,
+                             .damping = fabs(ratio) > rounding ? ratio : 0,
                              .real = bough_arena_doubles(arena, 6 * (size_t)m->n),
                              .imaginary = bough_arena_doubles(arena, 6 * (size_t)m->n)};
     if (mode->real == NULL || mode->imaginary == NULL) return false;

@@ -299,6 +299,32 @@ statics() {
     nothing_written
 }
 
+# The blade's frequencies at rest: beam finite elements converged at 800 elements.
+modes() {
+    blade=$2/tests/scenes/blade.yaml
+    expect 0 modes "$blade" --set 'modes={count: 6, shapes: true}'
+    has ../stdout '^rod blade: 48 segments, 61.5 m, root held$'
+    near ../stdout '^ *1 ' 2 0.68582 0.0005
+    near ../stdout '^ *2 ' 2 1.08057 0.0005
+    has ../stdout '^ *6 .* torsion '
+    empty ../stderr
+    [ "$(wc -l <out/blade/modes.csv)" -eq 7 ] || fail "$said: modes.csv has not 7 lines"
+    [ "$(wc -l <out/blade/shapes.csv)" -eq 295 ] || fail "$said: shapes.csv has not 295 lines"
+    has out/blade/modes.csv '^rod,mode,frequency (Hz),'
+    expect 0 modes "$turbine" --set 'modes={count: 2, speed: 12.1 rpm}' --out turning
+    has ../stdout '^rod blade3: .* turning at 12.1 rpm about (0.996195, 0, -0.0871557)'
+    near ../stdout '^ *1 ' 2 0.7349 0.001
+    missing turning/shapes.csv
+    expect 0 modes "$beam" --set 'loads=[{body: beam, at: tip, force: [0, 0, -3 kN], frame: follower}]'
+    has ../stdout '^unstable beam: mode [23] grows at '
+    rm -r out turning
+    refused 'no revolute joint carries it' modes "$blade" --set 'modes.speed=1'
+    refused "modes.about: the joint of 'nacelle' must be revolute" modes "$turbine" \
+        --set 'modes.about=nacelle'
+    refused "modes.axis: only used without 'about'" modes "$turbine" \
+        --set 'modes={about: hub, axis: [1, 0, 0]}'
+}
+
 # The number of threads changes no byte of the results.
 threads() {
     for scheme in ramp frozen; do
@@ -322,6 +348,7 @@ checks
 complete_run
 failed_run
 statics "$@"
+modes "$@"
 interrupted_run
 bad_output
 threads

@@ -619,6 +619,20 @@ static void loads_fit_their_rods(void **state) {
             "ground axes are built for rods at rest: give 'frame: body' or 'frame: follower'\n");
 }
 
+static void modes_name_their_axis(void **state) {
+    (void)state;
+    refuses(TWO_RODS "  []\nmodes: {about: x, axis: [0, 0, 1]}\n",
+            "s.yaml:8:16: error: modes.about: there is no body 'x' (did you mean 'a'?)\n"
+            "s.yaml:8:25: error: modes.axis: only used without 'about'\n");
+    refuses(TWO_RODS "  []\nmodes: {about: a, centre: [0, 0, 1], count: 0}\n",
+            "s.yaml:8:16: error: modes.about: the joint of 'a' must be revolute\n"
+            "s.yaml:8:27: error: modes.centre: only used with 'axis'\n"
+            "s.yaml:8:45: error: modes.count: must be in [1, 60], got '0'\n");
+    refuses(TWO_RODS "  []\nmodes: {speed: 10 rpm, axis: [0, 0, 0]}\n",
+            "s.yaml:8:30: error: modes.axis: must not be zero\n");
+    accepts(TWO_RODS "  []\nmodes: {speed: 10 rpm, about: c, shapes: true}\n");
+}
+
 #define ROTOR                                                                                      \
     SIMULATION                                                                                     \
     "bodies:\n  - {name: hub, mass: 1, fidelity: rigid, joint: {kind: revolute, parent: ground, "  \
@@ -873,6 +887,7 @@ int main(void) {
         cmocka_unit_test(loads_fit_their_joints),
         cmocka_unit_test(loads_act_on_rods),
         cmocka_unit_test(loads_fit_their_rods),
+        cmocka_unit_test(modes_name_their_axis),
         cmocka_unit_test(turbine_names_are_checked),
         cmocka_unit_test(aerodynamics_are_consistent),
         cmocka_unit_test(polars_cover_the_circle),

@@ -262,6 +262,18 @@ typedef struct bough_scene_aero {
     double hub_radius; // [m]
 } bough_scene_aero;
 
+// What `bough modes` finds; a run does not read it.
+typedef struct bough_scene_modes {
+    const bough_node *node;
+    int count;              // modes of each rod
+    double speed;           // of a steady rotation [rad/s]; 0: at rest
+    const char *about_name; // NULL: the nearest revolute joint that carries the rod
+    int about;              // index of the body on the revolute joint, when named
+    double axis[3];         // in place of it, ground axes; {0, 0, 0}: not given
+    double centre[3];       // a point of that axis, in the ground [m]
+    bool shapes;            // written too
+} bough_scene_modes;
+
 typedef struct bough_scene {
     const bough_node *node;
     const char *file; // path of the scene
@@ -275,6 +287,7 @@ typedef struct bough_scene {
     bough_scene_load *load; // (n_load)
     bough_scene_turbine turbine;
     bough_scene_aero aero; // needs the turbine
+    bough_scene_modes modes;
 } bough_scene;
 
 // Reads and checks the scene with the replacements `sets` ("bodies[2].pitch=5 deg"). Every error

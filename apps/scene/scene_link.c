@@ -276,6 +276,33 @@ static void link_turbine(bough_schema_reader *r, bough_scene *s) {
         link_blade(r, s, k);
 }
 
+// -- modes ----------------------------------------------------------------------------------------
+
+static void link_modes(bough_schema_reader *r, bough_scene *s) {
+    bough_scene_modes *m = &s->modes;
+    m->about = UNRESOLVED;
+    if (m->node == NULL) return;
+    at(r, "modes");
+    const bough_node *axis = bough_node_find(m->node, "axis");
+    const bough_node *centre = bough_node_find(m->node, "centre");
+    if (m->about_name != NULL) {
+        const bough_node *about = value_of(m->node, "about");
+        m->about = resolve(r, s, about, "about", m->about_name);
+        if (m->about >= 0 && s->body[m->about].joint.kind >= 0 &&
+            s->body[m->about].joint.kind != BOUGH_SCENE_REVOLUTE) {
+            bough_schema_error(r, about, "about", "the joint of '%s' must be revolute",
+                               m->about_name);
+        }
+        if (axis != NULL) bough_schema_error(r, axis, "axis", "only used without 'about'");
+    }
+    if (axis != NULL && m->axis[0] == 0 && m->axis[1] == 0 && m->axis[2] == 0) {
+        bough_schema_error(r, axis, "axis", "must not be zero");
+    }
+    if (centre != NULL && axis == NULL) {
+        bough_schema_error(r, centre, "centre", "only used with 'axis'");
+    }
+}
+
 // -- aerodynamics
 // -----------------------------------------------------------------------------------
 
@@ -381,5 +408,6 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
     }
     link_turbine(r, scene);
     link_aero(r, scene);
+    link_modes(r, scene);
     at(r, "%s", "");
 }

@@ -384,6 +384,27 @@ static const bough_key aero_keys[] = {
 #undef AT
 static const bough_schema aero_schema = {SCHEMA("the aerodynamics", bough_scene_aero, aero_keys)};
 
+// -- modes ----------------------------------------------------------------------------------------
+
+#define AT(member) .offset = offsetof(bough_scene_modes, member)
+static const bough_key modes_keys[] = {
+    {.name = "count", .kind = BOUGH_KEY_INTEGER, .range = "[1, 60]", .fallback = "12", AT(count),
+     .help = "of each rod, from the lowest frequency"},
+    {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGULAR_SPEED, .fallback = "0",
+     AT(speed), .help = "of a steady rotation of the rods' roots"},
+    {.name = "about", .kind = BOUGH_KEY_TEXT, AT(about_name),
+     .help = "body on the revolute joint about whose axis they turn; default the nearest that "
+             "carries the rod"},
+    {.name = "axis", .kind = BOUGH_KEY_VECTOR, .count = 3, .fallback = zero3, AT(axis),
+     .help = "in place of a joint: direction of the axis in ground axes"},
+    {.name = "centre", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
+     .fallback = zero3, AT(centre), .help = "of 'axis': a point of it, in the ground"},
+    {.name = "shapes", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(shapes),
+     .help = "write the modes' shapes"},
+};
+#undef AT
+static const bough_schema modes_schema = {SCHEMA("the modes", bough_scene_modes, modes_keys)};
+
 // -- the scene -------------------------------------------------------------------------------------
 
 #define AT(member) .offset = offsetof(bough_scene, member)
@@ -401,6 +422,8 @@ static const bough_key scene_keys[] = {
      .help = "names what channels and aerodynamics need"},
     {.name = "aero", .kind = BOUGH_KEY_MAPPING, .of = &aero_schema, AT(aero),
      .help = "aerodynamics; needs the turbine; left out: none"},
+    {.name = "modes", .kind = BOUGH_KEY_MAPPING, .of = &modes_schema, AT(modes),
+     .help = "what 'bough modes' finds"},
 };
 #undef AT
 // clang-format on

@@ -9,6 +9,65 @@ const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_
     return body;
 }
 
+static bool carries(const bough_scene *scene, int ancestor, const bough_scene_body *body) {
+    for (; body != &scene->body[ancestor]; body = &scene->body[body->joint.parent]) {
+        if (body->joint.parent == BOUGH_SCENE_GROUND) return false;
+    }
+    return true;
+}
+
+// The named body, or the nearest on a revolute joint below the rod; NULL when there is none.
+static const bough_scene_body *pivot_of(const bough_scene *scene, const bough_beam *beam) {
+    const bough_scene_body *body = beam->body;
+    if (scene->modes.about_name != NULL) {
+        bool good = carries(scene, scene->modes.about, body);
+        return good ? &scene->body[scene->modes.about] : NULL;
+    }
+    while (body->joint.kind != BOUGH_SCENE_REVOLUTE) {
+        if (body->joint.parent == BOUGH_SCENE_GROUND) return NULL;
+        body = &scene->body[body->joint.parent];
+    }
+    return body;
+}
+
+bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *beam,
+                                  bough_turning *turning) {
+    const bough_scene_modes *modes = &s->scene->modes;
+    bough_vec3 axis = {modes->axis[0], modes->axis[1], modes->axis[2]};
+    *turning = (bough_turning){.speed = modes->speed};
+    if (modes->speed == 0) return bough_ok();
+    if (bough_norm(axis) > 0) {
+        turning->axis = bough_scale(1 / bough_norm(axis), axis);
+        turning->centre = bough_v3(modes->centre[0], modes->centre[1], modes->centre[2]);
+        return bough_ok();
+    }
+    const bough_scene_body *pivot = pivot_of(s->scene, beam);
+    if (pivot == NULL) {
+        return bough_fail(BOUGH_INVALID, "rod %s: no revolute joint%s%s carries it; name an 'axis'"
+                          " for the speed of 'modes'", beam->body->name,
+                          modes->about_name == NULL ? "" : " of ",
+                          modes->about_name == NULL ? "" : modes->about_name);
+    }
+    const bough_frame *frame = &s->tree->bodies[pivot - s->scene->body];
+    bough_transform pose = bough_tree_frame_pose(s->view, frame);
+    const bough_vec3 axes[3] = {pose.rotation.c1, pose.rotation.c2, pose.rotation.c3};
+    turning->axis = axes[pivot->joint.axis];
+    turning->centre = pose.position;
+    return bough_ok();
+}
+
+// What hangs on a rod would pull at it; that is not known here.
+static bough_status check_carries_none(const bough_simulation *s, const bough_beam *beam) {
+    for (int i = 0; i < s->scene->n_body; i++) {
+        const bough_scene_body *body = &s->scene->body[i];
+        int parent = body->joint.parent;
+        if (parent < 0 || &s->scene->body[parent] != beam->body) continue;
+        return bough_fail(BOUGH_INVALID, "rod %s carries the body %s; the equilibrium of rods that"
+                          " carry bodies is not built yet", beam->body->name, body->name);
+    }
+    return bough_ok();
+}
+
 static void set3(double *to, bough_vec3 v) {
     to[0] = v.x;
     to[1] = v.y;
@@ -33,6 +92,8 @@ static void set_input(const bough_simulation *s, const bough_turning *turning, b
 bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,
                                const bough_beam *beam, const bough_turning *turning,
                                bough_steady *steady) {
+    bough_status status = check_carries_none(s, beam);
+    if (!bough_is_ok(&status)) return status;
     steady->beam = beam;
     steady->model = bough_rod_body_model(beam->rod);
     steady->state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * steady->model->n);

@@ -21,6 +21,11 @@ typedef struct bough_turning {
     bough_vec3 centre; // a point of the axis, in the ground [m]
 } bough_turning;
 
+// The rotation of a rod that the scene's modes block asks for, in the simulation's initial pose.
+// BOUGH_INVALID when it names no axis for this rod.
+bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *beam,
+                                  bough_turning *turning);
+
 // The body whose joint moves the rod's root; NULL when its root is at rest.
 const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_beam *beam);
 
