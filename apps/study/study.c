@@ -3,6 +3,7 @@
 
 #include "apps/scene/schema.h"
 #include "apps/study/study_parts.h"
+#include "apps/study/study_verify.h"
 
 #include <errno.h>
 #include <string.h>
@@ -189,9 +190,10 @@ static const bough_key study_keys[] = {
     {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line: what is asked"},
     {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
      .help = "file of the scene, relative to the study"},
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("work-precision"),
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("work-precision", "verify"),
      .required = true, AT(kind),
-     .help = "work-precision: time and difference to the reference of every cell of the grid"},
+     .help = "work-precision: time and difference to the reference of every cell of the grid; "
+             "verify: cases against what they should give"},
     {.name = "reference", .kind = BOUGH_KEY_CUSTOM, .read = read_settings, .required = true,
      .form = "{KEY: VALUE, ...}", AT(reference), .help = "replacements that make the reference"},
     {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = read_grid, .required = true,
@@ -221,8 +223,7 @@ static const bough_schema study_schema = {
 
 // -- reading --------------------------------------------------------------------------------------
 
-// The scene's path from the study's.
-static const char *scene_path(bough_arena *arena, const char *study, const char *scene) {
+const char *bough_study_path(bough_arena *arena, const char *study, const char *scene) {
     const char *slash = scene[0] == '/' ? NULL : strrchr(study, '/');
     int length = slash ? (int)(slash - study) + 1 : 0;
     size_t size = (size_t)length + strlen(scene) + 1;
@@ -232,7 +233,7 @@ static const char *scene_path(bough_arena *arena, const char *study, const char 
 }
 
 static bool find_scene(bough_arena *arena, bough_study *s, bough_errors *errors) {
-    s->scene = scene_path(arena, s->file, s->scene_name);
+    s->scene = bough_study_path(arena, s->file, s->scene_name);
     FILE *file = s->scene ? fopen(s->scene, "rb") : NULL;
     if (!file) {
         bough_errors_add(errors, bough_node_find(s->node, "scene"), "scene",
@@ -254,16 +255,27 @@ static bough_status finish(const char *path, bough_arena *arena, bough_errors *e
     return bough_fail(BOUGH_INVALID, "%s: %d error%s in the study", path, n, n == 1 ? "" : "s");
 }
 
+static bool is_verify(const bough_node *root) {
+    const bough_node *kind = bough_node_find(root, "kind");
+    return kind && kind->kind == BOUGH_SCALAR && strcmp(kind->text, "verify") == 0;
+}
+
 bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
                               bough_errors *errors, bough_study **study) {
     *study = NULL;
     bough_study *s = bough_arena_take(arena, sizeof *s);
     bough_node *root = bough_text_read(arena, path, errors);
     if (!s || !root) return finish(path, arena, errors);
-    bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
-    bough_schema_read(&reader, &study_schema, root, s);
     s->file = bough_arena_string(arena, path);
     s->threads = threads;
+    if (is_verify(root)) {
+        s->kind = BOUGH_STUDY_VERIFY;
+        s->verify = bough_verify_read(arena, path, root, errors);
+        *study = errors->n + errors->dropped == 0 ? s : NULL;
+        return finish(path, arena, errors);
+    }
+    bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
+    bough_schema_read(&reader, &study_schema, root, s);
     bough_status status = finish(path, arena, errors);
     if (!bough_is_ok(&status)) return status;
     if (find_scene(arena, s, errors)) {

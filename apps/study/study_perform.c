@@ -3,6 +3,7 @@
 #include "apps/output/folder.h"
 #include "apps/study/study_plot.h"
 #include "apps/study/study_store.h"
+#include "apps/study/study_verify.h"
 
 #include <errno.h>
 #include <string.h>
@@ -118,7 +119,8 @@ static bough_status work_precision(bough_arena *arena, const bough_study *study,
 typedef bough_status perform_function(bough_arena *arena, const bough_study *study,
                                       const bough_study_options *options);
 
-static perform_function *const kinds[] = {[BOUGH_STUDY_WORK_PRECISION] = work_precision};
+static perform_function *const kinds[] = {[BOUGH_STUDY_WORK_PRECISION] = work_precision,
+                                          [BOUGH_STUDY_VERIFY] = bough_verify_perform};
 
 bough_status bough_study_perform(bough_arena *arena, const bough_study *study,
                                  const bough_study_options *options) {

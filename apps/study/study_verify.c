@@ -1,0 +1,301 @@
+// The keys of a study of kind verify and their reading.
+#include "apps/study/study_verify.h"
+
+#include "apps/scene/build.h"
+#include "apps/scene/schema.h"
+#include "apps/study/study_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+// -- replacements ---------------------------------------------------------------------------------
+
+typedef struct text {
+    char *at;
+    size_t left;
+} text;
+
+static void put(text *t, const char *word) {
+    size_t n = strlen(word);
+    if (n >= t->left) n = t->left - 1;
+    memcpy(t->at, word, n);
+    t->at += n;
+    t->left -= n;
+    *t->at = '\0';
+}
+
+static void put_scalar(text *t, const bough_node *node) {
+    put(t, node->quoted ? "'" : "");
+    for (const char *c = node->text; *c; c++) {
+        char two[3] = {*c, '\0', '\0'};
+        if (node->quoted && *c == '\'') two[1] = '\'';
+        put(t, two);
+    }
+    put(t, node->quoted ? "'" : "");
+}
+
+// The node in YAML on one line.
+static void put_node(text *t, const bough_node *node) {
+    if (node->kind == BOUGH_SCALAR) {
+        put_scalar(t, node);
+        return;
+    }
+    put(t, node->kind == BOUGH_SEQUENCE ? "[" : "{");
+    for (int i = 0; i < node->n; i++) {
+        put(t, i ? ", " : "");
+        if (node->key) put_scalar(t, node->key[i]);
+        put(t, node->key ? ": " : "");
+        put_node(t, node->value[i]);
+    }
+    put(t, node->kind == BOUGH_SEQUENCE ? "]" : "}");
+}
+
+static void read_set(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_verify_case *x = field;
+    char line[2000], shown[64];
+    if (node->kind != BOUGH_MAPPING) {
+        bough_schema_error(r, node, "", "expected keys of the scene with their values, got %s",
+                           bough_node_shown(node, shown));
+        return;
+    }
+    x->set.item = bough_arena_take(r->arena, ((size_t)node->n + 1) * sizeof *x->set.item);
+    if (!x->set.item) return;
+    for (int i = 0; i < node->n; i++) {
+        text t = {line, sizeof line};
+        put(&t, node->key[i]->text);
+        put(&t, "=");
+        put_node(&t, node->value[i]);
+        if (t.left <= 1) bough_schema_error(r, node->value[i], "", "the value is too long");
+        x->set.item[x->set.n++] = bough_arena_string(r->arena, line);
+    }
+}
+
+// -- quantities -----------------------------------------------------------------------------------
+
+static const char quantity_form[] =
+    "'tip x|y|z|ux|uy|uz|rx|ry|rz', 'frequency N', 'damping N', 'growth', 'CHANNEL at TIME', "
+    "'largest CHANNEL', 'smallest CHANNEL' or 'drift of energy|momentum|angular momentum|strain "
+    "energy from TIME'";
+
+static int word_index(const char *word, const char *const *words, int n) {
+    for (int i = 0; i < n; i++) {
+        if (strcmp(word, words[i]) == 0) return i;
+    }
+    return -1;
+}
+
+static bool parse_tip(const char *phrase, bough_verify_quantity *q) {
+    static const char *const names[] = {"x", "y", "z", "ux", "uy", "uz", "rx", "ry", "rz"};
+    if (strncmp(phrase, "tip ", 4) != 0) return false;
+    q->what = BOUGH_VERIFY_TIP;
+    q->index = word_index(phrase + 4, names, 9);
+    return q->index >= 0;
+}
+
+static bool parse_mode(const char *phrase, bough_verify_quantity *q) {
+    static const char *const names[] = {"frequency", "damping"};
+    char word[16];
+    int number, end = 0;
+    if (strcmp(phrase, "growth") == 0) {
+        q->what = BOUGH_VERIFY_GROWTH;
+        return true;
+    }
+    if (sscanf(phrase, "%15s %d%n", word, &number, &end) != 2 || phrase[end]) return false;
+    int k = word_index(word, names, 2);
+    q->what = (bough_verify_what)(BOUGH_VERIFY_FREQUENCY + k);
+    q->index = number - 1;
+    return k >= 0 && number >= 1 && number <= 50;
+}
+
+static bool parse_drift(const char *phrase, bough_verify_quantity *q) {
+    static const char *const names[] = {"energy", "momentum", "angular momentum", "strain energy"};
+    char word[32] = "", why[160];
+    const char *from = strstr(phrase, " from ");
+    if (strncmp(phrase, "drift of ", 9) != 0 || !from || from < phrase + 9) return false;
+    snprintf(word, sizeof word, "%.*s", (int)(from - phrase - 9), phrase + 9);
+    q->what = BOUGH_VERIFY_DRIFT;
+    q->index = word_index(word, names, BOUGH_VERIFY_INVARIANTS);
+    return q->index >= 0 && bough_quantity(from + 6, BOUGH_TIME, &q->time, why);
+}
+
+static bool parse_channel(bough_arena *arena, const char *phrase, bough_verify_quantity *q) {
+    char word[64], name[64], why[160];
+    int end = 0;
+    if (sscanf(phrase, "%63s %63s%n", word, name, &end) != 2) return false;
+    bool largest = strcmp(word, "largest") == 0;
+    if (phrase[end] == '\0' && (largest || strcmp(word, "smallest") == 0)) {
+        q->what = largest ? BOUGH_VERIFY_LARGEST : BOUGH_VERIFY_SMALLEST;
+        q->channel = bough_arena_string(arena, name);
+        return true;
+    }
+    q->what = BOUGH_VERIFY_AT;
+    q->channel = bough_arena_string(arena, word);
+    return strcmp(name, "at") == 0 && phrase[end] == ' ' &&
+           bough_quantity(phrase + end + 1, BOUGH_TIME, &q->time, why);
+}
+
+static void check_expect(bough_schema_reader *r, void *item) {
+    bough_verify_expect *e = item;
+    if ((e->name != NULL) == (e->diagnosis != NULL)) {
+        bough_schema_error(r, e->node, "", "expected one of 'quantity' and 'diagnosis'");
+        return;
+    }
+    if (e->diagnosis) return;
+    bough_verify_quantity *q = &e->quantity;
+    if (!parse_tip(e->name, q) && !parse_mode(e->name, q) && !parse_drift(e->name, q) &&
+        !parse_channel(r->arena, e->name, q)) {
+        bough_schema_error(r, e->node, "quantity", "expected %s, got '%.80s'", quantity_form,
+                           e->name);
+    }
+    if ((e->relative > 0) == (e->absolute > 0)) {
+        bough_schema_error(r, e->node, "", "expected one of 'relative' and 'absolute', the "
+                                           "tolerance");
+    }
+}
+
+// -- keys -----------------------------------------------------------------------------------------
+
+static void check_meshes(bough_schema_reader *r, const bough_verify_case *x) {
+    const bough_node *node = bough_node_find(x->node, "meshes");
+    if (x->n_mesh > BOUGH_VERIFY_MESHES) {
+        bough_schema_error(r, node, "meshes", "expected at most %d", BOUGH_VERIFY_MESHES);
+        return;
+    }
+    for (int k = 0; k < x->n_mesh; k++) {
+        bool whole = x->mesh[k] == floor(x->mesh[k]) && x->mesh[k] <= 1e6;
+        bool grows = k == 0 || x->mesh[k] > x->mesh[k - 1];
+        if (k > 1) {
+            double last = x->mesh[k] / x->mesh[k - 1], first = x->mesh[1] / x->mesh[0];
+            grows = grows && fabs(last - first) < 1e-9 * first;
+        }
+        if (whole && grows) continue;
+        bough_schema_error(r, node, "meshes",
+                           "expected numbers of segments that grow by a constant factor");
+        return;
+    }
+}
+
+static void check_case(bough_schema_reader *r, void *item) {
+    bough_verify_case *x = item;
+    check_meshes(r, x);
+    for (int i = 0; i < x->n_expect; i++) {
+        bough_verify_expect *e = &x->expect[i];
+        if (e->extrapolate && x->n_mesh < 2) {
+            bough_schema_error(r, e->node, "extrapolate", "needs two 'meshes' or more");
+        }
+        if (e->diagnosis) continue;
+        bool fits = x->action == BOUGH_VERIFY_STATIC  ? e->quantity.what == BOUGH_VERIFY_TIP
+                    : x->action == BOUGH_VERIFY_MODES ? e->quantity.what > BOUGH_VERIFY_TIP &&
+                                                            e->quantity.what < BOUGH_VERIFY_AT
+                                                      : e->quantity.what >= BOUGH_VERIFY_AT;
+        if (fits) continue;
+        bough_schema_error(r, e->node, "quantity", "'%.60s' does not come from what the case does",
+                           e->name);
+    }
+}
+
+// One line a key would become one line a field:
+// clang-format off
+#define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
+#define CHOICES(...) (const char *const[]){__VA_ARGS__, NULL}
+
+#define AT(member) .offset = offsetof(bough_verify_expect, member)
+static const bough_key expect_keys[] = {
+    {.name = "quantity", .kind = BOUGH_KEY_TEXT, AT(name), .help = quantity_form},
+    {.name = "value", .kind = BOUGH_KEY_NUMBER, .fallback = "0", AT(value),
+     .help = "the reference, in m, rad, Hz or the channel's unit, times the scale"},
+    {.name = "scale", .kind = BOUGH_KEY_NUMBER, .fallback = "1", AT(scale),
+     .help = "by which the result is multiplied"},
+    {.name = "relative", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0", AT(relative),
+     .help = "tolerance, as a share of the value"},
+    {.name = "absolute", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0", AT(absolute),
+     .help = "tolerance"},
+    {.name = "extrapolate", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(extrapolate),
+     .help = "the result is extrapolated at second order from the two finest meshes"},
+    {.name = "diagnosis", .kind = BOUGH_KEY_TEXT, AT(diagnosis),
+     .help = "in place of a quantity: part of the message with which the case must end"},
+};
+#undef AT
+static const bough_schema expect_schema = {
+    .name = "an expectation", .size = sizeof(bough_verify_expect), .n_key = COUNT(expect_keys),
+    .key = expect_keys, .check = check_expect};
+
+#define AT(member) .offset = offsetof(bough_verify_case, member)
+static const bough_key case_keys[] = {
+    {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name), .help = "heads its lines"},
+    {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
+     .help = "file of the scene, relative to the study"},
+    {.name = "do", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("static", "modes", "run"),
+     .required = true, AT(action), .help = "equilibrium or modes of the first rod, or the run"},
+    {.name = "set", .kind = BOUGH_KEY_CUSTOM, .read = read_set, .form = "{KEY: VALUE, ...}",
+     .offset = 0, .help = "replacements in the scene"},
+    {.name = "meshes", .kind = BOUGH_KEY_NUMBERS, .range = ">= 1", .count = 1, AT(mesh),
+     .count_offset = offsetof(bough_verify_case, n_mesh),
+     .help = "numbers of segments that grow by a constant factor; default the scene's"},
+    {.name = "mesh_key", .kind = BOUGH_KEY_TEXT, .fallback = "bodies[0].rod.segments",
+     AT(mesh_key), .help = "key of the scene that takes them"},
+    {.name = "expect", .kind = BOUGH_KEY_LIST, .of = &expect_schema, .count = 1, .required = true,
+     AT(expect), .count_offset = offsetof(bough_verify_case, n_expect),
+     .help = "what should come out"},
+};
+#undef AT
+static const bough_schema case_schema = {
+    .name = "a case", .size = sizeof(bough_verify_case), .n_key = COUNT(case_keys),
+    .key = case_keys, .check = check_case};
+
+#define AT(member) .offset = offsetof(bough_verify, member)
+static const bough_key verify_keys[] = {
+    {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line: what is verified"},
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("verify"), .required = true,
+     AT(kind), .help = "verify: every case is compared to what it should give"},
+    {.name = "cases", .kind = BOUGH_KEY_LIST, .of = &case_schema, .count = 1, .required = true,
+     AT(cases), .count_offset = offsetof(bough_verify, n_case), .help = "one after the other"},
+};
+#undef AT
+static const bough_schema verify_schema = {
+    .name = "a study", .size = sizeof(bough_verify), .n_key = COUNT(verify_keys),
+    .key = verify_keys};
+// clang-format on
+
+// -- reading --------------------------------------------------------------------------------------
+
+static void set_mesh(bough_arena *arena, bough_verify_case *x) {
+    for (int i = 0; i < x->n_mesh; i++) { // x.set has room for one more
+        char line[160];
+        snprintf(line, sizeof line, "%.120s=%.0f", x->mesh_key, x->mesh[i]);
+        x->set.item[x->set.n] = bough_arena_string(arena, line);
+    }
+}
+
+// The scene with its replacements on the first mesh; what is wrong there is told at the case.
+static void check_scene(bough_arena *arena, bough_verify_case *x, bough_errors *errors) {
+    bough_arena *own = bough_arena_create();
+    if (!own) return;
+    bough_errors found = {.arena = own};
+    bough_scene *scene;
+    if (!x->set.item) x->set.item = bough_arena_take(arena, sizeof *x->set.item);
+    if (x->set.item) {
+        set_mesh(arena, x);
+        bough_scene_read(own, x->scene, x->set.item, x->set.n + (x->n_mesh > 0), &found, &scene);
+    }
+    for (int i = 0; i < found.n; i++) {
+        const bough_error *e = &found.item[i];
+        bough_errors_add(errors, x->node, x->name, "%.60s:%d: %.80s: %.200s", e->file, e->line,
+                         e->path, e->text);
+    }
+    bough_arena_destroy(own);
+}
+
+bough_verify *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root,
+                                bough_errors *errors) {
+    bough_verify *v = bough_arena_take(arena, sizeof *v);
+    if (!v) return NULL;
+    bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
+    bough_schema_read(&reader, &verify_schema, root, v);
+    if (errors->n + errors->dropped > 0) return v;
+    for (int i = 0; i < v->n_case; i++) {
+        v->cases[i].scene = bough_study_path(arena, path, v->cases[i].scene_name);
+        check_scene(arena, &v->cases[i], errors);
+    }
+    return v;
+}

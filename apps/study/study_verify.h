@@ -1,0 +1,99 @@
+// A study of kind verify: cases that are each a scene, what to do with it, and what should come out
+// by another program, an exact solution or a conservation law.
+#ifndef BOUGH_APPS_STUDY_STUDY_VERIFY_H
+#define BOUGH_APPS_STUDY_STUDY_VERIFY_H
+
+#include "apps/study/study_perform.h"
+
+enum { BOUGH_VERIFY_MESHES = 5 };
+
+typedef enum bough_verify_action {
+    BOUGH_VERIFY_STATIC, // equilibrium of the first rod
+    BOUGH_VERIFY_MODES,  // natural modes of the first rod, as the scene's modes block says
+    BOUGH_VERIFY_RUN,    // the scene through its duration
+} bough_verify_action;
+
+typedef enum bough_verify_what {
+    BOUGH_VERIFY_TIP,       // "tip ux": component of the tip's motion
+    BOUGH_VERIFY_FREQUENCY, // "frequency 2" [Hz]
+    BOUGH_VERIFY_DAMPING,   // "damping 2", the ratio
+    BOUGH_VERIFY_GROWTH,    // "growth", of the fastest growing of the lowest modes [1/s]
+    BOUGH_VERIFY_AT,        // "CHANNEL at 0.5 s"
+    BOUGH_VERIFY_LARGEST,   // "largest CHANNEL"
+    BOUGH_VERIFY_SMALLEST,  // "smallest CHANNEL"
+    BOUGH_VERIFY_DRIFT,     // "drift of energy from 2 s", the largest, relative to the largest value
+} bough_verify_what;
+
+// What the rods have together; conserved in free flight.
+typedef enum bough_verify_invariant {
+    BOUGH_VERIFY_ENERGY, // kinetic, elastic and of gravity [J]
+    BOUGH_VERIFY_MOMENTUM,
+    BOUGH_VERIFY_ANGULAR_MOMENTUM, // about the ground's origin
+    BOUGH_VERIFY_STRAIN_ENERGY,    // "drift" is its largest share of the energy
+    BOUGH_VERIFY_INVARIANTS,
+} bough_verify_invariant;
+
+typedef struct bough_verify_quantity {
+    bough_verify_what what;
+    int index;           // component of the tip, number of the mode from 0, or bough_verify_invariant
+    const char *channel; // NULL: no channel
+    double time;         // [s]
+} bough_verify_quantity;
+
+// A value that is expected, or a diagnosis.
+typedef struct bough_verify_expect {
+    const bough_node *node;
+    const char *name; // of the quantity, as written
+    bough_verify_quantity quantity;
+    double value, scale;       // value = scale × quantity
+    double relative, absolute; // tolerance; of `relative` the value's share
+    bool extrapolate;          // over the meshes, at second order
+    const char *diagnosis;     // part of the message with which the case must fail; NULL: none
+} bough_verify_expect;
+
+typedef struct bough_verify_case {
+    const bough_node *node;
+    const char *name;
+    const char *scene_name, *scene; // as written; path
+    int action;                     // bough_verify_action
+    const char *mesh_key;           // "bodies[0].rod.segments"
+    int n_mesh;
+    double *mesh; // (n_mesh) numbers of segments, growing by a constant factor
+    struct {
+        int n;
+        const char **item; // (n) "key=value", for bough_scene_read
+    } set;
+    int n_expect;
+    bough_verify_expect *expect; // (n_expect)
+} bough_verify_case;
+
+typedef struct bough_verify {
+    const bough_node *node;
+    const char *title;
+    int kind;
+    int n_case;
+    bough_verify_case *cases; // (n_case)
+} bough_verify;
+
+// What a case came to on one mesh.
+typedef struct bough_verify_result {
+    bough_status outcome;
+    double *value; // (n_expect), NaN where there is none
+} bough_verify_result;
+
+// Reads the cases from the root of a study in the file `path`, and every scene with its
+// replacements; adds what is wrong to `errors`.
+bough_verify *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root,
+                                bough_errors *errors);
+
+// Does what a case says on mesh `k` (0 without meshes); `stop` as in the options. Failures are in
+// the result.
+void bough_verify_run(bough_arena *arena, const bough_verify_case *x, int k, bool (*stop)(void),
+                      bough_verify_result *result);
+
+// Performs all cases, prints a line for each expectation and writes verify.csv. BOUGH_FAILED when
+// one does not hold.
+bough_status bough_verify_perform(bough_arena *arena, const bough_study *study,
+                                  const bough_study_options *options);
+
+#endif

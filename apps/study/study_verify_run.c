@@ -1,0 +1,299 @@
+// One case of a study of kind verify on one mesh: its quantities.
+#include "apps/study/study_verify.h"
+
+#include "apps/scene/steady.h"
+#include "flexbody/rod_modes.h"
+
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+// -- scene ----------------------------------------------------------------------------------------
+
+static bough_status open_scene(bough_arena *arena, const bough_verify_case *x, int k,
+                               bough_simulation **s) {
+    bough_errors errors = {.arena = arena};
+    bough_scene *scene;
+    char mesh[160];
+    const char **set = bough_arena_take(arena, ((size_t)x->set.n + 1) * sizeof *set);
+    if (!set) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    for (int i = 0; i < x->set.n; i++)
+        set[i] = x->set.item[i];
+    int n = x->set.n;
+    if (x->n_mesh > 0) {
+        snprintf(mesh, sizeof mesh, "%.120s=%.0f", x->mesh_key, x->mesh[k]);
+        set[n++] = mesh;
+    }
+    bough_status status = bough_scene_read(arena, x->scene, set, n, &errors, &scene);
+    if (!bough_is_ok(&status)) return status;
+    return bough_simulation_build(arena, scene, s);
+}
+
+static const bough_beam *first_rod(const bough_simulation *s) {
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].rod) return &s->beam[k];
+    }
+    return NULL;
+}
+
+// -- static ---------------------------------------------------------------------------------------
+
+static double tip_component(const bough_steady *x, int component) {
+    bough_vec3 shift, turn;
+    const bough_rod_model *m = x->model;
+    bough_steady_displacement(x, m->n, &shift, &turn);
+    bough_vec3 position = bough_add(m->position0[m->n], shift);
+    const double values[9] = {position.x, position.y, position.z, shift.x, shift.y,
+                              shift.z,    turn.x,     turn.y,     turn.z};
+    return values[component];
+}
+
+static bough_status steady(bough_arena *arena, const bough_simulation *s, bough_steady *found) {
+    const bough_beam *rod = first_rod(s);
+    bough_turning turning;
+    if (!rod) return bough_fail(BOUGH_INVALID, "the scene has no rod");
+    bough_status status = bough_steady_turning(s, rod, &turning);
+    if (!bough_is_ok(&status)) return status;
+    return bough_steady_find(arena, s, rod, &turning, found);
+}
+
+static bough_status do_static(bough_arena *arena, const bough_verify_case *x,
+                              const bough_simulation *s, double *value) {
+    bough_steady found;
+    bough_status status = steady(arena, s, &found);
+    for (int i = 0; i < x->n_expect && bough_is_ok(&status); i++) {
+        if (!x->expect[i].diagnosis)
+            value[i] = tip_component(&found, x->expect[i].quantity.index);
+    }
+    return status;
+}
+
+// -- modes ----------------------------------------------------------------------------------------
+
+static double mode_value(const bough_rod_mode *mode, bough_verify_what what) {
+    if (what == BOUGH_VERIFY_DAMPING) return mode->damping;
+    return mode->frequency;
+}
+
+static double largest_growth(const bough_rod_mode *mode, int n) {
+    double largest = -INFINITY;
+    for (int k = 0; k < n; k++)
+        largest = fmax(largest, -2 * BOUGH_PI * mode[k].damping * mode[k].frequency);
+    return largest;
+}
+
+static bough_status do_modes(bough_arena *arena, const bough_verify_case *x,
+                             const bough_simulation *s, double *value) {
+    int wanted = 4, found = 0; // 4: among which the largest growth is looked for
+    for (int i = 0; i < x->n_expect; i++) {
+        if (x->expect[i].quantity.index >= wanted) wanted = x->expect[i].quantity.index + 1;
+    }
+    bough_steady at;
+    bough_rod_mode *mode = bough_arena_take(arena, (size_t)wanted * sizeof *mode);
+    if (!mode) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_status status = steady(arena, s, &at);
+    if (bough_is_ok(&status)) {
+        status = bough_rod_modes(arena, at.model, &at.work, at.input, at.state, wanted, mode,
+                                 &found);
+    }
+    for (int i = 0; i < x->n_expect && bough_is_ok(&status); i++) {
+        const bough_verify_quantity *q = &x->expect[i].quantity;
+        if (x->expect[i].diagnosis || q->index >= found) continue;
+        value[i] = q->what == BOUGH_VERIFY_GROWTH ? largest_growth(mode, found)
+                                                  : mode_value(&mode[q->index], q->what);
+    }
+    return status;
+}
+
+// -- invariants -----------------------------------------------------------------------------------
+
+// A sum over all vertices of all rods.
+typedef struct invariants {
+    double energy, strain_energy;
+    bough_vec3 momentum, angular;
+} invariants;
+
+typedef struct gauge {
+    bough_simulation *simulation;
+    bough_beam_motion *motion;  // (n_beam)
+    bough_rod_scratch *scratch; // (n_beam)
+} gauge;
+
+static bool gauge_init(gauge *g, bough_arena *arena, bough_simulation *s) {
+    g->simulation = s;
+    g->motion = bough_arena_take(arena, (size_t)s->n_beam * sizeof *g->motion);
+    g->scratch = bough_arena_take(arena, (size_t)s->n_beam * sizeof *g->scratch);
+    for (int k = 0; g->motion && g->scratch && k < s->n_beam; k++) {
+        size_t n = (size_t)s->beam[k].def.n_segment + 1;
+        bough_beam_motion *m = &g->motion[k];
+        m->position = bough_arena_take(arena, n * sizeof *m->position);
+        m->velocity = bough_arena_take(arena, n * sizeof *m->velocity);
+        m->angular_velocity = bough_arena_take(arena, n * sizeof *m->angular_velocity);
+        m->rotation = bough_arena_take(arena, n * sizeof *m->rotation);
+        if (s->beam[k].rod) {
+            bough_rod_scratch_init(&g->scratch[k], arena, bough_rod_body_model(s->beam[k].rod));
+        }
+    }
+    return !bough_arena_exhausted(arena);
+}
+
+static void add_vertex(const bough_beam *beam, const bough_beam_motion *m, int i,
+                       bough_vec3 gravity, invariants *sum) {
+    const bough_vertex_inertia *v = &beam->def.inertia[i];
+    bough_vec3 u = m->velocity[i], x = m->position[i];
+    bough_vec3 w = bough_mat3_tmul(m->rotation[i], m->angular_velocity[i]);
+    bough_vec3 moment = bough_mat3_mul(m->rotation[i], v->moment);
+    const double *j = v->inertia;
+    bough_mat3 tensor = {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
+    bough_vec3 jw = bough_mat3_mul(tensor, w);
+    bough_vec3 p = bough_axpy(v->mass, u, bough_cross(m->angular_velocity[i], moment));
+    bough_vec3 l = bough_add(bough_mat3_mul(m->rotation[i], jw), bough_cross(moment, u));
+    sum->momentum = bough_add(sum->momentum, p);
+    sum->angular = bough_add(sum->angular, bough_add(l, bough_cross(x, p)));
+    sum->energy += 0.5 * (bough_dot(p, u) + bough_dot(l, m->angular_velocity[i]));
+    sum->energy -= bough_dot(gravity, bough_axpy(v->mass, x, moment));
+}
+
+static invariants measure(const gauge *g) {
+    invariants sum = {0};
+    bough_simulation *s = g->simulation;
+    bough_simulation_update(s);
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        bough_simulation_beam_motion(s, beam, g->motion[k]);
+        for (int i = 0; i <= beam->def.n_segment; i++)
+            add_vertex(beam, &g->motion[k], i, s->tree->gravity, &sum);
+        if (!beam->rod) continue;
+        const double input[BOUGH_ROD_INPUTS] = {0}; // of no consequence to the strains
+        const bough_rod_model *model = bough_rod_body_model(beam->rod);
+        bough_rod_gather(model, bough_rod_body_state(beam->rod), input, &g->scratch[k]);
+        sum.strain_energy += bough_rod_elastic_energy(model, &g->scratch[k]);
+    }
+    sum.energy += sum.strain_energy;
+    return sum;
+}
+
+// The largest change of an invariant since `time`, and its largest value.
+typedef struct drift {
+    bool started;
+    invariants first;
+    double change, largest;
+} drift;
+
+static void follow_drift(drift *d, bough_verify_invariant which, const invariants *now) {
+    double change, size;
+    if (!d->started) d->first = *now;
+    d->started = true;
+    if (which == BOUGH_VERIFY_ENERGY) {
+        change = fabs(now->energy - d->first.energy);
+        size = fabs(now->energy);
+    } else if (which == BOUGH_VERIFY_STRAIN_ENERGY) {
+        change = now->strain_energy;
+        size = fabs(now->energy);
+    } else {
+        bool angular = which == BOUGH_VERIFY_ANGULAR_MOMENTUM;
+        bough_vec3 a = angular ? now->angular : now->momentum;
+        bough_vec3 b = angular ? d->first.angular : d->first.momentum;
+        change = bough_norm(bough_sub(a, b));
+        size = bough_norm(a);
+    }
+    d->change = fmax(d->change, change);
+    d->largest = fmax(d->largest, size);
+}
+
+// -- run ------------------------------------------------------------------------------------------
+
+typedef struct run {
+    const bough_verify_case *x;
+    bough_simulation *simulation;
+    bough_channels channels;
+    double *sample; // (channels.count)
+    int *column;    // (n_expect); −1: no channel
+    drift *drift;   // (n_expect)
+    gauge gauge;
+    bool conserves; // some quantity is a drift
+    double *value;  // (n_expect)
+} run;
+
+static bough_status prepare(bough_arena *arena, run *r) {
+    size_t n = (size_t)r->x->n_expect;
+    r->channels = bough_channels_start(arena);
+    bough_status status = bough_simulation_channels(r->simulation, &r->channels);
+    if (!bough_is_ok(&status)) return status;
+    r->sample = bough_arena_doubles(arena, (size_t)r->channels.count + 1);
+    r->column = bough_arena_take(arena, n * sizeof *r->column);
+    r->drift = bough_arena_take(arena, n * sizeof *r->drift);
+    if (!gauge_init(&r->gauge, arena, r->simulation)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    }
+    for (int i = 0; i < r->x->n_expect; i++) {
+        const bough_verify_quantity *q = &r->x->expect[i].quantity;
+        if (!r->x->expect[i].diagnosis && q->what == BOUGH_VERIFY_DRIFT) r->conserves = true;
+        r->column[i] = q->channel ? bough_channels_find(&r->channels, q->channel) : -1;
+        if (q->channel && r->column[i] < 0) {
+            return bough_fail(BOUGH_INVALID, "the scene has no channel '%.60s'", q->channel);
+        }
+    }
+    return status;
+}
+
+static void look_at(run *r, int i, double t, const invariants *now) {
+    const bough_verify_quantity *q = &r->x->expect[i].quantity;
+    double close = 1e-6 * r->simulation->master->macro_step, *value = &r->value[i];
+    double sample = r->column[i] >= 0 ? r->sample[r->column[i]] : 0;
+    bool first = isnan(*value);
+    if (q->what == BOUGH_VERIFY_AT && fabs(t - q->time) < close) *value = sample;
+    if (q->what == BOUGH_VERIFY_LARGEST && (first || sample > *value)) *value = sample;
+    if (q->what == BOUGH_VERIFY_SMALLEST && (first || sample < *value)) *value = sample;
+    if (q->what == BOUGH_VERIFY_DRIFT && t > q->time - close) {
+        drift *d = &r->drift[i];
+        follow_drift(d, (bough_verify_invariant)q->index, now);
+        *value = d->largest > 0 ? d->change / d->largest : d->change;
+    }
+}
+
+static void look(run *r) {
+    double t = r->simulation->master->time;
+    invariants now = {0};
+    if (r->conserves) now = measure(&r->gauge);
+    bough_simulation_update(r->simulation);
+    bough_channels_sample(&r->channels, t, r->sample);
+    for (int i = 0; i < r->x->n_expect; i++) {
+        if (!r->x->expect[i].diagnosis) look_at(r, i, t, &now);
+    }
+}
+
+static bough_status do_run(bough_arena *arena, const bough_verify_case *x, bough_simulation *s,
+                           bool (*stop)(void), double *value) {
+    run r = {.x = x, .simulation = s, .value = value};
+    bough_status status = prepare(arena, &r);
+    if (bough_is_ok(&status)) look(&r);
+    while (bough_is_ok(&status) && !bough_master_done(s->master)) {
+        if (stop && stop()) return bough_fail(BOUGH_INTERRUPTED, "interrupted");
+        status = bough_step(s->master);
+        if (bough_is_ok(&status)) look(&r);
+    }
+    return status;
+}
+
+void bough_verify_run(bough_arena *arena, const bough_verify_case *x, int k, bool (*stop)(void),
+                      bough_verify_result *result) {
+    bough_arena *own = bough_arena_create();
+    bough_simulation *s = NULL;
+    result->value = bough_arena_doubles(arena, (size_t)x->n_expect);
+    if (!own || !result->value) {
+        result->outcome = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+        bough_arena_destroy(own);
+        return;
+    }
+    for (int i = 0; i < x->n_expect; i++)
+        result->value[i] = NAN;
+    result->outcome = open_scene(own, x, k, &s);
+    if (bough_is_ok(&result->outcome)) {
+        result->outcome = x->action == BOUGH_VERIFY_STATIC ? do_static(own, x, s, result->value)
+                          : x->action == BOUGH_VERIFY_MODES
+                              ? do_modes(own, x, s, result->value)
+                              : do_run(own, x, s, stop, result->value);
+    }
+    bough_arena_destroy(own);
+}
