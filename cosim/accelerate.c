@@ -1,0 +1,213 @@
+// IQN-ILS (Degroote, Bathe, Vierendeels 2009): with the differences V of the residuals and W of the
+// images so far, newest first, c minimises |V c + r| and the next iterate is H(u) + W c. The QR
+// factorisation of V is made anew by twice Gram–Schmidt in each iteration; a column that hardly
+// differs from the span of newer ones carries noise only and is dropped for good. Columns live
+// within one problem: a step of a nonlinear system is no guide to the next.
+#include "cosim/accelerate.h"
+
+#include <math.h>
+#include <string.h>
+
+enum {
+    MOST_COLUMNS = 40,
+    RECENT = 5, // norms kept for the contraction
+};
+static const double dependent = 1e-10; // share of a column outside the span of newer ones
+static const double run_away = 1e10;   // residual against the smallest so far
+
+struct bough_accelerator {
+    bough_accelerator_def def;
+    int evaluations;
+    double norm[RECENT]; // newest first
+    double smallest;
+    double factor;                           // of Aitken, in use
+    double *residual, *image;                // (n) of the evaluation taken
+    double *residual_before, *image_before;  // (n) of the one before
+    int capacity, n_column;
+    double *v[MOST_COLUMNS], *w[MOST_COLUMNS]; // (n each) differences, newest first
+    double *q[MOST_COLUMNS];                   // (n each) orthonormal
+    double r[MOST_COLUMNS][MOST_COLUMNS];      // upper triangle: r[column][row]
+    double c[MOST_COLUMNS];
+};
+
+const char *const *bough_acceleration_names(void) {
+    static const char *const names[] = {[BOUGH_ACCELERATE_NONE] = "none",
+                                        [BOUGH_ACCELERATE_RELAXATION] = "relaxation",
+                                        [BOUGH_ACCELERATE_AITKEN] = "aitken",
+                                        [BOUGH_ACCELERATE_IQN_ILS] = "iqn-ils",
+                                        [BOUGH_ACCELERATE_IQN_ILS + 1] = NULL};
+    return names;
+}
+
+static bough_status check(const bough_accelerator_def *def) {
+    if (def->kind < BOUGH_ACCELERATE_NONE || def->kind > BOUGH_ACCELERATE_IQN_ILS) {
+        return bough_fail(BOUGH_INVALID, "unknown accelerator");
+    }
+    if (!(def->relaxation > 0) || !(def->relaxation <= 1)) {
+        return bough_fail(BOUGH_INVALID, "relaxation is %g, must be above 0 and at most 1",
+                          def->relaxation);
+    }
+    return bough_ok();
+}
+
+bough_status bough_accelerator_create(bough_arena *arena, const bough_accelerator_def *def,
+                                      bough_accelerator **accelerator) {
+    bough_status status = check(def);
+    if (!bough_is_ok(&status)) return status;
+    bough_accelerator *a = bough_arena_take(arena, sizeof *a);
+    if (!a) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    size_t n = (size_t)def->n;
+    a->def = *def;
+    a->residual = bough_arena_doubles(arena, n);
+    a->image = bough_arena_doubles(arena, n);
+    a->residual_before = bough_arena_doubles(arena, n);
+    a->image_before = bough_arena_doubles(arena, n);
+    if (def->kind == BOUGH_ACCELERATE_IQN_ILS) {
+        a->capacity = def->n < MOST_COLUMNS ? def->n : MOST_COLUMNS;
+    }
+    for (int k = 0; k < a->capacity; k++) {
+        a->v[k] = bough_arena_doubles(arena, n);
+        a->w[k] = bough_arena_doubles(arena, n);
+        a->q[k] = bough_arena_doubles(arena, n);
+    }
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_accelerator_start(a);
+    *accelerator = a;
+    return bough_ok();
+}
+
+void bough_accelerator_start(bough_accelerator *a) {
+    a->evaluations = 0;
+    a->n_column = 0;
+    a->smallest = INFINITY;
+    a->factor = a->def.relaxation;
+}
+
+static double dot(int n, const double *x, const double *y) {
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += x[i] * y[i];
+    return sum;
+}
+
+static void add(int n, double factor, const double *x, double *y) {
+    for (int i = 0; i < n; i++) y[i] += factor * x[i];
+}
+
+static void swap(double **x, double **y) {
+    double *kept = *x;
+    *x = *y;
+    *y = kept;
+}
+
+double bough_accelerator_take(bough_accelerator *a, const double *u, const double *image) {
+    int n = a->def.n;
+    swap(&a->residual, &a->residual_before);
+    swap(&a->image, &a->image_before);
+    memcpy(a->image, image, (size_t)n * sizeof(double));
+    for (int i = 0; i < n; i++) a->residual[i] = image[i] - u[i];
+    for (int k = RECENT - 1; k > 0; k--) a->norm[k] = a->norm[k - 1];
+    a->norm[0] = sqrt(dot(n, a->residual, a->residual));
+    a->smallest = fmin(a->smallest, a->norm[0]);
+    a->evaluations++;
+    return a->norm[0];
+}
+
+bool bough_accelerator_diverges(const bough_accelerator *a) {
+    return !isfinite(a->norm[0]) || a->norm[0] > run_away * a->smallest;
+}
+
+double bough_accelerator_contraction(const bough_accelerator *a) {
+    int back = a->evaluations < RECENT ? a->evaluations - 1 : RECENT - 1;
+    if (back < 1 || a->norm[back] == 0) return 1;
+    return pow(a->norm[0] / a->norm[back], 1.0 / back);
+}
+
+// -- Aitken ---------------------------------------------------------------------------------------
+
+// ω ← −ω rₖ₋₁·Δr / Δr·Δr: the secant method along the last change.
+static void update_factor(bough_accelerator *a) {
+    double along = 0, length = 0;
+    if (a->evaluations < 2) return;
+    for (int i = 0; i < a->def.n; i++) {
+        double change = a->residual[i] - a->residual_before[i];
+        along += a->residual_before[i] * change;
+        length += change * change;
+    }
+    if (length > 0) a->factor *= -along / length;
+}
+
+// -- IQN-ILS --------------------------------------------------------------------------------------
+
+// Takes column k out of the list; its memory goes to the end.
+static void drop(bough_accelerator *a, int k) {
+    for (a->n_column--; k < a->n_column; k++) {
+        swap(&a->v[k], &a->v[k + 1]);
+        swap(&a->w[k], &a->w[k + 1]);
+    }
+}
+
+// The newest differences in front; the oldest leave when there is no room.
+static void insert_column(bough_accelerator *a) {
+    if (a->n_column < a->capacity) a->n_column++;
+    for (int k = a->n_column - 1; k > 0; k--) {
+        swap(&a->v[k], &a->v[k - 1]);
+        swap(&a->w[k], &a->w[k - 1]);
+    }
+    for (int i = 0; i < a->def.n; i++) {
+        a->v[0][i] = a->residual[i] - a->residual_before[i];
+        a->w[0][i] = a->image[i] - a->image_before[i];
+    }
+}
+
+// Column k of V made orthonormal to those before it; false when it depends on them.
+static bool orthonormalise(bough_accelerator *a, int k) {
+    int n = a->def.n;
+    double *q = a->q[k], *r = a->r[k], before = sqrt(dot(n, a->v[k], a->v[k]));
+    memcpy(q, a->v[k], (size_t)n * sizeof(double));
+    memset(r, 0, sizeof a->r[k]);
+    for (int pass = 0; pass < 2; pass++) {
+        for (int j = 0; j < k; j++) {
+            double part = dot(n, a->q[j], q);
+            r[j] += part;
+            add(n, -part, a->q[j], q);
+        }
+    }
+    r[k] = sqrt(dot(n, q, q));
+    if (!(r[k] > dependent * before)) return false;
+    for (int i = 0; i < n; i++) q[i] /= r[k];
+    return true;
+}
+
+// u ← H(u) + W c, R c = −Qᵀ r
+static void solve_least_squares(bough_accelerator *a, double *u) {
+    int n = a->def.n;
+    for (int k = 0; k < a->n_column;) {
+        if (orthonormalise(a, k)) {
+            k++;
+        } else {
+            drop(a, k);
+        }
+    }
+    memcpy(u, a->image, (size_t)n * sizeof(double));
+    for (int k = a->n_column - 1; k >= 0; k--) {
+        double right = -dot(n, a->q[k], a->residual);
+        for (int j = k + 1; j < a->n_column; j++) right -= a->r[j][k] * a->c[j];
+        a->c[k] = right / a->r[k][k];
+        add(n, a->c[k], a->w[k], u);
+    }
+}
+
+void bough_accelerator_next(bough_accelerator *a, double *u) {
+    double factor = a->def.relaxation;
+    if (a->def.kind == BOUGH_ACCELERATE_NONE) factor = 1;
+    if (a->def.kind == BOUGH_ACCELERATE_AITKEN) {
+        update_factor(a);
+        factor = a->factor;
+    }
+    if (a->def.kind == BOUGH_ACCELERATE_IQN_ILS && a->evaluations > 1) {
+        insert_column(a);
+        solve_least_squares(a, u);
+        return;
+    }
+    add(a->def.n, factor, a->residual, u);
+}

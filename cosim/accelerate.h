@@ -1,0 +1,49 @@
+// Fixed-point accelerators: iterations u ← H(u) that converge where the plain one diverges or is
+// slow. The residual is r = H(u) − u; components should be scaled to a common size by the caller,
+// because Aitken and IQN-ILS take scalar products of them.
+#ifndef BOUGH_COSIM_ACCELERATE_H
+#define BOUGH_COSIM_ACCELERATE_H
+
+#include "core/arena.h"
+#include "core/status.h"
+
+#include <stdbool.h>
+
+typedef enum bough_acceleration {
+    BOUGH_ACCELERATE_NONE,       // u + r
+    BOUGH_ACCELERATE_RELAXATION, // u + ω r, ω constant
+    BOUGH_ACCELERATE_AITKEN,     // u + ω r, ω from the last two residuals
+    BOUGH_ACCELERATE_IQN_ILS,    // quasi-Newton: least squares over all differences so far
+} bough_acceleration;
+
+typedef struct bough_accelerator_def {
+    bough_acceleration kind;
+    int n;             // components
+    double relaxation; // ω, of Aitken and IQN-ILS in the first iteration
+} bough_accelerator_def;
+
+typedef struct bough_accelerator bough_accelerator;
+
+// "none", "relaxation", "aitken", "iqn-ils" in the order of the kinds, NULL-terminated.
+const char *const *bough_acceleration_names(void);
+
+// Takes all memory from the arena; iterating takes none.
+bough_status bough_accelerator_create(bough_arena *arena, const bough_accelerator_def *def,
+                                      bough_accelerator **accelerator);
+
+// Forgets everything: a new problem begins.
+void bough_accelerator_start(bough_accelerator *a);
+
+// Takes an evaluation, image = H(u), and returns the norm of its residual.
+double bough_accelerator_take(bough_accelerator *a, const double *u, const double *image);
+
+// Whether the iteration runs away: the residual is not finite or beyond all bounds.
+bool bough_accelerator_diverges(const bough_accelerator *a);
+
+// Mean factor by which an iteration changed the residual, over the last few; 1 before the second.
+double bough_accelerator_contraction(const bough_accelerator *a);
+
+// u: the next iterate in place of the one taken.
+void bough_accelerator_next(bough_accelerator *a, double *u);
+
+#endif
