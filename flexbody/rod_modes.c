@@ -85,24 +85,36 @@ static bool fill_mode(bough_arena *arena, const bough_rod_model *m, const bough_
     return true;
 }
 
-bough_status bough_rod_modes(bough_arena *arena, const bough_rod_model *m, bough_rod_static *work,
-                             const double *input, const double *state, int wanted,
-                             bough_rod_mode *mode, int *found) {
-    bough_status memory = bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", m->name);
-    bough_block_tridiagonal damping, *stiffness = &work->tangent.matrix;
-    bough_eigen_pair *pair = bough_arena_take(arena, (size_t)wanted * sizeof *pair);
-    if (!bough_block_tridiagonal_init(&damping, arena, m->n) || pair == NULL) return memory;
+// K into the tangent's matrix and C, from the linearisation at the equilibrium.
+static bough_status linearise(const bough_rod_model *m, bough_rod_static *work,
+                              const double *input, const double *state,
+                              bough_block_tridiagonal *damping) {
     if (!bough_rod_linearise(m, &work->scaled, 0, state, input, &work->scratch, &work->tangent)) {
         return bough_fail(BOUGH_FAILED, "rod %s: no linearisation at its equilibrium", m->name);
     }
     bough_rod_assemble(m, &work->tangent, &work->blocks);
-    bough_rod_linear_damping(m, &work->blocks, input, state, &damping);
-    bough_rod_linear_stiffness(m, &work->blocks, input, state, stiffness);
-    bough_eigen_problem problem = {m->name, work->blocks.mass, &damping, stiffness};
-    bough_status status = bough_eigen_smallest(arena, &problem, wanted, pair, found);
-    if (!bough_is_ok(&status)) return status;
-    for (int k = 0; k < *found; k++) {
-        if (!fill_mode(arena, m, &pair[k], state, &mode[k])) return memory;
-    }
+    bough_rod_linear_damping(m, &work->blocks, input, state, damping);
+    bough_rod_linear_stiffness(m, &work->blocks, input, state, &work->tangent.matrix);
     return bough_ok();
+}
+
+bough_status bough_rod_modes(bough_arena *arena, const bough_rod_model *m, bough_rod_static *work,
+                             const double *input, const double *state, bough_rod_mode_list *list) {
+    bough_block_tridiagonal damping;
+    size_t wanted = (size_t)list->wanted;
+    bough_eigen_pair *pair = bough_arena_take(arena, wanted * sizeof *pair);
+    list->mode = bough_arena_take(arena, wanted * sizeof *list->mode);
+    bool ok = bough_block_tridiagonal_init(&damping, arena, m->n);
+    if (!ok || pair == NULL || list->mode == NULL) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", m->name);
+    }
+    bough_status status = linearise(m, work, input, state, &damping);
+    if (!bough_is_ok(&status)) return status;
+    bough_eigen_problem problem = {m->name, work->blocks.mass, &damping, &work->tangent.matrix};
+    status = bough_eigen_smallest(arena, &problem, list->wanted, pair, &list->found);
+    if (!bough_is_ok(&status)) return status;
+    for (int k = 0; k < list->found; k++) {
+        ok = fill_mode(arena, m, &pair[k], state, &list->mode[k]) && ok;
+    }
+    return ok ? status : bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", m->name);
 }

@@ -25,10 +25,15 @@ typedef struct bough_rod_mode {
                               // torsional mode the largest twist, is real and 1
 } bough_rod_mode;
 
-// The `wanted` lowest modes, fewer only if the rod has fewer (*found). `state` (13 n) is the
-// equilibrium that bough_rod_steady found with `input` and left in `work`.
+typedef struct bough_rod_mode_list {
+    int wanted; // set before
+    int found;  // fewer only if the rod has fewer
+    bough_rod_mode *mode; // (found), ascending in frequency
+} bough_rod_mode_list;
+
+// The lowest modes. `state` (13 n) is the equilibrium that bough_rod_steady found with `input` and
+// left in `work`.
 bough_status bough_rod_modes(bough_arena *arena, const bough_rod_model *m, bough_rod_static *work,
-                             const double *input, const double *state, int wanted,
-                             bough_rod_mode *mode, int *found);
+                             const double *input, const double *state, bough_rod_mode_list *list);
 
 #endif

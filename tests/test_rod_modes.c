@@ -23,7 +23,7 @@ typedef struct bar {
     bough_rod_loads loads;
     bough_rod_static work;
     double *state;
-    bough_rod_mode mode[MODES];
+    const bough_rod_mode *mode; // (found)
     int found;
 } bar;
 
@@ -49,13 +49,16 @@ static void solve(bar *b, const double *input) {
     bough_rod_static_options options = bough_rod_static_options_default();
     bough_rod_rest_state(b->model, input, b->state);
     bough_status s = bough_rod_steady(b->model, &b->loads, input, &options, &b->work, b->state);
+    bough_rod_mode_list list = {.wanted = MODES};
     if (bough_is_ok(&s)) {
-        s = bough_rod_modes(b->arena, b->model, &b->work, input, b->state, MODES, b->mode,
-                            &b->found);
+        s = bough_rod_modes(b->arena, b->model, &b->work, input, b->state, &list);
     }
+    b->mode = list.mode;
+    b->found = list.found;
     if (!bough_is_ok(&s)) print_error("%s\n", s.message);
     assert_int_equal(s.code, BOUGH_OK);
     assert_int_equal(b->found, MODES);
+    assert_non_null(b->mode);
 }
 
 // Circular frequency of the k-th mode of a direction [rad/s].

@@ -10,8 +10,7 @@
 typedef struct rod_modes {
     bough_steady steady;
     bough_turning turning;
-    bough_rod_mode *mode;
-    int found;
+    bough_rod_mode_list list;
 } rod_modes;
 
 static const char *const directions[BOUGH_ROD_DIRECTIONS] = {
@@ -40,15 +39,15 @@ static void print_head(const rod_modes *x) {
 
 static void print_rod(const rod_modes *x) {
     print_head(x);
-    for (int k = 0; k < x->found; k++) {
-        const bough_rod_mode *m = &x->mode[k];
+    for (int k = 0; k < x->list.found; k++) {
+        const bough_rod_mode *m = &x->list.mode[k];
         printf("%4d %12.6g %12.6g %11.5f  %-8s", k + 1, m->frequency, m->damped_frequency,
                100 * m->damping, directions[m->dominant]);
         for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) printf(" %7.4f", m->share[c]);
         putchar('\n');
     }
-    for (int k = 0; k < x->found; k++) {
-        const bough_rod_mode *m = &x->mode[k];
+    for (int k = 0; k < x->list.found; k++) {
+        const bough_rod_mode *m = &x->list.mode[k];
         if (m->damping >= unstable) continue;
         printf("unstable %s: mode %d grows at %.6g /s\n", x->steady.model->name, k + 1,
                -m->damping * m->frequency * 2 * BOUGH_PI);
@@ -58,8 +57,8 @@ static void print_rod(const rod_modes *x) {
 // -- files ----------------------------------------------------------------------------------------
 
 static void write_modes(FILE *file, const rod_modes *x) {
-    for (int k = 0; k < x->found; k++) {
-        const bough_rod_mode *m = &x->mode[k];
+    for (int k = 0; k < x->list.found; k++) {
+        const bough_rod_mode *m = &x->list.mode[k];
         fprintf(file, "%s,%d,%.10g,%.10g,%.10g,%s", x->steady.model->name, k + 1, m->frequency,
                 m->damped_frequency, m->damping, directions[m->dominant]);
         for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) fprintf(file, ",%.6g", m->share[c]);
@@ -69,8 +68,8 @@ static void write_modes(FILE *file, const rod_modes *x) {
 
 static void write_shapes(FILE *file, const rod_modes *x) {
     const bough_rod_model *m = x->steady.model;
-    for (int k = 0; k < x->found; k++) {
-        const bough_rod_mode *mode = &x->mode[k];
+    for (int k = 0; k < x->list.found; k++) {
+        const bough_rod_mode *mode = &x->list.mode[k];
         const double *const part[2] = {mode->real, mode->imaginary};
         for (int i = 0; i <= m->n; i++) { // vertex 0 is held
             fprintf(file, "%s,%d,%.10g", m->name, k + 1, m->span[i]);
@@ -114,16 +113,14 @@ static bough_status write_table(const table *t, const char *folder, const rod_mo
 
 static bough_status solve(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
                           rod_modes *x) {
-    int wanted = s->scene->modes.count;
-    x->mode = bough_arena_take(arena, (size_t)wanted * sizeof *x->mode);
-    if (!x->mode) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    x->list.wanted = s->scene->modes.count;
     bough_status status = bough_steady_turning(s, beam, &x->turning);
     if (bough_is_ok(&status)) {
         status = bough_steady_find(arena, s, beam, &x->turning, &x->steady);
     }
     if (!bough_is_ok(&status)) return status;
     return bough_rod_modes(arena, x->steady.model, &x->steady.work, x->steady.input,
-                           x->steady.state, wanted, x->mode, &x->found);
+                           x->steady.state, &x->list);
 }
 
 static bough_status solve_all(bough_arena *arena, const bough_simulation *s, rod_modes *rods) {

@@ -84,23 +84,21 @@ static double largest_growth(const bough_rod_mode *mode, int n) {
 
 static bough_status do_modes(bough_arena *arena, const bough_verify_case *x,
                              const bough_simulation *s, double *value) {
-    int wanted = 4, found = 0; // 4: among which the largest growth is looked for
+    int wanted = 4; // 4: among which the largest growth is looked for
     for (int i = 0; i < x->n_expect; i++) {
         if (x->expect[i].quantity.index >= wanted) wanted = x->expect[i].quantity.index + 1;
     }
     bough_steady at;
-    bough_rod_mode *mode = bough_arena_take(arena, (size_t)wanted * sizeof *mode);
-    if (!mode) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_rod_mode_list list = {.wanted = wanted};
     bough_status status = steady(arena, s, &at);
     if (bough_is_ok(&status)) {
-        status = bough_rod_modes(arena, at.model, &at.work, at.input, at.state, wanted, mode,
-                                 &found);
+        status = bough_rod_modes(arena, at.model, &at.work, at.input, at.state, &list);
     }
     for (int i = 0; i < x->n_expect && bough_is_ok(&status); i++) {
         const bough_verify_quantity *q = &x->expect[i].quantity;
-        if (x->expect[i].diagnosis || q->index >= found) continue;
-        value[i] = q->what == BOUGH_VERIFY_GROWTH ? largest_growth(mode, found)
-                                                  : mode_value(&mode[q->index], q->what);
+        if (x->expect[i].diagnosis || q->index >= list.found) continue;
+        value[i] = q->what == BOUGH_VERIFY_GROWTH ? largest_growth(list.mode, list.found)
+                                                  : mode_value(&list.mode[q->index], q->what);
     }
     return status;
 }
