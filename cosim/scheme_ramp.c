@@ -6,14 +6,16 @@
 // predicted one: continuous, so that its integrator keeps its history. The other members follow once
 // with the cubic of the motion it really made.
 //
-// θ = 1/2: order 2. θ = 1 (order 1) for an interface body that is light against what hangs on it:
-// there the trapezoidal rule rings. The interface is solved by elimination onto the inputs of the
+// θ = 1/2: order 2. On an interface body that is light against what hangs on it the first step takes
+// θ = 1, damped and of order 1; all do where, as the eigenvalues of the macro step tell, the
+// trapezoidal rule rings. The interface is solved by elimination onto the inputs of the
 // leading members (stage 0); the sensitivities of the followers are found along the leaders' state
 // directions when those are fewer than their inputs.
 #include "core/base.h"
 #include "core/linalg.h"
 #include "cosim/port.h"
 #include "cosim/scheme.h"
+#include "cosim/stability.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,7 +44,9 @@ typedef struct ramp {
     double *square; // (n_lead × n_lead)
     double *change; // (n_lead) right side, then the predicted increments
     int *pivot;     // (n_lead)
-    double theta;
+    double theta; // of the present step
+    double final; // after the damped first steps
+    int damped;   // steps still to be damped
     bool chosen; // θ is final
 } ramp;
 
@@ -132,7 +136,7 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     r->pivot = bough_arena_take(arena, n * sizeof(int));
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     r->chosen = c->options.theta > 0;
-    r->theta = r->chosen ? c->options.theta : 0.5;
+    r->theta = r->final = r->chosen ? c->options.theta : 0.5;
     c->scheme_data = r;
     return bough_ok();
 }
@@ -395,17 +399,44 @@ static bough_status predict(bough_coupling *c) {
 // Above this gain the leaders weigh less than what hangs on them: the trapezoidal prediction rings.
 static const double light_interface = 1;
 
+// Whether the second-order ramp rings on this light interface body. It errs far less than the damped
+// one: slow growth, which outer damping may hold and the monitor watches, does not count.
+static const double ringing = 1; // [1/s]
+
+static bough_status rings(bough_coupling *c, bool *result) {
+    bough_scheme_options undamped = c->options;
+    bough_stability stability;
+    undamped.theta = 0.5;
+    bough_status status = bough_stability_judge(c->assembly, &undamped, c->t1 - c->t0, &stability);
+    *result = bough_is_ok(&status) && stability.growth > ringing;
+    return status;
+}
+
+// The trapezoidal rule never forgets a light body's start, so its first step is damped.
+enum { FIRST_STEPS = 1 };
+
+static bough_status predict_damped(bough_coupling *c) {
+    ramp *r = c->scheme_data;
+    r->theta = r->damped > 0 ? 1 : r->final;
+    if (r->damped > 0) r->damped--;
+    return predict(c);
+}
+
 static bough_status choose_theta(bough_coupling *c) {
     ramp *r = c->scheme_data;
     bough_status status = predict(c);
     if (!bough_is_ok(&status)) return status;
     c->interface_ratio = gain_radius(r);
     if (!r->chosen && c->interface_ratio > light_interface) {
-        r->theta = 1;
-        status = predict(c);
+        bool damp = false;
+        status = rings(c, &damp);
+        if (!bough_is_ok(&status)) return status;
+        if (damp) r->final = 1;
+        r->damped = FIRST_STEPS;
+        status = predict_damped(c);
     }
     r->chosen = true;
-    c->theta = r->theta;
+    c->theta = r->final;
     return status;
 }
 
@@ -433,7 +464,7 @@ static void set_ramps(bough_coupling *c) {
 static bough_status step(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     bough_coupling_begin(c);
-    bough_status status = c->theta > 0 ? predict(c) : choose_theta(c);
+    bough_status status = c->theta > 0 ? predict_damped(c) : choose_theta(c);
     if (!bough_is_ok(&status)) return status;
     set_ramps(c);
     status = bough_coupling_advance_lead(c, 0, c->restart || held(c->scheme_data));

@@ -147,8 +147,9 @@ static void ramp_takes_a_light_interface_body(void **state) {
     two_mass m = light_case();
     bough_status status = two_mass_build(&m, definition("ramp", .02));
     assert_true(bough_is_ok(&status));
+    // its damped first step errs at first order; without them the start rings on (error 3.3)
     check_near(0, two_mass_error(&m), 0, .1);
-    check_near(m.master->coupling->theta, 1, 0, 0);
+    check_near(m.master->coupling->theta, .5, 0, 0);
     check_near(m.master->coupling->interface_ratio, 59.6, .01, 0);
     two_mass_destroy(&m);
 }
