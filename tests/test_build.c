@@ -198,7 +198,7 @@ static void joint_loads_act_and_their_corners_are_events(void **context) {
     for (int k = 0; k < 600; k++) scene_step(s);
     // impulse 8 N · (0.1 + 0.2) s on 4 kg
     bough_simulation_update(s);
-    check_near(velocity_of(s, "carriage").linear.y, -3 + 8 * 0.3 / 4, 1e-6, 0);
+    check_near(velocity_of(s, "carriage").linear.y, -3 + 8 * 0.3 / 4, 1e-5, 0); // IDA at 1e-6
     bough_arena_destroy(arena);
     arena = bough_arena_create();
     s = scene_build(arena, runup, no_sets);
