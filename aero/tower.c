@@ -6,13 +6,11 @@
 // pole inside the cylinder, where only an ill-posed scene puts a blade.
 static const double nearest = 1;
 
-bough_status bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tower *tower) {
-    *tower = (bough_tower){.base = def->base, .n = def->n};
-    if (def->n == 0) return bough_ok();
+// The wake takes at most this share of the wind.
+static const double deepest_shadow = 0.5;
+
+static bough_status check(const bough_tower_def *def) {
     if (def->n < 2) return bough_fail(BOUGH_INVALID, "The tower needs at least two sections.");
-    double *height = bough_arena_doubles(arena, (size_t)def->n);
-    double *radius = bough_arena_doubles(arena, (size_t)def->n);
-    if (!height || !radius) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the tower.");
     for (int i = 0; i < def->n; i++) {
         if (i > 0 && !(def->height[i] > def->height[i - 1])) {
             return bough_fail(BOUGH_INVALID, "Tower section %d: heights must increase.", i + 1);
@@ -21,12 +19,43 @@ bough_status bough_tower_build(bough_arena *arena, const bough_tower_def *def, b
             return bough_fail(BOUGH_INVALID, "Tower section %d: the diameter must be positive.",
                               i + 1);
         }
+        if (def->drag && !(def->drag[i] >= 0)) {
+            return bough_fail(BOUGH_INVALID,
+                              "Tower section %d: the drag coefficient must not be negative.", i + 1);
+        }
+    }
+    return bough_ok();
+}
+
+bough_status bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tower *tower) {
+    *tower = (bough_tower){
+        .base = def->base, .n = def->n, .influence = def->influence, .shadow = def->shadow};
+    if (def->n == 0) return bough_ok();
+    bough_status status = check(def);
+    if (!bough_is_ok(&status)) return status;
+    double *height = bough_arena_doubles(arena, (size_t)def->n);
+    double *radius = bough_arena_doubles(arena, (size_t)def->n);
+    double *drag = bough_arena_doubles(arena, (size_t)def->n);
+    if (!height || !radius || !drag) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the tower.");
+    }
+    for (int i = 0; i < def->n; i++) {
         height[i] = def->height[i];
         radius[i] = def->diameter[i] / 2;
+        drag[i] = def->drag ? def->drag[i] : 1;
     }
     tower->height = height;
     tower->radius = radius;
+    tower->drag = drag;
     return bough_ok();
+}
+
+// The section at or below a height, at most the last but one.
+static int section_at(const bough_tower *tower, double height) {
+    int i = 1;
+    while (i < tower->n - 1 && height > tower->height[i])
+        i++;
+    return i - 1;
 }
 
 // The radius at a height above the base, 0 where there is no tower. Above the top it fades over
@@ -37,11 +66,40 @@ static double radius_at(const bough_tower *tower, double height) {
     double top = tower->radius[n - 1], above = height - tower->height[n - 1];
     if (above >= top) return 0;
     if (above > 0) return top * cos(BOUGH_PI / 2 * above / top);
-    int i = 1;
-    while (i < n - 1 && height > tower->height[i])
-        i++;
+    int i = section_at(tower, height) + 1;
     double w = (height - tower->height[i - 1]) / (tower->height[i] - tower->height[i - 1]);
     return tower->radius[i - 1] + w * (tower->radius[i] - tower->radius[i - 1]);
+}
+
+// The drag coefficient at a height above the base; above the top that of the top.
+static double drag_at(const bough_tower *tower, double height) {
+    int i = section_at(tower, height);
+    double w = (height - tower->height[i]) / (tower->height[i + 1] - tower->height[i]);
+    return tower->drag[i] + fmin(w, 1) * (tower->drag[i + 1] - tower->drag[i]);
+}
+
+// A horizontal wind as shares of the undisturbed one, along and across it.
+typedef struct flow {
+    double along, across;
+} flow;
+
+// About a cylinder of radius 1, at a place in radii from the axis; x > 0: behind.
+static flow potential(double x, double y, double r2) {
+    return (flow){1 + (y * y - x * x) / (r2 * r2), -2 * x * y / (r2 * r2)};
+}
+
+static flow bak(double drag, double x, double y) {
+    double xs = x + 0.1, r2 = xs * xs + y * y, source = drag / (2 * BOUGH_PI * r2);
+    flow f = potential(xs, y, r2);
+    return (flow){f.along + source * xs, f.across + source * y};
+}
+
+// What the wake takes of the wind along it.
+static double shadow(double drag, double x, double y) {
+    double width = sqrt(hypot(x, y));
+    if (x <= 0 || fabs(y) >= width) return 0;
+    double c = cos(BOUGH_PI / 2 * y / width);
+    return fmin(drag / width * c * c, deepest_shadow);
 }
 
 bough_vec3 bough_tower_disturbed(const bough_tower *tower, bough_vec3 position, bough_vec3 wind) {
@@ -56,7 +114,9 @@ bough_vec3 bough_tower_disturbed(const bough_tower *tower, bough_vec3 position, 
     x *= scale;
     y *= scale;
     r2 *= scale * scale;
-    double along = speed * (1 + (y * y - x * x) / (r2 * r2));
-    double across = speed * (-2 * x * y / (r2 * r2));
+    flow f = potential(x, y, r2);
+    if (tower->influence == BOUGH_TOWER_BAK) f = bak(drag_at(tower, d.z), x, y);
+    if (tower->shadow == BOUGH_TOWER_SHADOW_POWLES) f.along -= shadow(drag_at(tower, d.z), x, y);
+    double along = speed * f.along, across = speed * f.across;
     return bough_v3(cx * along - cy * across, cy * along + cx * across, wind.z);
 }

@@ -1,4 +1,10 @@
-// The tower's influence on the wind: potential flow about a circular cylinder, section by section.
+// The tower's influence on the wind: potential flow about a circular cylinder, section by section,
+// ahead of and beside the tower, and the wake behind it.
+//
+// C. Bak, H. A. Madsen, J. Johansen, "Influence from blade-tower interaction on fatigue loads and
+// dynamics", EWEC 2001: a source in the cylinder adds what the drag displaces.
+// S. R. J. Powles, Wind Engineering 7 (1983): a cosine-squared wake that widens with the root of
+// the distance. Both in the form of the reference code (AeroDyn v5).
 #ifndef BOUGH_AERO_TOWER_H
 #define BOUGH_AERO_TOWER_H
 
@@ -6,19 +12,33 @@
 #include "core/status.h"
 #include "core/vec3.h"
 
-// A vertical tower; n = 0 for none. Above the last height the influence fades over
-// one radius.
+typedef enum bough_tower_influence {
+    BOUGH_TOWER_POTENTIAL,
+    BOUGH_TOWER_BAK,
+} bough_tower_influence;
+
+typedef enum bough_tower_shadow {
+    BOUGH_TOWER_SHADOW_NONE,
+    BOUGH_TOWER_SHADOW_POWLES,
+} bough_tower_shadow;
+
+// A vertical tower; n = 0 for none. Above the last height the influence fades over one radius.
 typedef struct bough_tower_def {
     bough_vec3 base; // [m], global axes
     int n;
     const double *height;   // (n) above the base, increasing from 0 [m]
     const double *diameter; // (n) [m]
+    const double *drag;     // (n) coefficient, for Bak and Powles; NULL: 1 everywhere [-]
+    bough_tower_influence influence;
+    bough_tower_shadow shadow;
 } bough_tower_def;
 
 typedef struct bough_tower {
     bough_vec3 base;
     int n;
-    const double *height, *radius; // (n) [m]
+    const double *height, *radius, *drag; // (n) [m], [m], [-]
+    bough_tower_influence influence;
+    bough_tower_shadow shadow;
 } bough_tower;
 
 bough_status bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tower *tower);

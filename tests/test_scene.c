@@ -160,6 +160,10 @@ static void aerodynamics_are_read(void **state) {
     assert_true(a->induction.drag);
     assert_int_equal(a->tower.n_height, 2);
     check_near(a->tower.diameter[1], 1.2, 0, 0);
+    assert_int_equal(a->tower.influence, BOUGH_SCENE_POTENTIAL);
+    assert_int_equal(a->tower.shadow, BOUGH_SCENE_SHADOW_NONE);
+    assert_int_equal(a->tower.n_drag, 1);
+    check_near(a->tower.drag[0], 1, 0, 0);
     check_near(a->hub_radius, 1.5, 0, 0);
     assert_int_equal(a->blade.n_station, 3);
     check_near(a->blade.station[1].ac[1], -0.3, 0, 0);
@@ -678,6 +682,13 @@ static void aerodynamics_are_consistent(void **state) {
         "s.yaml:9:61: error: aero.tower.height[2]: must be more than the 20 m before it, got 10 "
         "m\n"
         "s.yaml:9:76: error: aero.tower.diameter: has 2 values, but height has 3\n");
+    refuses(
+        ROTOR "turbine: {rotor: hub, blades: [b1]}\n"
+              "aero: {rate: 50 Hz, wind: {speed: 8}, blade: aero.yaml, polars: polars.yaml,\n"
+              "       hub_radius: 1, tower: {height: [0, 10, 20], diameter: [1, 1, 1], "
+              "drag: [1, 2]}}\n",
+        "s.yaml:9:79: error: aero.tower.drag: has 2 values, but height has 3; give one or as "
+        "many\n");
     write_file("aero.yaml", "stations:\n- {span: 0, chord: 1, polar: p}\n"
                             "- {span: 6, chord: 0, polar: q}\n");
     refuses(ROTOR "turbine: {rotor: hub, blades: [b1]}\n" AERO,

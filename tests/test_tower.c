@@ -67,6 +67,87 @@ static void flow_follows_the_wall(void **state) {
     bough_arena_destroy(arena);
 }
 
+static const double six_metres[] = {6, 6}, two_heights[] = {0, 100};
+
+static bough_tower build_kind(bough_arena *arena, bough_tower_influence influence,
+                              bough_tower_shadow shadow, const double *drag) {
+    const bough_tower_def def = {.n = 2,
+                                 .height = two_heights,
+                                 .diameter = six_metres,
+                                 .drag = drag,
+                                 .influence = influence,
+                                 .shadow = shadow};
+    bough_tower tower;
+    bough_status status = bough_tower_build(arena, &def, &tower);
+    assert_int_equal(status.code, BOUGH_OK);
+    return tower;
+}
+
+// AeroDyn v5 with Bak's correction, drag coefficient 1: axial wind at 52.75 m below the hub.
+static void bak_matches_reference(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    static const double height[] = {0, 87.6}, diameter[] = {6, 3.87}, drag[] = {0, 0};
+    bough_tower_def def = {.n = 2,
+                           .height = height,
+                           .diameter = diameter,
+                           .influence = BOUGH_TOWER_BAK};
+    bough_tower tower;
+    bough_status status = bough_tower_build(arena, &def, &tower);
+    assert_int_equal(status.code, BOUGH_OK);
+    check_near(wind_at_blade(&tower, BOUGH_PI, 52.75).x, 6.290952, 1e-6, 0);
+    def.drag = drag; // without drag only the shift by a tenth of the radius is left
+    status = bough_tower_build(arena, &def, &tower);
+    assert_int_equal(status.code, BOUGH_OK);
+    double x = -5.0191 / (5.0943 / 2) + 0.1;
+    check_near(wind_at_blade(&tower, BOUGH_PI, 52.75).x, 10 * (1 - 1 / (x * x)), 1e-4, 0);
+    bough_arena_destroy(arena);
+}
+
+// Far away from the tower the source spreads drag · radius · speed over the circle around it.
+static void bak_displaces_half_the_drag(void **state) {
+    (void)state;
+    enum { POINTS = 360 };
+    bough_arena *arena = bough_arena_create();
+    static const double drag[] = {0.6, 0.6};
+    bough_tower tower = build_kind(arena, BOUGH_TOWER_BAK, BOUGH_TOWER_SHADOW_NONE, drag);
+    double out = 0, circle = 300;
+    for (int k = 0; k < POINTS; k++) {
+        double a = 2 * BOUGH_PI * k / POINTS;
+        bough_vec3 normal = bough_v3(cos(a), sin(a), 0);
+        bough_vec3 at = bough_axpy(circle, normal, bough_v3(0, 0, 50));
+        bough_vec3 wind = bough_tower_disturbed(&tower, at, bough_v3(6, 8, 0));
+        out += bough_dot(wind, normal) * circle * 2 * BOUGH_PI / POINTS;
+    }
+    check_near(out, 0.6 * 3 * 10, 1e-3, 0);
+    bough_arena_destroy(arena);
+}
+
+// On the wake's axis it takes drag/√x, at x radii, at most half; at |y| = (x² + y²)^¼ it ends.
+static void powles_takes_its_share_behind(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    static const double drag[] = {0.5, 1.5}; // 0.7 at 20 m
+    bough_tower without = build_kind(arena, BOUGH_TOWER_POTENTIAL, BOUGH_TOWER_SHADOW_NONE, drag);
+    bough_tower with = build_kind(arena, BOUGH_TOWER_POTENTIAL, BOUGH_TOWER_SHADOW_POWLES, drag);
+    static const double table[][3] = {
+        {4, 0, 0.35},       {9, 0, 0.7 / 3},       {1.5, 0, 0.5},       {-4, 0, 0},
+        {4, 2.2, 0},        {4, -2.2, 0},          {0, 0.9, 0},         {4, 3, 0},
+        {3, 1.0, 0.158518}, {3, -1.0, 0.158518},
+    };
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        double x = 3 * table[i][0], y = 3 * table[i][1];
+        bough_vec3 at = bough_v3(0.6 * x - 0.8 * y, 0.8 * x + 0.6 * y, 20);
+        bough_vec3 wind = bough_v3(6, 8, 2);
+        bough_vec3 taken = bough_sub(bough_tower_disturbed(&without, at, wind),
+                                     bough_tower_disturbed(&with, at, wind));
+        check_near(taken.x, 6 * table[i][2], 0, 1e-5);
+        check_near(taken.y, 8 * table[i][2], 0, 1e-5);
+        check_near(taken.z, 0, 0, 0);
+    }
+    bough_arena_destroy(arena);
+}
+
 static void inside_is_finite(void **state) {
     (void)state;
     bough_arena *arena = bough_arena_create();
@@ -88,12 +169,13 @@ static void no_tower_leaves_the_wind(void **state) {
 
 static void bad_tables_are_refused(void **state) {
     (void)state;
-    static const double up[] = {0, 10}, down[] = {10, 0}, nothing[] = {1, 0};
+    static const double up[] = {0, 10}, down[] = {10, 0}, nothing[] = {1, 0}, negative[] = {1, -1};
     const bough_tower_def bad[] = {{.n = 1, .height = up, .diameter = up},
                                    {.n = 2, .height = down, .diameter = up},
-                                   {.n = 2, .height = up, .diameter = nothing}};
+                                   {.n = 2, .height = up, .diameter = nothing},
+                                   {.n = 2, .height = up, .diameter = up, .drag = negative}};
     bough_arena *arena = bough_arena_create();
-    for (int i = 0; i < 3; i++) {
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         bough_tower tower;
         bough_status status = bough_tower_build(arena, bad + i, &tower);
         assert_int_equal(status.code, BOUGH_INVALID);
@@ -105,6 +187,9 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(wind_at_passing_blade_matches_reference),
         cmocka_unit_test(flow_follows_the_wall),
+        cmocka_unit_test(bak_matches_reference),
+        cmocka_unit_test(bak_displaces_half_the_drag),
+        cmocka_unit_test(powles_takes_its_share_behind),
         cmocka_unit_test(inside_is_finite),
         cmocka_unit_test(no_tower_leaves_the_wind),
         cmocka_unit_test(bad_tables_are_refused),

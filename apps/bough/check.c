@@ -128,6 +128,11 @@ static void print_coupling(const bough_simulation *s) {
 
 // -- aerodynamics ---------------------------------------------------------------------------------
 
+static const char *tower_words(const bough_scene_tower *tower) {
+    if (!tower->node) return "off";
+    return tower->influence == BOUGH_SCENE_BAK ? "on (Bak)" : "on";
+}
+
 static void print_aero(const bough_simulation *s) {
     const bough_scene_aero *aero = &s->scene->aero;
     if (!s->aero) {
@@ -136,10 +141,11 @@ static void print_aero(const bough_simulation *s) {
     }
     long every = bough_master_multiple(1 / aero->rate, s->master->macro_step);
     printf("aero: built, %d blades of %d stations, %d polars, %.6g Hz (every %ld macro step%s), %s "
-           "between samples, tower influence %s\n",
+           "between samples, tower influence %s%s\n",
            s->scene->turbine.n_blade, aero->blade.n_station, aero->polars.n_polar, aero->rate,
            every, every == 1 ? "" : "s", aero->hold == BOUGH_SCENE_LINEAR ? "linear" : "constant",
-           aero->tower.node ? "on" : "off");
+           tower_words(&aero->tower),
+           aero->tower.shadow == BOUGH_SCENE_POWLES ? ", Powles shadow" : "");
 }
 
 // -- cost -----------------------------------------------------------------------------------------

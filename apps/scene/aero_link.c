@@ -71,6 +71,7 @@ typedef struct tables {
     bough_polar_def *polar;
     bough_station_def *station;
     bough_mat3 *rotation;
+    double *drag; // of the tower
 } tables;
 
 static bool take_tables(bough_arena *arena, const bough_aero_link *l, tables *t) {
@@ -78,6 +79,7 @@ static bool take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
     t->polar = bough_arena_take(arena, (size_t)aero->polars.n_polar * sizeof *t->polar);
     t->station = bough_arena_take(arena, (size_t)aero->blade.n_station * sizeof *t->station);
     t->rotation = bough_arena_take(arena, (size_t)l->n_vertex * sizeof *t->rotation);
+    t->drag = bough_arena_doubles(arena, (size_t)aero->tower.n_height);
     if (bough_arena_exhausted(arena)) return false;
     for (int k = 0; k < aero->polars.n_polar; k++) {
         const bough_scene_polar *from = &aero->polars.polar[k];
@@ -95,10 +97,25 @@ static bool take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
         t->station[k] = (bough_station_def){from->span,  from->chord, from->twist,
                                             from->ac[0], from->ac[1], from->polar};
     }
+    for (int i = 0; i < aero->tower.n_height; i++) {
+        t->drag[i] = aero->tower.drag[aero->tower.n_drag == 1 ? 0 : i];
+    }
     for (int i = 0; i < l->n_vertex; i++) {
         t->rotation[i] = bough_rotation_matrix(l->blade[0].beam->def.rotation[i]);
     }
     return true;
+}
+
+static bough_tower_def tower_def(const bough_scene_tower *tower, const double *drag) {
+    bool bak = tower->influence == BOUGH_SCENE_BAK, powles = tower->shadow == BOUGH_SCENE_POWLES;
+    return (bough_tower_def){
+        .n = tower->n_height,
+        .height = tower->height,
+        .diameter = tower->diameter,
+        .drag = drag,
+        .influence = bak ? BOUGH_TOWER_BAK : BOUGH_TOWER_POTENTIAL,
+        .shadow = powles ? BOUGH_TOWER_SHADOW_POWLES : BOUGH_TOWER_SHADOW_NONE,
+    };
 }
 
 static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
@@ -114,8 +131,7 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     def.induction.tangential = aero->induction.tangential;
     def.induction.axial_drag = def.induction.tangential_drag = aero->induction.drag;
     def.wind.speed = aero->wind.speed;
-    def.tower = (bough_tower_def){{0, 0, 0}, aero->tower.node == NULL ? 0 : aero->tower.n_height,
-                                  aero->tower.height, aero->tower.diameter};
+    if (aero->tower.node != NULL) def.tower = tower_def(&aero->tower, t->drag);
     def.n_polar = aero->polars.n_polar;
     def.polar = t->polar;
     def.n_station = aero->blade.n_station;

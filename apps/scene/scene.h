@@ -225,7 +225,8 @@ typedef struct bough_scene_polars {
 typedef enum bough_scene_hold { BOUGH_SCENE_LINEAR, BOUGH_SCENE_CONSTANT } bough_scene_hold;
 typedef enum bough_scene_skew { BOUGH_SCENE_SKEW_NONE, BOUGH_SCENE_PITT_PETERS } bough_scene_skew;
 typedef enum bough_scene_wind_kind { BOUGH_SCENE_WIND_UNIFORM } bough_scene_wind_kind;
-typedef enum bough_scene_influence { BOUGH_SCENE_POTENTIAL } bough_scene_influence;
+typedef enum bough_scene_influence { BOUGH_SCENE_POTENTIAL, BOUGH_SCENE_BAK } bough_scene_influence;
+typedef enum bough_scene_shadow { BOUGH_SCENE_SHADOW_NONE, BOUGH_SCENE_POWLES } bough_scene_shadow;
 
 typedef struct bough_scene_wind {
     const bough_node *node;
@@ -243,9 +244,12 @@ typedef struct bough_scene_induction {
 typedef struct bough_scene_tower {
     const bough_node *node;   // NULL: no tower influence
     int influence;            // bough_scene_influence
+    int shadow;               // bough_scene_shadow
     int n_height, n_diameter; // equal
+    int n_drag;               // 1 or n_height
     double *height;           // (n_height) strictly increasing [m]
     double *diameter;         // (n_height) [m]
+    double *drag;             // (n_drag) coefficient [-]
 } bough_scene_tower;
 
 typedef struct bough_scene_aero {

@@ -346,14 +346,21 @@ static const bough_schema induction_schema = {
 
 #define AT(member) .offset = offsetof(bough_scene_tower, member)
 static const bough_key tower_keys[] = {
-    {.name = "influence", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("potential"),
-     .fallback = "potential", AT(influence), .help = "how the tower changes the wind"},
+    {.name = "influence", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("potential", "bak"),
+     .fallback = "potential", AT(influence),
+     .help = "how the tower changes the wind: potential flow about a cylinder, or with Bak's "
+             "correction for its drag"},
+    {.name = "shadow", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "powles"),
+     .fallback = "none", AT(shadow), .help = "wake behind the tower"},
     {.name = "height", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_LENGTH, .range = ">= 0",
      .count = 2, .required = true, AT(height),
      .count_offset = offsetof(bough_scene_tower, n_height), .help = "above the ground's origin"},
     {.name = "diameter", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_LENGTH, .range = "> 0",
      .count = 2, .required = true, AT(diameter),
      .count_offset = offsetof(bough_scene_tower, n_diameter), .help = "at each height"},
+    {.name = "drag", .kind = BOUGH_KEY_NUMBERS, .range = ">= 0", .count = 1, .fallback = "[1]",
+     AT(drag), .count_offset = offsetof(bough_scene_tower, n_drag),
+     .help = "drag coefficient for bak and powles: one for the whole tower, or one at each height"},
 };
 #undef AT
 static const bough_schema tower_schema = {SCHEMA("a tower", bough_scene_tower, tower_keys),

@@ -288,6 +288,11 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
         bough_schema_error(r, diameter, "diameter", "has %d values, but height has %d",
                            t->n_diameter, t->n_height);
     }
+    if (t->n_drag != 1 && t->n_drag != t->n_height) {
+        bough_schema_error(r, bough_node_find(t->node, "drag"), "drag",
+                           "has %d values, but height has %d; give one or as many", t->n_drag,
+                           t->n_height);
+    }
     for (int i = 1; i < t->n_height; i++) {
         if (t->height[i] > t->height[i - 1]) continue;
         char key[32];
