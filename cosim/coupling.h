@@ -2,6 +2,7 @@
 #ifndef BOUGH_COSIM_COUPLING_H
 #define BOUGH_COSIM_COUPLING_H
 
+#include "cosim/accelerate.h"
 #include "cosim/assembly.h"
 
 // What a later stage sees of what an earlier stage has already found.
@@ -13,12 +14,16 @@ typedef enum bough_interpolation {
 // What the user chose. Unused fields are ignored by a scheme.
 typedef struct bough_scheme_options {
     const char *name;  // one of bough_scheme_names()
-    int order;         // extrapolated: degree of the extrapolation, 0 … 2
+    int order;         // extrapolated, iterated: degree of the polynomial, 0 … 2
     bool parallel;     // extrapolated: all stages at once instead of one after the other
     bool reversed;     // sequential schemes take the last stage first
     bough_interpolation interpolation; // sequential schemes
     double theta;      // ramp: 1/2 … 1; 0 chooses by the ratio of interface inertias
     double rtol;       // monolithic: tolerance relative to the members' scales
+    bough_acceleration accelerator; // iterated
+    double relaxation;              // iterated: the accelerator's first factor, 0 … 1
+    double tolerance; // iterated: of the interface relative to its largest values so far [1]
+    int iterations;   // iterated: most per macro step
 } bough_scheme_options;
 
 enum { BOUGH_HISTORY = 3 };
@@ -56,6 +61,8 @@ typedef struct bough_coupling {
     // by the ramp scheme, for the summary
     double theta;           // in use
     double interface_ratio; // spectral radius of the interface's answer to itself at the first step
+
+    long sweeps; // by the iterated scheme: runs of all members over a macro step so far
 } bough_coupling;
 
 // Builds the working data and evaluates the outputs at the members' current states.

@@ -51,7 +51,7 @@ static bough_status check(const bough_master_def *def) {
 
 // Nothing to say when the judgement fails: the run will show why.
 static void judge(bough_master *m) {
-    if (!m->scheme->explicit_forces) return;
+    if (!m->scheme->judged) return;
     bough_stability_advice advice;
     const bough_scheme_options *options = &m->coupling->options;
     bough_status status = bough_stability_advise(m->assembly, options, m->macro_step, &advice);

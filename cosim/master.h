@@ -46,14 +46,15 @@ typedef struct bough_master {
     int next_event;  // first event after `time`
     long grid_index; // k of the last grid point at or before `time`
     bool at_event;   // `time` is an event
-    char verdict[BOUGH_VERDICT]; // a warning that an explicit coupling is unstable; may be empty
+    char verdict[BOUGH_VERDICT]; // a warning that the coupling is unstable; may be empty
 } bough_master;
 
 // Whether a period is an integer multiple of the macro step within 1e-9: the multiple, 0 if not.
 long bough_master_multiple(double period, double macro_step);
 
-// Builds everything in the arena; stepping allocates nothing. An explicit coupling is judged about
-// the initial state: the verdict is a warning, because outer loads may damp what it finds.
+// Builds everything in the arena; stepping allocates nothing. A coupling that may be unstable is
+// judged about the initial state: the verdict is a warning, because outer loads may damp what it
+// finds.
 bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
                                 bough_master **master);
 

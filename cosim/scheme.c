@@ -4,15 +4,21 @@
 
 static const bough_scheme *const schemes[] = {
     &bough_scheme_ramp,         &bough_scheme_gauss_seidel, &bough_scheme_extrapolated,
-    &bough_scheme_frozen,       &bough_scheme_monolithic,
+    &bough_scheme_iterated,     &bough_scheme_frozen,       &bough_scheme_monolithic,
 };
 
-static const char *const names[] = {"ramp",   "gauss-seidel", "extrapolated",
+static const char *const names[] = {"ramp",   "gauss-seidel", "extrapolated", "iterated",
                                     "frozen", "monolithic",   NULL};
 
 bough_scheme_options bough_scheme_options_default(void) {
-    return (bough_scheme_options){
-        .name = "ramp", .order = 1, .interpolation = BOUGH_HERMITE, .rtol = 1e-6};
+    return (bough_scheme_options){.name = "ramp",
+                                  .order = 1,
+                                  .interpolation = BOUGH_HERMITE,
+                                  .rtol = 1e-6,
+                                  .accelerator = BOUGH_ACCELERATE_IQN_ILS,
+                                  .relaxation = 0.5,
+                                  .tolerance = 1e-6,
+                                  .iterations = 30};
 }
 
 const bough_scheme *bough_scheme_find(const char *name) {

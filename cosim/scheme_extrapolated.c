@@ -31,6 +31,7 @@ const bough_scheme bough_scheme_extrapolated = {
     .name = "extrapolated",
     .summary = "forces extrapolated by a polynomial; order 1 to 3 (degree + 1), explicit",
     .explicit_forces = true,
+    .judged = true,
     .create = create,
     .step = step,
 };

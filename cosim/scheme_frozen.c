@@ -59,5 +59,6 @@ const bough_scheme bough_scheme_frozen = {
     .name = "frozen",
     .summary = "all bodies at once, coupling held over the macro step; order 1, explicit",
     .explicit_forces = true,
+    .judged = true,
     .step = step,
 };

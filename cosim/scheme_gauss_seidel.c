@@ -11,5 +11,6 @@ const bough_scheme bough_scheme_gauss_seidel = {
     .name = "gauss-seidel",
     .summary = "the trunk first under held forces, bodies follow its motion; order 1, explicit",
     .explicit_forces = true,
+    .judged = true,
     .step = step,
 };

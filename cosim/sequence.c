@@ -10,8 +10,7 @@ void bough_sequence_extrapolate(bough_coupling *c, int member, int j, int degree
                           c->past_time, value);
 }
 
-// Whether a stage comes before another in the sequence.
-static bool before(const bough_coupling *c, int stage, int other) {
+bool bough_sequence_before(const bough_coupling *c, int stage, int other) {
     return c->options.reversed ? stage > other : stage < other;
 }
 
@@ -22,7 +21,7 @@ static bool prepare(bough_coupling *c, int stage, int degree) {
     for (int i = 0; i < a->n_member; i++) {
         if (a->stage[i] != stage) continue;
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            if (before(c, a->stage[a->source_member[j]], stage)) {
+            if (bough_sequence_before(c, a->stage[a->source_member[j]], stage)) {
                 bough_coupling_interpolate(c, i, j);
             } else {
                 bough_sequence_extrapolate(c, i, j, degree);

@@ -8,6 +8,9 @@
 // other is extrapolated by the polynomial of `degree` through the last synchronisation values.
 bough_status bough_sequence_step(bough_coupling *c, int degree);
 
+// Whether a stage comes before another in the sequence.
+bool bough_sequence_before(const bough_coupling *c, int stage, int other);
+
 // Extrapolates input j (numbered over all inputs) of its member.
 void bough_sequence_extrapolate(bough_coupling *c, int member, int j, int degree);
 

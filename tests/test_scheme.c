@@ -167,6 +167,95 @@ static void unstable_run_ends_with_a_diagnosis(void **state) {
     two_mass_destroy(&m);
 }
 
+static bough_master_def iterated(bough_acceleration accelerator, double macro_step) {
+    bough_master_def def = definition("iterated", macro_step);
+    def.scheme.accelerator = accelerator;
+    def.scheme.tolerance = 1e-11;
+    return def;
+}
+
+static void iterated_errors_and_orders(void **state) {
+    (void)state;
+    static const double expected[3][3] = {{4.75e-2, 2.41e-2, 1.21e-2},
+                                          {1.63e-3, 4.07e-4, 1.02e-4},
+                                          {2.09e-4, 2.61e-5, 3.26e-6}};
+    bough_master_def def = iterated(BOUGH_ACCELERATE_IQN_ILS, 0);
+    for (int order = 0; order < 3; order++) {
+        def.scheme.order = order;
+        check_errors(def, expected[order], .01);
+    }
+}
+
+// What is converged depends neither on how it was found nor on where the sweep begins.
+static void every_accelerator_and_direction_gives_the_same(void **state) {
+    (void)state;
+    bough_master_def def = iterated(BOUGH_ACCELERATE_IQN_ILS, .04);
+    double expected = error_of(two_mass_default(), def);
+    for (int kind = 0; kind < 4; kind++) {
+        def.scheme.accelerator = (bough_acceleration)kind;
+        def.scheme.iterations = 100;
+        def.scheme.reversed = kind % 2 == 1;
+        check_near(error_of(two_mass_default(), def), expected, 1e-6, 0);
+    }
+}
+
+static void iterated_takes_a_light_interface_body(void **state) {
+    (void)state;
+    for (int order = 0; order < 2; order++) {
+        two_mass m = light_case();
+        bough_master_def def = iterated(BOUGH_ACCELERATE_IQN_ILS, order == 0 ? .02 : .0025);
+        def.scheme.order = order;
+        bough_status status = two_mass_build(&m, def);
+        assert_true(bough_is_ok(&status));
+        assert_string_equal(m.master->verdict, "");
+        check_near(two_mass_error(&m), 0, 0, order == 0 ? .1 : .05);
+        check_near((double)m.master->coupling->sweeps / (double)m.master->steps, 3, .05, 0);
+        two_mass_destroy(&m);
+    }
+}
+
+// A force linear in time on a light body at 316 rad/s: stable to 3.46 of its radians.
+static void converged_but_unstable_is_warned_of(void **state) {
+    (void)state;
+    for (int order = 1; order < 3; order++) {
+        two_mass m = light_case();
+        bough_master_def def = iterated(BOUGH_ACCELERATE_IQN_ILS, .02);
+        def.scheme.order = order;
+        bough_status status = two_mass_build(&m, def);
+        assert_true(bough_is_ok(&status));
+        assert_non_null(strstr(m.master->verdict, "scheme iterated"));
+        two_mass_destroy(&m);
+    }
+}
+
+static void iteration_that_diverges_says_so(void **state) {
+    (void)state;
+    two_mass m = light_case();
+    two_mass_build(&m, iterated(BOUGH_ACCELERATE_NONE, .02));
+    bough_status status = bough_step(m.master);
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_non_null(strstr(status.message, "mass2 and mass1 not converged at 0.02 s"));
+    assert_non_null(strstr(status.message, "factor 56.3 in each"));
+    assert_non_null(strstr(status.message, "accelerator: iqn-ils"));
+    assert_non_null(strstr(status.message, "smaller macro step"));
+    two_mass_destroy(&m);
+}
+
+static void iterated_options_are_checked(void **state) {
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        two_mass m = two_mass_default();
+        bough_master_def def = iterated(BOUGH_ACCELERATE_AITKEN, .02);
+        if (k == 0) def.scheme.order = 3;
+        if (k == 1) def.scheme.tolerance = 0;
+        if (k == 2) def.scheme.iterations = 0;
+        if (k == 3) def.scheme.relaxation = 2;
+        bough_status status = two_mass_build(&m, def);
+        assert_int_equal(status.code, BOUGH_INVALID);
+        two_mass_destroy(&m);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exact_solution_is_the_published_one),
@@ -178,6 +267,12 @@ int main(void) {
         cmocka_unit_test(ramp_is_stable_beyond_every_explicit_limit),
         cmocka_unit_test(ramp_takes_a_light_interface_body),
         cmocka_unit_test(unstable_run_ends_with_a_diagnosis),
+        cmocka_unit_test(iterated_errors_and_orders),
+        cmocka_unit_test(every_accelerator_and_direction_gives_the_same),
+        cmocka_unit_test(iterated_takes_a_light_interface_body),
+        cmocka_unit_test(converged_but_unstable_is_warned_of),
+        cmocka_unit_test(iteration_that_diverges_says_so),
+        cmocka_unit_test(iterated_options_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
