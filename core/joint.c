@@ -1,4 +1,4 @@
-// The five joints. Reference: theory page, (3) and (13); speeds are components in body axes.
+// The kinds of joints. Reference: theory page, (3) and (13); speeds are components in body axes.
 #include "core/joint.h"
 
 #include "core/base.h"
@@ -6,11 +6,16 @@
 
 static const struct {
     const char *name;
-    int coordinates, speeds;
+    int coordinates, speeds, axes;
 } kinds[] = {
-    [BOUGH_JOINT_FIXED] = {"fixed", 0, 0},         [BOUGH_JOINT_REVOLUTE] = {"revolute", 1, 1},
-    [BOUGH_JOINT_PRISMATIC] = {"prismatic", 1, 1}, [BOUGH_JOINT_SPHERICAL] = {"spherical", 4, 3},
-    [BOUGH_JOINT_FREE] = {"free", 7, 6},
+    [BOUGH_JOINT_FIXED] = {"fixed", 0, 0, 0},
+    [BOUGH_JOINT_REVOLUTE] = {"revolute", 1, 1, 1},
+    [BOUGH_JOINT_PRISMATIC] = {"prismatic", 1, 1, 1},
+    [BOUGH_JOINT_SPHERICAL] = {"spherical", 4, 3, 0},
+    [BOUGH_JOINT_FREE] = {"free", 7, 6, 0},
+    [BOUGH_JOINT_CYLINDRICAL] = {"cylindrical", 2, 2, 1},
+    [BOUGH_JOINT_UNIVERSAL] = {"universal", 2, 2, 2},
+    [BOUGH_JOINT_PLANAR] = {"planar", 3, 3, 2},
 };
 
 const char *bough_joint_name(bough_joint_kind kind) { return kinds[kind].name; }
@@ -18,6 +23,8 @@ const char *bough_joint_name(bough_joint_kind kind) { return kinds[kind].name; }
 int bough_joint_n_coordinates(bough_joint_kind kind) { return kinds[kind].coordinates; }
 
 int bough_joint_n_speeds(bough_joint_kind kind) { return kinds[kind].speeds; }
+
+int bough_joint_n_axes(bough_joint_kind kind) { return kinds[kind].axes; }
 
 // Where the coordinates hold the quaternion; -1 without one.
 static int quaternion_row(const bough_joint *joint) {
@@ -44,9 +51,16 @@ static bough_mat3 axis_rotation(bough_vec3 a, double angle) {
     };
 }
 
+// x along a planar joint's second axis, y along axis × second
+static bough_vec3 in_plane(const bough_joint *joint, double x, double y) {
+    bough_vec3 third = bough_cross(joint->axis, joint->second);
+    return bough_axpy(x, joint->second, bough_scale(y, third));
+}
+
 bough_transform bough_joint_pose(const bough_joint *joint, const double *q) {
     bough_transform moved = bough_transform_identity();
     switch (joint->kind) {
+    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
     case BOUGH_JOINT_FIXED: break;
     case BOUGH_JOINT_REVOLUTE: moved.rotation = axis_rotation(joint->axis, q[0]); break;
     case BOUGH_JOINT_PRISMATIC: moved.position = bough_scale(q[0], joint->axis); break;
@@ -55,6 +69,14 @@ bough_transform bough_joint_pose(const bough_joint *joint, const double *q) {
         moved.position = load3(q);
         moved.rotation = rotation_at(q + 3);
         break;
+    case BOUGH_JOINT_CYLINDRICAL:
+        moved.position = bough_scale(q[0], joint->axis);
+        moved.rotation = axis_rotation(joint->axis, q[1]);
+        break;
+    case BOUGH_JOINT_PLANAR:
+        moved.position = in_plane(joint, q[0], q[1]);
+        moved.rotation = axis_rotation(joint->axis, q[2]);
+        break;
     }
     return bough_transform_compose(joint->placement, moved);
 }
@@ -62,22 +84,39 @@ bough_transform bough_joint_pose(const bough_joint *joint, const double *q) {
 bough_twist bough_joint_twist(const bough_joint *joint, const double *v) {
     bough_twist t = {{0, 0, 0}, {0, 0, 0}};
     switch (joint->kind) {
+    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
     case BOUGH_JOINT_FIXED: break;
     case BOUGH_JOINT_REVOLUTE: t.angular = bough_scale(v[0], joint->axis); break;
     case BOUGH_JOINT_PRISMATIC: t.linear = bough_scale(v[0], joint->axis); break;
     case BOUGH_JOINT_SPHERICAL: t.angular = load3(v); break;
     case BOUGH_JOINT_FREE: t = bough_twist_load(v); break;
+    case BOUGH_JOINT_CYLINDRICAL:
+        t = (bough_twist){bough_scale(v[0], joint->axis), bough_scale(v[1], joint->axis)};
+        break;
+    case BOUGH_JOINT_PLANAR:
+        t = (bough_twist){in_plane(joint, v[0], v[1]), bough_scale(v[2], joint->axis)};
+        break;
     }
     return t;
 }
 
 void bough_joint_force(const bough_joint *joint, bough_wrench f, double *force) {
     switch (joint->kind) {
+    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
     case BOUGH_JOINT_FIXED: break;
     case BOUGH_JOINT_REVOLUTE: force[0] = bough_dot(joint->axis, f.moment); break;
     case BOUGH_JOINT_PRISMATIC: force[0] = bough_dot(joint->axis, f.force); break;
     case BOUGH_JOINT_SPHERICAL: store3(f.moment, force); break;
     case BOUGH_JOINT_FREE: bough_wrench_store(f, force); break;
+    case BOUGH_JOINT_CYLINDRICAL:
+        force[0] = bough_dot(joint->axis, f.force);
+        force[1] = bough_dot(joint->axis, f.moment);
+        break;
+    case BOUGH_JOINT_PLANAR:
+        force[0] = bough_dot(joint->second, f.force);
+        force[1] = bough_dot(bough_cross(joint->axis, joint->second), f.force);
+        force[2] = bough_dot(joint->axis, f.moment);
+        break;
     }
 }
 
@@ -96,8 +135,17 @@ static void quaternion_speed(const double *p, const double *change, double *omeg
     store3(bough_scale(2 / square, bough_v3(c.x, c.y, c.z)), omega);
 }
 
+// Turns (x, y) by an angle; the third is the angle's own.
+static void turn_plane(double angle, const double *x, double *turned) {
+    double c = cos(angle), s = sin(angle);
+    turned[0] = c * x[0] - s * x[1];
+    turned[1] = s * x[0] + c * x[1];
+    turned[2] = x[2];
+}
+
 void bough_joint_rate(const bough_joint *joint, const double *q, const double *v, double *rate) {
     switch (joint->kind) {
+    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
     case BOUGH_JOINT_FIXED: break;
     case BOUGH_JOINT_REVOLUTE:
     case BOUGH_JOINT_PRISMATIC: rate[0] = v[0]; break;
@@ -106,11 +154,14 @@ void bough_joint_rate(const bough_joint *joint, const double *q, const double *v
         store3(bough_mat3_mul(rotation_at(q + 3), load3(v)), rate);
         quaternion_rate(q + 3, v + 3, rate + 3);
         break;
+    case BOUGH_JOINT_CYLINDRICAL: rate[0] = v[0], rate[1] = v[1]; break;
+    case BOUGH_JOINT_PLANAR: turn_plane(q[2], v, rate); break;
     }
 }
 
 void bough_joint_speed(const bough_joint *joint, const double *q, const double *change, double *v) {
     switch (joint->kind) {
+    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
     case BOUGH_JOINT_FIXED: break;
     case BOUGH_JOINT_REVOLUTE:
     case BOUGH_JOINT_PRISMATIC: v[0] = change[0]; break;
@@ -119,6 +170,8 @@ void bough_joint_speed(const bough_joint *joint, const double *q, const double *
         store3(bough_mat3_tmul(rotation_at(q + 3), load3(change)), v);
         quaternion_speed(q + 3, change + 3, v + 3);
         break;
+    case BOUGH_JOINT_CYLINDRICAL: v[0] = change[0], v[1] = change[1]; break;
+    case BOUGH_JOINT_PLANAR: turn_plane(-q[2], change, v); break;
     }
 }
 

@@ -8,6 +8,14 @@
 // prismatic  displacement [m]                    q̇ [m/s]
 // spherical  quaternion (w, x, y, z)             Ω in body axes [rad/s]
 // free       position in joint axes [m], quat.   velocity, Ω, both in body axes [m/s, rad/s]
+// cylindric. displacement [m], angle [rad]       q̇ [m/s, rad/s]
+// universal  angle about the axis, then about    q̇ [rad/s]
+//            the second axis, which it turns [rad]
+// planar     displacements along the second axis velocity along both in body axes [m/s],
+//            and axis × second [m], angle [rad]  q̇ of the angle [rad/s]
+//
+// A universal joint's S is not constant: the tree makes two revolute joints of it, and of the
+// functions below only the first four know it.
 #ifndef BOUGH_CORE_JOINT_H
 #define BOUGH_CORE_JOINT_H
 
@@ -19,6 +27,9 @@ typedef enum bough_joint_kind {
     BOUGH_JOINT_PRISMATIC,
     BOUGH_JOINT_SPHERICAL,
     BOUGH_JOINT_FREE,
+    BOUGH_JOINT_CYLINDRICAL,
+    BOUGH_JOINT_UNIVERSAL,
+    BOUGH_JOINT_PLANAR, // the last
 } bough_joint_kind;
 
 enum { BOUGH_JOINT_COORDINATES = 7, BOUGH_JOINT_SPEEDS = 6 }; // the most any joint has
@@ -26,13 +37,16 @@ enum { BOUGH_JOINT_COORDINATES = 7, BOUGH_JOINT_SPEEDS = 6 }; // the most any jo
 typedef struct bough_joint {
     bough_joint_kind kind;
     bough_transform placement; // of the joint frame in the parent's frame
-    bough_vec3 axis;           // unit vector in joint axes; revolute and prismatic
+    bough_vec3 axis;           // unit vector in joint axes, of those that have one
+    bough_vec3 second;         // unit vector normal to it in joint axes; planar
 } bough_joint;
 
-// The kind's name in scenes ("revolute"), and its numbers of coordinates and of speeds.
+// The kind's name in scenes ("revolute"), its numbers of coordinates and of speeds, and of the
+// axes that define it: the axis, the second axis.
 const char *bough_joint_name(bough_joint_kind kind);
 int bough_joint_n_coordinates(bough_joint_kind kind);
 int bough_joint_n_speeds(bough_joint_kind kind);
+int bough_joint_n_axes(bough_joint_kind kind);
 
 // The placement of the body frame in the parent's frame. A quaternion is used as q/|q|.
 bough_transform bough_joint_pose(const bough_joint *joint, const double *q);

@@ -7,7 +7,8 @@
 #include <string.h>
 
 bough_body_def bough_body_def_default(void) {
-    bough_body_def def = {.name = "", .parent = BOUGH_GROUND, .axis = {0, 0, 1}};
+    bough_body_def def = {.name = "", .parent = BOUGH_GROUND, .axis = {0, 0, 1},
+                          .second_axis = {1, 0, 0}};
     def.joint = bough_transform_identity();
     return def;
 }
@@ -36,15 +37,30 @@ static bough_status check_placement(const char *what, const char *name, bough_tr
     return bough_ok();
 }
 
-// A revolute or prismatic joint's axis, and initial values
-static bough_status check_joint(const bough_body_def *b) {
-    if (b->kind > BOUGH_JOINT_FREE) {
-        return bough_fail(BOUGH_INVALID, "body '%s': unknown kind of joint", b->name);
-    }
-    if (bough_joint_n_speeds(b->kind) == 1 && !(bough_norm(b->axis) > 0 && finite3(b->axis))) {
+static bool has_direction(bough_vec3 axis) { return bough_norm(axis) > 0 && finite3(axis); }
+
+static bough_status check_axes(const bough_body_def *b) {
+    int n = bough_joint_n_axes(b->kind);
+    if ((n > 0 && !has_direction(b->axis)) || (n > 1 && !has_direction(b->second_axis))) {
         return bough_fail(BOUGH_INVALID, "body '%s': the axis of its %s joint has no direction",
                           b->name, bough_joint_name(b->kind));
     }
+    double cosine = bough_dot(b->axis, b->second_axis);
+    if (n > 1 && fabs(cosine) > 1e-9 * bough_norm(b->axis) * bough_norm(b->second_axis)) {
+        return bough_fail(BOUGH_INVALID,
+                          "body '%s': the axes of its %s joint are not normal to each other",
+                          b->name, bough_joint_name(b->kind));
+    }
+    return bough_ok();
+}
+
+// The joint's axes and initial values
+static bough_status check_joint(const bough_body_def *b) {
+    if (b->kind > BOUGH_JOINT_PLANAR) {
+        return bough_fail(BOUGH_INVALID, "body '%s': unknown kind of joint", b->name);
+    }
+    bough_status status = check_axes(b);
+    if (!bough_is_ok(&status)) return status;
     for (int k = 0; k < BOUGH_JOINT_COORDINATES; k++) {
         bool speed_ok = k >= BOUGH_JOINT_SPEEDS || isfinite(b->speeds[k]);
         if (!isfinite(b->coordinates[k]) || !speed_ok) {
@@ -136,21 +152,38 @@ static void add_inertia(bough_tree *tree, const bough_frame *frame, bough_inerti
     *sum = bough_inertia_add(*sum, bough_inertia_to_parent(&frame->placement, inertia));
 }
 
-static int add_link(bough_tree *tree, const bough_body_def *b, int body, bough_frame parent) {
+static bough_vec3 direction(bough_vec3 axis) {
+    double length = bough_norm(axis);
+    return length > 0 ? bough_scale(1 / length, axis) : axis;
+}
+
+// A link of a body's joint; `parent` is a link or the ground.
+static int add_link(bough_tree *tree, int body, int parent, bough_joint joint) {
     bough_link *link = &tree->links[tree->n_links];
-    double length = bough_norm(b->axis);
-    link->parent = parent.link;
+    link->parent = parent;
     link->body = body;
-    link->joint.kind = b->kind;
-    link->joint.placement = bough_transform_compose(parent.placement, b->joint);
-    if (length > 0) link->joint.axis = bough_scale(1 / length, b->axis);
-    link->n_coordinates = bough_joint_n_coordinates(b->kind);
-    link->n_speeds = bough_joint_n_speeds(b->kind);
+    link->joint = joint;
+    link->n_coordinates = bough_joint_n_coordinates(joint.kind);
+    link->n_speeds = bough_joint_n_speeds(joint.kind);
     link->first_coordinate = tree->n_q;
     link->first_speed = tree->n_v;
     tree->n_q += link->n_coordinates;
     tree->n_v += link->n_speeds;
     return tree->n_links++;
+}
+
+// A universal joint has no constant motion subspace; two revolute ones have.
+static int add_links(bough_tree *tree, const bough_body_def *b, int body, bough_frame parent) {
+    bough_joint joint = {b->kind, bough_transform_compose(parent.placement, b->joint),
+                         direction(b->axis), direction(b->second_axis)};
+    if (b->kind != BOUGH_JOINT_UNIVERSAL) return add_link(tree, body, parent.link, joint);
+    joint.kind = BOUGH_JOINT_REVOLUTE;
+    int cross = add_link(tree, body, parent.link, joint);
+    joint.placement = bough_transform_identity();
+    joint.axis = joint.second;
+    int link = add_link(tree, body, cross, joint);
+    tree->links[link].part = 1;
+    return link;
 }
 
 // The parent stands already. Fixed joints are welded here.
@@ -161,7 +194,7 @@ static void place_body(bough_tree *tree, const bough_body_def *b, int body) {
         frame->link = parent.link;
         frame->placement = bough_transform_compose(parent.placement, b->joint);
     } else {
-        frame->link = add_link(tree, b, body, parent);
+        frame->link = add_links(tree, b, body, parent);
         frame->placement = bough_transform_identity();
     }
     add_inertia(tree, frame, bough_inertia_of(b->mass, b->mass_centre, b->inertia));
@@ -200,8 +233,8 @@ static void set_initial(bough_tree *tree, const bough_tree_def *def) {
         const bough_link *link = &tree->links[i];
         const bough_body_def *b = &def->bodies[link->body];
         double *q = tree->initial + link->first_coordinate;
-        memcpy(q, b->coordinates, (size_t)link->n_coordinates * sizeof(double));
-        memcpy(tree->initial + tree->n_q + link->first_speed, b->speeds,
+        memcpy(q, b->coordinates + link->part, (size_t)link->n_coordinates * sizeof(double));
+        memcpy(tree->initial + tree->n_q + link->first_speed, b->speeds + link->part,
                (size_t)link->n_speeds * sizeof(double));
         bough_joint_normalise(&link->joint, q);
     }
@@ -213,7 +246,8 @@ static bool take_model(bough_arena *arena, const bough_tree_def *def, bough_tree
     tree->n_markers = def->n_markers;
     tree->n_ports = def->n_ports;
     tree->n_loads = def->n_loads;
-    tree->links = bough_arena_take(arena, (size_t)def->n_bodies * sizeof(bough_link));
+    // A universal joint is two links.
+    tree->links = bough_arena_take(arena, 2 * (size_t)def->n_bodies * sizeof(bough_link));
     tree->bodies = bough_arena_take(arena, (size_t)def->n_bodies * sizeof(bough_frame));
     tree->markers = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_frame));
     tree->ports = bough_arena_take(arena, (size_t)def->n_ports * sizeof(bough_frame));
@@ -311,6 +345,7 @@ int bough_tree_find_marker(const bough_tree *tree, const char *name) {
 bool bough_tree_joint_rows(const bough_tree *tree, int body, int *coordinate, int *speed) {
     int link = tree->bodies[body].link;
     if (link < 0 || tree->links[link].body != body) return false;
+    link -= tree->links[link].part; // the links of a joint are neighbours
     *coordinate = tree->links[link].first_coordinate;
     *speed = tree->n_q + tree->links[link].first_speed;
     return true;

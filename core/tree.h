@@ -20,7 +20,8 @@ typedef struct bough_body_def {
     int parent;            // index of a body, in any order, or BOUGH_GROUND
     bough_joint_kind kind; // the joint to the parent
     bough_transform joint; // joint frame in the parent's body frame
-    bough_vec3 axis;       // in joint axes, scaled to length 1; revolute and prismatic
+    bough_vec3 axis;       // in joint axes, scaled to length 1; of those that have one
+    bough_vec3 second_axis; // normal to it, scaled to length 1; universal and planar
     double coordinates[BOUGH_JOINT_COORDINATES]; // initial, see joint.h [rad, m, –]
     double speeds[BOUGH_JOINT_SPEEDS];           // initial, see joint.h [rad/s, m/s]
     double mass;                                 // [kg]
@@ -71,6 +72,8 @@ typedef struct bough_tree_def {
 typedef struct bough_link {
     int parent;                          // link of smaller index, or BOUGH_GROUND
     int body;                            // the def's body whose joint moves it
+    int part;                            // 0; of a universal joint 0, then 1: it is two links,
+                                         // the first without a body
     bough_joint joint;                   // placed in the parent link's frame
     int first_coordinate, n_coordinates; // its rows of q
     int first_speed, n_speeds;           // its rows of v

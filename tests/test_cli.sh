@@ -3,6 +3,7 @@
 # Every check that fails says so in one line; the exit code is the test's.
 set -u
 bough=$1
+scenes=$2/tests/scenes
 bar=$2/apps/beams/rubber-bar.yaml
 beam=$2/tests/scenes/example-beam.yaml
 turbine=$2/apps/turbine/runup.yaml
@@ -145,6 +146,11 @@ checks() {
     has ../stdout '^ports: 2,'
     has ../stdout '^coupling: ramp, theta auto'
     has ../stdout '^aero: built, 3 blades of '
+    expect 0 check "$scenes/joints.yaml"
+    has ../stdout '^body fork: rigid; universal about x and y on ground: 2 degrees of freedom'
+    has ../stdout '^body piston: rigid; cylindrical along and about z on fork: 2 degrees'
+    has ../stdout '^body puck: rigid; planar normal to z on ground: 3 degrees of freedom'
+    has ../stdout '^joints: 3 moving, 0 fixed$'
     expect 0 check "$bar" --set 'simulation.coupling={scheme: extrapolated, order: 2}' \
         --set 'simulation.duration=10 ms' --set 'simulation.macro_step=2.5 ms'
     has ../stdout '^coupling: extrapolated, order 2 '

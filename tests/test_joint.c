@@ -8,34 +8,40 @@
 
 static const bough_joint_kind kinds[] = {BOUGH_JOINT_FIXED, BOUGH_JOINT_REVOLUTE,
                                          BOUGH_JOINT_PRISMATIC, BOUGH_JOINT_SPHERICAL,
-                                         BOUGH_JOINT_FREE};
+                                         BOUGH_JOINT_FREE, BOUGH_JOINT_CYLINDRICAL,
+                                         BOUGH_JOINT_PLANAR};
 enum { N_KINDS = sizeof kinds / sizeof *kinds };
 
 // The quaternions have length 2: only their direction may count.
 static const double coordinates[N_KINDS][7] = {
-    {0}, {0.7}, {-0.4}, {1, -1, 1, 1}, {0.3, 0.2, -0.5, 1, 1, -1, 1}};
+    {0}, {0.7}, {-0.4}, {1, -1, 1, 1}, {0.3, 0.2, -0.5, 1, 1, -1, 1},
+    {0.4, -1.3}, {0.6, -0.2, 2.1}};
 static const double speeds[6] = {0.3, -0.8, 0.5, 1.2, -0.6, 0.9};
 
 static bough_joint joint_of(bough_joint_kind kind) {
     return (bough_joint){
         kind,
         {{1, 2, 3}, bough_rotation_matrix(bough_quaternion_exponential(bough_v3(0.2, 1, -0.5)))},
-        {0.6, 0, 0.8}};
+        {0.6, 0, 0.8},
+        {0, 1, 0}};
 }
 
 static void sizes_match_the_kinds(void **state) {
     (void)state;
-    const int nq[] = {0, 1, 1, 4, 7}, nv[] = {0, 1, 1, 3, 6};
+    const int nq[] = {0, 1, 1, 4, 7, 2, 3}, nv[] = {0, 1, 1, 3, 6, 2, 3};
     for (int k = 0; k < N_KINDS; k++) {
         assert_int_equal(bough_joint_n_coordinates(kinds[k]), nq[k]);
         assert_int_equal(bough_joint_n_speeds(kinds[k]), nv[k]);
     }
     assert_string_equal(bough_joint_name(BOUGH_JOINT_SPHERICAL), "spherical");
+    assert_string_equal(bough_joint_name(BOUGH_JOINT_UNIVERSAL), "universal");
+    assert_int_equal(bough_joint_n_axes(BOUGH_JOINT_UNIVERSAL), 2);
+    assert_int_equal(bough_joint_n_axes(BOUGH_JOINT_CYLINDRICAL), 1);
 }
 
 static void poses_by_hand(void **state) {
     (void)state;
-    bough_joint j = {BOUGH_JOINT_REVOLUTE, bough_transform_identity(), {0, 0, 1}};
+    bough_joint j = {BOUGH_JOINT_REVOLUTE, bough_transform_identity(), {0, 0, 1}, {1, 0, 0}};
     double quarter = acos(-1.0) / 2;
     bough_transform x = bough_joint_pose(&j, &quarter);
     check_near(x.rotation.c1.y, 1, 1e-15, 0); // x turns to y
@@ -46,6 +52,15 @@ static void poses_by_hand(void **state) {
     x = bough_joint_pose(&j, &quarter);
     check_near(x.position.x, 1, 0, 0);
     check_near(x.position.z, quarter, 0, 0);
+    j.kind = BOUGH_JOINT_CYLINDRICAL;
+    x = bough_joint_pose(&j, (double[]){2, quarter});
+    check_near(x.position.z, 2, 0, 0);
+    check_near(x.rotation.c1.y, 1, 1e-15, 0);
+    j.kind = BOUGH_JOINT_PLANAR; // in the plane of x and y
+    x = bough_joint_pose(&j, (double[]){2, 3, quarter});
+    check_near(x.position.x, 3, 0, 0); // placed at x = 1
+    check_near(x.position.y, 3, 0, 0);
+    check_near(x.rotation.c1.y, 1, 1e-15, 0);
     double q[7] = {4, 5, 6, 0, 0, 3, 0}; // half a turn about y
     j.kind = BOUGH_JOINT_FREE;
     x = bough_joint_pose(&j, q);

@@ -248,6 +248,40 @@ static void free_and_sliding_joints_start_moving(void **state) {
     stop(&f);
 }
 
+static void joints_of_several_axes_are_read(void **state) {
+    (void)state;
+    write_file("s.yaml", SIMULATION
+               "bodies:\n"
+               "  - {name: a, fidelity: rigid, mass: 1, inertia: [1, 2, 3], joint: {kind: universal,\n"
+               "     parent: ground, axis: x, second_axis: y, angles: [10 deg, -5 deg],\n"
+               "     angular_speeds: [0, 1 rpm]}}\n"
+               "  - {name: b, fidelity: rigid, mass: 1, inertia: [1, 2, 3], joint: {kind: planar,\n"
+               "     parent: a, axis: z, positions: [1, 2 cm], angle: 3 deg, speeds: [4, 5],\n"
+               "     angular_speed: 6}}\n"
+               "  - {name: c, fidelity: rigid, mass: 1, inertia: [1, 2, 3], joint: {kind:\n"
+               "     cylindrical, parent: b, axis: z, position: 2 cm, angle: 90 deg, speed: 3,\n"
+               "     angular_speed: 1 rpm}}\n");
+    fixture f = read_scene("s.yaml", NULL, 0);
+    assert_string_equal(f.printed, "");
+    const bough_scene_joint *a = &f.scene->body[0].joint, *b = &f.scene->body[1].joint;
+    const bough_scene_joint *c = &f.scene->body[2].joint;
+    assert_int_equal(a->second_axis, BOUGH_SCENE_Y);
+    check_near(a->angles[1], -5 * degree, 1e-15, 0);
+    check_near(a->angular_speeds[1], 6 * degree, 1e-15, 0);
+    check_near(b->positions[1], 0.02, 1e-15, 0);
+    check_near(b->angle, 3 * degree, 1e-15, 0);
+    check_near(b->speeds[0], 4, 0, 0);
+    check_near(b->angular_speed, 6, 0, 0);
+    check_near(c->position, 0.02, 1e-15, 0);
+    check_near(c->angle, 90 * degree, 1e-15, 0);
+    check_near(c->speed, 3, 0, 0);
+    check_near(c->angular_speed, 6 * degree, 1e-15, 0);
+    stop(&f);
+    refuses(SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    mass: 1\n"
+                       "    joint: {kind: universal, parent: ground, axis: x, second_axis: x}\n",
+            "s.yaml:6:68: error: bodies[0].joint.second_axis: must not be the first axis\n");
+}
+
 static void rods_may_be_curved(void **state) {
     (void)state;
     write_file("blade.yaml", "damping: [1 ms, 0, 0, 0, 0, 0]\n"
@@ -313,10 +347,12 @@ static void joint_keys_fit_the_kind(void **state) {
     (void)state;
     refuses(SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    mass: 1\n"
                        "    joint: {kind: fixed, parent: ground, axis: x, angle: 0, speed: 1}\n",
-            "s.yaml:6:42: error: bodies[0].joint.axis: only used with 'kind: revolute/prismatic'\n"
-            "s.yaml:6:51: error: bodies[0].joint.angle: only used with 'kind: revolute'\n"
+            "s.yaml:6:42: error: bodies[0].joint.axis: only used with 'kind: "
+            "revolute/prismatic/cylindrical/universal/planar'\n"
+            "s.yaml:6:51: error: bodies[0].joint.angle: only used with 'kind: "
+            "revolute/cylindrical/planar'\n"
             "s.yaml:6:61: error: bodies[0].joint.speed: only used with 'kind: "
-            "revolute/prismatic'\n");
+            "revolute/prismatic/cylindrical'\n");
     refuses(
         SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    mass: 1\n"
                    "    joint: {kind: prismatic, parent: ground, axis: w, position: 1 deg}\n",
@@ -862,7 +898,8 @@ static void help_covers_scene_and_files(void **state) {
     const char *const lines[] = {
         "\n  macro_step: (number in s, > 0; required)\n",
         "\n    scheme: (frozen|gauss-seidel|extrapolated|ramp|monolithic; default ramp)\n",
-        "\n    axis: (x|y|z; required; with kind: revolute|prismatic)\n",
+        "\n    axis: (x|y|z; required; with kind: revolute|prismatic|cylindrical|"
+        "universal|planar)\n",
         "\n        alpha: (number in rad; required)\n",
         "\n        stiffness: (6 numbers, the diagonal, or 21, the upper triangle row by row; "
         "required)\n",
@@ -881,6 +918,7 @@ int main(void) {
         cmocka_unit_test(shipped_scenes_are_good),
         cmocka_unit_test(parents_come_first_in_the_order),
         cmocka_unit_test(free_and_sliding_joints_start_moving),
+        cmocka_unit_test(joints_of_several_axes_are_read),
         cmocka_unit_test(rods_may_be_curved),
         cmocka_unit_test(all_errors_are_shown_in_order),
         cmocka_unit_test(missing_parts_are_named),

@@ -69,6 +69,7 @@ static bough_body_def random_body(unsigned *seed, const char *name, int parent,
     b.kind = kind;
     b.joint = (bough_transform){next3(seed), turned(turn.x, turn.y, turn.z)};
     b.axis = next3(seed);
+    b.second_axis = bough_cross(b.axis, bough_v3(0.3, 0.5, -0.8));
     b.mass = 1 + 0.5 * next(seed);
     b.mass_centre = next3(seed);
     bough_mat3 r = turned(next(seed), next(seed), next(seed));
@@ -84,14 +85,16 @@ static bough_body_def random_body(unsigned *seed, const char *name, int parent,
 // Every kind of joint, branches, a welded body in between, bodies out of order, two ports (one on
 // the welded body), a joint load with a ramp and an external wrench.
 static fixture everything(double rtol) {
-    static const char *names[] = {"a", "b", "c", "d", "e", "f", "g"};
-    static const int parents[] = {2, 0, BOUGH_GROUND, 2, 3, 4, BOUGH_GROUND};
+    static const char *names[] = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"};
+    static const int parents[] = {8, 0, 7, 9, 3, 4, BOUGH_GROUND, BOUGH_GROUND, 2, 2};
     static const bough_joint_kind kinds[] = {
-        BOUGH_JOINT_REVOLUTE, BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_FREE,     BOUGH_JOINT_PRISMATIC,
-        BOUGH_JOINT_FIXED,    BOUGH_JOINT_REVOLUTE,  BOUGH_JOINT_SPHERICAL};
+        BOUGH_JOINT_REVOLUTE,  BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_FREE,
+        BOUGH_JOINT_PRISMATIC, BOUGH_JOINT_FIXED,     BOUGH_JOINT_REVOLUTE,
+        BOUGH_JOINT_SPHERICAL, BOUGH_JOINT_UNIVERSAL, BOUGH_JOINT_CYLINDRICAL,
+        BOUGH_JOINT_PLANAR};
     unsigned seed = 7;
-    bough_body_def bodies[7];
-    for (int i = 0; i < 7; i++)
+    bough_body_def bodies[10];
+    for (int i = 0; i < 10; i++)
         bodies[i] = random_body(&seed, names[i], parents[i], kinds[i]);
     bough_marker_def markers[] = {
         {"on b", 1, {next3(&seed), turned(0.3, -0.4, 1)}},
@@ -104,7 +107,7 @@ static fixture everything(double rtol) {
     };
     bough_joint_load_def loads[] = {{5, 3.0, 0.1, 0.3}, {3, -2.0, 0, 0}};
     bough_tree_def def = {.gravity = {1, -2, -9},
-                          .n_bodies = 7,
+                          .n_bodies = 10,
                           .n_markers = 3,
                           .n_ports = 2,
                           .n_loads = 2,
@@ -236,6 +239,78 @@ static void ramped_joint_load_spins_up(void **state) {
     advance(&f, 4, true);
     check_near(f.s.state[1], 2 * 2.0, 1e-6, 0);
     bough_arena_destroy(f.arena);
+}
+
+// A body thrown along a cylindrical joint and spun about it: h = v t − g cos(α) t²/2, φ = ω t, with
+// the axis z leaned by α about x.
+static void cylindrical_joint_slides_and_spins(void **state) {
+    (void)state;
+    bough_body_def b = bough_body_def_default();
+    b.name = "screwless", b.kind = BOUGH_JOINT_CYLINDRICAL;
+    b.joint.rotation = turned(0.4, 0, 0);
+    b.mass = 2, b.inertia = diagonal(1, 1, 4);
+    b.coordinates[0] = 0.5, b.speeds[0] = 3, b.speeds[1] = 7;
+    bough_tree_def def = {.gravity = down_z, .n_bodies = 1, .bodies = &b};
+    fixture f = build(&def, 1e-9);
+    advance(&f, 1.5, true);
+    check_near(f.s.state[0], 0.5 + 3 * 1.5 - 0.5 * 9.81 * cos(0.4) * 1.5 * 1.5, 1e-7, 0);
+    check_near(f.s.state[1], 7 * 1.5, 1e-7, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// On a plane leaned by α about x: the mass centre, off the body's origin, is thrown on a parabola
+// while the body spins steadily.
+static void planar_joint_throws_on_a_parabola(void **state) {
+    (void)state;
+    bough_body_def b = bough_body_def_default();
+    b.name = "puck", b.kind = BOUGH_JOINT_PLANAR;
+    b.joint.rotation = turned(0.4, 0, 0);
+    b.mass = 2, b.inertia = diagonal(1, 1, 4), b.mass_centre = bough_v3(0.3, 0, 0);
+    b.speeds[0] = 1, b.speeds[1] = 2, b.speeds[2] = 5;
+    bough_tree_def def = {.gravity = down_z, .n_bodies = 1, .bodies = &b};
+    fixture f = build(&def, 1e-10);
+    double t = 1.3;
+    advance(&f, t, true);
+    const double *q = f.s.state;
+    check_near(q[2], 5 * t, 1e-7, 0);
+    check_near(q[0] + 0.3 * cos(q[2]), 0.3 + 1 * t, 1e-7, 0);
+    check_near(q[1] + 0.3 * sin(q[2]), (2 + 5 * 0.3) * t - 0.5 * 9.81 * sin(0.4) * t * t, 1e-7, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// A spherical pendulum on a universal joint (about x, then y) against the same on a spherical one:
+// the bob is a point, so that the spin about the rod does not count.
+static void universal_joint_swings_as_a_spherical_pendulum(void **state) {
+    (void)state;
+    bough_body_def b = bough_body_def_default();
+    b.name = "bob", b.kind = BOUGH_JOINT_UNIVERSAL;
+    b.axis = bough_v3(2, 0, 0), b.second_axis = bough_v3(0, 1, 0);
+    b.mass = 1.5, b.mass_centre = bough_v3(0, 0, -1), b.inertia = diagonal(1e-6, 1e-6, 1e-6);
+    b.speeds[0] = 1.5, b.speeds[1] = -2;
+    bough_body_def c = b;
+    c.kind = BOUGH_JOINT_SPHERICAL, c.coordinates[0] = 1;
+    bough_tree_def universal = {.gravity = down_z, .n_bodies = 1, .bodies = &b};
+    bough_tree_def ball = {.gravity = down_z, .n_bodies = 1, .bodies = &c};
+    fixture f = build(&universal, 1e-10), g = build(&ball, 1e-10);
+    assert_int_equal(f.s.n_state, 4);
+    bough_tree_sums before, after, other;
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    before = bough_tree_sum(f.tree, f.data);
+    advance(&f, 2, true);
+    advance(&g, 2, true);
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_kinematics(g.tree, g.s.state, g.data);
+    after = bough_tree_sum(f.tree, f.data);
+    other = bough_tree_sum(g.tree, g.data);
+    check_near(after.kinetic + after.potential, before.kinetic + before.potential, 1e-7, 0);
+    // the ball may spin, which a small inertia of the bob feels by its square
+    check_near(bough_norm(bough_sub(after.mass_centre, other.mass_centre)), 0, 0, 1e-5);
+    int q, v;
+    assert_true(bough_tree_joint_rows(f.tree, 0, &q, &v));
+    assert_int_equal(q, 0);
+    assert_int_equal(v, 2);
+    bough_arena_destroy(f.arena);
+    bough_arena_destroy(g.arena);
 }
 
 // -- recursions against each other -----------------------------------------------------------
@@ -516,6 +591,10 @@ static void bad_defs_are_named(void **state) {
     assert_int_equal(create_code(b, 2, "'two'"), BOUGH_INVALID);
     b[1] = good[1], b[1].joint.rotation.c1.x += 0.1;
     assert_int_equal(create_code(b, 2, "rotation"), BOUGH_INVALID);
+    b[0].kind = BOUGH_JOINT_UNIVERSAL, b[0].second_axis = bough_v3(1, 1, 1);
+    b[0].axis = bough_v3(1, 1, 0);
+    assert_int_equal(create_code(b, 2, "normal"), BOUGH_INVALID);
+    b[0] = good[0];
     // a point mass on its own axis, and a free point mass away from its origin
     b[1] = good[1], b[1].inertia = diagonal(0, 0, 0);
     b[1].kind = BOUGH_JOINT_REVOLUTE, b[1].mass_centre = b[1].axis;
@@ -644,6 +723,9 @@ int main(void) {
         cmocka_unit_test(axisymmetric_body_precesses),
         cmocka_unit_test(free_asymmetric_body_conserves),
         cmocka_unit_test(ramped_joint_load_spins_up),
+        cmocka_unit_test(cylindrical_joint_slides_and_spins),
+        cmocka_unit_test(planar_joint_throws_on_a_parabola),
+        cmocka_unit_test(universal_joint_swings_as_a_spherical_pendulum),
         cmocka_unit_test(inverse_dynamics_inverts_forward_dynamics),
         cmocka_unit_test(kinetic_energy_is_the_mass_matrix_form),
         cmocka_unit_test(energy_follows_the_power_of_the_loads),

@@ -23,28 +23,29 @@ static int carrier(const bough_scene *scene, int body) {
 }
 
 static void print_joint(const bough_scene *scene, int body) {
-    static const char *const names[] = {[BOUGH_SCENE_FIXED] = "fixed",
-                                        [BOUGH_SCENE_REVOLUTE] = "revolute",
-                                        [BOUGH_SCENE_PRISMATIC] = "prismatic",
-                                        [BOUGH_SCENE_SPHERICAL] = "spherical",
-                                        [BOUGH_SCENE_FREE] = "free"};
-    static const int freedoms[] = {[BOUGH_SCENE_FIXED] = 0,
-                                   [BOUGH_SCENE_REVOLUTE] = 1,
-                                   [BOUGH_SCENE_PRISMATIC] = 1,
-                                   [BOUGH_SCENE_SPHERICAL] = 3,
-                                   [BOUGH_SCENE_FREE] = 6};
+    static const struct {
+        const char *name;
+        int freedoms;
+        const char *word; // before the axis
+    } kinds[] = {[BOUGH_SCENE_FIXED] = {"fixed", 0, NULL},
+                 [BOUGH_SCENE_REVOLUTE] = {"revolute", 1, "about"},
+                 [BOUGH_SCENE_PRISMATIC] = {"prismatic", 1, "along"},
+                 [BOUGH_SCENE_SPHERICAL] = {"spherical", 3, NULL},
+                 [BOUGH_SCENE_FREE] = {"free", 6, NULL},
+                 [BOUGH_SCENE_CYLINDRICAL] = {"cylindrical", 2, "along and about"},
+                 [BOUGH_SCENE_UNIVERSAL] = {"universal", 2, "about"},
+                 [BOUGH_SCENE_PLANAR] = {"planar", 3, "normal to"}};
     const bough_scene_joint *joint = &scene->body[body].joint;
     if (joint->kind == BOUGH_SCENE_FIXED) {
         printf("; fixed to %s, welded to %s: no states in the tree",
                body_name(scene, joint->parent), body_name(scene, carrier(scene, body)));
         return;
     }
-    int n = freedoms[joint->kind];
-    printf("; %s", names[joint->kind]);
-    if (n == 1) {
-        bool turns = joint->kind == BOUGH_SCENE_REVOLUTE;
-        printf(" %s %c", turns ? "about" : "along", "xyz"[joint->axis]);
-    }
+    int n = kinds[joint->kind].freedoms;
+    const char *word = kinds[joint->kind].word;
+    printf("; %s", kinds[joint->kind].name);
+    if (word != NULL) printf(" %s %c", word, "xyz"[joint->axis]);
+    if (joint->kind == BOUGH_SCENE_UNIVERSAL) printf(" and %c", "xyz"[joint->second_axis]);
     printf(" on %s: %d degree%s of freedom", body_name(scene, joint->parent), n, plural(n));
 }
 
@@ -81,7 +82,8 @@ static void print_bodies(const bough_simulation *s) {
     printf("bodies: %d\n", n);
     for (int i = 0; i < n; i++)
         print_body(s, i);
-    printf("joints: %d moving, %d fixed\n", tree->n_links, n - tree->n_links);
+    int moving = bough_simulation_n_joints(s);
+    printf("joints: %d moving, %d fixed\n", moving, n - moving);
     printf("tree: %d state%s (%d of position, %d of speed), %s, rtol %.6g\n", tree->n_q + tree->n_v,
            plural(tree->n_q + tree->n_v), tree->n_q, tree->n_v, s->trunk.solver,
            s->scene->simulation.master.rtol);

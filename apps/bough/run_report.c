@@ -67,7 +67,7 @@ static void write_cost(bough_summary *s, const bough_run *run) {
 static void write_size(bough_summary *s, const bough_run *run) {
     const bough_simulation *sim = run->simulation;
     bough_summary_integer(s, "bodies", sim->scene->n_body);
-    bough_summary_integer(s, "joints", sim->tree->n_links);
+    bough_summary_integer(s, "joints", bough_simulation_n_joints(sim));
     bough_summary_integer(s, "states", sim->master->assembly->n_state);
     bough_summary_integer(s, "macro_steps", sim->master->steps);
     bough_summary_integer(s, "rows", bough_recorder_rows(run->recorder));

@@ -61,21 +61,46 @@ static bough_mat3 tensor(const double j[6]) {
     return (bough_mat3){{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
 }
 
+static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) {
+    double *q = to->coordinates, *v = to->speeds;
+    double c = cos(joint->angle), s = sin(joint->angle);
+    switch (to->kind) {
+    case BOUGH_JOINT_CYLINDRICAL:
+        q[1] = joint->angle, v[1] = joint->angular_speed;
+        q[0] = joint->position, v[0] = joint->speed;
+        break;
+    case BOUGH_JOINT_UNIVERSAL:
+        memcpy(q, joint->angles, sizeof joint->angles);
+        memcpy(v, joint->angular_speeds, sizeof joint->angular_speeds);
+        break;
+    case BOUGH_JOINT_PLANAR: // the tree's linear speeds are in body axes
+        q[0] = joint->positions[0], v[0] = c * joint->speeds[0] + s * joint->speeds[1];
+        q[1] = joint->positions[1], v[1] = c * joint->speeds[1] - s * joint->speeds[0];
+        q[2] = joint->angle, v[2] = joint->angular_speed;
+        break;
+    default: q[0] = joint->position, v[0] = joint->speed; break;
+    }
+}
+
 static void set_joint(const bough_scene_body *from, bough_body_def *to) {
     static const bough_joint_kind kinds[] = {
         [BOUGH_SCENE_FIXED] = BOUGH_JOINT_FIXED,
         [BOUGH_SCENE_REVOLUTE] = BOUGH_JOINT_REVOLUTE,
         [BOUGH_SCENE_PRISMATIC] = BOUGH_JOINT_PRISMATIC,
         [BOUGH_SCENE_SPHERICAL] = BOUGH_JOINT_SPHERICAL,
-        [BOUGH_SCENE_FREE] = BOUGH_JOINT_FREE};
+        [BOUGH_SCENE_FREE] = BOUGH_JOINT_FREE,
+        [BOUGH_SCENE_CYLINDRICAL] = BOUGH_JOINT_CYLINDRICAL,
+        [BOUGH_SCENE_UNIVERSAL] = BOUGH_JOINT_UNIVERSAL,
+        [BOUGH_SCENE_PLANAR] = BOUGH_JOINT_PLANAR};
     const bough_scene_joint *joint = &from->joint;
     to->parent = joint->parent == BOUGH_SCENE_GROUND ? BOUGH_GROUND : joint->parent;
     to->kind = kinds[joint->kind];
     to->joint = placement(from);
+    bool universal = to->kind == BOUGH_JOINT_UNIVERSAL;
     to->axis = unit_axis(joint->axis);
-    if (to->kind == BOUGH_JOINT_REVOLUTE || to->kind == BOUGH_JOINT_PRISMATIC) {
-        to->coordinates[0] = joint->position;
-        to->speeds[0] = joint->speed;
+    to->second_axis = unit_axis(universal ? joint->second_axis : (joint->axis + 1) % 3);
+    if (bough_joint_n_axes(to->kind) > 0) {
+        set_coordinates(joint, to);
         return;
     }
     int angular = to->kind == BOUGH_JOINT_FREE ? 3 : 0; // a free joint's linear speeds come first
@@ -348,6 +373,13 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
 
 void bough_simulation_update(bough_simulation *s) {
     bough_tree_kinematics(s->tree, s->trunk.state, s->view);
+}
+
+int bough_simulation_n_joints(const bough_simulation *s) {
+    int n = 0;
+    for (int i = 0; i < s->scene->n_body; i++)
+        n += s->scene->body[i].joint.kind != BOUGH_SCENE_FIXED;
+    return n;
 }
 
 bough_beam *bough_simulation_beam(const bough_simulation *s, int body) {

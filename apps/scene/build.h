@@ -44,6 +44,9 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
 // Brings `view` to the current synchronisation point; queries and channels read it.
 void bough_simulation_update(bough_simulation *s);
 
+// How many bodies hang on a joint that moves.
+int bough_simulation_n_joints(const bough_simulation *s);
+
 // The beam of a scene body; NULL when it has no rod.
 bough_beam *bough_simulation_beam(const bough_simulation *s, int body);
 

@@ -28,37 +28,78 @@ static void sample_rotor(void *self, double t, double *value) {
     value[1] = turn < 0 ? turn + 360 : turn;
 }
 
-static bool has_axis(const bough_scene_body *body) {
-    return body->joint.kind == BOUGH_SCENE_REVOLUTE || body->joint.kind == BOUGH_SCENE_PRISMATIC;
-}
-
 static bool is_rotor(const bough_scene *scene, int body) {
     return scene->turbine.node != NULL && scene->turbine.rotor == body;
+}
+
+// What is recorded of a joint with axes: each coordinate and its rate.
+static const struct {
+    int n;
+    struct {
+        const char *name; // after the body's, before Pos and Vel
+        bool angle;
+    } coordinate[3];
+} joint_channels[BOUGH_SCENE_PLANAR + 1] = {
+    [BOUGH_SCENE_REVOLUTE] = {1, {{"", true}}},
+    [BOUGH_SCENE_PRISMATIC] = {1, {{"", false}}},
+    [BOUGH_SCENE_CYLINDRICAL] = {2, {{"", false}, {"Ang", true}}},
+    [BOUGH_SCENE_UNIVERSAL] = {2, {{"Ang1", true}, {"Ang2", true}}},
+    [BOUGH_SCENE_PLANAR] = {3, {{"1", false}, {"2", false}, {"Ang", true}}},
+};
+
+static int n_recorded(const bough_scene *scene, int body) {
+    return is_rotor(scene, body) ? 0 : joint_channels[scene->body[body].joint.kind].n;
+}
+
+// q̇ of the joints with axes: all speeds but the planar joint's are it.
+static void joint_rates(const bough_simulation *s, int body, const double *q, double *rate) {
+    int coordinate, speed;
+    bough_tree_joint_rows(s->tree, body, &coordinate, &speed);
+    const double *v = s->trunk.state + speed;
+    int n = joint_channels[s->scene->body[body].joint.kind].n;
+    if (s->scene->body[body].joint.kind == BOUGH_SCENE_PLANAR) {
+        bough_joint_rate(&s->tree->links[s->tree->bodies[body].link].joint, q, v, rate);
+    } else {
+        memcpy(rate, v, (size_t)n * sizeof *v);
+    }
 }
 
 static void sample_joints(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
     for (int i = 0; i < s->scene->n_body; i++) {
-        const bough_scene_body *body = &s->scene->body[i];
-        if (!has_axis(body) || is_rotor(s->scene, i)) continue;
-        double scale = body->joint.kind == BOUGH_SCENE_REVOLUTE ? DEGREE : 1;
-        joint_state(s, i, &value[0], &value[1]);
-        value[0] /= scale;
-        value[1] /= scale;
-        value += 2;
+        int n = n_recorded(s->scene, i), coordinate, speed;
+        if (n == 0) continue;
+        double rate[3];
+        bough_tree_joint_rows(s->tree, i, &coordinate, &speed);
+        const double *q = s->trunk.state + coordinate;
+        joint_rates(s, i, q, rate);
+        for (int k = 0; k < n; k++, value += 2) {
+            bool angle = joint_channels[s->scene->body[i].joint.kind].coordinate[k].angle;
+            value[0] = q[k] / (angle ? DEGREE : 1);
+            value[1] = rate[k] / (angle ? DEGREE : 1);
+        }
     }
+}
+
+static bough_status add_joint(const bough_scene *scene, int body, bough_channels *list) {
+    const char *name = scene->body[body].name;
+    int kind = scene->body[body].joint.kind;
+    bough_status status = bough_ok();
+    for (int k = 0; k < n_recorded(scene, body) && bough_is_ok(&status); k++) {
+        bool angle = joint_channels[kind].coordinate[k].angle;
+        const char *which = joint_channels[kind].coordinate[k].name;
+        status = bough_channels_add(list, angle ? "deg" : "m", "%s%sPos", name, which);
+        if (!bough_is_ok(&status)) break;
+        status = bough_channels_add(list, angle ? "deg/s" : "m/s", "%s%sVel", name, which);
+    }
+    return status;
 }
 
 static bough_status add_joints(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_joints, s);
     for (int i = 0; i < s->scene->n_body && bough_is_ok(&status); i++) {
-        const bough_scene_body *body = &s->scene->body[i];
-        if (!has_axis(body) || is_rotor(s->scene, i)) continue;
-        bool revolute = body->joint.kind == BOUGH_SCENE_REVOLUTE;
-        status = bough_channels_add(list, revolute ? "deg" : "m", "%sPos", body->name);
-        if (!bough_is_ok(&status)) break;
-        status = bough_channels_add(list, revolute ? "deg/s" : "m/s", "%sVel", body->name);
+        status = add_joint(s->scene, i, list);
     }
     return status;
 }

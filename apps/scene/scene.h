@@ -79,6 +79,9 @@ typedef enum bough_scene_joint_kind {
     BOUGH_SCENE_PRISMATIC,
     BOUGH_SCENE_SPHERICAL,
     BOUGH_SCENE_FREE,
+    BOUGH_SCENE_CYLINDRICAL,
+    BOUGH_SCENE_UNIVERSAL,
+    BOUGH_SCENE_PLANAR,
 } bough_scene_joint_kind;
 
 // The joint that carries a body: placement from the parent's frame to the joint's frame, which is
@@ -90,9 +93,15 @@ typedef struct bough_scene_joint {
     int parent;              // index of a body, or BOUGH_SCENE_GROUND
     int n_placement;
     bough_scene_step *placement; // (n_placement)
-    int axis;                    // bough_scene_axis of revolute and prismatic
+    int axis;                    // bough_scene_axis of all but fixed, spherical and free
+    int second_axis;             // bough_scene_axis of universal, not the first
     double position;             // initial angle [rad] of revolute, displacement [m] of prismatic
-    double speed;                // initial, [rad/s] of revolute, [m/s] of prismatic
+                                 // and cylindrical
+    double speed;                // initial, [rad/s] of revolute, [m/s] of prismatic, cylindrical
+    double angle, angular_speed; // initial, of cylindrical and planar [rad, rad/s]
+    double angles[2], angular_speeds[2]; // initial, of universal [rad, rad/s]
+    double positions[2], speeds[2];      // initial, of planar, along the two axes after the normal
+                                         // in the order x, y, z, x, in the joint's frame [m, m/s]
     double velocity[3];          // initial [m/s] of free, in the joint's frame
     double angular_velocity[3];  // initial [rad/s] of spherical and free, in the joint's frame
 } bough_scene_joint;

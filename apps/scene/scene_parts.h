@@ -25,6 +25,7 @@ void bough_scene_check_aero_blade(bough_schema_reader *r, void *item);
 void bough_scene_check_polar(bough_schema_reader *r, void *item);
 void bough_scene_check_polars(bough_schema_reader *r, void *item);
 void bough_scene_check_tower(bough_schema_reader *r, void *item);
+void bough_scene_check_joint(bough_schema_reader *r, void *item);
 void bough_scene_check_load(bough_schema_reader *r, void *item);
 void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]);
 

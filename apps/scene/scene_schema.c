@@ -84,7 +84,8 @@ static const bough_schema rod_schema = {SCHEMA("a rod", bough_scene_rod, rod_key
 #define AT(member) .offset = offsetof(bough_scene_joint, member)
 static const bough_key joint_keys[] = {
     {.name = "kind", .kind = BOUGH_KEY_CHOICE, .required = true, AT(kind),
-     .choices = CHOICES("fixed", "revolute", "prismatic", "spherical", "free"),
+     .choices = CHOICES("fixed", "revolute", "prismatic", "spherical", "free", "cylindrical",
+                        "universal", "planar"),
      .help = "what the joint lets move"},
     {.name = "parent", .kind = BOUGH_KEY_TEXT, .required = true, AT(parent_name),
      .help = "name of a body, or ground"},
@@ -92,15 +93,38 @@ static const bough_key joint_keys[] = {
      .form = "list of 'move x|y|z LENGTH' and 'rotate x|y|z ANGLE'", .offset = 0,
      .help = "from the parent's frame to the joint's, each step in the frame reached so far"},
     {.name = "axis", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("x", "y", "z"), .required = true,
-     .when_key = "kind", .when = "revolute|prismatic", AT(axis), .help = "axis of the motion"},
+     .when_key = "kind", .when = "revolute|prismatic|cylindrical|universal|planar", AT(axis),
+     .help = "axis of the motion; of a universal joint the first, which does not move; of a planar "
+             "joint the plane's normal"},
+    {.name = "second_axis", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("x", "y", "z"),
+     .required = true, .when_key = "kind", .when = "universal", AT(second_axis),
+     .help = "another axis, which the turn about the first takes along"},
     {.name = "angle", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
      .when_key = "kind", .when = "revolute", AT(position), .help = "initial angle"},
+    {.name = "angle", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
+     .when_key = "kind", .when = "cylindrical|planar", AT(angle), .help = "initial angle"},
+    {.name = "angles", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_ANGLE,
+     .fallback = "[0, 0]", .when_key = "kind", .when = "universal", AT(angles),
+     .help = "initial angles about the two axes"},
     {.name = "position", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .fallback = "0",
-     .when_key = "kind", .when = "prismatic", AT(position), .help = "initial displacement"},
+     .when_key = "kind", .when = "prismatic|cylindrical", AT(position),
+     .help = "initial displacement"},
+    {.name = "positions", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_LENGTH,
+     .fallback = "[0, 0]", .when_key = "kind", .when = "planar", AT(positions),
+     .help = "initial displacements along the two axes that follow the normal in x, y, z, x"},
     {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGULAR_SPEED, .fallback = "0",
      .when_key = "kind", .when = "revolute", AT(speed), .help = "initial speed"},
     {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .fallback = "0",
-     .when_key = "kind", .when = "prismatic", AT(speed), .help = "initial speed"},
+     .when_key = "kind", .when = "prismatic|cylindrical", AT(speed), .help = "initial speed"},
+    {.name = "speeds", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_SPEED,
+     .fallback = "[0, 0]", .when_key = "kind", .when = "planar", AT(speeds),
+     .help = "initial speeds, along the axes of 'positions'"},
+    {.name = "angular_speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGULAR_SPEED,
+     .fallback = "0", .when_key = "kind", .when = "cylindrical|planar", AT(angular_speed),
+     .help = "initial speed of the angle"},
+    {.name = "angular_speeds", .kind = BOUGH_KEY_VECTOR, .count = 2,
+     .dimension = BOUGH_ANGULAR_SPEED, .fallback = "[0, 0]", .when_key = "kind",
+     .when = "universal", AT(angular_speeds), .help = "initial speeds of the angles"},
     {.name = "velocity", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_SPEED,
      .fallback = zero3, .when_key = "kind", .when = "free", AT(velocity),
      .help = "initial velocity in the joint's frame"},
@@ -110,7 +134,8 @@ static const bough_key joint_keys[] = {
      .help = "initial angular velocity in the joint's frame"},
 };
 #undef AT
-static const bough_schema joint_schema = {SCHEMA("a joint", bough_scene_joint, joint_keys)};
+static const bough_schema joint_schema = {SCHEMA("a joint", bough_scene_joint, joint_keys),
+                                          .check = bough_scene_check_joint};
 
 #define AT(member) .offset = offsetof(bough_scene_body, member)
 static const bough_key body_keys[] = {

@@ -57,6 +57,13 @@ void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, 
     }
 }
 
+void bough_scene_check_joint(bough_schema_reader *r, void *item) {
+    const bough_scene_joint *joint = item;
+    if (joint->kind != BOUGH_SCENE_UNIVERSAL || joint->second_axis != joint->axis) return;
+    bough_schema_error(r, bough_node_find(joint->node, "second_axis"), "second_axis",
+                       "must not be the first axis");
+}
+
 // -- matrices
 // ---------------------------------------------------------------------------------------
 

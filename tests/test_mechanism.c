@@ -1,0 +1,72 @@
+// Mechanisms of rigid bodies as whole scenes: from the file to the channels.
+#include "apps/output/channels.h"
+#include "tests/built_scene.h"
+
+#include <string.h>
+
+static const char *const no_sets[] = {NULL};
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_simulation *s;
+    bough_channels channels;
+    double value[64];
+} fixture;
+
+static fixture start(const char *path, const char *const *sets) {
+    fixture f = {.arena = bough_arena_create()};
+    f.s = scene_build(f.arena, path, sets);
+    f.channels = bough_channels_start(f.arena);
+    bough_status status = bough_simulation_channels(f.s, &f.channels);
+    assert_int_equal(status.code, BOUGH_OK);
+    assert_true(f.channels.count <= 64);
+    return f;
+}
+
+static double channel(fixture *f, const char *name) {
+    int index = bough_channels_find(&f->channels, name);
+    if (index < 0) print_error("no channel %s\n", name);
+    assert_true(index >= 0);
+    bough_simulation_update(f->s);
+    bough_channels_sample(&f->channels, f->s->master->time, f->value);
+    return f->value[index];
+}
+
+static void run(fixture *f, int steps) {
+    for (int k = 0; k < steps; k++)
+        scene_step(f->s);
+}
+
+static void joints_of_several_axes_start_and_are_recorded(void **context) {
+    (void)context;
+    fixture f = start("tests/scenes/joints.yaml", no_sets);
+    const double degree = acos(-1.0) / 180;
+    check_near(channel(&f, "forkAng1Pos"), 90, 1e-14, 0);
+    check_near(channel(&f, "forkAng2Pos"), 30, 1e-14, 0);
+    check_near(channel(&f, "forkAng2Vel"), -1 / degree, 1e-14, 0);
+    check_near(channel(&f, "pistonPos"), -1, 0, 0);
+    check_near(channel(&f, "pistonAngPos"), 40, 1e-14, 0);
+    check_near(channel(&f, "pistonAngVel"), 10 / degree, 1e-14, 0);
+    check_near(channel(&f, "puck1Vel"), 3, 1e-14, 0);
+    check_near(channel(&f, "puck2Vel"), 4, 1e-14, 0);
+    // the turn about x takes the fork's y to the ground's z
+    const bough_frame *piston = &f.s->tree->bodies[bough_tree_find_body(f.s->tree, "piston")];
+    bough_vec3 x = bough_tree_frame_pose(f.s->view, piston).position;
+    check_near(x.x, -sin(30 * degree), 1e-14, 0);
+    check_near(x.y, cos(30 * degree), 1e-14, 0);
+    check_near(x.z, 5, 1e-14, 0);
+    run(&f, 50);
+    double t = 0.5, g = 9.80665 * sin(30 * degree);
+    check_near(channel(&f, "puck1Pos"), 1 + 3 * t, 1e-6, 0);
+    check_near(channel(&f, "puck2Pos"), 2 + 4 * t - 0.5 * g * t * t, 1e-6, 0);
+    check_near(channel(&f, "puck2Vel"), 4 - g * t, 1e-6, 0);
+    check_near(channel(&f, "puckAngPos"), 90 + 5 * t / degree, 1e-6, 0);
+    bough_arena_destroy(f.arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(joints_of_several_axes_start_and_are_recorded),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
