@@ -21,7 +21,8 @@ typedef enum bough_verify_what {
     BOUGH_VERIFY_AT,        // "CHANNEL at 0.5 s"
     BOUGH_VERIFY_LARGEST,   // "largest CHANNEL"
     BOUGH_VERIFY_SMALLEST,  // "smallest CHANNEL"
-    BOUGH_VERIFY_DRIFT,     // "drift of energy from 2 s", the largest, relative to the largest value
+    BOUGH_VERIFY_DRIFT,     // "drift of energy from 2 s", the largest, as a share of the
+                            // largest value, of the energy without gravity's
 } bough_verify_what;
 
 // What the rods have together; conserved in free flight.

@@ -75,10 +75,12 @@ static double mode_value(const bough_rod_mode *mode, bough_verify_what what) {
     return mode->frequency;
 }
 
-static double largest_growth(const bough_rod_mode *mode, int n) {
-    double largest = -INFINITY;
-    for (int k = 0; k < n; k++)
-        largest = fmax(largest, -2 * BOUGH_PI * mode[k].damping * mode[k].frequency);
+static double largest_growth(const bough_rod_mode_list *list) {
+    double largest = 0;
+    for (int k = 0; k < list->found; k++) {
+        const bough_rod_mode *mode = &list->mode[k];
+        largest = fmax(largest, -2 * BOUGH_PI * mode->damping * mode->frequency);
+    }
     return largest;
 }
 
@@ -97,7 +99,7 @@ static bough_status do_modes(bough_arena *arena, const bough_verify_case *x,
     for (int i = 0; i < x->n_expect && bough_is_ok(&status); i++) {
         const bough_verify_quantity *q = &x->expect[i].quantity;
         if (x->expect[i].diagnosis || q->index >= list.found) continue;
-        value[i] = q->what == BOUGH_VERIFY_GROWTH ? largest_growth(list.mode, list.found)
+        value[i] = q->what == BOUGH_VERIFY_GROWTH ? largest_growth(&list)
                                                   : mode_value(&list.mode[q->index], q->what);
     }
     return status;
@@ -108,6 +110,7 @@ static bough_status do_modes(bough_arena *arena, const bough_verify_case *x,
 // A sum over all vertices of all rods.
 typedef struct invariants {
     double energy, strain_energy;
+    double motion_energy; // without gravity's
     bough_vec3 momentum, angular;
 } invariants;
 
@@ -148,8 +151,9 @@ static void add_vertex(const bough_beam *beam, const bough_beam_motion *m, int i
     bough_vec3 l = bough_add(bough_mat3_mul(m->rotation[i], jw), bough_cross(moment, u));
     sum->momentum = bough_add(sum->momentum, p);
     sum->angular = bough_add(sum->angular, bough_add(l, bough_cross(x, p)));
-    sum->energy += 0.5 * (bough_dot(p, u) + bough_dot(l, m->angular_velocity[i]));
-    sum->energy -= bough_dot(gravity, bough_axpy(v->mass, x, moment));
+    double kinetic = 0.5 * (bough_dot(p, u) + bough_dot(l, m->angular_velocity[i]));
+    sum->motion_energy += kinetic;
+    sum->energy += kinetic - bough_dot(gravity, bough_axpy(v->mass, x, moment));
 }
 
 static invariants measure(const gauge *g) {
@@ -168,6 +172,7 @@ static invariants measure(const gauge *g) {
         sum.strain_energy += bough_rod_elastic_energy(model, &g->scratch[k]);
     }
     sum.energy += sum.strain_energy;
+    sum.motion_energy += sum.strain_energy;
     return sum;
 }
 
@@ -184,10 +189,10 @@ static void follow_drift(drift *d, bough_verify_invariant which, const invariant
     d->started = true;
     if (which == BOUGH_VERIFY_ENERGY) {
         change = fabs(now->energy - d->first.energy);
-        size = fabs(now->energy);
+        size = now->motion_energy;
     } else if (which == BOUGH_VERIFY_STRAIN_ENERGY) {
         change = now->strain_energy;
-        size = fabs(now->energy);
+        size = now->motion_energy;
     } else {
         bool angular = which == BOUGH_VERIFY_ANGULAR_MOMENTUM;
         bough_vec3 a = angular ? now->angular : now->momentum;

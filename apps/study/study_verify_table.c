@@ -60,8 +60,10 @@ static verdict judge(const bough_verify_case *x, int i, const bough_verify_resul
         return (verdict){.result = NAN, .error = NAN, .order = NAN,
                          .holds = judge_diagnosis(e, &result[n - 1])};
     }
-    for (int k = 0; k < n; k++)
-        v[k] = e->scale * result[k].value[i];
+    for (int k = 0; k < n; k++) { // a run that ended early has not shown it
+        v[k] = NAN;
+        if (bough_is_ok(&result[k].outcome)) v[k] = e->scale * result[k].value[i];
+    }
     return judge_value(x, e, v);
 }
 

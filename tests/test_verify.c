@@ -1,0 +1,182 @@
+// Studies of kind verify: what is read, judged and told.
+#include "apps/study/study_verify.h"
+#include "tests/scratch.h"
+
+#define BEAMS BOUGH_SOURCE_DIR "/apps/beams/"
+#define HEAD "title: Two beams\nkind: verify\ncases:\n"
+#define ROLL_UP                                                                                    \
+    "  - name: roll-up, one turn\n    scene: " BEAMS "roll-up.yaml\n    do: static\n"              \
+    "    meshes: [5, 10, 20]\n    expect:\n"                                                       \
+    "      - {quantity: tip uz, value: -10, absolute: 1e-8}\n"
+#define ELASTICA(tolerance)                                                                        \
+    "  - name: elastica\n    scene: " BEAMS "elastica.yaml\n    do: static\n"                      \
+    "    meshes: [10, 20, 40]\n    expect:\n"                                                      \
+    "      - {quantity: tip ux, value: 0.81060902488, relative: " tolerance ", extrapolate: true}\n"
+#define TOO_FEW(text)                                                                              \
+    "  - name: too few segments\n    scene: " BEAMS "roll-up.yaml\n    do: static\n"               \
+    "    set:\n      loads[0].moment: [0, 628, 0]\n"                                               \
+    "    expect: [{diagnosis: " text "}]\n"
+#define FLYING                                                                                     \
+    "  - name: flying rod\n    scene: " BEAMS "flying-rod.yaml\n    do: run\n"                     \
+    "    meshes: [8]\n    set: {simulation.duration: 3 s}\n    expect:\n"
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_errors errors;
+    bough_study *study;
+} fixture;
+
+static bough_status open_study(fixture *f, const char *folder, const char *text) {
+    char path[128];
+    *f = (fixture){.arena = bough_arena_create()};
+    f->errors.arena = f->arena;
+    snprintf(path, sizeof path, "%s/study.yaml", folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    fclose(file);
+    return bough_study_read(f->arena, path, 0, &f->errors, &f->study);
+}
+
+// Performs a good study; `table` receives what was printed.
+static bough_status perform(const char *folder, const char *text, char table[4096]) {
+    fixture f;
+    bough_status status = open_study(&f, folder, text);
+    bough_errors_print(&f.errors, stderr);
+    assert_true(bough_is_ok(&status));
+    FILE *stream = tmpfile();
+    assert_non_null(stream);
+    bough_study_options options = {.folder = folder, .quiet = true, .stream = stream};
+    status = bough_study_perform(f.arena, f.study, &options);
+    rewind(stream);
+    memset(table, 0, 4096);
+    assert_true(fread(table, 1, 4095, stream) < 4095);
+    fclose(stream);
+    bough_arena_destroy(f.arena);
+    return status;
+}
+
+static bool says(const char *text, const char *what) {
+    if (!strstr(text, what)) print_error("no '%s' in:\n%s\n", what, text);
+    return strstr(text, what) != NULL;
+}
+
+static void cases_that_hold_are_a_success(void **state) {
+    char table[4096];
+    bough_status status = perform(*state, HEAD ROLL_UP ELASTICA("1e-6"), table);
+    assert_int_equal(status.code, BOUGH_OK);
+    assert_true(says(table, "2 of 2 hold, 2 cases"));
+    char *csv = scratch_read(*state, "verify.csv");
+    assert_non_null(csv);
+    assert_true(says(csv, "elastica,tip ux,0.81060902488,"));
+    assert_true(says(csv, ",relative,pass,"));
+    free(csv);
+}
+
+// The same cases with a tolerance that no mesh reaches.
+static void a_case_that_does_not_hold_is_a_failure(void **state) {
+    char table[4096];
+    bough_status status = perform(*state, HEAD ROLL_UP ELASTICA("1e-12"), table);
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_string_equal(status.message, "1 of 2 expectations do not hold");
+    assert_true(says(table, "FAIL"));
+    char *csv = scratch_read(*state, "verify.csv");
+    assert_non_null(csv);
+    assert_true(says(csv, ",relative,fail,"));
+    free(csv);
+}
+
+// The elastica converges at second order.
+static void order_is_observed_over_three_meshes(void **state) {
+    char table[4096];
+    perform(*state, HEAD ELASTICA("1e-6"), table);
+    assert_true(says(table, " 2.0"));
+}
+
+static void a_diagnosis_is_expected_or_missed(void **state) {
+    char table[4096];
+    bough_status status = perform(*state, HEAD TOO_FEW("more segments are needed"), table);
+    assert_int_equal(status.code, BOUGH_OK);
+    status = perform(*state, HEAD TOO_FEW("the moon is full"), table);
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_true(says(table, "more segments are needed")); // told in either case
+}
+
+static void free_flight_keeps_energy_and_momenta(void **state) {
+    char table[4096];
+    bough_status status =
+        perform(*state,
+                HEAD FLYING "      - {quantity: drift of energy from 2 s, absolute: 1e-6}\n"
+                            "      - {quantity: drift of momentum from 2 s, absolute: 1e-7}\n"
+                            "      - {quantity: drift of angular momentum from 2 s, "
+                            "absolute: 1e-7}\n",
+                table);
+    assert_int_equal(status.code, BOUGH_OK);
+    // while the load acts they change
+    status = perform(*state,
+                     HEAD FLYING "      - {quantity: drift of momentum from 0 s, absolute: 0.1}\n",
+                     table);
+    assert_int_equal(status.code, BOUGH_FAILED);
+}
+
+// A run that stops on its way has not kept anything.
+static void a_run_that_fails_has_not_shown_its_values(void **state) {
+    char table[4096];
+    bough_status status =
+        perform(*state,
+                HEAD "  - name: frozen\n    scene: " BEAMS "rubber-bar.yaml\n    do: run\n"
+                     "    set: {simulation.coupling.scheme: frozen}\n    expect:\n"
+                     "      - {quantity: drift of energy from 0 s, absolute: 1e3}\n",
+                table);
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_true(says(table, "failed: "));
+}
+
+static void check_error(const char *folder, const char *text, const char *message) {
+    fixture f;
+    bough_status status = open_study(&f, folder, text);
+    assert_int_equal(status.code, BOUGH_INVALID);
+    assert_null(f.study);
+    assert_int_equal(f.errors.n, 1);
+    assert_true(says(f.errors.item[0].text, message));
+    bough_arena_destroy(f.arena);
+}
+
+#define CASE(lines)                                                                                \
+    HEAD "  - name: a\n    scene: " BEAMS "elastica.yaml\n" lines
+static void mistakes_are_told_before_the_first_case(void **state) {
+    check_error(*state, CASE("    do: static\n    expect: [{quantity: tip q, absolute: 1}]\n"),
+                "expected 'tip x|y|z");
+    check_error(*state, CASE("    do: static\n    expect: [{quantity: tip x}]\n"),
+                "one of 'relative' and 'absolute'");
+    check_error(*state, CASE("    do: static\n    expect: [{quantity: frequency 1, absolute: 1}]\n"),
+                "does not come from");
+    check_error(*state,
+                CASE("    do: static\n    meshes: [5, 10, 40]\n"
+                     "    expect: [{quantity: tip x, absolute: 1}]\n"),
+                "constant factor");
+    check_error(*state,
+                CASE("    do: static\n    set: {simulation.rot: 1}\n"
+                     "    expect: [{quantity: tip x, absolute: 1}]\n"),
+                "rot");
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(cases_that_hold_are_a_success, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(a_case_that_does_not_hold_is_a_failure, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(order_is_observed_over_three_meshes, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(a_diagnosis_is_expected_or_missed, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(free_flight_keeps_energy_and_momenta, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(a_run_that_fails_has_not_shown_its_values, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(mistakes_are_told_before_the_first_case, scratch_make,
+                                        scratch_remove),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
