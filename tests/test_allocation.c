@@ -181,6 +181,8 @@ static void extrapolated_steps_take_no_memory(void **context) {
     turbine_steps(context, "extrapolated");
 }
 
+static void iterated_steps_take_no_memory(void **context) { turbine_steps(context, "iterated"); }
+
 static void ramp_steps_take_no_memory(void **context) { turbine_steps(context, "ramp"); }
 
 static void monolithic_steps_take_no_memory(void **context) {
@@ -202,6 +204,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(gauss_seidel_steps_take_no_memory, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(extrapolated_steps_take_no_memory, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(iterated_steps_take_no_memory, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(ramp_steps_take_no_memory, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(monolithic_steps_take_no_memory, scratch_make,

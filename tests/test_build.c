@@ -376,6 +376,11 @@ static void extrapolated_on_two_threads(void **context) {
     threads_do_not_change_a_bit("extrapolated");
 }
 
+static void iterated_on_two_threads(void **context) {
+    (void)context;
+    threads_do_not_change_a_bit("iterated");
+}
+
 static void ramp_on_two_threads(void **context) {
     (void)context;
     threads_do_not_change_a_bit("ramp");
@@ -402,6 +407,7 @@ int main(void) {
         cmocka_unit_test(frozen_on_two_threads),
         cmocka_unit_test(gauss_seidel_on_two_threads),
         cmocka_unit_test(extrapolated_on_two_threads),
+        cmocka_unit_test(iterated_on_two_threads),
         cmocka_unit_test(ramp_on_two_threads),
         cmocka_unit_test(monolithic_on_two_threads),
     };

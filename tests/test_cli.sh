@@ -155,6 +155,9 @@ checks() {
         --set 'simulation.duration=10 ms' --set 'simulation.macro_step=2.5 ms'
     has ../stdout '^coupling: extrapolated, order 2 '
     has ../stdout '^macro_steps: 4$'
+    expect 0 check "$bar" --set 'simulation.coupling={scheme: iterated, accelerator: aitken}' \
+        --set 'simulation.coupling.tolerance=1e-5'
+    has ../stdout '^coupling: iterated, order 1, accelerator aitken, tolerance 1e-05 in at most 30 '
     nothing_written
 }
 

@@ -324,7 +324,7 @@ static void all_errors_are_shown_in_order(void **state) {
         "s.yaml:3:13: error: simulation.duration: expected a time (in s, or with a unit, as '20 "
         "ms'), got '1 kg': the unit 'kg' does not fit\n"
         "s.yaml:4:22: error: simulation.coupling.scheme: expected one of frozen, gauss-seidel, "
-        "extrapolated, ramp, monolithic, got 'rampe' (did you mean 'ramp'?)\n"
+        "extrapolated, iterated, ramp, monolithic, got 'rampe' (did you mean 'ramp'?)\n"
         "s.yaml:8:12: error: bodies[0].joint: required key 'axis' is missing\n"
         "s.yaml:8:37: error: bodies[0].joint.parent: there is no body 'grond'\n"
         "s.yaml:9:11: error: bodies[0].mass: must be >= 0 kg, got '-1'\n"
@@ -897,7 +897,8 @@ static void help_covers_scene_and_files(void **state) {
     fclose(stream);
     const char *const lines[] = {
         "\n  macro_step: (number in s, > 0; required)\n",
-        "\n    scheme: (frozen|gauss-seidel|extrapolated|ramp|monolithic; default ramp)\n",
+        "\n    scheme: (frozen|gauss-seidel|extrapolated|iterated|ramp|monolithic; default "
+        "ramp)\n",
         "\n    axis: (x|y|z; required; with kind: revolute|prismatic|cylindrical|"
         "universal|planar)\n",
         "\n        alpha: (number in rad; required)\n",

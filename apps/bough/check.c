@@ -111,7 +111,12 @@ static void print_coupling(const bough_simulation *s) {
     const bough_master *m = s->master;
     const bough_scheme_options *o = &m->coupling->options;
     printf("coupling: %s", m->scheme->name);
-    if (strcmp(m->scheme->name, "extrapolated") == 0) printf(", order %d", o->order);
+    bool iterates = strcmp(m->scheme->name, "iterated") == 0;
+    if (iterates || strcmp(m->scheme->name, "extrapolated") == 0) printf(", order %d", o->order);
+    if (iterates) {
+        printf(", accelerator %s, tolerance %.6g in at most %d iterations",
+               bough_acceleration_names()[o->accelerator], o->tolerance, o->iterations);
+    }
     if (strcmp(m->scheme->name, "ramp") == 0) {
         if (o->theta > 0) {
             printf(", theta %.6g", o->theta);

@@ -40,11 +40,12 @@ static void write_input(bough_summary *s, const bough_run *run) {
 static void write_method(bough_summary *s, const bough_run *run) {
     const bough_master *m = run->simulation->master;
     const bough_scene_simulation *sim = &run->simulation->scene->simulation;
-    bool extrapolates = strcmp(m->scheme->name, "extrapolated") == 0;
+    bool polynomial = strcmp(m->scheme->name, "extrapolated") == 0 ||
+                      strcmp(m->scheme->name, "iterated") == 0;
     bool ramps = strcmp(m->scheme->name, "ramp") == 0;
     bough_summary_text(s, "scheme", m->scheme->name);
     const double none = (double)NAN;
-    bough_summary_number(s, "order", extrapolates ? (double)m->coupling->options.order : none);
+    bough_summary_number(s, "order", polynomial ? (double)m->coupling->options.order : none);
     bough_summary_number(s, "theta", ramps ? m->coupling->theta : none);
     bough_summary_number(s, "macro_step", m->macro_step);
     bough_summary_number(s, "master_rtol", sim->master.rtol);

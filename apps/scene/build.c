@@ -300,12 +300,23 @@ static bough_scheme_options scheme_options(const bough_scene *scene) {
     static const char *const names[] = {[BOUGH_SCENE_FROZEN] = "frozen",
                                         [BOUGH_SCENE_GAUSS_SEIDEL] = "gauss-seidel",
                                         [BOUGH_SCENE_EXTRAPOLATED] = "extrapolated",
+                                        [BOUGH_SCENE_ITERATED] = "iterated",
                                         [BOUGH_SCENE_RAMP] = "ramp",
                                         [BOUGH_SCENE_MONOLITHIC] = "monolithic"};
+    static const bough_acceleration kinds[] = {
+        [BOUGH_SCENE_UNACCELERATED] = BOUGH_ACCELERATE_NONE,
+        [BOUGH_SCENE_RELAXATION] = BOUGH_ACCELERATE_RELAXATION,
+        [BOUGH_SCENE_AITKEN] = BOUGH_ACCELERATE_AITKEN,
+        [BOUGH_SCENE_IQN_ILS] = BOUGH_ACCELERATE_IQN_ILS};
+    const bough_scene_coupling *coupling = &scene->simulation.coupling;
     bough_scheme_options options = bough_scheme_options_default();
-    options.name = names[scene->simulation.coupling.scheme];
-    options.order = scene->simulation.coupling.order;
-    options.theta = scene->simulation.coupling.theta;
+    options.name = names[coupling->scheme];
+    options.order = coupling->order;
+    options.theta = coupling->theta;
+    options.accelerator = kinds[coupling->accelerator];
+    options.relaxation = coupling->relaxation;
+    options.tolerance = coupling->tolerance;
+    options.iterations = coupling->iterations;
     options.rtol = scene->simulation.master.rtol;
     return options;
 }

@@ -25,15 +25,27 @@ typedef enum bough_scene_scheme {
     BOUGH_SCENE_FROZEN,
     BOUGH_SCENE_GAUSS_SEIDEL,
     BOUGH_SCENE_EXTRAPOLATED,
+    BOUGH_SCENE_ITERATED,
     BOUGH_SCENE_RAMP,
     BOUGH_SCENE_MONOLITHIC,
 } bough_scene_scheme;
 
+typedef enum bough_scene_accelerator {
+    BOUGH_SCENE_UNACCELERATED,
+    BOUGH_SCENE_RELAXATION,
+    BOUGH_SCENE_AITKEN,
+    BOUGH_SCENE_IQN_ILS,
+} bough_scene_accelerator;
+
 typedef struct bough_scene_coupling {
     const bough_node *node;
     int scheme;   // bough_scene_scheme
-    int order;    // degree of the extrapolation, 0..2
+    int order;    // degree of the polynomial in extrapolated and iterated, 0..2
     double theta; // share of the new value in the ramp, 0.5..1; 0: chosen by the scheme ("auto")
+    int accelerator;   // bough_scene_accelerator, of iterated as all below
+    double relaxation; // factor of the correction [-]
+    double tolerance;  // of the interface, relative [-]
+    int iterations;    // most in a macro step
 } bough_scene_coupling;
 
 typedef enum bough_scene_master_kind { BOUGH_SCENE_IDA } bough_scene_master_kind;

@@ -166,15 +166,26 @@ static const bough_schema body_schema = {SCHEMA("a body", bough_scene_body, body
 // -- simulation ------------------------------------------------------------------------------------
 
 #define AT(member) .offset = offsetof(bough_scene_coupling, member)
-// Order and theta are allowed with any scheme, so that --set may change the scheme alone.
+// The schemes' own keys are allowed with any scheme, so that --set may change the scheme alone.
 static const bough_key coupling_keys[] = {
     {.name = "scheme", .kind = BOUGH_KEY_CHOICE, .fallback = "ramp", AT(scheme),
-     .choices = CHOICES("frozen", "gauss-seidel", "extrapolated", "ramp", "monolithic"),
+     .choices =
+         CHOICES("frozen", "gauss-seidel", "extrapolated", "iterated", "ramp", "monolithic"),
      .help = "how sub-systems exchange their values"},
     {.name = "order", .kind = BOUGH_KEY_INTEGER, .range = "[0, 2]", .fallback = "1",
-     AT(order), .help = "of extrapolated: degree of the polynomial"},
+     AT(order), .help = "of extrapolated and iterated: degree of the polynomial"},
     {.name = "theta", .kind = BOUGH_KEY_NUMBER, .word = "auto", .range = "[0.5, 1]",
      .fallback = "auto", AT(theta), .help = "of ramp: share of the new value"},
+    {.name = "accelerator", .kind = BOUGH_KEY_CHOICE, .fallback = "iqn-ils", AT(accelerator),
+     .choices = CHOICES("none", "relaxation", "aitken", "iqn-ils"),
+     .help = "of iterated: how the next end values are found"},
+    {.name = "relaxation", .kind = BOUGH_KEY_NUMBER, .range = "[0.001, 1]", .fallback = "0.5",
+     AT(relaxation), .help = "of iterated: factor of the correction; the first one of aitken and "
+                             "iqn-ils"},
+    {.name = "tolerance", .kind = BOUGH_KEY_NUMBER, .range = "[1e-12, 0.1]", .fallback = "1e-6",
+     AT(tolerance), .help = "of iterated: of the interface, relative to its largest values so far"},
+    {.name = "iterations", .kind = BOUGH_KEY_INTEGER, .range = "[1, 1000]", .fallback = "30",
+     AT(iterations), .help = "of iterated: most in a macro step"},
 };
 #undef AT
 static const bough_schema coupling_schema = {
