@@ -33,7 +33,7 @@ struct bough_rotor {
     double density;
     bool pitching_moment, skew;
     bough_induction_options induction;
-    bough_wind_def wind;
+    bough_wind wind;
     bough_tower tower;
     station_model *station; // (n_station)
     vertex_row *row;        // (n_vertex)
@@ -238,11 +238,11 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                            .pitching_moment = def->pitching_moment,
                            .skew = def->skew,
                            .induction = def->induction,
-                           .wind = def->wind,
                            .station = station,
                            .row = row};
     const bough_polar *polar = NULL;
     status = build_polars(arena, def, &polar);
+    if (bough_is_ok(&status)) status = bough_wind_build(arena, &def->wind, &rotor->wind);
     if (bough_is_ok(&status)) status = bough_tower_build(arena, &def->tower, &rotor->tower);
     if (!bough_is_ok(&status)) return status;
     for (int j = 0; j < def->n_station; j++) {

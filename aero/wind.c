@@ -1,11 +1,83 @@
 #include "aero/wind.h"
 
-bough_wind_def bough_wind_def_default(void) { return (bough_wind_def){.reference_height = 90}; }
+#include "core/base.h"
 
-bough_vec3 bough_wind_at(const bough_wind_def *wind, bough_vec3 position, double t) {
-    (void)t; // steady wind; time is part of the interface because every other kind needs it
-    if (wind->shear_exponent == 0) return bough_v3(wind->speed, 0, 0);
-    double height = position.z / wind->reference_height;
-    if (height <= 0) return bough_v3(0, 0, 0);
-    return bough_v3(wind->speed * pow(height, wind->shear_exponent), 0, 0);
+#include <string.h>
+
+bough_wind_def bough_wind_def_default(void) {
+    return (bough_wind_def){.exponent = 0.2, .roughness = 0.03, .reference_height = 90};
+}
+
+static bough_status check(const bough_wind_def *def) {
+    if (def->shear != BOUGH_WIND_UNIFORM && !(def->reference_height > 0)) {
+        return bough_fail(BOUGH_INVALID, "Wind: the reference height must be positive.");
+    }
+    if (def->shear == BOUGH_WIND_LOG &&
+        !(def->roughness > 0 && def->roughness < def->reference_height)) {
+        return bough_fail(BOUGH_INVALID, "Wind: the roughness length must be positive and less "
+                                         "than the reference height.");
+    }
+    for (int i = 1; i < def->n_time; i++) {
+        if (def->time[i] > def->time[i - 1]) continue;
+        return bough_fail(BOUGH_INVALID, "Wind table row %d: times must increase.", i + 1);
+    }
+    return bough_ok();
+}
+
+static const double *copied(bough_arena *arena, const double *from, int n) {
+    double *to = bough_arena_doubles(arena, (size_t)n);
+    if (to) memcpy(to, from, (size_t)n * sizeof *to);
+    return to;
+}
+
+bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind) {
+    bough_status status = check(def);
+    if (!bough_is_ok(&status)) return status;
+    *wind = (bough_wind){
+        .def = *def, .along_x = cos(def->direction), .along_y = sin(def->direction)};
+    if (def->shear == BOUGH_WIND_LOG) {
+        wind->shear_scale = 1 / log(def->reference_height / def->roughness);
+    }
+    if (def->n_time == 0) return bough_ok();
+    wind->def.time = copied(arena, def->time, def->n_time);
+    wind->def.speed_at_time = copied(arena, def->speed_at_time, def->n_time);
+    if (!wind->def.time || !wind->def.speed_at_time) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
+    }
+    return bough_ok();
+}
+
+static double speed_at(const bough_wind_def *def, double t) {
+    int n = def->n_time;
+    if (n == 0) return def->speed;
+    if (t <= def->time[0]) return def->speed_at_time[0];
+    if (t >= def->time[n - 1]) return def->speed_at_time[n - 1];
+    int low = 0, high = n - 1; // time[low] ≤ t < time[high]
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (t < def->time[middle]) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    double w = (t - def->time[low]) / (def->time[high] - def->time[low]);
+    return (1 - w) * def->speed_at_time[low] + w * def->speed_at_time[high];
+}
+
+static double share_at(const bough_wind *wind, double height) {
+    const bough_wind_def *def = &wind->def;
+    switch (def->shear) {
+    case BOUGH_WIND_UNIFORM: break;
+    case BOUGH_WIND_POWER:
+        return height <= 0 ? 0 : pow(height / def->reference_height, def->exponent);
+    case BOUGH_WIND_LOG:
+        return height <= def->roughness ? 0 : log(height / def->roughness) * wind->shear_scale;
+    }
+    return 1;
+}
+
+bough_vec3 bough_wind_at(const bough_wind *wind, bough_vec3 position, double t) {
+    double speed = speed_at(&wind->def, t) * share_at(wind, position.z);
+    return bough_v3(wind->along_x * speed, wind->along_y * speed, wind->def.vertical);
 }

@@ -1,20 +1,45 @@
-// Undisturbed wind: along global +x, constant in time, with an optional power-law shear.
+// Undisturbed wind: one direction everywhere, sheared over the height, its speed constant or a
+// table over time. The whole field changes speed at once: a gust does not travel.
 #ifndef BOUGH_AERO_WIND_H
 #define BOUGH_AERO_WIND_H
 
+#include "core/arena.h"
+#include "core/status.h"
 #include "core/vec3.h"
 
+// How the horizontal speed grows with the height above z = 0.
+typedef enum bough_wind_shear {
+    BOUGH_WIND_UNIFORM,
+    BOUGH_WIND_POWER, // (z/z_ref)^exponent
+    BOUGH_WIND_LOG,   // ln(z/z_0)/ln(z_ref/z_0), nothing below the roughness length z_0
+} bough_wind_shear;
+
 typedef struct bough_wind_def {
-    double speed;            // at the reference height [m/s]
-    double shear_exponent;   // 0: uniform [-]
+    double speed;     // horizontal, at the reference height [m/s]
+    double vertical;  // upwards, everywhere and always [m/s]
+    double direction; // where it blows to, from x about z [rad]
+    bough_wind_shear shear;
+    double exponent;         // of the power law [-]
+    double roughness;        // length, of the logarithmic law [m]
     double reference_height; // above z = 0; used only with shear [m]
+    // In place of the speed, linear between and constant outside; n_time = 0 for none.
+    int n_time;
+    const double *time;          // (n_time) increasing [s]
+    const double *speed_at_time; // (n_time) at the reference height [m/s]
 } bough_wind_def;
 
-// 0 m/s, uniform, reference height 90 m.
+// 0 m/s along x, uniform, reference height 90 m; 0.2 and 0.03 m if sheared.
 bough_wind_def bough_wind_def_default(void);
 
-// The wind at a point in global axes (z up) and a time [s]; nothing at or below the ground when
-// sheared.
-bough_vec3 bough_wind_at(const bough_wind_def *wind, bough_vec3 position, double t);
+typedef struct bough_wind {
+    bough_wind_def def; // its tables are the model's own
+    double along_x, along_y;
+    double shear_scale; // of the logarithmic law: 1/ln(z_ref/z_0)
+} bough_wind;
+
+bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind);
+
+// The wind at a point in global axes (z up) and a time [s].
+bough_vec3 bough_wind_at(const bough_wind *wind, bough_vec3 position, double t);
 
 #endif

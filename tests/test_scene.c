@@ -160,6 +160,9 @@ static void aerodynamics_are_read(void **state) {
     assert_true(a->induction.drag);
     assert_int_equal(a->tower.n_height, 2);
     check_near(a->tower.diameter[1], 1.2, 0, 0);
+    assert_int_equal(a->wind.kind, BOUGH_SCENE_WIND_UNIFORM);
+    assert_null(a->wind.table.node);
+    check_near(a->wind.direction, 0, 0, 0);
     assert_int_equal(a->tower.influence, BOUGH_SCENE_POTENTIAL);
     assert_int_equal(a->tower.shadow, BOUGH_SCENE_SHADOW_NONE);
     assert_int_equal(a->tower.n_drag, 1);
@@ -739,6 +742,31 @@ static void aerodynamics_are_consistent(void **state) {
                         "it, got 0 m\n");
 }
 
+#define WIND(keys)                                                                                 \
+    ROTOR "turbine: {rotor: hub, blades: [b1]}\n"                                                  \
+          "aero:\n  rate: 50 Hz\n  blade: aero.yaml\n  polars: polars.yaml\n"                      \
+          "  hub_radius: 1\n"                                                                      \
+          "  wind: {" keys "}\n"
+
+static void wind_is_a_speed_or_a_table(void **state) {
+    (void)state;
+    write_file("aero.yaml", BLADE);
+    write_file("polars.yaml", POLARS);
+    accepts(WIND("table: {times: [0, 10 s], speeds: [8, 9]}, direction: 5 deg, vertical: -1"));
+    accepts(WIND("kind: power, speed: 8, exponent: 0.14, reference_height: 90"));
+    refuses(WIND("direction: 0"), "s.yaml:13:9: error: aero.wind: required key 'speed' is missing "
+                                  "(without a table)\n");
+    refuses(WIND("speed: 8, table: {times: [0, 1], speeds: [8, 9]}"),
+            "s.yaml:13:17: error: aero.wind.speed: only used without a table\n");
+    refuses(WIND("table: {times: [0, 1, 1], speeds: [8, 9]}"),
+            "s.yaml:13:32: error: aero.wind.table.times[2]: must be more than the 1 s before it, "
+            "got 1 s\n"
+            "s.yaml:13:44: error: aero.wind.table.speeds: has 2 values, but times has 3\n");
+    refuses(WIND("speed: 8, kind: log, reference_height: 1, roughness: 2"),
+            "s.yaml:13:49: error: aero.wind.reference_height: must be more than the roughness, "
+            "2 m, got 1 m\n");
+}
+
 static void polars_cover_the_circle(void **state) {
     (void)state;
     write_file("aero.yaml", BLADE);
@@ -940,6 +968,7 @@ int main(void) {
         cmocka_unit_test(modes_name_their_axis),
         cmocka_unit_test(turbine_names_are_checked),
         cmocka_unit_test(aerodynamics_are_consistent),
+        cmocka_unit_test(wind_is_a_speed_or_a_table),
         cmocka_unit_test(polars_cover_the_circle),
         cmocka_unit_test(values_can_be_replaced_and_added),
         cmocka_unit_test(missing_mappings_are_made),

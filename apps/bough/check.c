@@ -135,6 +135,24 @@ static void print_coupling(const bough_simulation *s) {
 
 // -- aerodynamics ---------------------------------------------------------------------------------
 
+static void print_wind(const bough_scene_wind *wind) {
+    static const char *const shears[] = {
+        [BOUGH_SCENE_WIND_UNIFORM] = "uniform",
+        [BOUGH_SCENE_WIND_POWER] = "power law",
+        [BOUGH_SCENE_WIND_LOG] = "logarithmic law",
+    };
+    const bough_scene_wind_table *table = &wind->table;
+    printf("wind: %s, ", shears[wind->kind]);
+    if (table->node) {
+        printf("%d speeds from %.6g s to %.6g s", table->n_time, table->time[0],
+               table->time[table->n_time - 1]);
+    } else {
+        printf("%.6g m/s", wind->speed);
+    }
+    printf(", to %.6g deg from x, %.6g m/s upwards\n", wind->direction * (180 / BOUGH_PI),
+           wind->vertical);
+}
+
 static const char *tower_words(const bough_scene_tower *tower) {
     if (!tower->node) return "off";
     return tower->influence == BOUGH_SCENE_BAK ? "on (Bak)" : "on";
@@ -153,6 +171,7 @@ static void print_aero(const bough_simulation *s) {
            every, every == 1 ? "" : "s", aero->hold == BOUGH_SCENE_LINEAR ? "linear" : "constant",
            tower_words(&aero->tower),
            aero->tower.shadow == BOUGH_SCENE_POWLES ? ", Powles shadow" : "");
+    print_wind(&aero->wind);
 }
 
 // -- cost -----------------------------------------------------------------------------------------

@@ -118,6 +118,26 @@ static bough_tower_def tower_def(const bough_scene_tower *tower, const double *d
     };
 }
 
+static bough_wind_def wind_def(const bough_scene_wind *wind) {
+    static const bough_wind_shear shears[] = {
+        [BOUGH_SCENE_WIND_UNIFORM] = BOUGH_WIND_UNIFORM,
+        [BOUGH_SCENE_WIND_POWER] = BOUGH_WIND_POWER,
+        [BOUGH_SCENE_WIND_LOG] = BOUGH_WIND_LOG,
+    };
+    return (bough_wind_def){
+        .speed = wind->speed,
+        .vertical = wind->vertical,
+        .direction = wind->direction,
+        .shear = shears[wind->kind],
+        .exponent = wind->exponent,
+        .roughness = wind->roughness,
+        .reference_height = wind->reference_height,
+        .n_time = wind->table.n_time,
+        .time = wind->table.time,
+        .speed_at_time = wind->table.speed,
+    };
+}
+
 static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     const bough_scene_aero *aero = &l->simulation->scene->aero;
     const bough_rod_def *mesh = &l->blade[0].beam->def;
@@ -130,7 +150,7 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     def.induction.hub_loss = aero->induction.hub_loss;
     def.induction.tangential = aero->induction.tangential;
     def.induction.axial_drag = def.induction.tangential_drag = aero->induction.drag;
-    def.wind.speed = aero->wind.speed;
+    def.wind = wind_def(&aero->wind);
     if (aero->tower.node != NULL) def.tower = tower_def(&aero->tower, t->drag);
     def.n_polar = aero->polars.n_polar;
     def.polar = t->polar;

@@ -245,14 +245,35 @@ typedef struct bough_scene_polars {
 
 typedef enum bough_scene_hold { BOUGH_SCENE_LINEAR, BOUGH_SCENE_CONSTANT } bough_scene_hold;
 typedef enum bough_scene_skew { BOUGH_SCENE_SKEW_NONE, BOUGH_SCENE_PITT_PETERS } bough_scene_skew;
-typedef enum bough_scene_wind_kind { BOUGH_SCENE_WIND_UNIFORM } bough_scene_wind_kind;
-typedef enum bough_scene_influence { BOUGH_SCENE_POTENTIAL, BOUGH_SCENE_BAK } bough_scene_influence;
+typedef enum bough_scene_wind_kind {
+    BOUGH_SCENE_WIND_UNIFORM,
+    BOUGH_SCENE_WIND_POWER,
+    BOUGH_SCENE_WIND_LOG,
+} bough_scene_wind_kind;
+typedef enum bough_scene_influence {
+    BOUGH_SCENE_POTENTIAL,
+    BOUGH_SCENE_BAK,
+} bough_scene_influence;
 typedef enum bough_scene_shadow { BOUGH_SCENE_SHADOW_NONE, BOUGH_SCENE_POWLES } bough_scene_shadow;
+
+// Linear between, constant before and after.
+typedef struct bough_scene_wind_table {
+    const bough_node *node; // NULL: the speed is constant
+    int n_time, n_speed;    // equal
+    double *time;           // (n_time) strictly increasing [s]
+    double *speed;          // (n_time) [m/s]
+} bough_scene_wind_table;
 
 typedef struct bough_scene_wind {
     const bough_node *node;
-    int kind;     // bough_scene_wind_kind
-    double speed; // along ground x [m/s]
+    int kind;                     // bough_scene_wind_kind
+    double speed;                 // horizontal, at the reference height [m/s]
+    double exponent;              // of the power law [-]
+    double roughness;             // of the logarithmic law [m]
+    double reference_height;      // [m]
+    double direction;             // where it blows to, from ground x about z [rad]
+    double vertical;              // upwards [m/s]
+    bough_scene_wind_table table; // in place of the speed
 } bough_scene_wind;
 
 typedef struct bough_scene_induction {

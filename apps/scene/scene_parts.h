@@ -24,6 +24,8 @@ void bough_scene_check_rod(bough_schema_reader *r, void *item);
 void bough_scene_check_aero_blade(bough_schema_reader *r, void *item);
 void bough_scene_check_polar(bough_schema_reader *r, void *item);
 void bough_scene_check_polars(bough_schema_reader *r, void *item);
+void bough_scene_check_wind_table(bough_schema_reader *r, void *item);
+void bough_scene_check_wind(bough_schema_reader *r, void *item);
 void bough_scene_check_tower(bough_schema_reader *r, void *item);
 void bough_scene_check_joint(bough_schema_reader *r, void *item);
 void bough_scene_check_load(bough_schema_reader *r, void *item);

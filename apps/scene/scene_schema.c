@@ -355,15 +355,46 @@ static const bough_key polars_keys[] = {
 static const bough_schema polars_schema = {
     SCHEMA("a set of polars", bough_scene_polars, polars_keys), .check = bough_scene_check_polars};
 
-#define AT(member) .offset = offsetof(bough_scene_wind, member)
-static const bough_key wind_keys[] = {
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("uniform"), .fallback = "uniform",
-     AT(kind), .help = "how the wind varies in space"},
-    {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .range = ">= 0",
-     .required = true, AT(speed), .help = "along ground x"},
+#define AT(member) .offset = offsetof(bough_scene_wind_table, member)
+static const bough_key wind_table_keys[] = {
+    {.name = "times", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_TIME, .count = 2,
+     .required = true, AT(time), .count_offset = offsetof(bough_scene_wind_table, n_time),
+     .help = "strictly increasing"},
+    {.name = "speeds", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_SPEED, .range = ">= 0",
+     .count = 2, .required = true, AT(speed),
+     .count_offset = offsetof(bough_scene_wind_table, n_speed),
+     .help = "at each time, linear between, constant before and after"},
 };
 #undef AT
-static const bough_schema wind_schema = {SCHEMA("the wind", bough_scene_wind, wind_keys)};
+static const bough_schema wind_table_schema = {
+    SCHEMA("a table of wind speeds", bough_scene_wind_table, wind_table_keys),
+    .check = bough_scene_check_wind_table};
+
+#define AT(member) .offset = offsetof(bough_scene_wind, member)
+static const bough_key wind_keys[] = {
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("uniform", "power", "log"),
+     .fallback = "uniform", AT(kind),
+     .help = "how the speed grows with the height: not, by a power or a logarithmic law"},
+    {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .range = ">= 0",
+     AT(speed), .help = "horizontal, at the reference height; required without a table"},
+    {.name = "table", .kind = BOUGH_KEY_MAPPING, .of = &wind_table_schema, AT(table),
+     .help = "in place of speed: the speed over time, for gusts and ramps"},
+    {.name = "exponent", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.2",
+     .when_key = "kind", .when = "power", AT(exponent), .help = "speed grows with height^exponent"},
+    {.name = "roughness", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = "> 0",
+     .fallback = "0.03", .when_key = "kind", .when = "log", AT(roughness),
+     .help = "length z0: speed grows with ln(height/z0)"},
+    {.name = "reference_height", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH,
+     .range = "> 0", .required = true, .when_key = "kind", .when = "power|log",
+     AT(reference_height), .help = "above ground z = 0"},
+    {.name = "direction", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
+     AT(direction), .help = "where the wind blows to, from ground x about z"},
+    {.name = "vertical", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .fallback = "0",
+     AT(vertical), .help = "upwards, at every height and time"},
+};
+#undef AT
+static const bough_schema wind_schema = {SCHEMA("the wind", bough_scene_wind, wind_keys),
+                                         .check = bough_scene_check_wind};
 
 #define SWITCH(member, what)                                                                       \
     {.name = #member, .kind = BOUGH_KEY_BOOLEAN, .fallback = "true",                               \

@@ -287,9 +287,47 @@ void bough_scene_check_polars(bough_schema_reader *r, void *item) {
     }
 }
 
+// Numbers that must increase, in the list `key` of a mapping; `unit` is for the message.
+static void check_increasing(bough_schema_reader *r, const bough_node *node, const char *key,
+                             const double *value, const char *unit) {
+    const bough_node *list = bough_node_find(node, key);
+    for (int i = 1; i < list->n; i++) {
+        if (value[i] > value[i - 1]) continue;
+        char path[32];
+        snprintf(path, sizeof path, "%s[%d]", key, i);
+        bough_schema_error(r, list->value[i], path,
+                           "must be more than the %g %s before it, got %g %s", value[i - 1], unit,
+                           value[i], unit);
+    }
+}
+
+void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
+    const bough_scene_wind_table *t = item;
+    if (t->n_time != t->n_speed) {
+        bough_schema_error(r, bough_node_find(t->node, "speeds"), "speeds",
+                           "has %d values, but times has %d", t->n_speed, t->n_time);
+    }
+    check_increasing(r, t->node, "times", t->time, "s");
+}
+
+void bough_scene_check_wind(bough_schema_reader *r, void *item) {
+    const bough_scene_wind *w = item;
+    const bough_node *speed = bough_node_find(w->node, "speed");
+    if (speed != NULL && w->table.node != NULL) {
+        bough_schema_error(r, speed, "speed", "only used without a table");
+    }
+    if (speed == NULL && w->table.node == NULL) {
+        bough_schema_error(r, w->node, "", "required key 'speed' is missing (without a table)");
+    }
+    if (w->kind == BOUGH_SCENE_WIND_LOG && w->roughness >= w->reference_height) {
+        bough_schema_error(r, bough_node_find(w->node, "reference_height"), "reference_height",
+                           "must be more than the roughness, %g m, got %g m", w->roughness,
+                           w->reference_height);
+    }
+}
+
 void bough_scene_check_tower(bough_schema_reader *r, void *item) {
     const bough_scene_tower *t = item;
-    const bough_node *height = bough_node_find(t->node, "height");
     const bough_node *diameter = bough_node_find(t->node, "diameter");
     if (t->n_height != t->n_diameter) {
         bough_schema_error(r, diameter, "diameter", "has %d values, but height has %d",
@@ -300,14 +338,7 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
                            "has %d values, but height has %d; give one or as many", t->n_drag,
                            t->n_height);
     }
-    for (int i = 1; i < t->n_height; i++) {
-        if (t->height[i] > t->height[i - 1]) continue;
-        char key[32];
-        snprintf(key, sizeof key, "height[%d]", i);
-        bough_schema_error(r, height->value[i], key,
-                           "must be more than the %g m before it, got %g m", t->height[i - 1],
-                           t->height[i]);
-    }
+    check_increasing(r, t->node, "height", t->height, "m");
 }
 
 // -- rods and ramps
