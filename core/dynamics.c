@@ -18,6 +18,20 @@ static bough_twist from_parent(const bough_tree_data *d, const bough_link *links
     return bough_twist_to_child(&d->relative[i], parent < 0 ? ground : quantity[parent]);
 }
 
+// They need coordinates, which only the kinematics see.
+static void joint_springs(const bough_tree *tree, const double *q, const double *v,
+                          bough_tree_data *d) {
+    d->elastic = 0;
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        if (link->n_speeds != 1) continue; // their passive force stays zero
+        double energy;
+        d->passive[link->first_speed] = bough_joint_spring_force(
+            &link->spring, q[link->first_coordinate], v[link->first_speed], &energy);
+        d->elastic += energy;
+    }
+}
+
 void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tree_data *d) {
     const double *q = state, *v = state + tree->n_q;
     for (int i = 0; i < tree->n_links; i++) {
@@ -31,6 +45,7 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
             bough_twist_add(from_parent(d, tree->links, i, d->twist, no_twist), d->joint_twist[i]);
         d->gravity[i] = bough_mat3_tmul(d->pose[i].rotation, tree->gravity);
     }
+    joint_springs(tree, q, v, d);
 }
 
 // -- loads -----------------------------------------------------------------------------------
@@ -65,9 +80,9 @@ static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t,
     }
 }
 
-// τ of the joint loads, into data->force
+// τ of the joints' springs and loads, into data->force
 static void joint_loads(const bough_tree *tree, bough_tree_data *d, double t) {
-    memset(d->force, 0, (size_t)tree->n_v * sizeof(double));
+    memcpy(d->force, d->passive, (size_t)tree->n_v * sizeof(double));
     for (int k = 0; k < tree->n_loads; k++) {
         const bough_joint_load_def *load = &tree->loads[k];
         double span = load->end - load->start;

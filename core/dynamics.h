@@ -10,7 +10,7 @@
 #include "core/tree.h"
 
 // residual (n_v) = M(q) v̇ + h(q, v) − τ(t, q, u) with v̇ = acceleration (n_v), u the port wrenches
-// (6 × n_ports) or NULL for none: joint loads, port and external wrenches are within τ and h.
+// (6 × n_ports) or NULL for none: springs, joint loads, port and external wrenches are within τ and h.
 void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
                                  const double *input, const double *acceleration, double *residual);
 

@@ -189,3 +189,26 @@ double bough_joint_drift(const bough_joint *joint, const double *q) {
     bough_quaternion p = load(q + row);
     return fabs(sqrt(p.w * p.w + p.x * p.x + p.y * p.y + p.z * p.z) - 1);
 }
+
+// A stop pressed by a depth p: its stiffness grows from 0 to k over w, so that the force's derivative
+// is continuous and an integrator of variable order passes it. Force and energy.
+static double stop_force(double k, double w, double p, double *energy) {
+    if (p <= 0) return 0;
+    if (p < w) {
+        *energy += k * p * p * p / (6 * w);
+        return 0.5 * k * p * p / w;
+    }
+    *energy += 0.5 * k * (p * p - w * p + w * w / 3);
+    return k * (p - 0.5 * w);
+}
+
+double bough_joint_spring_force(const bough_joint_spring *spring, double q, double v,
+                                double *energy) {
+    double stretch = q - spring->rest, k = spring->stop_stiffness;
+    double force = -spring->stiffness * stretch - spring->damping * v;
+    *energy = 0.5 * spring->stiffness * stretch * stretch;
+    if (k == 0) return force;
+    double width = 0.01 * (spring->high - spring->low);
+    force += stop_force(k, width, spring->low - q, energy);
+    return force - stop_force(k, width, q - spring->high, energy);
+}

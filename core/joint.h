@@ -41,6 +41,20 @@ typedef struct bough_joint {
     bough_vec3 second;         // unit vector normal to it in joint axes; planar
 } bough_joint;
 
+// What acts along the axis of a revolute or prismatic joint by itself: a linear spring and damper,
+// and stops at both ends of its way, elastic and without friction.
+typedef struct bough_joint_spring {
+    double stiffness;      // [N m/rad] or [N/m]
+    double damping;        // [N m s/rad] or [N s/m]
+    double rest;           // coordinate without force [rad, m]
+    double low, high;      // where the stops begin [rad, m]
+    double stop_stiffness; // [N m/rad] or [N/m]; 0: no stops
+} bough_joint_spring;
+
+// The generalised force at coordinate q and speed v, and the energy stored [J].
+double bough_joint_spring_force(const bough_joint_spring *spring, double q, double v,
+                                double *energy);
+
 // The kind's name in scenes ("revolute"), its numbers of coordinates and of speeds, and of the
 // axes that define it: the axis, the second axis.
 const char *bough_joint_name(bough_joint_kind kind);

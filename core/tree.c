@@ -70,6 +70,26 @@ static bough_status check_joint(const bough_body_def *b) {
     return bough_ok();
 }
 
+static bough_status check_spring(const bough_body_def *b) {
+    const bough_joint_spring *s = &b->spring;
+    bool used = s->stiffness != 0 || s->damping != 0 || s->stop_stiffness != 0;
+    if (used && bough_joint_n_speeds(b->kind) != 1) {
+        return bough_fail(BOUGH_INVALID,
+                          "body '%s': a spring acts on revolute and prismatic joints, not on a %s "
+                          "one",
+                          b->name, bough_joint_name(b->kind));
+    }
+    bool good = isfinite(s->stiffness) && isfinite(s->damping) && isfinite(s->rest) &&
+                s->stiffness >= 0 && s->damping >= 0 && s->stop_stiffness >= 0;
+    if (!good || (s->stop_stiffness > 0 && !(isfinite(s->high - s->low) && s->low < s->high))) {
+        return bough_fail(BOUGH_INVALID,
+                          "body '%s': its joint's stiffness and damping must not be negative, and "
+                          "its stops in order",
+                          b->name);
+    }
+    return bough_ok();
+}
+
 static bough_status check_body(const bough_tree_def *def, int body) {
     const bough_body_def *b = &def->bodies[body];
     if (b->parent < BOUGH_GROUND || b->parent >= def->n_bodies) {
@@ -84,6 +104,7 @@ static bough_status check_body(const bough_tree_def *def, int body) {
                           b->name);
     }
     bough_status status = check_joint(b);
+    if (bough_is_ok(&status)) status = check_spring(b);
     return bough_is_ok(&status) ? check_placement("joint of body", b->name, b->joint) : status;
 }
 
@@ -176,7 +197,11 @@ static int add_link(bough_tree *tree, int body, int parent, bough_joint joint) {
 static int add_links(bough_tree *tree, const bough_body_def *b, int body, bough_frame parent) {
     bough_joint joint = {b->kind, bough_transform_compose(parent.placement, b->joint),
                          direction(b->axis), direction(b->second_axis)};
-    if (b->kind != BOUGH_JOINT_UNIVERSAL) return add_link(tree, body, parent.link, joint);
+    if (b->kind != BOUGH_JOINT_UNIVERSAL) {
+        int only = add_link(tree, body, parent.link, joint);
+        tree->links[only].spring = b->spring;
+        return only;
+    }
     joint.kind = BOUGH_JOINT_REVOLUTE;
     int cross = add_link(tree, body, parent.link, joint);
     joint.placement = bough_transform_identity();
@@ -319,6 +344,7 @@ bough_status bough_tree_data_create(bough_arena *arena, const bough_tree *tree,
         d->joint_gain = bough_arena_doubles(arena, 36 * n);
         d->joint_factor = bough_arena_doubles(arena, 36 * n);
         d->force = bough_arena_doubles(arena, (size_t)tree->n_v);
+        d->passive = bough_arena_doubles(arena, (size_t)tree->n_v);
     }
     *out = d;
     if (!bough_arena_exhausted(arena)) return bough_ok();
@@ -390,6 +416,7 @@ bough_tree_sums bough_tree_sum(const bough_tree *tree, const bough_tree_data *da
         s.angular_momentum = bough_add(s.angular_momentum, ground.moment);
         first = bough_add(first, bough_inertia_to_parent(&data->pose[i], *inertia).first);
     }
+    s.elastic = data->elastic;
     s.potential = -bough_dot(tree->gravity, first);
     if (s.mass > 0) s.mass_centre = bough_scale(1 / s.mass, first);
     return s;

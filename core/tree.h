@@ -22,6 +22,7 @@ typedef struct bough_body_def {
     bough_transform joint; // joint frame in the parent's body frame
     bough_vec3 axis;       // in joint axes, scaled to length 1; of those that have one
     bough_vec3 second_axis; // normal to it, scaled to length 1; universal and planar
+    bough_joint_spring spring;  // of a revolute or prismatic joint; zero: none
     double coordinates[BOUGH_JOINT_COORDINATES]; // initial, see joint.h [rad, m, –]
     double speeds[BOUGH_JOINT_SPEEDS];           // initial, see joint.h [rad/s, m/s]
     double mass;                                 // [kg]
@@ -74,6 +75,7 @@ typedef struct bough_link {
     int body;                            // the def's body whose joint moves it
     int part;                            // 0; of a universal joint 0, then 1: it is two links,
                                          // the first without a body
+    bough_joint_spring spring;           // zero: none
     bough_joint joint;                   // placed in the parent link's frame
     int first_coordinate, n_coordinates; // its rows of q
     int first_speed, n_speeds;           // its rows of v
@@ -132,6 +134,8 @@ typedef struct bough_tree_data {
     bough_twist *joint_twist;  // S v
     bough_twist *twist;        // of the link
     bough_vec3 *gravity;       // [m/s²]
+    double *passive;           // generalised forces of the joints' springs (n_v)
+    double elastic;            // energy in them [J]
     // computed by the recursions of dynamics.h
     bough_twist *acceleration; // rate of the twist's components, or a tangent
     bough_vec3 *gravity_rate;  // tangent of gravity
@@ -163,6 +167,7 @@ bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_f
 typedef struct bough_tree_sums {
     double mass;                 // [kg]
     double kinetic, potential;   // [J]
+    double elastic;              // of the springs [J]
     bough_vec3 linear_momentum;  // [kg m/s]
     bough_vec3 angular_momentum; // [kg m²/s]
     bough_vec3 mass_centre;      // in the ground [m]

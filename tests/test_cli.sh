@@ -151,6 +151,8 @@ checks() {
     has ../stdout '^body piston: rigid; cylindrical along and about z on fork: 2 degrees'
     has ../stdout '^body puck: rigid; planar normal to z on ground: 3 degrees of freedom'
     has ../stdout '^joints: 3 moving, 0 fixed$'
+    expect 0 check "$scenes/springs.yaml"
+    has ../stdout '^body slider: .* 1 degree of freedom, spring 50 N/m, damper 0.5 N s/m, stops 3000 N/m'
     expect 0 check "$bar" --set 'simulation.coupling={scheme: extrapolated, order: 2}' \
         --set 'simulation.duration=10 ms' --set 'simulation.macro_step=2.5 ms'
     has ../stdout '^coupling: extrapolated, order 2 '

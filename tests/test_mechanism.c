@@ -64,9 +64,25 @@ static void joints_of_several_axes_start_and_are_recorded(void **context) {
     bough_arena_destroy(f.arena);
 }
 
+// The balance from rest at 0 towards 40°, and the slider, which its stop keeps from going further.
+static void sprung_joints_move_by_themselves(void **context) {
+    (void)context;
+    fixture f = start("tests/scenes/springs.yaml", no_sets);
+    double delta = 0.4, omega = sqrt(16 - delta * delta), furthest = 0, t = 1.5;
+    for (int k = 0; k < 150; k++) {
+        run(&f, 1);
+        furthest = fmax(furthest, channel(&f, "sliderPos"));
+    }
+    double turn = cos(omega * t) + delta / omega * sin(omega * t);
+    check_near(channel(&f, "balancePos"), 40 * (1 - exp(-delta * t) * turn), 1e-6, 0);
+    assert_true(furthest > 0.155 && furthest < 0.17); // 0.195 without the stop
+    bough_arena_destroy(f.arena);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(joints_of_several_axes_start_and_are_recorded),
+        cmocka_unit_test(sprung_joints_move_by_themselves),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -285,6 +285,22 @@ static void joints_of_several_axes_are_read(void **state) {
             "s.yaml:6:68: error: bodies[0].joint.second_axis: must not be the first axis\n");
 }
 
+static void stops_need_a_stiffness_and_an_order(void **state) {
+    (void)state;
+#define HINGE(more)                                                                                \
+    SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    inertia: [1, 1, 1]\n    joint:\n"     \
+               "      {kind: revolute, parent: ground, axis: x, " more "}\n"
+    accepts(HINGE("rest: 5 deg, stiffness: 3, stop: [-10 deg, 10 deg], stop_stiffness: 4"));
+    refuses(HINGE("stop: [0, 1]"), "s.yaml:7:55: error: bodies[0].joint.stop: 'stop' and "
+                                   "'stop_stiffness' go together\n");
+    refuses(HINGE("stop: [1, 1], stop_stiffness: 4"),
+            "s.yaml:7:55: error: bodies[0].joint.stop: the second must be greater than the "
+            "first\n");
+    refuses(HINGE("stiffness: -1"),
+            "s.yaml:7:60: error: bodies[0].joint.stiffness: must be >= 0, got '-1'\n");
+#undef HINGE
+}
+
 static void rods_may_be_curved(void **state) {
     (void)state;
     write_file("blade.yaml", "damping: [1 ms, 0, 0, 0, 0, 0]\n"
@@ -948,6 +964,7 @@ int main(void) {
         cmocka_unit_test(parents_come_first_in_the_order),
         cmocka_unit_test(free_and_sliding_joints_start_moving),
         cmocka_unit_test(joints_of_several_axes_are_read),
+        cmocka_unit_test(stops_need_a_stiffness_and_an_order),
         cmocka_unit_test(rods_may_be_curved),
         cmocka_unit_test(all_errors_are_shown_in_order),
         cmocka_unit_test(missing_parts_are_named),

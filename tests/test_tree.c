@@ -96,6 +96,9 @@ static fixture everything(double rtol) {
     bough_body_def bodies[10];
     for (int i = 0; i < 10; i++)
         bodies[i] = random_body(&seed, names[i], parents[i], kinds[i]);
+    bodies[5].spring = (bough_joint_spring){.stiffness = 7, .damping = 0.5, .rest = 0.3};
+    bodies[3].spring = (bough_joint_spring){
+        .stiffness = 3, .damping = 1, .low = -2, .high = -1, .stop_stiffness = 20};
     bough_marker_def markers[] = {
         {"on b", 1, {next3(&seed), turned(0.3, -0.4, 1)}},
         {"on e", 4, {next3(&seed), turned(-1, 0.2, 0.5)}},
@@ -241,6 +244,52 @@ static void ramped_joint_load_spins_up(void **state) {
     bough_arena_destroy(f.arena);
 }
 
+// J θ̈ + c θ̇ + k (θ − θ₀) = 0 from rest at θ = 0: θ₀ (1 − e^(−δt) (cos ωt + δ/ω sin ωt)).
+static void sprung_joint_oscillates_and_decays(void **state) {
+    (void)state;
+    bough_body_def b = bough_body_def_default();
+    b.name = "balance", b.kind = BOUGH_JOINT_REVOLUTE, b.inertia = diagonal(1, 1, 0.5);
+    b.spring = (bough_joint_spring){.stiffness = 8, .damping = 0.4, .rest = 0.7};
+    bough_tree_def def = {.gravity = down_z, .n_bodies = 1, .bodies = &b};
+    fixture f = build(&def, 1e-10);
+    double delta = 0.4 / (2 * 0.5), omega = sqrt(8 / 0.5 - delta * delta);
+    double period = 2 * BOUGH_PI / omega;
+    for (int k = 1; k <= 8; k++) {
+        double t = 0.25 * k * period, decay = exp(-delta * t);
+        advance(&f, t, k == 1);
+        double expected =
+            0.7 * (1 - decay * (cos(omega * t) + delta / omega * sin(omega * t)));
+        check_near(f.s.state[0], expected, 0, 1e-7);
+        check_near(f.s.state[1], 0.7 * decay * 16 / omega * sin(omega * t), 0, 1e-6);
+    }
+    check_near(f.s.state[0], 0.7 * (1 - exp(-2 * delta * period)), 0, 1e-7);
+    bough_arena_destroy(f.arena);
+}
+
+// A slider flies between its stops, gives its energy to the one and comes back as fast.
+static void stops_throw_back_without_loss(void **state) {
+    (void)state;
+    bough_body_def b = bough_body_def_default();
+    b.name = "slider", b.kind = BOUGH_JOINT_PRISMATIC, b.mass = 2;
+    b.speeds[0] = 3;
+    b.spring = (bough_joint_spring){.low = -0.5, .high = 0.5, .stop_stiffness = 5000};
+    bough_tree_def def = {.n_bodies = 1, .bodies = &b};
+    fixture f = build(&def, 1e-10);
+    // k/2 (p² − w p + w²/3) = m v²/2 with w = 0.01
+    double w = 0.01, e = 0.5 * 2 * 9, k = 5000, deepest = 0;
+    double p = 0.5 * w + sqrt(0.25 * w * w - w * w / 3 + 2 * e / k);
+    for (int i = 1; i <= 1200; i++) {
+        advance(&f, 0.001 * i, i == 1);
+        deepest = fmax(deepest, fabs(f.s.state[0]) - 0.5);
+        bough_tree_kinematics(f.tree, f.s.state, f.data);
+        bough_tree_sums sum = bough_tree_sum(f.tree, f.data);
+        check_near(sum.kinetic + sum.elastic, e, 1e-6, 0);
+        if (fabs(f.s.state[0]) < 0.5) check_near(fabs(f.s.state[1]), 3, 1e-6, 0);
+    }
+    check_near(deepest, p, 1e-3, 0);
+    bough_arena_destroy(f.arena);
+}
+
 // A body thrown along a cylindrical joint and spun about it: h = v t − g cos(α) t²/2, φ = ω t, with
 // the axis z leaned by α about x.
 static void cylindrical_joint_slides_and_spins(void **state) {
@@ -360,6 +409,8 @@ static void energy_follows_the_power_of_the_loads(void **state) {
     fixture f = everything(1e-11);
     f.tree->external[2].active = false;
     f.tree->n_loads = 0;
+    for (int i = 0; i < f.tree->n_links; i++)
+        f.tree->links[i].spring.damping = 0;
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     bough_tree_sums before = bough_tree_sum(f.tree, f.data);
     for (int k = 1; k <= 10; k++)
@@ -367,7 +418,9 @@ static void energy_follows_the_power_of_the_loads(void **state) {
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     bough_tree_sums after = bough_tree_sum(f.tree, f.data);
     assert_true(fabs(after.kinetic - before.kinetic) > 1);
-    check_near(after.kinetic + after.potential, before.kinetic + before.potential, 1e-7, 1e-7);
+    assert_true(after.elastic > 0 && after.elastic != before.elastic);
+    check_near(after.kinetic + after.potential + after.elastic,
+               before.kinetic + before.potential + before.elastic, 1e-7, 1e-7);
     bough_arena_destroy(f.arena);
 }
 
@@ -595,6 +648,11 @@ static void bad_defs_are_named(void **state) {
     b[0].axis = bough_v3(1, 1, 0);
     assert_int_equal(create_code(b, 2, "normal"), BOUGH_INVALID);
     b[0] = good[0];
+    b[0].spring = (bough_joint_spring){.low = 1, .high = 1, .stop_stiffness = 1};
+    assert_int_equal(create_code(b, 2, "stops"), BOUGH_INVALID);
+    b[0] = good[0], b[1].spring.stiffness = 1;
+    assert_int_equal(create_code(b, 2, "spherical"), BOUGH_INVALID);
+    b[1] = good[1];
     // a point mass on its own axis, and a free point mass away from its origin
     b[1] = good[1], b[1].inertia = diagonal(0, 0, 0);
     b[1].kind = BOUGH_JOINT_REVOLUTE, b[1].mass_centre = b[1].axis;
@@ -723,6 +781,8 @@ int main(void) {
         cmocka_unit_test(axisymmetric_body_precesses),
         cmocka_unit_test(free_asymmetric_body_conserves),
         cmocka_unit_test(ramped_joint_load_spins_up),
+        cmocka_unit_test(sprung_joint_oscillates_and_decays),
+        cmocka_unit_test(stops_throw_back_without_loss),
         cmocka_unit_test(cylindrical_joint_slides_and_spins),
         cmocka_unit_test(planar_joint_throws_on_a_parabola),
         cmocka_unit_test(universal_joint_swings_as_a_spherical_pendulum),

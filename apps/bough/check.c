@@ -22,6 +22,14 @@ static int carrier(const bough_scene *scene, int body) {
     return body;
 }
 
+static void print_spring(const bough_scene_joint *joint) {
+    const char *of = joint->kind == BOUGH_SCENE_REVOLUTE ? "N m/rad" : "N/m";
+    const char *rate = joint->kind == BOUGH_SCENE_REVOLUTE ? "N m s/rad" : "N s/m";
+    if (joint->stiffness > 0) printf(", spring %.6g %s", joint->stiffness, of);
+    if (joint->damping > 0) printf(", damper %.6g %s", joint->damping, rate);
+    if (joint->stop_stiffness > 0) printf(", stops %.6g %s", joint->stop_stiffness, of);
+}
+
 static void print_joint(const bough_scene *scene, int body) {
     static const struct {
         const char *name;
@@ -47,6 +55,7 @@ static void print_joint(const bough_scene *scene, int body) {
     if (word != NULL) printf(" %s %c", word, "xyz"[joint->axis]);
     if (joint->kind == BOUGH_SCENE_UNIVERSAL) printf(" and %c", "xyz"[joint->second_axis]);
     printf(" on %s: %d degree%s of freedom", body_name(scene, joint->parent), n, plural(n));
+    print_spring(joint);
 }
 
 static double beam_mass(const bough_beam *beam) {

@@ -78,7 +78,11 @@ static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) 
         q[1] = joint->positions[1], v[1] = c * joint->speeds[1] - s * joint->speeds[0];
         q[2] = joint->angle, v[2] = joint->angular_speed;
         break;
-    default: q[0] = joint->position, v[0] = joint->speed; break;
+    default:
+        q[0] = joint->position, v[0] = joint->speed;
+        to->spring = (bough_joint_spring){joint->stiffness, joint->damping, joint->rest,
+                                          joint->stop[0], joint->stop[1], joint->stop_stiffness};
+        break;
     }
 }
 

@@ -116,6 +116,9 @@ typedef struct bough_scene_joint {
                                          // in the order x, y, z, x, in the joint's frame [m, m/s]
     double velocity[3];          // initial [m/s] of free, in the joint's frame
     double angular_velocity[3];  // initial [rad/s] of spherical and free, in the joint's frame
+    // Of revolute [rad, N m/rad, …] and prismatic [m, N/m, …]:
+    double stiffness, damping, rest;
+    double stop[2], stop_stiffness; // 0: no stops
 } bough_scene_joint;
 
 // A section of a rod. Between stations everything is linear in span.

@@ -59,6 +59,15 @@ void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, 
 
 void bough_scene_check_joint(bough_schema_reader *r, void *item) {
     const bough_scene_joint *joint = item;
+    const bough_node *stop = bough_node_find(joint->node, "stop");
+    const bough_node *stiffness = bough_node_find(joint->node, "stop_stiffness");
+    if ((stop == NULL) != (stiffness == NULL)) {
+        bough_schema_error(r, stop == NULL ? stiffness : stop,
+                           stop == NULL ? "stop_stiffness" : "stop",
+                           "'stop' and 'stop_stiffness' go together");
+    } else if (stop != NULL && !(joint->stop[0] < joint->stop[1])) {
+        bough_schema_error(r, stop, "stop", "the second must be greater than the first");
+    }
     if (joint->kind != BOUGH_SCENE_UNIVERSAL || joint->second_axis != joint->axis) return;
     bough_schema_error(r, bough_node_find(joint->node, "second_axis"), "second_axis",
                        "must not be the first axis");
