@@ -80,6 +80,16 @@ static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t,
     }
 }
 
+static double table_value(const bough_joint_load_def *load, double t) {
+    int last = load->n - 1, i = 0;
+    if (t <= load->times[0]) return load->values[0];
+    if (t >= load->times[last]) return load->values[last];
+    while (t > load->times[i + 1])
+        i++;
+    double f = (t - load->times[i]) / (load->times[i + 1] - load->times[i]);
+    return (1 - f) * load->values[i] + f * load->values[i + 1];
+}
+
 // τ of the joints' springs and loads, into data->force
 static void joint_loads(const bough_tree *tree, bough_tree_data *d, double t) {
     memcpy(d->force, d->passive, (size_t)tree->n_v * sizeof(double));
@@ -87,7 +97,8 @@ static void joint_loads(const bough_tree *tree, bough_tree_data *d, double t) {
         const bough_joint_load_def *load = &tree->loads[k];
         double span = load->end - load->start;
         double factor = span <= 0 ? 1 : bough_clamp((t - load->start) / span, 0, 1);
-        d->force[tree->links[load->body].first_speed] += factor * load->value;
+        double value = load->n > 0 ? table_value(load, t) : load->value;
+        d->force[tree->links[load->body].first_speed] += factor * value;
     }
 }
 

@@ -117,6 +117,13 @@ static int depth(const bough_tree_def *def, int body) {
     return steps;
 }
 
+static bool is_increasing(const bough_joint_load_def *load) {
+    for (int i = 1; i < load->n; i++) {
+        if (!(load->times[i] > load->times[i - 1])) return false;
+    }
+    return true;
+}
+
 static bough_status check_attachments(const bough_tree_def *def) {
     for (int m = 0; m < def->n_markers; m++) {
         const bough_marker_def *marker = &def->markers[m];
@@ -133,6 +140,10 @@ static bough_status check_attachments(const bough_tree_def *def) {
         }
     }
     for (int k = 0; k < def->n_loads; k++) {
+        if (!is_increasing(&def->loads[k])) {
+            return bough_fail(BOUGH_INVALID, "joint load %d: the times of its table must increase",
+                              k);
+        }
         int body = def->loads[k].body;
         bool known = body >= 0 && body < def->n_bodies;
         if (!known || bough_joint_n_speeds(def->bodies[body].kind) != 1) {
@@ -265,6 +276,21 @@ static void set_initial(bough_tree *tree, const bough_tree_def *def) {
     }
 }
 
+static bool take_tables(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+    for (int k = 0; k < def->n_loads; k++) {
+        const bough_joint_load_def *from = &def->loads[k];
+        if (from->n == 0) continue;
+        size_t n = (size_t)from->n;
+        double *copy = bough_arena_doubles(arena, 2 * n);
+        if (copy == NULL) return false;
+        memcpy(copy, from->times, n * sizeof(double));
+        memcpy(copy + n, from->values, n * sizeof(double));
+        tree->loads[k].times = copy;
+        tree->loads[k].values = copy + n;
+    }
+    return true;
+}
+
 static bool take_model(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     tree->gravity = def->gravity;
     tree->n_bodies = def->n_bodies;
@@ -321,6 +347,9 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     }
     place_bodies(tree, def);
     place_attachments(tree, def);
+    if (!take_tables(arena, def, tree)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tables of joint loads");
+    }
     set_initial(tree, def);
     *out = tree;
     return check_inertia(arena, def, tree);

@@ -56,6 +56,9 @@ typedef struct bough_joint_load_def {
     int body;          // whose joint; revolute or prismatic
     double value;      // [N m] or [N]
     double start, end; // [s]
+    int n;             // rows of a table in place of the value, 0: none
+    const double *times, *values; // (n) times increasing [s], the value linear between them and
+                                  // held before and after; copied
 } bough_joint_load_def;
 
 typedef struct bough_tree_def {

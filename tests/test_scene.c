@@ -301,6 +301,22 @@ static void stops_need_a_stiffness_and_an_order(void **state) {
 #undef HINGE
 }
 
+static void tables_of_joint_loads_are_checked(void **state) {
+    (void)state;
+#define LOADED(more)                                                                               \
+    SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    inertia: [1, 1, 1]\n"               \
+               "    joint: {kind: revolute, parent: ground, axis: x}\nloads:\n"                    \
+               "  - {joint: a, torque: " more "}\n"
+    accepts(LOADED("{times: [0, 1 s], values: [2 kN m, 0]}"));
+    refuses(LOADED("{times: [0, 1, 1], values: [2, 0, 1]}"),
+            "s.yaml:8:39: error: loads[0].torque.times: must increase\n");
+    refuses(LOADED("{times: [0, 1], values: [2, 0, 1]}"),
+            "s.yaml:8:24: error: loads[0].torque: 2 times, but 3 values\n");
+    refuses(LOADED("{times: [0, 1]}"),
+            "s.yaml:8:24: error: loads[0].torque: required key 'values' is missing\n");
+#undef LOADED
+}
+
 static void rods_may_be_curved(void **state) {
     (void)state;
     write_file("blade.yaml", "damping: [1 ms, 0, 0, 0, 0, 0]\n"
@@ -965,6 +981,7 @@ int main(void) {
         cmocka_unit_test(free_and_sliding_joints_start_moving),
         cmocka_unit_test(joints_of_several_axes_are_read),
         cmocka_unit_test(stops_need_a_stiffness_and_an_order),
+        cmocka_unit_test(tables_of_joint_loads_are_checked),
         cmocka_unit_test(rods_may_be_curved),
         cmocka_unit_test(all_errors_are_shown_in_order),
         cmocka_unit_test(missing_parts_are_named),

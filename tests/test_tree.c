@@ -108,7 +108,8 @@ static fixture everything(double rtol) {
         {"first", 0, bough_inertia_of(0.4, bough_v3(0.1, 0, 0.2), diagonal(0.1, 0.2, 0.2))},
         {"second", 1, bough_inertia_of(0.2, bough_v3(0, 0.3, 0), diagonal(0.1, 0.1, 0.1))},
     };
-    bough_joint_load_def loads[] = {{5, 3.0, 0.1, 0.3}, {3, -2.0, 0, 0}};
+    bough_joint_load_def loads[] = {{.body = 5, .value = 3.0, .start = 0.1, .end = 0.3},
+                                    {.body = 3, .value = -2.0}};
     bough_tree_def def = {.gravity = {1, -2, -9},
                           .n_bodies = 10,
                           .n_markers = 3,
@@ -230,7 +231,7 @@ static void ramped_joint_load_spins_up(void **state) {
     bough_body_def b = bough_body_def_default();
     b.name = "rotor", b.kind = BOUGH_JOINT_REVOLUTE, b.axis = bough_v3(0, 0, 2);
     b.inertia = diagonal(1, 1, 4);
-    bough_joint_load_def load = {0, 8, 1, 3};
+    bough_joint_load_def load = {.body = 0, .value = 8, .start = 1, .end = 3};
     bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_loads = 1, .loads = &load};
     fixture f = build(&def, 1e-9);
     advance(&f, 1, true);
@@ -360,6 +361,30 @@ static void universal_joint_swings_as_a_spherical_pendulum(void **state) {
     assert_int_equal(v, 2);
     bough_arena_destroy(f.arena);
     bough_arena_destroy(g.arena);
+}
+
+// 8 N m falling to 0 from 1 s to 3 s, on J = 4.
+static void tabulated_joint_load_spins_up(void **state) {
+    (void)state;
+    const double times[] = {1, 3}, values[] = {8, 0}, back[] = {3, 1};
+    bough_body_def b = bough_body_def_default();
+    b.name = "rotor", b.kind = BOUGH_JOINT_REVOLUTE, b.inertia = diagonal(1, 1, 4);
+    bough_joint_load_def load = {.body = 0, .n = 2, .times = times, .values = values};
+    bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_loads = 1, .loads = &load};
+    fixture f = build(&def, 1e-9);
+    advance(&f, 1, true);
+    check_near(f.s.state[1], 2, 1e-6, 0);
+    advance(&f, 2, true);
+    check_near(f.s.state[1], 2 + 2 * 0.75, 1e-6, 0);
+    advance(&f, 3, false);
+    advance(&f, 4, true);
+    check_near(f.s.state[1], 2 + 2, 1e-6, 0);
+    bough_arena_destroy(f.arena);
+    load.times = back;
+    bough_arena *arena = bough_arena_create();
+    bough_tree *tree;
+    assert_int_equal(bough_tree_create(arena, &def, &tree).code, BOUGH_INVALID);
+    bough_arena_destroy(arena);
 }
 
 // -- recursions against each other -----------------------------------------------------------
@@ -781,6 +806,7 @@ int main(void) {
         cmocka_unit_test(axisymmetric_body_precesses),
         cmocka_unit_test(free_asymmetric_body_conserves),
         cmocka_unit_test(ramped_joint_load_spins_up),
+        cmocka_unit_test(tabulated_joint_load_spins_up),
         cmocka_unit_test(sprung_joint_oscillates_and_decays),
         cmocka_unit_test(stops_throw_back_without_loss),
         cmocka_unit_test(cylindrical_joint_slides_and_spins),

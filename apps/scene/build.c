@@ -19,7 +19,7 @@ typedef struct builder {
     int n_load;
     bough_member *member;          // trunk, then rods
     bough_connection *connection;  // two per rod
-    double *event;                 // two per load and two for the aerodynamics
+    double *event;                 // corners of loads and of the aerodynamics
     int n_event;
 } builder;
 
@@ -226,10 +226,18 @@ static void set_loads(builder *b) {
         const bough_scene_load *load = &b->scene->load[k];
         add_ramp(b, load->ramp);
         if (load->body_name != NULL) continue;
-        b->load[b->n_load++] = (bough_joint_load_def){load->joint, load->amount, load->ramp[0],
-                                                      load->ramp[1]};
+        b->load[b->n_load++] = (bough_joint_load_def){
+            load->joint, load->amount, load->ramp[0], load->ramp[1],
+            load->n_time, load->times, load->values};
+        for (int i = 0; i < load->n_time; i++) b->event[b->n_event++] = load->times[i];
     }
     if (b->scene->aero.node != NULL) add_ramp(b, b->scene->aero.ramp);
+}
+
+static size_t count_corners(const bough_scene *scene) {
+    size_t n = 2 * (size_t)scene->n_load + 2; // two per ramp, of loads and of the aerodynamics
+    for (int k = 0; k < scene->n_load; k++) n += (size_t)scene->load[k].n_time;
+    return n;
 }
 
 // -- parts ----------------------------------------------------------------------------------------
@@ -356,7 +364,7 @@ static bool take_arrays(builder *b) {
     b->load = bough_arena_take(b->arena, (loads + 1) * sizeof *b->load);
     b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);
     b->connection = bough_arena_take(b->arena, 2 * bodies * sizeof *b->connection);
-    b->event = bough_arena_doubles(b->arena, 2 * loads + 2);
+    b->event = bough_arena_doubles(b->arena, count_corners(b->scene));
     if (b->s == NULL) return false;
     b->s->scene = b->scene;
     b->s->beam = bough_arena_take(b->arena, bodies * sizeof *b->s->beam);

@@ -189,6 +189,8 @@ typedef struct bough_scene_load {
     const char *joint_name; // NULL: the load acts on a rod
     int joint;              // index of the body that the joint carries
     double amount;          // torque [N m] of a revolute joint, force [N] of a prismatic one
+    int n_time;             // rows of a table in place of the amount, 0: none
+    double *times, *values; // (n_time) [s], [N m] or [N]; linear between, held before and after
     const char *body_name;  // NULL: the load acts on a joint
     int body;               // index of a body with fidelity rod
     int place;              // bough_scene_load_place

@@ -46,10 +46,75 @@ static void read_three(bough_schema_reader *r, const bough_node *node, bough_dim
     }
 }
 
+typedef struct load_table {
+    int n_time, n_value;
+    double *times, *values;
+} load_table;
+
+#define TIMES                                                                                      \
+    {.name = "times",                                                                              \
+     .kind = BOUGH_KEY_NUMBERS,                                                                    \
+     .dimension = BOUGH_TIME,                                                                      \
+     .range = ">= 0",                                                                              \
+     .count = 2,                                                                                   \
+     .required = true,                                                                             \
+     .offset = offsetof(load_table, times),                                                        \
+     .count_offset = offsetof(load_table, n_time)}
+#define VALUES(what)                                                                               \
+    {.name = "values",                                                                             \
+     .kind = BOUGH_KEY_NUMBERS,                                                                    \
+     .dimension = what,                                                                            \
+     .count = 2,                                                                                   \
+     .required = true,                                                                             \
+     .offset = offsetof(load_table, values),                                                       \
+     .count_offset = offsetof(load_table, n_value)}
+static const bough_key torque_keys[] = {TIMES, VALUES(BOUGH_MOMENT)};
+static const bough_key force_keys[] = {TIMES, VALUES(BOUGH_FORCE)};
+#undef TIMES
+#undef VALUES
+static const bough_schema torque_schema = {
+    .name = "a table", .size = sizeof(load_table), .n_key = 2, .key = torque_keys};
+static const bough_schema force_schema = {
+    .name = "a table", .size = sizeof(load_table), .n_key = 2, .key = force_keys};
+
+static void read_table(bough_schema_reader *r, const bough_node *node, const bough_schema *schema,
+                       bough_scene_load *load) {
+    load_table table = {0};
+    int before = r->errors->n + r->errors->dropped;
+    bough_schema_read(r, schema, node, &table);
+    if (r->errors->n + r->errors->dropped > before || table.times == NULL) return;
+    if (table.n_time != table.n_value) {
+        bough_schema_error(r, node, "", "%d times, but %d values", table.n_time, table.n_value);
+        return;
+    }
+    for (int i = 1; i < table.n_time; i++) {
+        if (table.times[i] > table.times[i - 1]) continue;
+        bough_schema_error(r, bough_node_find(node, "times")->value[i], "times", "must increase");
+        return;
+    }
+    load->n_time = table.n_time;
+    load->times = table.times;
+    load->values = table.values;
+}
+
+// A number, or a table over time.
+static void read_amount(bough_schema_reader *r, const bough_node *node, bough_dimension dimension,
+                        bough_scene_load *load) {
+    if (node->kind == BOUGH_MAPPING) {
+        read_table(r, node, dimension == BOUGH_MOMENT ? &torque_schema : &force_schema, load);
+    } else {
+        load->amount = bough_schema_number(r, node, dimension);
+    }
+}
+
+void bough_scene_read_load_torque(bough_schema_reader *r, const bough_node *node, void *field) {
+    read_amount(r, node, BOUGH_MOMENT, field);
+}
+
 void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field) {
     bough_scene_load *load = field;
     if (bough_node_find(load->node, "body") == NULL) {
-        load->amount = bough_schema_number(r, node, BOUGH_FORCE);
+        read_amount(r, node, BOUGH_FORCE, load);
     } else {
         read_three(r, node, is_spread(load) ? BOUGH_LINE_FORCE : BOUGH_FORCE, load->force);
     }

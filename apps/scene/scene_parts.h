@@ -15,6 +15,7 @@ void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, 
 void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_torque(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
 

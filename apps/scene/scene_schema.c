@@ -272,7 +272,8 @@ static const bough_schema simulation_schema = {
 static const bough_key load_keys[] = {
     {.name = "joint", .kind = BOUGH_KEY_TEXT, AT(joint_name),
      .help = "loads a joint: name of the body that the joint carries"},
-    {.name = "torque", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_MOMENT, AT(amount),
+    {.name = "torque", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_torque,
+     .form = "number in N m, or {times: [...], values: [...]}", .offset = 0,
      .help = "about the axis of a revolute joint"},
     {.name = "body", .kind = BOUGH_KEY_TEXT, AT(body_name),
      .help = "loads a rod: name of the body"},
@@ -282,7 +283,7 @@ static const bough_key load_keys[] = {
     {.name = "along", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_LENGTH,
      .range = ">= 0", AT(span), .help = "in place of 'at': from where to where the load is spread"},
     {.name = "force", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_force,
-     .form = "number in N, or 3 numbers in N, in N/m with 'along'", .offset = 0,
+     .form = "number in N, {times: [...], values: [...]}, or 3 numbers in N, in N/m with 'along'", .offset = 0,
      .help = "along the axis of a prismatic joint, or on the rod"},
     {.name = "moment", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_moment,
      .form = "3 numbers in N m, in N m/m with 'along'", .offset = 0, .help = "on the rod"},
