@@ -70,7 +70,18 @@ static bough_status take(map *m) {
                                            : bough_ok();
 }
 
+// What the iterated scheme converges to is judged, however it gets there: what its tolerance leaves
+// would look like growth.
+static bough_scheme_options converged(const bough_scheme_options *options) {
+    bough_scheme_options o = *options;
+    o.accelerator = BOUGH_ACCELERATE_IQN_ILS;
+    o.tolerance = 1e-8;
+    o.iterations = 100;
+    return o;
+}
+
 static bough_status build(map *m, const bough_assembly *a, const bough_scheme_options *options) {
+    bough_scheme_options judged = converged(options);
     double *output = bough_arena_doubles(m->arena, (size_t)a->n_output);
     double *input = bough_arena_doubles(m->arena, (size_t)a->n_input);
     if (bough_arena_exhausted(m->arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
@@ -78,7 +89,7 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     bough_status status = build_shadows(m, a, input);
     if (!bough_is_ok(&status)) return status;
     bough_coupling *c = NULL;
-    status = bough_coupling_create(m->arena, &m->assembly, options, 1, &c);
+    status = bough_coupling_create(m->arena, &m->assembly, &judged, 1, &c);
     if (!bough_is_ok(&status) || !c) return status;
     m->coupling = c;
     m->scheme = bough_scheme_find(options->name);

@@ -83,6 +83,23 @@ static void ramp_holds_on_a_light_interface_body(void **state) {
     two_mass_destroy(&m);
 }
 
+// What the iterated scheme converges to is judged, not what its tolerance leaves; growth as runs of
+// the two masses show it.
+static void iterated_is_judged_as_if_converged(void **state) {
+    (void)state;
+    bough_scheme_options options = bough_scheme_options_default();
+    two_mass m = light_case();
+    build(&m, "ramp", .02);
+    options.name = "iterated";
+    options.accelerator = BOUGH_ACCELERATE_NONE;
+    options.tolerance = .1;
+    check_near(judge(&m, &options, .02).growth, 4.428, .01, 0);
+    assert_true(judge(&m, &options, .01).growth < 0);
+    options.order = 0;
+    for (int k = 1; k <= 8; k *= 2) assert_true(judge(&m, &options, .005 * k).growth < 0);
+    two_mass_destroy(&m);
+}
+
 static void the_master_warns_of_an_unstable_coupling(void **state) {
     (void)state;
     two_mass m = two_mass_default();
@@ -148,6 +165,7 @@ int main(void) {
         cmocka_unit_test(limits_come_out_of_the_eigenvalues),
         cmocka_unit_test(growth_and_frequency_are_those_of_the_slowest_mode),
         cmocka_unit_test(ramp_holds_on_a_light_interface_body),
+        cmocka_unit_test(iterated_is_judged_as_if_converged),
         cmocka_unit_test(the_master_warns_of_an_unstable_coupling),
         cmocka_unit_test(growth_of_the_mechanics_is_no_verdict),
         cmocka_unit_test(judging_changes_nothing),

@@ -44,7 +44,7 @@ typedef struct bough_scene_coupling {
     double theta; // share of the new value in the ramp, 0.5..1; 0: chosen by the scheme ("auto")
     int accelerator;   // bough_scene_accelerator, of iterated as all below
     double relaxation; // factor of the correction [-]
-    double tolerance;  // of the interface, relative [-]
+    double tolerance;  // of the interface, relative [-]; 0: three times micro.rtol ("auto")
     int iterations;    // most in a macro step
 } bough_scene_coupling;
 

@@ -202,8 +202,10 @@ static const bough_key coupling_keys[] = {
     {.name = "relaxation", .kind = BOUGH_KEY_NUMBER, .range = "[0.001, 1]", .fallback = "0.5",
      AT(relaxation), .help = "of iterated: factor of the correction; the first one of aitken and "
                              "iqn-ils"},
-    {.name = "tolerance", .kind = BOUGH_KEY_NUMBER, .range = "[1e-12, 0.1]", .fallback = "1e-6",
-     AT(tolerance), .help = "of iterated: of the interface, relative to its largest values so far"},
+    {.name = "tolerance", .kind = BOUGH_KEY_NUMBER, .word = "auto", .range = "[1e-12, 0.1]",
+     .fallback = "auto", AT(tolerance),
+     .help = "of iterated: of the interface, relative to its largest values so far; auto: 3 rtol "
+             "of micro"},
     {.name = "iterations", .kind = BOUGH_KEY_INTEGER, .range = "[1, 1000]", .fallback = "30",
      AT(iterations), .help = "of iterated: most in a macro step"},
 };
