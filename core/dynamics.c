@@ -46,6 +46,13 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
         d->gravity[i] = bough_mat3_tmul(d->pose[i].rotation, tree->gravity);
     }
     joint_springs(tree, q, v, d);
+    for (int k = 0; k < tree->n_springs; k++) {
+        double tension;
+        bough_vec3 direction;
+        double stretch =
+            bough_tree_spring(tree, d, k, &tension, &direction) - tree->springs[k].length;
+        d->elastic += 0.5 * tree->springs[k].stiffness * stretch * stretch;
+    }
 }
 
 // -- loads -----------------------------------------------------------------------------------
@@ -60,6 +67,19 @@ static bough_wrench external_at(const bough_external *e, double t) {
     double dt = t - e->start;
     return (bough_wrench){bough_axpy(dt, e->rate.force, e->value.force),
                           bough_axpy(dt, e->rate.moment, e->value.moment)};
+}
+
+// The spring draws its first marker along its direction and the second against it.
+static void spring_wrenches(const bough_tree *tree, bough_tree_data *d, int spring) {
+    double tension;
+    bough_vec3 direction;
+    bough_tree_spring(tree, d, spring, &tension, &direction);
+    for (int end = 0; end < 2; end++) {
+        const bough_frame *marker = &tree->markers[tree->springs[spring].marker[end]];
+        bough_vec3 force = bough_scale(end == 0 ? tension : -tension, direction);
+        bough_mat3 r = bough_tree_frame_pose(d, marker).rotation;
+        subtract_at(d, marker, (bough_wrench){bough_mat3_tmul(r, force), {0, 0, 0}});
+    }
 }
 
 // wrench_i = V ×* I V − I g − f_ext: what resists, without accelerations
@@ -78,6 +98,8 @@ static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t,
         const bough_external *e = &tree->external[m];
         if (e->active) subtract_at(d, &tree->markers[m], external_at(e, t));
     }
+    for (int k = 0; k < tree->n_springs; k++)
+        spring_wrenches(tree, d, k);
 }
 
 static double table_value(const bough_joint_load_def *load, double t) {

@@ -139,6 +139,12 @@ static bough_status check_attachments(const bough_tree_def *def) {
                               def->ports[p].name);
         }
     }
+    for (int k = 0; k < def->n_springs; k++) {
+        const int *m = def->springs[k].marker;
+        if (m[0] < 0 || m[0] >= def->n_markers || m[1] < 0 || m[1] >= def->n_markers) {
+            return bough_fail(BOUGH_INVALID, "spring %d: its marker does not exist", k);
+        }
+    }
     for (int k = 0; k < def->n_loads; k++) {
         if (!is_increasing(&def->loads[k])) {
             return bough_fail(BOUGH_INVALID, "joint load %d: the times of its table must increase",
@@ -304,6 +310,8 @@ static bool take_model(bough_arena *arena, const bough_tree_def *def, bough_tree
     tree->ports = bough_arena_take(arena, (size_t)def->n_ports * sizeof(bough_frame));
     tree->loads = bough_arena_take(arena, (size_t)def->n_loads * sizeof(bough_joint_load_def));
     tree->external = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_external));
+    tree->n_springs = def->n_springs;
+    tree->springs = bough_arena_take(arena, (size_t)def->n_springs * sizeof(bough_spring_def));
     tree->initial = bough_arena_doubles(arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) *
                                                    (size_t)def->n_bodies);
     return !bough_arena_exhausted(arena);
@@ -347,6 +355,8 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     }
     place_bodies(tree, def);
     place_attachments(tree, def);
+    for (int k = 0; k < def->n_springs; k++)
+        tree->springs[k] = def->springs[k];
     if (!take_tables(arena, def, tree)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tables of joint loads");
     }
@@ -430,6 +440,20 @@ bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_f
     bough_mat3 r = bough_tree_frame_pose(data, frame).rotation;
     bough_twist own = bough_tree_frame_twist(data, frame);
     return (bough_twist){bough_mat3_mul(r, own.linear), bough_mat3_mul(r, own.angular)};
+}
+
+double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, int spring,
+                         double *tension, bough_vec3 *direction) {
+    const bough_spring_def *s = &tree->springs[spring];
+    const bough_frame *a = &tree->markers[s->marker[0]], *b = &tree->markers[s->marker[1]];
+    bough_vec3 way = bough_sub(bough_tree_frame_pose(data, b).position,
+                               bough_tree_frame_pose(data, a).position);
+    bough_vec3 rate = bough_sub(bough_tree_frame_velocity(data, b).linear,
+                                bough_tree_frame_velocity(data, a).linear);
+    double length = bough_norm(way);
+    *direction = length > 0 ? bough_scale(1 / length, way) : way;
+    *tension = s->stiffness * (length - s->length) + s->damping * bough_dot(*direction, rate);
+    return length;
 }
 
 bough_tree_sums bough_tree_sum(const bough_tree *tree, const bough_tree_data *data) {

@@ -61,6 +61,12 @@ typedef struct bough_joint_load_def {
                                   // held before and after; copied
 } bough_joint_load_def;
 
+// A linear spring and damper on the line between two markers, which must not meet.
+typedef struct bough_spring_def {
+    int marker[2];                     // indices
+    double stiffness, damping, length; // [N/m], [N s/m], without force [m]
+} bough_spring_def;
+
 typedef struct bough_tree_def {
     bough_vec3 gravity; // in ground axes [m/s²]
     int n_bodies, n_markers, n_ports, n_loads;
@@ -68,6 +74,8 @@ typedef struct bough_tree_def {
     const bough_marker_def *markers;
     const bough_port_def *ports;
     const bough_joint_load_def *loads;
+    int n_springs;
+    const bough_spring_def *springs;
 } bough_tree_def;
 
 // -- model: constant once built, but for the external wrenches ---------------------------------
@@ -107,6 +115,8 @@ typedef struct bough_tree {
     bough_frame *markers;        // (n_markers), as in the def
     bough_frame *ports;          // (n_ports), as in the def, the marker's placement
     bough_joint_load_def *loads; // (n_loads), body replaced by the link's index
+    int n_springs;
+    bough_spring_def *springs;   // (n_springs), as in the def
     bough_external *external;    // (n_markers), changed by bough_tree_set_wrench only
     double *initial;             // initial state (n_q + n_v)
 } bough_tree;
@@ -164,6 +174,11 @@ bough_transform bough_tree_frame_pose(const bough_tree_data *data, const bough_f
 // The twist of a frame in its own axes, and of its origin in ground axes.
 bough_twist bough_tree_frame_twist(const bough_tree_data *data, const bough_frame *frame);
 bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_frame *frame);
+
+// Length of a spring [m] and the force that draws its ends together [N]; `direction` is the unit
+// vector in the ground from its first marker to its second.
+double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, int spring,
+                         double *tension, bough_vec3 *direction);
 
 // Sums over the moving links. Potential energy is zero with all mass centres in the ground's origin
 // plane normal to gravity; angular momentum is about the ground's origin, in ground axes.

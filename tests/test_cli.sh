@@ -153,6 +153,8 @@ checks() {
     has ../stdout '^joints: 3 moving, 0 fixed$'
     expect 0 check "$scenes/springs.yaml"
     has ../stdout '^body slider: .* 1 degree of freedom, spring 50 N/m, damper 0.5 N s/m, stops 3000 N/m'
+    expect 0 check "$scenes/elastic-pendulum.yaml"
+    has ../stdout '^springs: 1$'
     expect 0 check "$bar" --set 'simulation.coupling={scheme: extrapolated, order: 2}' \
         --set 'simulation.duration=10 ms' --set 'simulation.macro_step=2.5 ms'
     has ../stdout '^coupling: extrapolated, order 2 '

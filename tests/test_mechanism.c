@@ -93,10 +93,27 @@ static void joint_loads_follow_their_table(void **context) {
     bough_arena_destroy(f.arena);
 }
 
+// The planar joint's normal is y: its first axis is z, its second x.
+static void elastic_pendulum_passes_the_reference(void **context) {
+    (void)context;
+    fixture f = start("tests/scenes/elastic-pendulum.yaml", no_sets);
+    run(&f, 100);
+    check_near(channel(&f, "bob2Pos"), -0.9801969361, 0, 1e-6);
+    check_near(channel(&f, "bob1Pos"), -0.6150553214, 0, 1e-6);
+    run(&f, 100);
+    check_near(channel(&f, "bob2Pos"), -0.1744689353, 0, 1e-6);
+    check_near(channel(&f, "bob1Pos"), -1.209469319, 0, 1e-6);
+    double length = hypot(-0.1744689353, -1.209469319);
+    check_near(channel(&f, "cordLen"), length, 0, 1e-6);
+    check_near(channel(&f, "cordFrc"), 100 * (length - 1), 0, 1e-4);
+    bough_arena_destroy(f.arena);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(joints_of_several_axes_start_and_are_recorded),
         cmocka_unit_test(sprung_joints_move_by_themselves),
+        cmocka_unit_test(elastic_pendulum_passes_the_reference),
         cmocka_unit_test(joint_loads_follow_their_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -317,6 +317,15 @@ static void tables_of_joint_loads_are_checked(void **state) {
 #undef LOADED
 }
 
+static void springs_join_two_rigid_bodies(void **state) {
+    (void)state;
+    accepts(ONE_BODY "springs:\n  - {name: s, from: ground, to: a, to_point: [1, 0, 0]}\n");
+    refuses(ONE_BODY "springs:\n  - {name: s, from: a, to: a}\n",
+            "s.yaml:7:28: error: springs[0].to: must be another body\n");
+    refuses(ONE_BODY "springs:\n  - {name: s, from: zzzzz, to: a}\n",
+            "s.yaml:7:21: error: springs[0].from: there is no body 'zzzzz'\n");
+}
+
 static void rods_may_be_curved(void **state) {
     (void)state;
     write_file("blade.yaml", "damping: [1 ms, 0, 0, 0, 0, 0]\n"
@@ -982,6 +991,7 @@ int main(void) {
         cmocka_unit_test(joints_of_several_axes_are_read),
         cmocka_unit_test(stops_need_a_stiffness_and_an_order),
         cmocka_unit_test(tables_of_joint_loads_are_checked),
+        cmocka_unit_test(springs_join_two_rigid_bodies),
         cmocka_unit_test(rods_may_be_curved),
         cmocka_unit_test(all_errors_are_shown_in_order),
         cmocka_unit_test(missing_parts_are_named),

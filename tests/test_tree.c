@@ -108,6 +108,7 @@ static fixture everything(double rtol) {
         {"first", 0, bough_inertia_of(0.4, bough_v3(0.1, 0, 0.2), diagonal(0.1, 0.2, 0.2))},
         {"second", 1, bough_inertia_of(0.2, bough_v3(0, 0.3, 0), diagonal(0.1, 0.1, 0.1))},
     };
+    bough_spring_def springs[] = {{{0, 2}, 6, 0.4, 0.5}, {{1, 2}, 9, 0, 1.5}};
     bough_joint_load_def loads[] = {{.body = 5, .value = 3.0, .start = 0.1, .end = 0.3},
                                     {.body = 3, .value = -2.0}};
     bough_tree_def def = {.gravity = {1, -2, -9},
@@ -118,7 +119,9 @@ static fixture everything(double rtol) {
                           .bodies = bodies,
                           .markers = markers,
                           .ports = ports,
-                          .loads = loads};
+                          .loads = loads,
+                          .n_springs = 2,
+                          .springs = springs};
     fixture f = build(&def, rtol);
     double value[6] = {1, 2, 3, -1, -2, 0.5}, rate[6] = {0.5, 0, 1, 0, 1, 0};
     bough_tree_set_wrench(f.tree, 2, 0.05, value, rate);
@@ -291,6 +294,28 @@ static void stops_throw_back_without_loss(void **state) {
     bough_arena_destroy(f.arena);
 }
 
+// Two free masses on a spring: the relative motion has the reduced mass, the sum of momenta stays.
+static void two_bodies_swing_on_a_spring(void **state) {
+    (void)state;
+    bough_body_def b[2] = {bough_body_def_default(), bough_body_def_default()};
+    bough_marker_def markers[2] = {{"a", 0, bough_transform_identity()},
+                                   {"b", 1, bough_transform_identity()}};
+    for (int i = 0; i < 2; i++) {
+        b[i].name = "mass", b[i].kind = BOUGH_JOINT_FREE, b[i].mass = 1 + 2 * i;
+        b[i].inertia = diagonal(1, 1, 1), b[i].coordinates[3] = 1;
+    }
+    b[1].coordinates[0] = 2.5, b[0].speeds[4] = 1; // the turning marker feels it all the same
+    bough_spring_def spring = {{0, 1}, 12, 0, 2};
+    bough_tree_def def = {.n_bodies = 2, .bodies = b, .n_markers = 2, .markers = markers,
+                          .n_springs = 1, .springs = &spring};
+    fixture f = build(&def, 1e-10);
+    double omega = sqrt(12 / 0.75), t = 1.3;
+    advance(&f, t, true);
+    check_near(f.s.state[7] - f.s.state[0], 2 + 0.5 * cos(omega * t), 1e-7, 0);
+    check_near(f.s.state[0] + 3 * f.s.state[7], 7.5, 1e-8, 0);
+    bough_arena_destroy(f.arena);
+}
+
 // A body thrown along a cylindrical joint and spun about it: h = v t − g cos(α) t²/2, φ = ω t, with
 // the axis z leaned by α about x.
 static void cylindrical_joint_slides_and_spins(void **state) {
@@ -436,6 +461,7 @@ static void energy_follows_the_power_of_the_loads(void **state) {
     f.tree->n_loads = 0;
     for (int i = 0; i < f.tree->n_links; i++)
         f.tree->links[i].spring.damping = 0;
+    f.tree->springs[0].damping = 0;
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     bough_tree_sums before = bough_tree_sum(f.tree, f.data);
     for (int k = 1; k <= 10; k++)
@@ -807,6 +833,7 @@ int main(void) {
         cmocka_unit_test(free_asymmetric_body_conserves),
         cmocka_unit_test(ramped_joint_load_spins_up),
         cmocka_unit_test(tabulated_joint_load_spins_up),
+        cmocka_unit_test(two_bodies_swing_on_a_spring),
         cmocka_unit_test(sprung_joint_oscillates_and_decays),
         cmocka_unit_test(stops_throw_back_without_loss),
         cmocka_unit_test(cylindrical_joint_slides_and_spins),

@@ -98,6 +98,7 @@ static void print_bodies(const bough_simulation *s) {
            s->scene->simulation.master.rtol);
     printf("states: %d\n", s->master->assembly->n_state);
     printf("loads: %d\n", s->scene->n_load);
+    if (s->scene->n_spring > 0) printf("springs: %d\n", s->scene->n_spring);
 }
 
 // -- coupling -------------------------------------------------------------------------------------

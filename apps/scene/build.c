@@ -13,7 +13,8 @@ typedef struct builder {
     const bough_scene *scene;
     bough_simulation *s;
     bough_body_def *body;          // (n_body): the tree's body i is the scene's body i
-    bough_marker_def *marker;      // (n_beam)
+    bough_marker_def *marker;      // (n_beam), then two per spring
+    bough_spring_def *spring;      // (n_spring)
     bough_port_def *port;          // (n_rod)
     bough_joint_load_def *load;    // (n_load): those on joints
     int n_load;
@@ -242,19 +243,40 @@ static size_t count_corners(const bough_scene *scene) {
 
 // -- parts ----------------------------------------------------------------------------------------
 
+// A marker at either end, after those of the beams.
+static void set_springs(builder *b) {
+    int first = b->s->n_beam;
+    for (int k = 0; k < b->scene->n_spring; k++) {
+        const bough_scene_spring *from = &b->scene->spring[k];
+        for (int end = 0; end < 2; end++) {
+            const double *x = from->point[end];
+            bough_marker_def *marker = &b->marker[first + 2 * k + end];
+            marker->name = from->name;
+            marker->body = from->body[end];
+            marker->placement = bough_transform_identity();
+            marker->placement.position = bough_v3(x[0], x[1], x[2]);
+        }
+        b->spring[k] = (bough_spring_def){{first + 2 * k, first + 2 * k + 1},
+                                          from->stiffness, from->damping, from->length};
+    }
+}
+
 static bough_status build_tree(builder *b) {
+    set_springs(b);
     const bough_scene *scene = b->scene;
     bough_simulation *s = b->s;
     bough_tree_def def = {.gravity = bough_v3(scene->gravity[0], scene->gravity[1],
                                               scene->gravity[2]),
                           .n_bodies = scene->n_body,
-                          .n_markers = s->n_beam,
+                          .n_markers = s->n_beam + 2 * scene->n_spring,
                           .n_ports = s->n_rod,
                           .n_loads = b->n_load,
                           .bodies = b->body,
                           .markers = b->marker,
                           .ports = b->port,
-                          .loads = b->load};
+                          .loads = b->load,
+                          .n_springs = scene->n_spring,
+                          .springs = b->spring};
     bough_status status = bough_tree_create(b->arena, &def, &s->tree);
     if (bough_is_ok(&status)) status = bough_tree_data_create(b->arena, s->tree, &s->view);
     if (!bough_is_ok(&status)) return status;
@@ -362,7 +384,9 @@ static bool take_arrays(builder *b) {
     size_t bodies = (size_t)b->scene->n_body, loads = (size_t)b->scene->n_load;
     b->s = bough_arena_take(b->arena, sizeof *b->s);
     b->body = bough_arena_take(b->arena, bodies * sizeof *b->body);
-    b->marker = bough_arena_take(b->arena, bodies * sizeof *b->marker);
+    size_t springs = (size_t)b->scene->n_spring;
+    b->marker = bough_arena_take(b->arena, (bodies + 2 * springs) * sizeof *b->marker);
+    b->spring = bough_arena_take(b->arena, (springs + 1) * sizeof *b->spring);
     b->port = bough_arena_take(b->arena, bodies * sizeof *b->port);
     b->load = bough_arena_take(b->arena, (loads + 1) * sizeof *b->load);
     b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);

@@ -111,6 +111,24 @@ static bough_status add_rotor(bough_simulation *s, bough_channels *list) {
     return status;
 }
 
+static void sample_springs(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    bough_vec3 direction;
+    for (int k = 0; k < s->tree->n_springs; k++, value += 2)
+        value[0] = bough_tree_spring(s->tree, s->view, k, &value[1], &direction);
+}
+
+static bough_status add_springs(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_springs, s);
+    for (int k = 0; k < s->scene->n_spring && bough_is_ok(&status); k++) {
+        const char *name = s->scene->spring[k].name;
+        status = bough_channels_add(list, "m", "%sLen", name);
+        if (bough_is_ok(&status)) status = bough_channels_add(list, "N", "%sFrc", name);
+    }
+    return status;
+}
+
 // -- beams ----------------------------------------------------------------------------------------
 
 // Displacement of the tip and rotation vector of its section against the undeformed one, in the
@@ -234,6 +252,7 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     bough_status status = bough_ok();
     if (s->scene->turbine.node != NULL) status = add_rotor(s, channels);
     if (bough_is_ok(&status)) status = add_joints(s, channels);
+    if (bough_is_ok(&status) && s->scene->n_spring > 0) status = add_springs(s, channels);
     if (bough_is_ok(&status) && s->scene->turbine.node != NULL) status = add_blades(s, channels);
     if (bough_is_ok(&status)) status = add_tips(s, channels);
     if (bough_is_ok(&status) && s->aero != NULL) status = add_aero(s, channels);

@@ -202,6 +202,16 @@ typedef struct bough_scene_load {
     double ramp[2];         // [s]
 } bough_scene_load;
 
+// A linear spring and damper between points of two rigid bodies or the ground.
+typedef struct bough_scene_spring {
+    const bough_node *node;
+    const char *name;
+    const char *body_name[2];
+    int body[2];                       // indices, or BOUGH_SCENE_GROUND
+    double point[2][3];                // in the body's frame [m]
+    double stiffness, damping, length; // [N/m], [N s/m], without force [m]
+} bough_scene_spring;
+
 typedef struct bough_scene_turbine {
     const bough_node *node; // NULL: no turbine
     const char *rotor_name;
@@ -336,6 +346,8 @@ typedef struct bough_scene {
     int *order;             // (n_body) indices of bodies, parents before children
     int n_load;
     bough_scene_load *load; // (n_load)
+    int n_spring;
+    bough_scene_spring *spring; // (n_spring)
     bough_scene_turbine turbine;
     bough_scene_aero aero; // needs the turbine
     bough_scene_modes modes;

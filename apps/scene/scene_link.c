@@ -226,6 +226,25 @@ static void link_load(bough_schema_reader *r, const bough_scene *s, bough_scene_
     }
 }
 
+static void link_spring(bough_schema_reader *r, const bough_scene *s, bough_scene_spring *spring) {
+    static const char *const keys[] = {"from", "to"};
+    for (int end = 0; end < 2; end++) {
+        const char *name = spring->body_name[end];
+        spring->body[end] = BOUGH_SCENE_GROUND;
+        if (name == NULL || strcmp(name, "ground") == 0) continue;
+        const bough_node *node = value_of(spring->node, keys[end]);
+        spring->body[end] = resolve(r, s, node, keys[end], name);
+        if (spring->body[end] < 0 || s->body[spring->body[end]].fidelity != BOUGH_SCENE_ROD) {
+            continue;
+        }
+        bough_schema_error(r, node, keys[end], "'%s' is a rod; springs act on rigid bodies", name);
+    }
+    const char *const *names = spring->body_name;
+    if (names[0] != NULL && names[1] != NULL && strcmp(names[0], names[1]) == 0) {
+        bough_schema_error(r, value_of(spring->node, "to"), "to", "must be another body");
+    }
+}
+
 // Whether `ancestor` carries body i; false in a loop or where a name is unknown.
 static bool hangs_on(const bough_scene *s, int i, int ancestor) {
     for (int steps = 0; i >= 0 && steps <= s->n_body; steps++) {
@@ -405,6 +424,10 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
     for (int i = 0; i < scene->n_load; i++) {
         at(r, "loads[%d]", i);
         if (scene->load[i].node != NULL) link_load(r, scene, &scene->load[i]);
+    }
+    for (int i = 0; i < scene->n_spring; i++) {
+        at(r, "springs[%d]", i);
+        if (scene->spring[i].node != NULL) link_spring(r, scene, &scene->spring[i]);
     }
     link_turbine(r, scene);
     link_aero(r, scene);

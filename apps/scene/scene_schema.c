@@ -299,6 +299,28 @@ static const bough_key load_keys[] = {
 static const bough_schema load_schema = {SCHEMA("a load", bough_scene_load, load_keys),
                                          .check = bough_scene_check_load};
 
+#define AT(member) .offset = offsetof(bough_scene_spring, member)
+static const bough_key spring_keys[] = {
+    {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
+     .help = "of its channels: Len and Frc, the force that draws its ends together"},
+    {.name = "from", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name[0]),
+     .help = "name of a rigid body, or ground"},
+    {.name = "from_point", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
+     .fallback = zero3, AT(point[0]), .help = "in that body's frame"},
+    {.name = "to", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name[1]),
+     .help = "name of another rigid body, or ground"},
+    {.name = "to_point", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
+     .fallback = zero3, AT(point[1]), .help = "in that body's frame; the points must never meet"},
+    {.name = "stiffness", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_STIFFNESS, .range = ">= 0",
+     .fallback = "0", AT(stiffness), .help = "of the spring"},
+    {.name = "damping", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0", AT(damping),
+     .help = "of the damper beside it, in N s/m"},
+    {.name = "length", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = ">= 0",
+     .fallback = "0", AT(length), .help = "without force"},
+};
+#undef AT
+static const bough_schema spring_schema = {SCHEMA("a spring", bough_scene_spring, spring_keys)};
+
 #define AT(member) .offset = offsetof(bough_scene_turbine, member)
 static const bough_key turbine_keys[] = {
     {.name = "rotor", .kind = BOUGH_KEY_TEXT, .required = true, AT(rotor_name),
@@ -515,6 +537,9 @@ static const bough_key scene_keys[] = {
      AT(body), .count_offset = offsetof(bough_scene, n_body), .help = "the tree of bodies"},
     {.name = "loads", .kind = BOUGH_KEY_LIST, .of = &load_schema, AT(load),
      .count_offset = offsetof(bough_scene, n_load), .help = "loads on joints and rods"},
+    {.name = "springs", .kind = BOUGH_KEY_LIST, .of = &spring_schema, AT(spring),
+     .count_offset = offsetof(bough_scene, n_spring),
+     .help = "springs and dampers between points of rigid bodies"},
     {.name = "turbine", .kind = BOUGH_KEY_MAPPING, .of = &turbine_schema, AT(turbine),
      .help = "names what channels and aerodynamics need"},
     {.name = "aero", .kind = BOUGH_KEY_MAPPING, .of = &aero_schema, AT(aero),
