@@ -109,10 +109,44 @@ static void elastic_pendulum_passes_the_reference(void **context) {
     bough_arena_destroy(f.arena);
 }
 
+// A point of a body in the ground.
+static bough_vec3 point_of(fixture *f, const char *body, bough_vec3 x) {
+    bough_simulation_update(f->s);
+    const bough_frame *frame = &f->s->tree->bodies[bough_tree_find_body(f->s->tree, body)];
+    bough_transform pose = bough_tree_frame_pose(f->s->view, frame);
+    return bough_add(pose.position, bough_mat3_mul(pose.rotation, x));
+}
+
+static void pendulum_passes_the_reference(void **context) {
+    (void)context;
+    fixture f = start("apps/mechanisms/pendulum.yaml", no_sets);
+    run(&f, 1000);
+    bough_vec3 x = point_of(&f, "bob", bough_v3(-1, 0, 0));
+    check_near(x.x, -0.2750874625761, 0, 1e-6);
+    check_near(x.z, -0.9614192050991, 0, 1e-6);
+    bough_arena_destroy(f.arena);
+}
+
+static void chain_passes_the_reference(void **context) {
+    (void)context;
+    fixture f = start("apps/mechanisms/chain.yaml", no_sets);
+    run(&f, 100);
+    bough_vec3 x = point_of(&f, "rod5", bough_v3(1, 0, 0));
+    check_near(x.x, 0.5335694751, 0, 1e-6);
+    check_near(x.z, -4.9197095976, 0, 1e-6);
+    run(&f, 100);
+    x = point_of(&f, "rod5", bough_v3(1, 0, 0));
+    check_near(x.x, -4.5960015766, 0, 1e-4);
+    check_near(x.z, -0.7560764306, 0, 1e-4);
+    bough_arena_destroy(f.arena);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(joints_of_several_axes_start_and_are_recorded),
         cmocka_unit_test(sprung_joints_move_by_themselves),
+        cmocka_unit_test(pendulum_passes_the_reference),
+        cmocka_unit_test(chain_passes_the_reference),
         cmocka_unit_test(elastic_pendulum_passes_the_reference),
         cmocka_unit_test(joint_loads_follow_their_table),
     };
