@@ -1,5 +1,7 @@
 #include "aero/rotor.h"
 
+#include "aero/rotor_memory.h"
+
 #include "core/base.h"
 #include "core/rotation.h"
 
@@ -33,6 +35,7 @@ struct bough_rotor {
     double density;
     bool pitching_moment, skew;
     bough_induction_options induction;
+    bough_inflow_def inflow;
     bough_wind wind;
     bough_tower tower;
     station_model *station; // (n_station)
@@ -58,6 +61,8 @@ typedef struct disk {
     double skew;         // acute angle of the wind and the shaft [rad]
     bough_vec3 downwind; // unit vector of the wind's part in the rotor plane, 0 if none
     double wake;         // 0: too slow for momentum theory, 1: full induction
+    bough_inflow_station *memory; // of dynamic inflow, or NULL: one for each station from …
+    const bough_station *first;   // … this one
 } disk;
 
 bough_rotor_def bough_rotor_def_default(void) {
@@ -238,6 +243,7 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                            .pitching_moment = def->pitching_moment,
                            .skew = def->skew,
                            .induction = def->induction,
+                           .inflow = def->inflow,
                            .station = station,
                            .row = row};
     const bough_polar *polar = NULL;
@@ -252,6 +258,19 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
     compress_rows(rotor, dense);
     *result = rotor;
     return bough_ok();
+}
+
+// Stations keep their place on the radius of the undeformed rotor, as the loss factors do.
+static void take_memory(bough_arena *arena, const bough_rotor *rotor, bough_rotor_memory *memory) {
+    int n = rotor->n_blade * rotor->n_station;
+    memory->station = bough_arena_take(arena, (size_t)n * sizeof *memory->station);
+    memory->clock = bough_arena_take(arena, sizeof *memory->clock);
+    if (!memory->station) return;
+    for (int k = 0; k < n; k++) {
+        double tip_factor = rotor->station[k % rotor->n_station].tip_factor;
+        double share = 1 / (1 + 2 * tip_factor / rotor->n_blade); // of B (R − r)/(2 r)
+        memory->station[k] = (bough_inflow_station){.share = share, .clock = memory->clock};
+    }
 }
 
 bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor,
@@ -269,6 +288,7 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
         s->line = bough_arena_take(arena, 2 * n_station * sizeof *s->line);
     }
     data->scratch = s;
+    if (rotor->inflow.kind != BOUGH_INFLOW_EQUILIBRIUM) take_memory(arena, rotor, &data->memory);
     if (bough_arena_exhausted(arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's loads.");
     }
@@ -383,7 +403,8 @@ static void induce(const bough_rotor *rotor, const disk *d, const station_model 
                              .twist = out->twist,
                              .inflow_x = out->inflow_x,
                              .inflow_y = out->inflow_y};
-    bough_induction i = bough_induction_solve(&rotor->induction, &element);
+    bough_inflow_station *memory = d->memory ? d->memory + (out - d->first) : NULL;
+    bough_induction i = bough_inflow_solve(&rotor->induction, &element, memory);
     out->axial = i.axial;
     out->tangential = i.tangential;
     if (!i.fixed) {
@@ -449,7 +470,13 @@ void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *moti
     for (int b = 0; b < rotor->n_blade; b++)
         move_blade(rotor, motion, b, data);
     disk d = survey_disk(rotor, motion, data);
+    if (data->memory.clock) bough_rotor_resume(motion, data);
+    d.memory = data->memory.station;
+    d.first = data->station;
     for (int b = 0; b < rotor->n_blade; b++)
         load_blade(rotor, &d, b, data);
     sum_rotor(rotor, motion, data);
+    if (data->memory.clock) bough_rotor_remember(rotor, motion, data);
 }
+
+const bough_inflow_def *bough_rotor_inflow(const bough_rotor *rotor) { return &rotor->inflow; }

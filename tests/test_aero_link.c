@@ -170,6 +170,27 @@ static void wind_of_the_scene_reaches_the_rotor(void **context) {
     }
 }
 
+// Dynamic inflow begins in equilibrium; after a sudden gust the old induction stays for a while.
+static void inflow_of_the_scene_reaches_the_rotor(void **context) {
+    (void)context;
+#define GUST "aero.wind={table: {times: [0 s, 1 s, 1.02 s], speeds: [12, 12, 15]}}"
+#define SPEED "bodies[2].joint.speed=3 rad/s"
+    static const char *const sets[][5] = {
+        {SPEED, GUST, NULL},
+        {SPEED, GUST, "aero.induction.inflow=oye", "aero.induction.inflow_time=5 s", NULL}};
+    double thrust[2][2], factor;
+    for (int i = 0; i < 2; i++) {
+        fixture f = open_turbine(sets[i]);
+        for (int k = 0; k < 2; k++) {
+            sample(&f, 1 + k * period, 1 + (k + 1) * period);
+            thrust[i][k] = bough_aero_link_data(f.s->aero, &factor)->thrust;
+        }
+        close_turbine(&f);
+    }
+    check_near(thrust[1][0], thrust[0][0], 1e-12, 0);
+    assert_true(fabs(thrust[1][1] / thrust[0][1] - 1) > 1e-6);
+}
+
 // -- between samples ------------------------------------------------------------------------------
 
 enum { SAMPLES = 30 };
@@ -270,6 +291,7 @@ int main(void) {
         cmocka_unit_test(bodies_receive_what_the_rotor_gives),
         cmocka_unit_test(rotor_sees_the_motion_of_the_hub),
         cmocka_unit_test(wind_of_the_scene_reaches_the_rotor),
+        cmocka_unit_test(inflow_of_the_scene_reaches_the_rotor),
         cmocka_unit_test(linear_hold_is_continuous_and_exact_for_linear_loads),
         cmocka_unit_test(constant_hold_takes_each_sample_at_once),
         cmocka_unit_test(loads_are_sampled_at_their_rate),

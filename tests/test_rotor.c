@@ -427,6 +427,85 @@ static void odd_states_are_finite(void **state) {
     }
 }
 
+// -- dynamic inflow ------------------------------------------------------------------------------
+
+static rig *create_inflow_rig(double time) {
+    rig *r = create_flat_rig();
+    r->def.inflow = (bough_inflow_def){BOUGH_INFLOW_OYE, time};
+    operate(r, 8, 0, 9.156);
+    return r;
+}
+
+static void sample_at(rig *r, double t) {
+    r->motion.time = t;
+    sample(r, r->speed * t);
+}
+
+// Thrust [kN] after a step of the pitch from 0 to 3.7° at 20 s: AeroDyn v5, slow time constant 5 s.
+static void pitch_step_matches_reference(void **state) {
+    (void)state;
+    static const double table[][2] = {{20, 210.19564}, {20.1, 213.49439}, {21, 233.39792},
+                                      {22, 245.80732}, {23, 253.38405},   {24, 258.48915},
+                                      {25, 262.17429}, {26, 264.95547},   {28, 268.83486},
+                                      {30, 271.32466}, {35, 274.45233},   {40, 275.59215}};
+    rig *r = create_inflow_rig(5);
+    int row = 0;
+    for (int k = 0; k <= 800; k++) {
+        double t = 0.05 * k;
+        if (t > 20 - 1e-9) r->pitch = 3.7 * degree;
+        sample_at(r, t);
+        if (t < 19.99) check_near(r->data.thrust, 384.4141e3, 1e-5, 0);
+        if (fabs(t - table[row][0]) > 1e-6) continue;
+        check_near(r->data.thrust, 1e3 * table[row++][1], 1e-2, 0);
+    }
+    assert_int_equal(row, 12);
+    sample_at(r, 4000);
+    sample_at(r, 8000);
+    check_near(r->data.thrust, 276.2547e3, 1e-5, 0);
+    destroy_rig(r);
+}
+
+// The memory restored, a step repeats to the bit; a step of any length is stable.
+static void inflow_is_saved_and_restored(void **state) {
+    (void)state;
+    rig *r = create_inflow_rig(0);
+    int n = bough_rotor_memory_size(r->rotor);
+    assert_int_equal(n, 3 + 6 * BLADES * STATIONS);
+    double *memory = calloc((size_t)n, sizeof *memory);
+    for (int k = 0; k < 5; k++) sample_at(r, 0.3 * k);
+    bough_rotor_save(r->rotor, &r->data, memory);
+    r->pitch = 3 * degree;
+    sample_at(r, 2);
+    double thrust = r->data.thrust;
+    sample_at(r, 500);
+    assert_true(isfinite(r->data.thrust) && fabs(r->data.thrust - thrust) > 1e3);
+    bough_rotor_restore(r->rotor, memory, &r->data);
+    sample_at(r, 2);
+    check_near(r->data.thrust, thrust, 0, 0);
+    free(memory);
+    destroy_rig(r);
+}
+
+// The time constant by its formula; one long advance equals many short ones.
+static void inflow_advances_exactly(void **state) {
+    (void)state;
+    const bough_inflow_def from_load = {BOUGH_INFLOW_OYE, 0}, fixed = {BOUGH_INFLOW_OYE, 4};
+    check_near(bough_inflow_time(&from_load, 0.3, 60, 10), 6.6 / 0.61, 1e-14, 0);
+    check_near(bough_inflow_time(&from_load, 0.9, 60, 10), 6.6 / 0.35, 1e-14, 0);
+    check_near(bough_inflow_time(&fixed, 0.3, 60, 10), 4, 0, 0);
+    bough_inflow_state one, many;
+    const double start[2] = {2, -1};
+    bough_inflow_start(&one, start);
+    bough_inflow_start(&many, start);
+    for (int k = 1; k <= 1000; k++) {
+        const double sought[2] = {2 + 0.004 * k, -1 + 0.001 * k};
+        bough_inflow_advance(&many, sought, 0.01, 5, 0.7);
+        if (k == 1000) bough_inflow_advance(&one, sought, 10, 5, 0.7);
+    }
+    for (int c = 0; c < 2; c++) check_near(one.reached[c], many.reached[c], 1e-11, 0);
+    assert_true(one.reached[0] > 3 && one.reached[0] < 6);
+}
+
 static void bad_defs_are_refused(void **state) {
     (void)state;
     for (int i = 0; i < 7; i++) {
@@ -458,6 +537,9 @@ int main(void) {
         cmocka_unit_test(blades_are_alike),
         cmocka_unit_test(sample_is_a_function_of_motion),
         cmocka_unit_test(odd_states_are_finite),
+        cmocka_unit_test(pitch_step_matches_reference),
+        cmocka_unit_test(inflow_is_saved_and_restored),
+        cmocka_unit_test(inflow_advances_exactly),
         cmocka_unit_test(bad_defs_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

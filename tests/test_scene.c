@@ -161,6 +161,7 @@ static void aerodynamics_are_read(void **state) {
     assert_int_equal(a->tower.n_height, 2);
     check_near(a->tower.diameter[1], 1.2, 0, 0);
     assert_int_equal(a->wind.kind, BOUGH_SCENE_WIND_UNIFORM);
+    assert_int_equal(a->induction.inflow, BOUGH_SCENE_EQUILIBRIUM);
     assert_null(a->wind.table.node);
     check_near(a->wind.direction, 0, 0, 0);
     assert_int_equal(a->tower.influence, BOUGH_SCENE_POTENTIAL);

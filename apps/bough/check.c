@@ -176,11 +176,12 @@ static void print_aero(const bough_simulation *s) {
     }
     long every = bough_master_multiple(1 / aero->rate, s->master->macro_step);
     printf("aero: built, %d blades of %d stations, %d polars, %.6g Hz (every %ld macro step%s), %s "
-           "between samples, tower influence %s%s\n",
+           "between samples, tower influence %s%s%s\n",
            s->scene->turbine.n_blade, aero->blade.n_station, aero->polars.n_polar, aero->rate,
            every, every == 1 ? "" : "s", aero->hold == BOUGH_SCENE_LINEAR ? "linear" : "constant",
            tower_words(&aero->tower),
-           aero->tower.shadow == BOUGH_SCENE_POWLES ? ", Powles shadow" : "");
+           aero->tower.shadow == BOUGH_SCENE_POWLES ? ", Powles shadow" : "",
+           aero->induction.inflow == BOUGH_SCENE_OYE ? ", dynamic inflow" : "");
     print_wind(&aero->wind);
 }
 

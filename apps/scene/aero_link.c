@@ -150,6 +150,9 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     def.induction.hub_loss = aero->induction.hub_loss;
     def.induction.tangential = aero->induction.tangential;
     def.induction.axial_drag = def.induction.tangential_drag = aero->induction.drag;
+    if (aero->induction.inflow == BOUGH_SCENE_OYE) {
+        def.inflow = (bough_inflow_def){BOUGH_INFLOW_OYE, aero->induction.inflow_time};
+    }
     def.wind = wind_def(&aero->wind);
     if (aero->tower.node != NULL) def.tower = tower_def(&aero->tower, t->drag);
     def.n_polar = aero->polars.n_polar;

@@ -260,6 +260,7 @@ typedef struct bough_scene_polars {
 
 typedef enum bough_scene_hold { BOUGH_SCENE_LINEAR, BOUGH_SCENE_CONSTANT } bough_scene_hold;
 typedef enum bough_scene_skew { BOUGH_SCENE_SKEW_NONE, BOUGH_SCENE_PITT_PETERS } bough_scene_skew;
+typedef enum bough_scene_inflow { BOUGH_SCENE_EQUILIBRIUM, BOUGH_SCENE_OYE } bough_scene_inflow;
 typedef enum bough_scene_wind_kind {
     BOUGH_SCENE_WIND_UNIFORM,
     BOUGH_SCENE_WIND_POWER,
@@ -294,7 +295,9 @@ typedef struct bough_scene_wind {
 typedef struct bough_scene_induction {
     const bough_node *node;
     bool tip_loss, hub_loss, tangential, drag;
-    int skew; // bough_scene_skew
+    int skew;           // bough_scene_skew
+    int inflow;         // bough_scene_inflow
+    double inflow_time; // slow time constant of oye [s]; 0: from induction and wind ("auto")
 } bough_scene_induction;
 
 // Vertical along ground z from the origin.

@@ -452,6 +452,13 @@ static const bough_key induction_keys[] = {
     {.name = "skew", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "pitt-peters"),
      .fallback = "pitt-peters", .offset = offsetof(bough_scene_induction, skew),
      .help = "correction for oblique inflow"},
+    {.name = "inflow", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("equilibrium", "oye"),
+     .fallback = "equilibrium", .offset = offsetof(bough_scene_induction, inflow),
+     .help = "how the induction follows a change of load: at once, or by Oye's dynamic inflow"},
+    {.name = "inflow_time", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .word = "auto",
+     .range = "> 0", .fallback = "auto", .when_key = "inflow", .when = "oye",
+     .offset = offsetof(bough_scene_induction, inflow_time),
+     .help = "its slow time constant; auto: 1.1/(1 - 1.3 a) R/U"},
 };
 static const bough_schema induction_schema = {
     SCHEMA("the induction", bough_scene_induction, induction_keys)};
