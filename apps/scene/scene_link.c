@@ -27,13 +27,16 @@ static int find_body(const bough_scene *s, const char *name) {
     return UNRESOLVED;
 }
 
-static const char *nearest_body(bough_schema_reader *r, const bough_scene *s, const char *name) {
+// Among the bodies, and the ground where a parent is named.
+static const char *nearest_body(bough_schema_reader *r, const bough_scene *s, const char *key,
+                                const char *name) {
     if (r->errors->dropped > 0) return NULL; // a hostile file: spelling costs time
-    const char **names = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *names);
+    const char **names = bough_arena_take(r->arena, ((size_t)s->n_body + 1) * sizeof *names);
     if (names == NULL) return NULL;
     for (int i = 0; i < s->n_body; i++)
         names[i] = s->body[i].name;
-    return bough_nearest(name, names, s->n_body);
+    names[s->n_body] = "ground";
+    return bough_nearest(name, names, s->n_body + (strcmp(key, "parent") == 0));
 }
 
 // The index of a named body; UNRESOLVED after an error at the key of `node`.
@@ -42,7 +45,7 @@ static int resolve(bough_schema_reader *r, const bough_scene *s, const bough_nod
     if (name == NULL) return UNRESOLVED;
     int index = find_body(s, name);
     if (index != UNRESOLVED) return index;
-    const char *near = nearest_body(r, s, name);
+    const char *near = nearest_body(r, s, key, name);
     bough_schema_error(r, node, key, "there is no body '%.48s'%s%s%s", name,
                        near == NULL ? "" : " (did you mean '", near == NULL ? "" : near,
                        near == NULL ? "" : "'?)");
