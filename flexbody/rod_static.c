@@ -1,17 +1,33 @@
 #include "flexbody/rod_static.h"
 
 #include "flexbody/rod_linear.h"
+#include "flexbody/rod_segment.h"
 
+#include <float.h>
 #include <string.h>
 
 enum { W8 = 8 };
 
 static const double most_turn = 0.5; // of a vertex in one Newton step [rad]
 
+enum { SHORTENED = 8 }; // steps of an increment; more lead astray, to other equilibria
+
 enum { EASY = 8 }; // iterations of an increment that encourage a larger one
 
 bough_rod_static_options bough_rod_static_options_default(void) {
     return (bough_rod_static_options){1e-10, 1, 12, 30};
+}
+
+// What is left of a step by the rounding of positions: their strain times the axial stiffness bends.
+static double rounding_of(const bough_rod_model *m) {
+    const double *axial = m->stiffness + 11 * (size_t)m->stride;
+    const double *x = m->stiffness + 15 * (size_t)m->stride;
+    const double *y = m->stiffness + 18 * (size_t)m->stride;
+    double largest = 0, length = m->span[m->n];
+    for (int n = 0; n < m->n; n++) {
+        largest = fmax(largest, axial[n] * length * length / fmin(x[n], y[n]));
+    }
+    return DBL_EPSILON * largest;
 }
 
 bool bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bough_rod_model *m) {
@@ -23,6 +39,7 @@ bool bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
     work->rate = bough_arena_doubles(arena, states);
     work->trial = bough_arena_doubles(arena, states);
     work->step = bough_arena_doubles(arena, (size_t)W8 * m->n);
+    work->rounding = rounding_of(m);
     work->follower = (bough_rod_ramped_load){
         .follower = true, .value = bough_arena_doubles(arena, 6 * (size_t)m->stride)};
     return ok && !bough_arena_exhausted(arena);
@@ -57,29 +74,61 @@ static double magnitude(const bough_rod_model *m, const bough_rod_static *w) {
     return largest;
 }
 
-// x += δx, p ← p∘exp(δφ), shortened so that no vertex turns by more than most_turn. Returns the
-// largest change, lengths measured against the rod's.
+static bough_vec3 step_of(const double *step, int i, int from) {
+    const double *d = step + (size_t)W8 * i + from;
+    return bough_v3(d[0], d[1], d[2]);
+}
+
+static vertex_state vertex_of(const bough_rod_model *m, const double *state, int i) {
+    int n = m->n;
+    if (i < 0) return (vertex_state){.x = m->position0[0], .p = m->rotation0[0]};
+    return (vertex_state){
+        .x = {state[i], state[n + i], state[2 * n + i]},
+        .p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]}};
+}
+
+// The chord in the mid frame, and how it changes along the step to first order.
+static bough_vec3 stretched(const segment_geometry *s, const vertex_state *l, const vertex_state *r,
+                            vertex_variation dl, vertex_variation dr) {
+    bough_vec3 a = half_backward(s->v, s->t, dl.phi), b = half_forward(s->v, s->t, dr.phi);
+    bough_vec3 turn = bough_scale(
+        0.5, bough_add(bough_add(a, b), bough_cross(bough_sub(b, a), s->t)));
+    bough_vec3 chord = bough_mat3_tmul(s->r, bough_sub(r->x, l->x));
+    bough_vec3 change = bough_mat3_tmul(s->r, bough_sub(dr.x, dl.x));
+    return bough_add(chord, bough_sub(change, bough_cross(turn, chord)));
+}
+
+// p ← p∘exp(δφ), and positions from the root on by the strains that the step gives to first order:
+// a slender rod then turns without stretching. With x += δx its axial stiffness would answer to the
+// square of the turn. Shortened so that no vertex turns by more than most_turn. Returns the largest
+// change, lengths measured against the rod's.
 static double update(const bough_rod_model *m, const double *step, double *state) {
     int n = m->n;
     double turn = 0, shift = 0;
     for (int i = 0; i < n; i++) {
-        const double *d = step + (size_t)W8 * i;
-        turn = fmax(turn, bough_norm(bough_v3(d[3], d[4], d[5])));
-        shift = fmax(shift, bough_norm(bough_v3(d[0], d[1], d[2])) / m->span[n]);
+        turn = fmax(turn, bough_norm(step_of(step, i, 3)));
+        shift = fmax(shift, bough_norm(step_of(step, i, 0)) / m->span[n]);
     }
     double share = turn > most_turn ? most_turn / turn : 1;
+    vertex_state old = vertex_of(m, state, -1), now = old;
+    vertex_variation dl = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i < n; i++) {
-        const double *d = step + (size_t)W8 * i;
-        bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i],
-                              state[6 * n + i]};
-        bough_vec3 phi = bough_scale(share, bough_v3(d[3], d[4], d[5]));
-        p = bough_quaternion_product(p, bough_quaternion_exponential(phi));
-        p = bough_quaternion_normalised(p);
-        for (int c = 0; c < 3; c++) state[c * n + i] += share * d[c];
-        state[3 * n + i] = p.w;
-        state[4 * n + i] = p.x;
-        state[5 * n + i] = p.y;
-        state[6 * n + i] = p.z;
+        vertex_state r = vertex_of(m, state, i), moved = r;
+        vertex_variation dr = dl;
+        dr.x = bough_scale(share, step_of(step, i, 0));
+        dr.phi = bough_scale(share, step_of(step, i, 3));
+        moved.p = bough_quaternion_normalised(
+            bough_quaternion_product(r.p, bough_quaternion_exponential(dr.phi)));
+        segment_geometry before = segment_shape(old, r, m->inverse_length[i]);
+        segment_geometry after = segment_shape(now, moved, m->inverse_length[i]);
+        bough_vec3 chord = bough_mat3_mul(after.r, stretched(&before, &old, &r, dl, dr));
+        moved.x = bough_add(now.x, chord);
+        const double values[7] = {moved.x.x, moved.x.y, moved.x.z, moved.p.w,
+                                  moved.p.x, moved.p.y, moved.p.z};
+        for (int c = 0; c < 7; c++) state[c * n + i] = values[c];
+        old = r;
+        now = moved;
+        dl = dr;
     }
     return fmax(turn, shift);
 }
@@ -97,6 +146,7 @@ static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const dou
 // Newton's method under w->scaled. False when it does not converge.
 static bool converge(const bough_rod_model *m, const double *input,
                      const bough_rod_static_options *options, bough_rod_static *w, double *state) {
+    int shortened = 0;
     for (int k = 0; k < options->iterations; k++) {
         w->iterations++;
         bough_rod_ride(m, input, state);
@@ -107,8 +157,11 @@ static bool converge(const bough_rod_model *m, const double *input,
         bough_rod_derivative(m, &w->scaled, 0, state, input, &w->scratch, w->rate);
         if (residual(m, w, magnitude(m, w)) < options->tolerance) return true;
         if (!newton_step(m, w, input, state)) return false;
+        double change = update(m, w->step, state);
+        shortened += change > most_turn;
+        if (shortened > SHORTENED) return false;
         // rounding in a stiff rod keeps the residual up; then the steps tell
-        if (update(m, w->step, state) < options->tolerance) {
+        if (change < fmax(options->tolerance, w->rounding)) {
             bough_rod_ride(m, input, state);
             return true;
         }

@@ -143,6 +143,30 @@ static void turning_bar_stretches(void **context) {
     bough_arena_destroy(arena);
 }
 
+// A wire that hangs by its weight from a horizontal clamp, q L³/EI = 100, against the exact elastica.
+// Twenty-five thousand times longer than thick it takes no more iterations than a short one: its
+// axial stiffness, EA L²/EI = 1e10, must not answer to the square of the turns of a step.
+static void slender_rod_takes_few_iterations(void **context) {
+    (void)context;
+    for (int k = 0; k < 2; k++) {
+        double ea = k == 0 ? 1e6 : 1e10;
+        double shear = 12 * 200.0 * 200.0; // that stands for the bending of a segment, 12 EI/h²
+        const double stiffness[6] = {shear, shear, ea, 1, 1, 1};
+        bough_arena *arena = bough_arena_create();
+        bent b = straight_rod(arena, 200, 1, stiffness);
+        bough_rod_static_options options = bough_rod_static_options_default();
+        bough_vec3 weight = {100, 0, 0}; // of 1 kg/m
+        bough_status s =
+            bough_rod_equilibrium(b.model, &b.loads, weight, &options, &b.work, b.state);
+        if (!bough_is_ok(&s)) print_error("%s\n", s.message);
+        assert_int_equal(s.code, BOUGH_OK);
+        assert_in_range(b.work.iterations, 2, 15);
+        check_near(vertex(&b, 200).x, 0.9375239354, 0, 2e-4);
+        check_near(vertex(&b, 200).z, 0.1592233826, 0, 2e-4);
+        bough_arena_destroy(arena);
+    }
+}
+
 // What has no equilibrium ends with a diagnosis: a spring-soft rod pushed beyond its length.
 static void hopeless_load_is_diagnosed(void **context) {
     (void)context;
@@ -164,6 +188,7 @@ int main(void) {
         cmocka_unit_test(dead_tip_force_gives_the_elastica),
         cmocka_unit_test(follower_force_bends_the_rod_beyond_a_half_turn),
         cmocka_unit_test(turning_bar_stretches),
+        cmocka_unit_test(slender_rod_takes_few_iterations),
         cmocka_unit_test(hopeless_load_is_diagnosed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
