@@ -36,7 +36,7 @@ typedef enum bough_verify_invariant {
 
 typedef struct bough_verify_quantity {
     bough_verify_what what;
-    int index;           // component of the tip, number of the mode from 0, or bough_verify_invariant
+    int index;           // of the tip's component, of the mode, or bough_verify_invariant
     const char *channel; // NULL: no channel
     double time;         // [s]
 } bough_verify_quantity;
