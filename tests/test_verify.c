@@ -149,7 +149,8 @@ static void mistakes_are_told_before_the_first_case(void **state) {
                 "expected 'tip x|y|z");
     check_error(*state, CASE("    do: static\n    expect: [{quantity: tip x}]\n"),
                 "one of 'relative' and 'absolute'");
-    check_error(*state, CASE("    do: static\n    expect: [{quantity: frequency 1, absolute: 1}]\n"),
+    check_error(*state,
+                CASE("    do: static\n    expect: [{quantity: frequency 1, absolute: 1}]\n"),
                 "does not come from");
     check_error(*state,
                 CASE("    do: static\n    meshes: [5, 10, 40]\n"
