@@ -18,7 +18,7 @@ bough_rod_static_options bough_rod_static_options_default(void) {
     return (bough_rod_static_options){1e-10, 1, 12, 30};
 }
 
-// What is left of a step by the rounding of positions: their strain times the axial stiffness bends.
+// What rounding of positions leaves of a step: their strain times the axial stiffness bends.
 static double rounding_of(const bough_rod_model *m) {
     const double *axial = m->stiffness + 11 * (size_t)m->stride;
     const double *x = m->stiffness + 15 * (size_t)m->stride;

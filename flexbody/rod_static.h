@@ -28,7 +28,7 @@ typedef struct bough_rod_static {
     double *rate;           // (13 n)
     double *step;           // (n × 8)
     double *trial;          // (13 n)
-    double rounding;        // of a step in a slender rod [rad, lengths of the rod]
+    double rounding;        // left of a step in a slender rod [rad, lengths]
     int iterations;         // of the last solution, all increments together
 } bough_rod_static;
 
