@@ -34,7 +34,7 @@ static void write_line(FILE *f, const bough_study *s, const bough_study_cell *ce
                        const bough_study_result *r) {
     fprintf(f, "%016" PRIx64 ",", s->fingerprint);
     bough_csv_text(f, cell->settings);
-    fprintf(f, ",%d,%.17g,%.6g,%.6g,", (int)r->outcome.code, r->time, r->wall, r->cpu);
+    fprintf(f, ",%d,%.17g,%.17g,%.17g,", (int)r->outcome.code, r->time, r->wall, r->cpu);
     const bough_coupling_report *c = &r->coupling;
     fprintf(f, "%.17g,%.17g,%.17g,%.17g,", c->defect_max, c->defect_rms, c->energy_residual,
             c->energy_exchanged);
