@@ -1,6 +1,7 @@
 #include "flexbody/micro.h"
 
 #include "flexbody/micro_alpha.h"
+#include "flexbody/micro_arkode.h"
 #include "flexbody/micro_cvode.h"
 
 static bough_status advance_cvode(void *self, double t, double t1, bool restart, double *y) {
@@ -11,6 +12,14 @@ static void count_cvode(const void *self, bough_statistics *sum) {
     bough_micro_cvode_statistics(self, sum);
 }
 
+static bough_status advance_arkode(void *self, double t, double t1, bool restart, double *y) {
+    return bough_micro_arkode_advance(self, t, t1, restart, y);
+}
+
+static void count_arkode(const void *self, bough_statistics *sum) {
+    bough_micro_arkode_statistics(self, sum);
+}
+
 static bough_status advance_alpha(void *self, double t, double t1, bool restart, double *y) {
     return bough_micro_alpha_advance(self, t, t1, restart, y);
 }
@@ -19,17 +28,36 @@ static void count_alpha(const void *self, bough_statistics *sum) {
     bough_micro_alpha_statistics(self, sum);
 }
 
-bough_status bough_micro_create(bough_arena *arena, const bough_ode *ode, const double *scale,
-                                bough_micro_options options, bough_micro *micro) {
-    if (options.kind == BOUGH_MICRO_CVODE_BDF) {
-        bough_micro_cvode *self = NULL;
-        bough_status status = bough_micro_cvode_create(arena, ode, scale, options.rtol, &self);
-        *micro = (bough_micro){"CVODE BDF", self, advance_cvode, count_cvode};
-        return status;
-    }
+static bough_status create_cvode(bough_arena *arena, const bough_ode *ode, const double *scale,
+                                 bough_micro_options options, bough_micro *micro) {
+    bough_micro_cvode *self = NULL;
+    bough_status status = bough_micro_cvode_create(arena, ode, scale, options.rtol, &self);
+    *micro = (bough_micro){"CVODE BDF", self, advance_cvode, count_cvode};
+    return status;
+}
+
+static bough_status create_arkode(bough_arena *arena, const bough_ode *ode, const double *scale,
+                                  bough_micro_options options, bough_micro *micro) {
+    bough_micro_arkode *self = NULL;
+    bough_status status = bough_micro_arkode_create(arena, ode, scale, options.rtol, &self);
+    *micro = (bough_micro){"ARKODE ESDIRK", self, advance_arkode, count_arkode};
+    return status;
+}
+
+static bough_status create_alpha(bough_arena *arena, const bough_ode *ode, const double *scale,
+                                 bough_micro_options options, bough_micro *micro) {
     bough_micro_alpha *self = NULL;
     bough_micro_alpha_options alpha = {options.step, options.rho, options.rtol};
     bough_status status = bough_micro_alpha_create(arena, ode, scale, alpha, &self);
     *micro = (bough_micro){"generalised-α", self, advance_alpha, count_alpha};
     return status;
+}
+
+bough_status bough_micro_create(bough_arena *arena, const bough_ode *ode, const double *scale,
+                                bough_micro_options options, bough_micro *micro) {
+    switch (options.kind) {
+    case BOUGH_MICRO_ARKODE_ESDIRK: return create_arkode(arena, ode, scale, options, micro);
+    case BOUGH_MICRO_GENERALIZED_ALPHA: return create_alpha(arena, ode, scale, options, micro);
+    default: return create_cvode(arena, ode, scale, options, micro);
+    }
 }

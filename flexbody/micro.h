@@ -21,6 +21,7 @@ typedef struct bough_ode {
 typedef enum bough_micro_kind {
     BOUGH_MICRO_CVODE_BDF,
     BOUGH_MICRO_GENERALIZED_ALPHA,
+    BOUGH_MICRO_ARKODE_ESDIRK,
 } bough_micro_kind;
 
 typedef struct bough_micro_options {

@@ -188,6 +188,21 @@ static void beams_move_with_the_hub_at_first(void **context) {
     bough_arena_destroy(arena);
 }
 
+static void a_body_may_have_its_own_sub_solver(void **context) {
+    (void)context;
+    static const char *const sets[] = {"bodies[0].micro.solver=arkode-esdirk",
+                                       "simulation.micro.solver=generalized-alpha", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, arms, sets);
+    assert_string_equal(s->rod[0].solver, "ARKODE ESDIRK");
+    assert_string_equal(s->rod[1].solver, "generalised-α");
+    for (int k = 0; k < 5; k++) {
+        bough_status status = bough_step(s->master);
+        assert_int_equal(status.code, BOUGH_OK);
+    }
+    bough_arena_destroy(arena);
+}
+
 static void joint_loads_act_and_their_corners_are_events(void **context) {
     (void)context;
     bough_arena *arena = bough_arena_create();
@@ -400,6 +415,7 @@ int main(void) {
         cmocka_unit_test(body_on_a_rod_is_refused),
         cmocka_unit_test(bodies_start_where_the_scene_puts_them),
         cmocka_unit_test(beams_move_with_the_hub_at_first),
+        cmocka_unit_test(a_body_may_have_its_own_sub_solver),
         cmocka_unit_test(joint_loads_act_and_their_corners_are_events),
         cmocka_unit_test(rigid_blades_have_the_inertia_of_their_table),
         cmocka_unit_test(rigid_arms_have_their_mass_where_the_section_says),

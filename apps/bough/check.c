@@ -68,7 +68,7 @@ static double beam_mass(const bough_beam *beam) {
 static void print_rod(const bough_simulation *s, const bough_beam *beam) {
     const bough_subsystem *rod = &s->rod[beam->port];
     printf("; %d segments, %d states, %s, rtol %.6g", beam->def.n_segment, rod->n_state,
-           rod->solver, s->scene->simulation.micro.rtol);
+           rod->solver, bough_scene_micro(s->scene, beam->body)->rtol);
 }
 
 static void print_body(const bough_simulation *s, int body) {

@@ -284,13 +284,13 @@ static bough_status build_tree(builder *b) {
                                        scene->simulation.master.rtol, &s->trunk);
 }
 
-static bough_micro_options micro_options(const bough_scene_solver *micro) {
-    bool alpha = micro->solver == BOUGH_SCENE_GENERALIZED_ALPHA;
-    return (bough_micro_options){.kind = alpha ? BOUGH_MICRO_GENERALIZED_ALPHA
-                                               : BOUGH_MICRO_CVODE_BDF,
-                                 .rtol = micro->rtol,
-                                 .step = micro->step,
-                                 .rho = micro->rho};
+static bough_micro_options micro_options(const builder *b, const bough_scene_body *body) {
+    static const bough_micro_kind kinds[] = {
+        [BOUGH_SCENE_CVODE_BDF] = BOUGH_MICRO_CVODE_BDF,
+        [BOUGH_SCENE_GENERALIZED_ALPHA] = BOUGH_MICRO_GENERALIZED_ALPHA,
+        [BOUGH_SCENE_ARKODE_ESDIRK] = BOUGH_MICRO_ARKODE_ESDIRK};
+    const bough_scene_solver *micro = bough_scene_micro(b->scene, body);
+    return (bough_micro_options){kinds[micro->solver], micro->rtol, micro->step, micro->rho};
 }
 
 static bough_status build_rods(builder *b) {
@@ -305,7 +305,7 @@ static bough_status build_rods(builder *b) {
         bough_status status = bough_rod_create(b->arena, &beam->def, &model);
         if (bough_is_ok(&status)) {
             status = bough_rod_body_create(b->arena, model, 0,
-                                           micro_options(&b->scene->simulation.micro),
+                                           micro_options(b, beam->body),
                                            motion + BOUGH_PORT_OUTPUTS * beam->port, &beam->rod);
         }
         if (!bough_is_ok(&status)) return status;
@@ -351,8 +351,11 @@ static bough_scheme_options scheme_options(const bough_scene *scene) {
     options.relaxation = coupling->relaxation;
     // A body answers with the noise of its own tolerance, below which nothing converges: measured
     // on the turbine, residuals stall at 0.2 to 0.6 of the micro rtol.
-    options.tolerance =
-        coupling->tolerance > 0 ? coupling->tolerance : 3 * scene->simulation.micro.rtol;
+    double noise = 0;
+    for (int i = 0; i < scene->n_body; i++) {
+        noise = fmax(noise, bough_scene_micro(scene, &scene->body[i])->rtol);
+    }
+    options.tolerance = coupling->tolerance > 0 ? coupling->tolerance : 3 * noise;
     options.iterations = coupling->iterations;
     options.rtol = scene->simulation.master.rtol;
     return options;

@@ -48,3 +48,8 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     if (bough_is_ok(&status)) *scene = s;
     return status;
 }
+
+const bough_scene_solver *bough_scene_micro(const bough_scene *scene,
+                                            const bough_scene_body *body) {
+    return body->micro.node != NULL ? &body->micro : &scene->simulation.micro;
+}

@@ -52,6 +52,7 @@ typedef enum bough_scene_master_kind { BOUGH_SCENE_IDA } bough_scene_master_kind
 typedef enum bough_scene_micro_kind {
     BOUGH_SCENE_CVODE_BDF,
     BOUGH_SCENE_GENERALIZED_ALPHA,
+    BOUGH_SCENE_ARKODE_ESDIRK,
 } bough_scene_micro_kind;
 
 typedef struct bough_scene_solver {
@@ -165,6 +166,7 @@ typedef struct bough_scene_body {
     double centre_of_mass[3]; // [m] body axes
     double inertia[6];        // Ixx Iyy Izz Ixy Ixz Iyz about the centre of mass [kg m²]: entries
                               // of the inertia matrix, Ixy = −∫xy
+    bough_scene_solver micro; // of this body in place of the simulation's; node NULL: none
     bough_scene_rod rod;      // fidelity rod, or rigid: integrated to a rigid body
 } bough_scene_body;
 
@@ -360,6 +362,9 @@ typedef struct bough_scene {
 // found is added to `errors`; then the status is BOUGH_INVALID and *scene is NULL.
 bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets,
                               int n_set, bough_errors *errors, bough_scene **scene);
+
+// The sub-solver of a flexible body: its own or the simulation's.
+const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const bough_scene_body *body);
 
 // Writes every key of a scene and of its data files with unit, range, default and meaning.
 void bough_scene_help(FILE *stream);

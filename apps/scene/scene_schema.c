@@ -79,6 +79,30 @@ static const bough_key rod_keys[] = {
 static const bough_schema rod_schema = {SCHEMA("a rod", bough_scene_rod, rod_keys),
                                         .check = bough_scene_check_rod};
 
+// -- solvers ------------------------------------------------------------------------------------
+
+#define RTOL(value)                                                                                \
+    {.name = "rtol", .kind = BOUGH_KEY_NUMBER, .range = "[1e-14, 0.1]", .fallback = value,         \
+     .offset = offsetof(bough_scene_solver, rtol), .help = "relative tolerance"}
+#define SOLVER(value)                                                                              \
+    {.name = "solver", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES(value), .fallback = value,     \
+     .offset = offsetof(bough_scene_solver, solver), .help = "time integrator"}
+static const bough_key master_keys[] = {SOLVER("ida"), RTOL("1e-6")};
+#define AT(field) .offset = offsetof(bough_scene_solver, field)
+static const bough_key micro_keys[] = {
+    {.name = "solver", .kind = BOUGH_KEY_CHOICE, .fallback = "cvode-bdf",
+     .choices = CHOICES("cvode-bdf", "generalized-alpha", "arkode-esdirk"), AT(solver),
+     .help = "time integrator of each rod"},
+    RTOL("1e-4"),
+    {.name = "step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "[1e-7, 10]",
+     .fallback = "5e-3", AT(step), .help = "of generalized-alpha: longest step"},
+    {.name = "rho", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.8", AT(rho),
+     .help = "of generalized-alpha: what a step leaves of the highest frequencies"},
+};
+#undef AT
+static const bough_schema master_schema = {SCHEMA("a solver", bough_scene_solver, master_keys)};
+static const bough_schema micro_schema = {SCHEMA("a solver", bough_scene_solver, micro_keys)};
+
 // -- bodies ----------------------------------------------------------------------------------------
 
 #define AT(member) .offset = offsetof(bough_scene_joint, member)
@@ -177,6 +201,8 @@ static const bough_key body_keys[] = {
      .form = "[Ixx, Iyy, Izz] or with Ixy, Ixz, Iyz, in kg m^2", .fallback = zero3,
      .when_key = "fidelity", .when = "rigid", AT(inertia),
      .help = "entries of the inertia matrix about the centre of mass (Ixy = -integral of x y)"},
+    {.name = "micro", .kind = BOUGH_KEY_MAPPING, .of = &micro_schema, .when_key = "fidelity",
+     .when = "rod", AT(micro), .help = "sub-solver of this body in place of simulation.micro"},
     {.name = "rod", .kind = BOUGH_KEY_MAPPING, .of = &rod_schema, AT(rod),
      .help = "the rod; of a rigid body: integrated to a rigid body"},
 };
@@ -212,28 +238,6 @@ static const bough_key coupling_keys[] = {
 #undef AT
 static const bough_schema coupling_schema = {
     SCHEMA("the coupling", bough_scene_coupling, coupling_keys)};
-
-#define RTOL(value)                                                                                \
-    {.name = "rtol", .kind = BOUGH_KEY_NUMBER, .range = "[1e-14, 0.1]", .fallback = value,         \
-     .offset = offsetof(bough_scene_solver, rtol), .help = "relative tolerance"}
-#define SOLVER(value)                                                                              \
-    {.name = "solver", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES(value), .fallback = value,     \
-     .offset = offsetof(bough_scene_solver, solver), .help = "time integrator"}
-static const bough_key master_keys[] = {SOLVER("ida"), RTOL("1e-6")};
-#define AT(field) .offset = offsetof(bough_scene_solver, field)
-static const bough_key micro_keys[] = {
-    {.name = "solver", .kind = BOUGH_KEY_CHOICE, .fallback = "cvode-bdf",
-     .choices = CHOICES("cvode-bdf", "generalized-alpha"), AT(solver),
-     .help = "time integrator of each rod"},
-    RTOL("1e-4"),
-    {.name = "step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "[1e-7, 10]",
-     .fallback = "5e-3", AT(step), .help = "of generalized-alpha: longest step"},
-    {.name = "rho", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.8", AT(rho),
-     .help = "of generalized-alpha: what a step leaves of the highest frequencies"},
-};
-#undef AT
-static const bough_schema master_schema = {SCHEMA("a solver", bough_scene_solver, master_keys)};
-static const bough_schema micro_schema = {SCHEMA("a solver", bough_scene_solver, micro_keys)};
 
 static const bough_key output_keys[] = {
     {.name = "interval", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",

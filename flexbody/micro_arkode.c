@@ -1,0 +1,159 @@
+#include "flexbody/micro_arkode.h"
+
+#include "core/vector.h"
+#include "flexbody/newton_handle.h"
+
+#include <arkode/arkode_arkstep.h>
+
+#include <string.h>
+
+struct bough_micro_arkode {
+    bough_newton_handle newton;
+    void *arkode;
+    bool started;
+    bough_statistics past; // of the integrations before the last restart
+};
+
+static int linear_system(sunrealtype t, N_Vector y, N_Vector fy, SUNMatrix m, SUNMatrix mass,
+                         sunbooleantype jok, sunbooleantype *jcur, sunrealtype gamma, void *user,
+                         N_Vector a, N_Vector b, N_Vector c) {
+    (void)fy, (void)m, (void)mass, (void)a, (void)b, (void)c;
+    return bough_newton_handle_system(user, t, y, jok, jcur, gamma);
+}
+
+// -- life -----------------------------------------------------------------------------------------
+
+static void destroy(void *object) {
+    bough_micro_arkode *micro = object;
+    if (micro->arkode != NULL) ARKStepFree(&micro->arkode);
+    bough_newton_handle_destroy(&micro->newton);
+}
+
+enum { MOST_STEPS = 20000 }; // per macro step, as of the other sub-solvers
+
+static bool configure(bough_micro_arkode *micro) {
+    void *arkode = micro->arkode;
+    bough_newton_handle *newton = &micro->newton;
+    int bad = ARKStepSetErrHandlerFn(arkode, bough_newton_handle_message, newton);
+    bad |= ARKStepSetUserData(arkode, newton);
+    bad |= ARKStepWFtolerances(arkode, bough_newton_handle_weights);
+    bad |= ARKStepSetTableNum(arkode, ARKODE_ARK436L2SA_DIRK_6_3_4, ARKODE_ERK_NONE);
+    bad |= ARKStepSetLinearSolver(arkode, newton->solver, newton->matrix);
+    bad |= ARKStepSetLinSysFn(arkode, linear_system);
+    // the rate of a stage is what gave its value, not f of it, which would amplify a stiff error
+    bad |= ARKStepSetDeduceImplicitRhs(arkode, SUNTRUE);
+    // ARKODE carries the convergence rate of exact factors over to steps of another length and
+    // then stops after one iteration: a wrong stiff state without a sign. Factors are cheap.
+    bad |= ARKStepSetDeltaGammaMax(arkode, 1e-9);
+    bad |= ARKStepSetNonlinCRDown(arkode, 1);
+    return bad == 0;
+}
+
+bough_status bough_micro_arkode_create(bough_arena *arena, const bough_ode *ode,
+                                       const double *scale, double rtol,
+                                       bough_micro_arkode **micro) {
+    bough_micro_arkode *m = bough_arena_take(arena, sizeof *m);
+    if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
+    bough_arena_on_destroy(arena, destroy, m);
+    bough_newton_handle *newton = &m->newton;
+    bool ok = !bough_arena_exhausted(arena) && bough_newton_handle_create(newton, ode, scale, rtol);
+    if (ok) {
+        m->arkode =
+            ARKStepCreate(NULL, bough_newton_handle_rate, 0, newton->y, newton->context);
+    }
+    if (!ok || m->arkode == NULL) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory for ARKODE", ode->name);
+    }
+    if (!configure(m)) {
+        return bough_fail(BOUGH_FAILED, "%s: ARKODE cannot be set up: %s", ode->name,
+                          newton->text);
+    }
+    *micro = m;
+    return bough_ok();
+}
+
+// -- steps ----------------------------------------------------------------------------------------
+
+static void collect(const bough_micro_arkode *micro, bough_statistics *sum) {
+    long steps = 0, errors = 0, solves = 0, none = 0, rates = 0, iterations = 0;
+    ARKStepGetNumSteps(micro->arkode, &steps);
+    ARKStepGetNumErrTestFails(micro->arkode, &errors);
+    ARKStepGetNumStepSolveFails(micro->arkode, &solves);
+    ARKStepGetNumRhsEvals(micro->arkode, &none, &rates);
+    ARKStepGetNumNonlinSolvIters(micro->arkode, &iterations);
+    sum->steps += steps;
+    sum->failed_steps += errors + solves;
+    sum->derivatives += rates;
+    sum->iterations += iterations;
+}
+
+static bough_status start(bough_micro_arkode *micro, double t) {
+    bough_newton_handle *newton = &micro->newton;
+    if (micro->started) collect(micro, &micro->past); // ARKODE's counters restart from zero
+    int flag = ARKStepReInit(micro->arkode, NULL, bough_newton_handle_rate, t, newton->y);
+    if (flag != ARK_SUCCESS) {
+        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: ARKODE cannot start: %s",
+                          newton->ode.name, t, newton->text);
+    }
+    if (micro->started) micro->past.restarts++;
+    micro->started = true;
+    return bough_ok();
+}
+
+static const char *reason(const bough_newton_handle *newton, int flag) {
+    // ever smaller steps towards a state without forces end in several ways
+    if (newton->refused) flag = ARK_RHSFUNC_FAIL;
+    switch (flag) {
+    case ARK_TOO_MUCH_WORK: return "it took 20000 steps in one macro step";
+    case ARK_TOO_MUCH_ACC: return "the tolerance is below rounding error";
+    case ARK_ERR_FAILURE: return "the error test failed down to the smallest step";
+    case ARK_CONV_FAILURE: return "Newton's method did not converge down to the smallest step";
+    case ARK_LSETUP_FAIL:
+    case ARK_LSOLVE_FAIL: return "the Newton matrix is singular";
+    case ARK_RHSFUNC_FAIL:
+    case ARK_FIRST_RHSFUNC_ERR:
+    case ARK_REPTD_RHSFUNC_ERR:
+    case ARK_UNREC_RHSFUNC_ERR:
+        return "the deformation has no finite forces (a segment turned by more than 120°, or a"
+               " value overflowed)";
+    default: return newton->text[0] ? newton->text : "ARKODE gave up";
+    }
+}
+
+bough_status bough_micro_arkode_advance(bough_micro_arkode *micro, double t, double t1,
+                                        bool restart, double *y) {
+    bough_newton_handle *newton = &micro->newton;
+    double *own = bough_vector_data(newton->y), reached = t;
+    memcpy(own, y, (size_t)newton->ode.n * sizeof *own);
+    if (restart || !micro->started) {
+        bough_status status = start(micro, t);
+        if (!bough_is_ok(&status)) return status;
+    }
+    newton->refused = false;
+    ARKStepSetStopTime(micro->arkode, t1);
+    int flag = ARK_SUCCESS;
+    // one step a call: the interpolant of a call to the end may miss a stiff state there
+    for (int n = 0; flag >= 0 && reached < t1; n++) {
+        flag = n == MOST_STEPS ? ARK_TOO_MUCH_WORK
+                               : ARKStepEvolve(micro->arkode, t1, newton->y, &reached,
+                                               ARK_ONE_STEP);
+    }
+    if (flag < 0) {
+        ARKStepGetCurrentTime(micro->arkode, &reached);
+        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: ARKODE ESDIRK cannot go on: %s",
+                          newton->ode.name, reached, reason(newton, flag));
+    }
+    memcpy(y, own, (size_t)newton->ode.n * sizeof *own);
+    return bough_ok();
+}
+
+void bough_micro_arkode_statistics(const bough_micro_arkode *micro, bough_statistics *sum) {
+    sum->jacobians += micro->newton.jacobians;
+    sum->factorisations += micro->newton.factorisations;
+    sum->restarts += micro->past.restarts;
+    sum->steps += micro->past.steps;
+    sum->derivatives += micro->past.derivatives;
+    sum->failed_steps += micro->past.failed_steps;
+    sum->iterations += micro->past.iterations;
+    if (micro->started) collect(micro, sum);
+}
