@@ -1,0 +1,54 @@
+// All members of an assembly as one system ẏ = F(t, y), the inputs found from the outputs: its rate,
+// and solutions of (I − γ ∂F/∂y) x = r. That matrix is an arrow, solved by static condensation onto
+// the inputs,
+//     (I − γJ_i) x_i = r_i + γ B_i δu_i,   δo_i = C_i x_i + D_i δu_i,   δu = P δo,
+// so each member is factored by itself and the interface system has the size of all inputs.
+#ifndef BOUGH_COSIM_ARROW_H
+#define BOUGH_COSIM_ARROW_H
+
+#include "cosim/assembly.h"
+
+typedef struct bough_arrow {
+    const bough_assembly *assembly;
+    int threads;
+    double *output, *input; // (n_output), (n_input) of the last bough_arrow_inputs
+    bough_status *status;   // (n_member) of the last work on each
+
+    // the evaluation in progress
+    double time;
+    const double *at; // (n_state)
+    double gamma;
+    double *x;
+
+    // factors
+    double setup_time;
+    double *setup_state;  // (n_state) where the matrix was taken
+    double *setup_input;  // (n_input)
+    double *column;   // of each member (n_input × n_state): (I − γJ)⁻¹ γB, member after member
+    double *response; // of each member (n_input × n_output): its outputs' change with its inputs
+    size_t *column_offset, *response_offset; // (n_member) where they begin
+    double *matrix;   // (n_input × n_input, column-major) interface
+    int *pivot;       // (n_input)
+    double *unit, *change; // (n_input) increments of the inputs
+    double *output_change; // (n_output)
+} bough_arrow;
+
+// Builds the memory in the arena; members are worked on by `threads` threads.
+bough_status bough_arrow_create(bough_arena *arena, const bough_assembly *assembly, int threads,
+                                bough_arrow **arrow);
+
+// Outputs and inputs at a state (n_state) into arrow->output and arrow->input.
+void bough_arrow_inputs(bough_arrow *arrow, double t, const double *state);
+
+// F: rate (n_state). BOUGH_FAILED names the member whose rate is not finite.
+bough_status bough_arrow_rate(bough_arrow *arrow, double t, const double *state, double *rate);
+
+// Linearises about (t, state, input) and factors I − γJ; input (n_input), usually arrow->input.
+// BOUGH_RETRY when it is singular.
+bough_status bough_arrow_setup(bough_arrow *arrow, double t, const double *state,
+                               const double *input, double gamma);
+
+// x ← (I − γJ)⁻¹ x, x (n_state).
+void bough_arrow_solve(bough_arrow *arrow, double *x);
+
+#endif
