@@ -16,7 +16,7 @@ static void mass_matrix(const bough_vertex_inertia *v, double *upper) {
 }
 
 static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
-    size_t s = (size_t)m->stride, vertices = (size_t)m->n + 1;
+    size_t s = (size_t)m->stride, vertices = (size_t)m->n_segment + 1;
     m->span = bough_arena_doubles(arena, vertices);
     m->position0 = bough_arena_take(arena, vertices * sizeof *m->position0);
     m->rotation0 = bough_arena_take(arena, vertices * sizeof *m->rotation0);
@@ -85,17 +85,23 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
     bough_rod_model *m = bough_arena_take(arena, sizeof *m);
     if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", def->name);
     m->name = bough_arena_string(arena, def->name);
-    m->n = def->n_segment;
-    m->stride = bough_padded(m->n + 1);
+    m->n_segment = def->n_segment;
+    m->n = def->carries ? def->n_segment - 1 : def->n_segment;
+    if (m->n < 1) {
+        return bough_fail(BOUGH_INVALID, "rod %s: %d segments; a rod%s has at least %d", m->name,
+                          m->n_segment, def->carries ? " that carries bodies" : "",
+                          def->carries ? 2 : 1);
+    }
+    m->stride = bough_padded(m->n_segment + 1);
     if (!take_arrays(m, arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", def->name);
     }
-    size_t vertices = (size_t)m->n + 1;
+    size_t vertices = (size_t)m->n_segment + 1;
     memcpy(m->span, def->span, vertices * sizeof *m->span);
     memcpy(m->position0, def->position, vertices * sizeof *m->position0);
     memcpy(m->rotation0, def->rotation, vertices * sizeof *m->rotation0);
     memcpy(m->vertex, def->inertia, vertices * sizeof *m->vertex);
-    for (int n = 0; n < m->n; n++) {
+    for (int n = 0; n < m->n_segment; n++) {
         bough_status status = set_segment(m, def, n);
         if (bough_is_ok(&status)) status = set_vertex(m, def, n + 1);
         if (!bough_is_ok(&status)) return status;

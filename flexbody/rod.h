@@ -1,7 +1,8 @@
 // The discrete geometrically exact Cosserat rod (THEORY 1): constant model and scratch.
 //
 // Vertex 0 is the root: it is welded to the body reference frame (BRF) and moves as the input
-// says. Vertices 1..N carry the states. Velocities are ABSOLUTE velocities resolved in moving
+// says. Of a rod that carries bodies at its end, vertex N is the bodies' and moves as the input says,
+// too. The vertices 1..n between carry the states, n = N or N − 1. Velocities are ABSOLUTE velocities resolved in moving
 // axes, so that inputs are the BRF's twist and gravity only, no acceleration:
 //     x  position relative to the BRF, in BRF axes [m]              ẋ = u − u₀ − ω×x
 //     p  rotation BRF ← section, quaternion      ṗ = ½ (p∘(0,W) − (0,ω)∘p) + κ(1 − |p|²)p
@@ -20,6 +21,11 @@ enum {
     BOUGH_ROD_STATES = 13, // per moving vertex
     BOUGH_ROD_INPUTS = 9,  // BRF velocity, angular velocity, gravity, each in BRF axes
     BOUGH_ROD_OUTPUTS = 6, // root wrench on the carrier: force, moment about the BRF origin
+    // After these, of a rod that carries bodies at its end:
+    BOUGH_ROD_END_INPUTS = 13, // u, W, x, p of the last vertex
+    BOUGH_ROD_END_OUTPUTS = 6, // wrench on what moves it: force in BRF axes, moment in section axes
+    BOUGH_ROD_MOST_INPUTS = BOUGH_ROD_INPUTS + BOUGH_ROD_END_INPUTS,
+    BOUGH_ROD_MOST_OUTPUTS = BOUGH_ROD_OUTPUTS + BOUGH_ROD_END_OUTPUTS,
 };
 
 // κ: restores |p| = 1 at this rate, far from the rod's stiff ones [1/s].
@@ -46,15 +52,17 @@ typedef struct bough_rod_def {
                                           // (N × 21) [N, N m, N m²]; order V₁V₂V₃U₁U₂U₃
     const double *damping;                // likewise (N × 21) [N s, N m s, N m² s]
     const bough_vertex_inertia *inertia;  // (N + 1)
+    bool carries; // bodies at its end: the last vertex belongs to them as the root to the carrier
 } bough_rod_def;
 
 typedef struct bough_rod_model {
     const char *name;
-    int n;      // segments = moving vertices
-    int stride; // of the arrays over vertices and segments below: padded n + 1
-    double *span;               // (n + 1) [m]
-    bough_vec3 *position0;      // undeformed (n + 1) [m]
-    bough_quaternion *rotation0; // undeformed (n + 1)
+    int n;         // moving vertices
+    int n_segment; // N: n, or n + 1 if the rod carries bodies
+    int stride;    // of the arrays over vertices and segments below: padded N + 1
+    double *span;               // (N + 1) [m]
+    bough_vec3 *position0;      // undeformed (N + 1) [m]
+    bough_quaternion *rotation0; // undeformed (N + 1)
     double *length;             // segment length h (stride) [m]
     double *inverse_length;     // 1/h (stride) [1/m]
     double *strain0;            // V⁰, U⁰ (6 × stride)
@@ -64,8 +72,18 @@ typedef struct bough_rod_model {
     double *moment;             // first moment s = mζ of moving vertices (3 × stride) [kg m]
     double *inertia;            // of moving vertices (6 × stride) [kg m²]
     double *inverse_mass;       // of the 6×6 mass in section axes (21 × stride)
-    bough_vertex_inertia *vertex; // (n + 1); vertex 0 belongs to the carrier
+    bough_vertex_inertia *vertex; // (N + 1); vertex 0 belongs to the carrier
 } bough_rod_model;
+
+static inline bool bough_rod_carries(const bough_rod_model *m) { return m->n_segment > m->n; }
+
+static inline int bough_rod_n_inputs(const bough_rod_model *m) {
+    return bough_rod_carries(m) ? BOUGH_ROD_MOST_INPUTS : BOUGH_ROD_INPUTS;
+}
+
+static inline int bough_rod_n_outputs(const bough_rod_model *m) {
+    return bough_rod_carries(m) ? BOUGH_ROD_MOST_OUTPUTS : BOUGH_ROD_OUTPUTS;
+}
 
 // Loads on the vertices that grow: value × factor, the factor rising linearly from 0 at `start` to 1
 // at `end` (end <= start: always 1). Dead ones are resolved in BRF axes, followers in the section
@@ -87,9 +105,9 @@ typedef struct bough_rod_loads {
 
 // Work arrays of one evaluation; every array is (· × stride).
 typedef struct bough_rod_scratch {
-    double *vertex;  // x p u W of vertices 0..n, p normalised (13 × stride)
+    double *vertex;  // x p u W of vertices 0..N, p normalised (13 × stride)
     double *segment; // force on the left vertex in BRF axes, moments on the left and the right
-                     // vertex in their section axes (9 × stride), zero at n
+                     // vertex in their section axes (9 × stride), zero at N
     double *load;    // loads at the time of evaluation (6 × stride), in BRF axes
     double *follower; // the followers among them in section axes (6 × stride); set if there are any
 } bough_rod_scratch;
@@ -113,7 +131,7 @@ double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t);
 
 bool bough_rod_loads_follow(const bough_rod_loads *loads); // whether any load is a follower
 
-// The undeformed rod moving rigidly with its BRF: state (13 n), input (9).
+// The undeformed rod moving rigidly with its BRF: state (13 n), input (the first 9).
 void bough_rod_rest_state(const bough_rod_model *m, const double *input, double *state);
 
 // Copies state and input into scratch->vertex; quaternions are normalised on the way.
@@ -133,6 +151,12 @@ bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads
 void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                            const double *state, const double *input, bough_rod_scratch *scratch,
                            double *wrench);
+
+// The wrench on what moves the last vertex of a rod that carries bodies (6), without the vertex'
+// inertia and weight: force in BRF axes, moment in section axes.
+void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                          const double *state, const double *input, bough_rod_scratch *scratch,
+                          double *wrench);
 
 // Elastic energy [J] of the configuration in scratch->vertex.
 double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch);

@@ -18,9 +18,13 @@ void bough_rod_gather(const bough_rod_model *m, const double *state, const doubl
     const double root[BOUGH_ROD_STATES] = {0,        0,        0,        p0.w, p0.x, p0.y, p0.z,
                                            input[0], input[1], input[2], w0.x, w0.y, w0.z};
     for (int c = 0; c < BOUGH_ROD_STATES; c++) v[c * s] = root[c];
+    if (bough_rod_carries(m)) {
+        const double *end = input + BOUGH_ROD_INPUTS; // u W x p
+        for (int c = 0; c < BOUGH_ROD_STATES; c++) v[c * s + n + 1] = end[(c + 6) % 13];
+    }
     double *restrict p = v + BOUGH_ROD_P * s;
 #pragma omp simd
-    for (int i = 1; i <= n; i++) {
+    for (int i = 1; i <= m->n_segment; i++) {
         double w = p[i], x = p[s + i], y = p[2 * s + i], z = p[3 * s + i];
         double scale = 1 / sqrt(w * w + x * x + y * y + z * z);
         p[i] = scale * w;
@@ -67,7 +71,7 @@ static void add_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
         for (int k = 0; k < 6 * s; k++) to[k] += factor * l->value[k];
     }
     if (!follow) return;
-    for (int i = 0; i <= m->n; i++) {
+    for (int i = 0; i <= m->n_segment; i++) {
         bough_mat3 r = matrix_of(load_vertex(scratch->vertex, s, i).p);
         for (int part = 0; part < 6; part += 3) {
             double *load = scratch->load + part * s;
@@ -144,7 +148,7 @@ bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads
                           double *rate) {
     bough_rod_gather(m, state, input, scratch);
     loads_at(m, loads, t, scratch);
-    if (!bough_rod_forces(m, 0, m->n, scratch)) return false;
+    if (!bough_rod_forces(m, 0, m->n_segment, scratch)) return false;
     vertex_kinematics(m->n, state, input, rate);
     vertex_accelerations(m, scratch, input, rate);
     double sum = 0; // NaN and infinity survive a sum of squares
@@ -168,6 +172,23 @@ void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *load
     for (int c = 0; c < 6; c++) wrench[c] = inner[c] + scratch->load[c * s];
 }
 
+void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                          const double *state, const double *input, bough_rod_scratch *scratch,
+                          double *wrench) {
+    int s = m->stride, end = m->n_segment;
+    bough_rod_gather(m, state, input, scratch);
+    loads_at(m, loads, t, scratch);
+    bough_rod_forces(m, end - 1, end, scratch);
+    bough_mat3 r = matrix_of(load_vertex(scratch->vertex, s, end).p);
+    const double *f = scratch->segment + end - 1, *load = scratch->load + end;
+    bough_vec3 force = bough_sub(load3(load, s, 0), load3(f, s, 0));
+    bough_vec3 moment = bough_mat3_tmul(r, load3(load + 3 * s, s, 0));
+    moment = bough_add(moment, load3(f + 6 * s, s, 0));
+    const double values[BOUGH_ROD_END_OUTPUTS] = {force.x,  force.y,  force.z,
+                                                  moment.x, moment.y, moment.z};
+    memcpy(wrench, values, sizeof values);
+}
+
 static strain elastic_strain(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
     int s = m->stride;
     vertex_state l = load_vertex(scratch->vertex, s, n);
@@ -180,7 +201,7 @@ static strain elastic_strain(const bough_rod_model *m, const bough_rod_scratch *
 
 double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch) {
     double energy = 0;
-    for (int n = 0; n < m->n; n++) {
+    for (int n = 0; n < m->n_segment; n++) {
         strain e = elastic_strain(m, scratch, n);
         strain stress = symmetric_times(m->stiffness, m->stride, n, e);
         energy += 0.5 * m->length[n] * (bough_dot(e.v, stress.v) + bough_dot(e.u, stress.u));

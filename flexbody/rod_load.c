@@ -48,7 +48,7 @@ static void add_to_segment(const bough_rod_model *m, int n, shares s, const doub
 static void lump_point(const bough_rod_model *m, double at, const double *wrench, bool follower,
                        double *value) {
     int n = 0;
-    while (n < m->n - 1 && at >= m->span[n + 1]) n++;
+    while (n < m->n_segment - 1 && at >= m->span[n + 1]) n++;
     double h = m->span[n + 1] - m->span[n];
     double xi = bough_clamp((at - m->span[n]) / h, 0, 1);
     add_to_segment(m, n, point_shares(h, xi), wrench, follower, value);
@@ -60,7 +60,7 @@ void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const doubl
         lump_point(m, reach.from, wrench, follower, value);
         return;
     }
-    for (int n = 0; n < m->n; n++) {
+    for (int n = 0; n < m->n_segment; n++) {
         double h = m->span[n + 1] - m->span[n];
         double from = bough_clamp((reach.from - m->span[n]) / h, 0, 1);
         double to = bough_clamp((reach.to - m->span[n]) / h, 0, 1);

@@ -63,7 +63,7 @@ static inline void combine(const double *restrict position, const double *restri
 
 // γ(Dᵥ + γ K A) of all segments.
 static void combine_segments(const bough_rod_model *m, bough_rod_tangent *k) {
-    int n = m->n, s = m->stride;
+    int n = m->n_segment, s = m->stride;
     const double *position = k->variation, *velocity = position + (size_t)TANGENTS * s;
     const double *turn = k->vertex + (size_t)KEPT_TURN * s;
     double shift[9];
@@ -191,7 +191,7 @@ static void eliminate_residual(const bough_rod_model *m, const bough_rod_tangent
 // γ K A r_q of every segment.
 static void segment_residual(const bough_rod_model *m, const bough_rod_tangent *k,
                              const double *restrict q, double *restrict force) {
-    int n = m->n, s = m->stride;
+    int n = m->n_segment, s = m->stride;
     double gamma = k->gamma;
     for (int f = 0; f < FORCES; f++) {
         const double *restrict t = k->variation + (size_t)f * s;

@@ -1,55 +1,109 @@
-// The rod's ports linearised: what the body frame's motion does to the rod, and the rod to its root.
+// The rod's ports linearised: what the motion of its two ends does to the rod, and the rod to them.
 #include "flexbody/rod_tangent.h"
 
 #include "flexbody/rod_lanes.h"
 
 #include <string.h>
 
-// p⁻¹∘r: scalar ρ₀ and rotation ρ = 2·vector
-static void to_tangent(bough_quaternion p, bough_quaternion r, double *scalar, bough_vec3 *vector) {
-    bough_quaternion d = bough_quaternion_product(bough_quaternion_conjugate(p), r);
-    double inverse = 1 / (p.w * p.w + p.x * p.x + p.y * p.y + p.z * p.z);
-    *scalar = inverse * d.w;
-    *vector = bough_scale(2 * inverse, bough_v3(d.x, d.y, d.z));
+static bough_vec3 vector_at(const double *x) { return bough_v3(x[0], x[1], x[2]); }
+
+// p⁻¹∘r: the rotation 2·vector of a quaternion's variation r, any |p|
+static bough_vec3 turn_of(const double *p, const double *r, int stride) {
+    bough_quaternion q = {p[0], p[stride], p[2 * stride], p[3 * stride]};
+    bough_quaternion dq = {r[0], r[stride], r[2 * stride], r[3 * stride]};
+    bough_quaternion d = bough_quaternion_product(bough_quaternion_conjugate(q), dq);
+    double inverse = 1 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+    return bough_scale(2 * inverse, bough_v3(d.x, d.y, d.z));
 }
 
-void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, const double *input,
-                              const double *state_variation, const double *input_variation,
-                              bough_rod_scratch *scratch, double *wrench) {
+// -- variations of vertices -----------------------------------------------------------------------
+
+static vertex_variation root_variation(const bough_rod_model *m, const double *d) {
+    bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
+    return (vertex_variation){.u = vector_at(d), .w = bough_mat3_tmul(r0, vector_at(d + 3))};
+}
+
+// Of the moving vertex i + 1, along the variation d of the state.
+static vertex_variation state_variation(const bough_rod_model *m, const double *state,
+                                        const double *d, int i) {
     int n = m->n;
+    return (vertex_variation){.x = load3(d, n, i),
+                              .phi = turn_of(state + 3 * n + i, d + 3 * n + i, n),
+                              .u = load3(d + (size_t)BOUGH_ROD_U * n, n, i),
+                              .w = load3(d + (size_t)BOUGH_ROD_W * n, n, i)};
+}
+
+// Of the last vertex, whose motion is `end`: u, W, x, p.
+static vertex_variation end_variation(const double *end, const double *d) {
+    return (vertex_variation){.u = vector_at(d),
+                              .w = vector_at(d + 3),
+                              .x = vector_at(d + 6),
+                              .phi = turn_of(end + 9, d + 9, 1)};
+}
+
+// -- the wrenches ---------------------------------------------------------------------------------
+
+void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, const double *input,
+                              const double *state_rate, const double *input_rate,
+                              bough_rod_scratch *scratch, double *wrench) {
     bough_rod_gather(m, state, input, scratch);
     bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
     vertex_variation l = {0}, r = {0};
-    if (input_variation != NULL) {
-        const double *d = input_variation;
-        l.u = bough_v3(d[0], d[1], d[2]);
-        l.w = bough_mat3_tmul(r0, bough_v3(d[3], d[4], d[5]));
-    }
-    if (state_variation != NULL) {
-        const double *d = state_variation;
-        bough_quaternion p = {state[3 * n], state[4 * n], state[5 * n], state[6 * n]};
-        bough_quaternion dp = {d[3 * n], d[4 * n], d[5 * n], d[6 * n]};
-        double scalar;
-        to_tangent(p, dp, &scalar, &r.phi);
-        r.x = bough_v3(d[0], d[n], d[2 * n]);
-        r.u = bough_v3(d[7 * n], d[8 * n], d[9 * n]);
-        r.w = bough_v3(d[10 * n], d[11 * n], d[12 * n]);
-    }
+    if (input_rate != NULL) l = root_variation(m, input_rate);
+    if (state_rate != NULL) r = state_variation(m, state, state_rate, 0);
     segment_force f = segment_tangent(m, scratch->vertex, 0, &l, &r);
     bough_vec3 moment = bough_mat3_mul(r0, f.ll);
-    const double values[6] = {f.f.x, f.f.y, f.f.z, moment.x, moment.y, moment.z};
+    const double values[BOUGH_ROD_OUTPUTS] = {f.f.x, f.f.y, f.f.z, moment.x, moment.y, moment.z};
     memcpy(wrench, values, sizeof values);
 }
 
-// Acceleration of moving vertex 0 by a force in BRF axes and a moment in section axes.
-static void vertex_response(const bough_rod_model *m, bough_mat3 r, segment_force f,
-                            double *column) {
+// What turning the last vertex by phi changes in the loads on it: in section axes a dead moment
+// turns, in BRF axes the force of a follower.
+static segment_force load_variation(const bough_rod_model *m, const bough_rod_loads *loads,
+                                    const bough_rod_scratch *scratch, bough_vec3 phi) {
+    int s = m->stride, end = m->n_segment;
+    bough_mat3 r = matrix_of(load_vertex(scratch->vertex, s, end).p);
+    bough_vec3 moment = bough_mat3_tmul(r, load3(scratch->load + 3 * s, s, end));
+    segment_force d = {.f = {0, 0, 0}};
+    if (bough_rod_loads_follow(loads)) {
+        bough_vec3 force = load3(scratch->follower, s, end);
+        d.f = bough_mat3_mul(r, bough_cross(phi, force));
+        moment = bough_sub(moment, load3(scratch->follower + 3 * s, s, end));
+    }
+    d.lr = bough_cross(moment, phi);
+    return d;
+}
+
+void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                           const bough_rod_variation *at, bough_rod_scratch *scratch,
+                           double *wrench) {
+    double now[BOUGH_ROD_END_OUTPUTS]; // leaves vertices and loads in scratch
+    bough_rod_end_wrench(m, loads, t, at->state, at->input, scratch, now);
+    vertex_variation l = {0}, r = {0};
+    if (at->state_rate != NULL) l = state_variation(m, at->state, at->state_rate, m->n - 1);
+    if (at->input_rate != NULL) {
+        r = end_variation(at->input + BOUGH_ROD_INPUTS, at->input_rate + BOUGH_ROD_INPUTS);
+    }
+    segment_force f = segment_tangent(m, scratch->vertex, m->n, &l, &r);
+    segment_force load = load_variation(m, loads, scratch, r.phi);
+    bough_vec3 force = bough_sub(load.f, f.f), moment = bough_add(load.lr, f.lr);
+    const double values[BOUGH_ROD_END_OUTPUTS] = {force.x,  force.y,  force.z,
+                                                  moment.x, moment.y, moment.z};
+    memcpy(wrench, values, sizeof values);
+}
+
+// -- the rate -------------------------------------------------------------------------------------
+
+// Adds the acceleration of moving vertex i + 1 by a force in BRF axes and a moment in section axes.
+static void vertex_response(const bough_rod_model *m, const bough_rod_scratch *scratch, int i,
+                            bough_vec3 force, bough_vec3 moment, double *column) {
     int n = m->n;
-    strain h = {bough_mat3_tmul(r, bough_scale(-1, f.f)), f.lr};
-    strain q = symmetric_times(m->inverse_mass, m->stride, 0, h);
+    bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, m->stride, i + 1).p);
+    strain h = {bough_mat3_tmul(r, force), moment};
+    strain q = symmetric_times(m->inverse_mass, m->stride, i, h);
     bough_vec3 u = bough_mat3_mul(r, q.v);
     const double values[6] = {u.x, u.y, u.z, q.u.x, q.u.y, q.u.z};
-    for (int c = 0; c < 6; c++) column[(BOUGH_ROD_U + c) * n] += values[c];
+    for (int c = 0; c < 6; c++) column[(BOUGH_ROD_U + c) * n + i] += values[c];
 }
 
 // Column of ∂f/∂u₀ⱼ, ∂f/∂ωⱼ or ∂f/∂gⱼ over the vertices' kinematics; e the unit vector.
@@ -71,20 +125,39 @@ static void frame_column(const bough_rod_model *m, const double *state, int kind
     }
 }
 
+// The root's motion strains the first segment.
+static void root_columns(const bough_rod_model *m, const double *state,
+                         const bough_rod_scratch *scratch, double *column) {
+    const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int j = 0; j < BOUGH_ROD_INPUTS; j++, column += (size_t)BOUGH_ROD_STATES * m->n) {
+        double e[6] = {0};
+        frame_column(m, state, j / 3, unit[j % 3], column);
+        if (j / 3 == 2) continue;
+        e[j] = 1;
+        vertex_variation l = root_variation(m, e), r = {0};
+        segment_force f = segment_tangent(m, scratch->vertex, 0, &l, &r);
+        vertex_response(m, scratch, 0, bough_scale(-1, f.f), f.lr, column);
+    }
+}
+
+// The end's motion strains the last one.
+static void end_columns(const bough_rod_model *m, const double *end,
+                        const bough_rod_scratch *scratch, double *column) {
+    for (int j = 0; j < BOUGH_ROD_END_INPUTS; j++, column += (size_t)BOUGH_ROD_STATES * m->n) {
+        double e[BOUGH_ROD_END_INPUTS] = {0};
+        e[j] = 1;
+        vertex_variation l = {0}, r = end_variation(end, e);
+        segment_force f = segment_tangent(m, scratch->vertex, m->n, &l, &r);
+        vertex_response(m, scratch, m->n - 1, f.f, f.ll, column);
+    }
+}
+
 void bough_rod_input_columns(const bough_rod_model *m, const double *state, const double *input,
                              bough_rod_scratch *scratch, double *column) {
-    size_t size = (size_t)BOUGH_ROD_STATES * m->n;
-    const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    size_t size = (size_t)BOUGH_ROD_STATES * m->n, inputs = (size_t)bough_rod_n_inputs(m);
     bough_rod_gather(m, state, input, scratch);
-    bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
-    bough_mat3 r1 = bough_rotation_matrix(load_vertex(scratch->vertex, m->stride, 1).p);
-    memset(column, 0, BOUGH_ROD_INPUTS * size * sizeof *column);
-    for (int j = 0; j < BOUGH_ROD_INPUTS; j++) {
-        frame_column(m, state, j / 3, unit[j % 3], column + j * size);
-        if (j / 3 == 2) continue;
-        vertex_variation l = {0}, r = {0}; // the root's motion strains the first segment
-        if (j / 3 == 0) l.u = unit[j % 3];
-        if (j / 3 == 1) l.w = bough_mat3_tmul(r0, unit[j % 3]);
-        vertex_response(m, r1, segment_tangent(m, scratch->vertex, 0, &l, &r), column + j * size);
-    }
+    memset(column, 0, inputs * size * sizeof *column);
+    root_columns(m, state, scratch, column);
+    if (!bough_rod_carries(m)) return;
+    end_columns(m, input + BOUGH_ROD_INPUTS, scratch, column + BOUGH_ROD_INPUTS * size);
 }

@@ -79,14 +79,14 @@ static bool add_segment(const segment *g, segment_force f, bough_wrench *left) {
 }
 
 static void clear(const bough_rod_model *m, bough_wrench *force) {
-    memset(force, 0, ((size_t)m->n + 1) * sizeof *force);
+    memset(force, 0, ((size_t)m->n_segment + 1) * sizeof *force);
 }
 
 static bool elastic(void *self, const bough_vertex *vertex, bough_wrench *force) {
     const bough_rod_model *m = ((const rod_structure *)self)->model;
     bool ok = true;
     clear(m, force);
-    for (int n = 0; n < m->n; n++) {
+    for (int n = 0; n < m->n_segment; n++) {
         segment g = segment_at(m, vertex, n);
         segment_force f = stress_force(g.shape, elastic_stress(m, &g), g.h);
         ok = add_segment(&g, f, force + n) && ok;
@@ -98,7 +98,7 @@ static bool viscous(void *self, const bough_vertex *vertex, bough_wrench *force)
     const bough_rod_model *m = ((const rod_structure *)self)->model;
     bool ok = true;
     clear(m, force);
-    for (int n = 0; n < m->n; n++) {
+    for (int n = 0; n < m->n_segment; n++) {
         segment g = segment_at(m, vertex, n);
         segment_force f = stress_force(g.shape, viscous_stress(m, &g), g.h);
         ok = add_segment(&g, f, force + n) && ok;
@@ -111,7 +111,7 @@ static bool elastic_tangent(void *self, const bough_vertex *vertex,
     const bough_rod_model *m = ((const rod_structure *)self)->model;
     bool ok = true;
     clear(m, force_change);
-    for (int n = 0; n < m->n; n++) {
+    for (int n = 0; n < m->n_segment; n++) {
         segment g = segment_at(m, vertex, n);
         vertex_variation l = variation_of(change + n), r = variation_of(change + n + 1);
         segment_variation d = shape_variation(g.shape, l, r, g.inverse);
@@ -127,7 +127,7 @@ static bool viscous_tangent(void *self, const bough_vertex *vertex,
     const bough_rod_model *m = ((const rod_structure *)self)->model;
     bool ok = true;
     clear(m, force_change);
-    for (int n = 0; n < m->n; n++) {
+    for (int n = 0; n < m->n_segment; n++) {
         segment g = segment_at(m, vertex, n);
         vertex_variation l = variation_of(change + n), r = variation_of(change + n + 1);
         segment_variation d = shape_variation(g.shape, l, r, g.inverse);
@@ -141,7 +141,7 @@ static bool viscous_tangent(void *self, const bough_vertex *vertex,
 static double elastic_energy(void *self, const bough_vertex *vertex) {
     const bough_rod_model *m = ((const rod_structure *)self)->model;
     double energy = 0;
-    for (int n = 0; n < m->n; n++) { // (4)
+    for (int n = 0; n < m->n_segment; n++) { // (4)
         segment g = segment_at(m, vertex, n);
         strain e = strain_of(m, &g), stress = elastic_stress(m, &g);
         energy += 0.5 * g.h * (bough_dot(e.v, stress.v) + bough_dot(e.u, stress.u));
@@ -187,7 +187,7 @@ static bough_inertia inertia_of(const bough_vertex_inertia *v) {
 
 bough_status bough_rod_structure_create(bough_arena *arena, const bough_rod_model *model,
                                         bough_structure **structure) {
-    size_t n = (size_t)model->n + 1;
+    size_t n = (size_t)model->n_segment + 1;
     bough_structure *s = bough_arena_take(arena, sizeof *s);
     rod_structure *self = bough_arena_take(arena, sizeof *self);
     bough_inertia *inertia = bough_arena_take(arena, n * sizeof *inertia);

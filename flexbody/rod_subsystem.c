@@ -21,7 +21,7 @@ struct bough_rod_body {
 
 static bool micro_derivative(void *self, double t, const double *y, double *rate) {
     bough_rod_body *b = self;
-    double input[BOUGH_ROD_INPUTS];
+    double input[BOUGH_ROD_MOST_INPUTS];
     bough_signal_value(b->input, t, input);
     return bough_rod_derivative(b->model, &b->loads, t, y, input, &b->scratch, rate);
 }
@@ -42,7 +42,7 @@ static void normalise(bough_rod_body *b) {
 
 static bool micro_linearise(void *self, double t, const double *y) {
     bough_rod_body *b = self;
-    double input[BOUGH_ROD_INPUTS];
+    double input[BOUGH_ROD_MOST_INPUTS];
     bough_signal_value(b->input, t, input);
     return bough_rod_linearise(b->model, &b->loads, t, y, input, &b->scratch, &b->micro_tangent);
 }
@@ -69,13 +69,18 @@ static void output(void *self, double t, const double *state, const double *inpu
                    double *wrench) {
     bough_rod_body *b = self;
     bough_rod_root_wrench(b->model, &b->loads, t, state, input, &b->scratch, wrench);
+    if (!bough_rod_carries(b->model)) return;
+    bough_rod_end_wrench(b->model, &b->loads, t, state, input, &b->scratch,
+                         wrench + BOUGH_ROD_OUTPUTS);
 }
 
 static void output_tangent(void *self, double t, const double *state, const double *input,
                            const double *state_rate, const double *input_rate, double *rate) {
-    (void)t;
     bough_rod_body *b = self;
     bough_rod_wrench_tangent(b->model, state, input, state_rate, input_rate, &b->scratch, rate);
+    if (!bough_rod_carries(b->model)) return;
+    bough_rod_variation at = {state, input, state_rate, input_rate};
+    bough_rod_end_tangent(b->model, &b->loads, t, &at, &b->scratch, rate + BOUGH_ROD_OUTPUTS);
 }
 
 static void input_columns(void *self, double t, const double *state, const double *input,
@@ -187,8 +192,8 @@ bough_subsystem bough_rod_body_subsystem(bough_rod_body *body) {
                              .kind = "rod",
                              .solver = body->micro.name,
                              .n_state = BOUGH_ROD_STATES * body->model->n,
-                             .n_input = BOUGH_ROD_INPUTS,
-                             .n_output = BOUGH_ROD_OUTPUTS,
+                             .n_input = bough_rod_n_inputs(body->model),
+                             .n_output = bough_rod_n_outputs(body->model),
                              .scale = body->scale,
                              .time = &body->time,
                              .state = body->state,

@@ -221,8 +221,9 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
     }
     rotation_columns(m, rate + (size_t)BOUGH_ROD_U * m->n, input, scratch, k);
     if (bough_rod_loads_follow(loads)) add_followers(m, scratch, k);
-    position_variations(m, scratch->vertex, 0, m->n, k->variation);
-    velocity_variations(m, scratch->vertex, 0, m->n, k->variation + (size_t)TANGENTS * m->stride);
+    position_variations(m, scratch->vertex, 0, m->n_segment, k->variation);
+    velocity_variations(m, scratch->vertex, 0, m->n_segment,
+                        k->variation + (size_t)TANGENTS * m->stride);
     return true;
 }
 
@@ -245,8 +246,8 @@ static inline const double *tangent_at(const double *g, int s, int direction, in
 
 // The blocks of row v − 1 of sign·∂(vertex force)/∂(…) from the tangents g of all segments. A
 // segment pulls its left vertex by f and its right one by −f.
-static inline void add_segments(bough_block_tridiagonal *b, const double *g, int s, int v,
-                                double sign) {
+static inline void add_segments(bough_block_tridiagonal *b, const double *g, int n_segment, int s,
+                                int v, double sign) {
     size_t at = (size_t)(v - 1) * BOUGH_BLOCK;
     double *diagonal = b->diagonal + at, *lower = b->lower + at, *upper = b->upper + at;
     int l = v - 1; // the segment on the left
@@ -258,11 +259,12 @@ static inline void add_segments(bough_block_tridiagonal *b, const double *g, int
     add_part(lower, 0, 3, -sign, tangent_at(g, s, LEFT, F, l), s);
     add_part(lower, 3, 0, -sign, tangent_at(g, s, DELTA, LR, l), s);
     add_part(lower, 3, 3, sign, tangent_at(g, s, LEFT, LR, l), s);
-    if (v == b->n) return;
+    if (v == n_segment) return;
     add_part(diagonal, 0, 0, -sign, tangent_at(g, s, DELTA, F, v), s);
     add_part(diagonal, 0, 3, sign, tangent_at(g, s, LEFT, F, v), s);
     add_part(diagonal, 3, 0, -sign, tangent_at(g, s, DELTA, LL, v), s);
     add_part(diagonal, 3, 3, sign, tangent_at(g, s, LEFT, LL, v), s);
+    if (v == b->n) return;
     add_part(upper, 0, 0, sign, tangent_at(g, s, DELTA, F, v), s);
     add_part(upper, 0, 3, sign, tangent_at(g, s, RIGHT, F, v), s);
     add_part(upper, 3, 0, sign, tangent_at(g, s, DELTA, LL, v), s);
@@ -282,8 +284,8 @@ void bough_rod_assemble(const bough_rod_model *m, const bough_rod_tangent *k, bo
         size_t at = (size_t)(v - 1) * BOUGH_BLOCK;
         clear_row(&b->position, v);
         clear_row(&b->velocity, v);
-        add_segments(&b->position, k->variation, s, v, 1);
-        add_segments(&b->velocity, k->variation + (size_t)TANGENTS * s, s, v, 1);
+        add_segments(&b->position, k->variation, m->n_segment, s, v, 1);
+        add_segments(&b->velocity, k->variation + (size_t)TANGENTS * s, m->n_segment, s, v, 1);
         for (int i = 0; i < 6; i++) {
             for (int j = 0; j < 6; j++) {
                 b->mass[at + W8 * i + j] = k->mass[(6 * i + j) * s + v];

@@ -390,8 +390,14 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
     if (!ok || bough_arena_exhausted(arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", table->name);
     }
-    *def = (bough_rod_def){table->name,  n_segment, m.span,   m.position, m.rotation,
-                           m.stiffness, m.damping, m.inertia};
+    *def = (bough_rod_def){.name = table->name,
+                           .n_segment = n_segment,
+                           .span = m.span,
+                           .position = m.position,
+                           .rotation = m.rotation,
+                           .stiffness = m.stiffness,
+                           .damping = m.damping,
+                           .inertia = m.inertia};
     for (int i = 0; i <= n_segment; i++) {
         m.span[i] = axis_length(&a) * i / n_segment;
         m.position[i] = section_at(&a, m.span[i]).position;

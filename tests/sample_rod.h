@@ -31,9 +31,10 @@ static inline sample_arrays sample_take(bough_arena *arena, int n) {
     return a;
 }
 
-static inline bough_rod_model *sample_build(bough_arena *arena, int n, sample_arrays a) {
-    bough_rod_def def = {"sample", n, a.span, a.position, a.rotation, a.stiffness, a.damping,
-                         a.inertia};
+static inline bough_rod_model *sample_build(bough_arena *arena, int n, sample_arrays a,
+                                            bool carries) {
+    bough_rod_def def = {"sample",    n,         a.span,    a.position, a.rotation,
+                         a.stiffness, a.damping, a.inertia, carries};
     bough_rod_model *model = NULL;
     bough_status status = bough_rod_create(arena, &def, &model);
     if (!bough_is_ok(&status)) print_error("%s\n", status.message);
@@ -68,11 +69,12 @@ static inline bough_rod_model *sample_uniform(bough_arena *arena, int n, double 
             a.damping[21 * k + diagonal[j]] = mu * stiffness[j];
         }
     }
-    return sample_build(arena, n, a);
+    return sample_build(arena, n, a, false);
 }
 
-// A curved, twisted rod with full random stiffness, damping and inertia, of unit-like magnitude.
-static inline bough_rod_model *sample_general(bough_arena *arena, int n) {
+// A curved, twisted rod with full random stiffness, damping and inertia, of unit-like magnitude,
+// whose last vertex may belong to what it carries.
+static inline bough_rod_model *sample_general_as(bough_arena *arena, int n, bool carries) {
     unsigned seed = 7;
     sample_arrays a = sample_take(arena, n);
     bough_quaternion p = bough_quaternion_exponential(bough_v3(0.1, -0.2, 0.3));
@@ -102,7 +104,11 @@ static inline bough_rod_model *sample_general(bough_arena *arena, int n) {
             }
         }
     }
-    return sample_build(arena, n, a);
+    return sample_build(arena, n, a, carries);
+}
+
+static inline bough_rod_model *sample_general(bough_arena *arena, int n) {
+    return sample_general_as(arena, n, false);
 }
 
 // A strongly deformed, fast moving state about the undeformed one; quaternions not normalised.
