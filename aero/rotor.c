@@ -40,6 +40,7 @@ struct bough_rotor {
     bough_tower tower;
     station_model *station; // (n_station)
     vertex_row *row;        // (n_vertex)
+    const bough_stall_airfoil *airfoil; // (n_station); NULL: static polars
 };
 
 typedef struct station_state {
@@ -47,6 +48,7 @@ typedef struct station_state {
     bough_vec3 x, y, z; // axes of the blade element: normal, tangential, along the blade
     bough_vec3 wind;    // at the aerodynamic centre [m/s]
     double twist;       // of the chord from y [rad]
+    double nose_up;     // rate of the section's rotation [rad/s]
 } station_state;
 
 struct bough_rotor_scratch {
@@ -62,6 +64,8 @@ typedef struct disk {
     bough_vec3 downwind; // unit vector of the wind's part in the rotor plane, 0 if none
     double wake;         // 0: too slow for momentum theory, 1: full induction
     bough_inflow_station *memory; // of dynamic inflow, or NULL: one for each station from …
+    bough_stall_state *stall;     // of dynamic stall, or NULL: likewise
+    double step;                  // from the last sample to this [s]
     const bough_station *first;   // … this one
 } disk;
 
@@ -223,6 +227,16 @@ static bough_status build_polars(bough_arena *arena, const bough_rotor_def *def,
     return bough_ok();
 }
 
+static bough_status prepare_stall(bough_arena *arena, bough_rotor *rotor) {
+    size_t n = (size_t)rotor->n_station;
+    bough_stall_airfoil *airfoil = bough_arena_take(arena, n * sizeof *airfoil);
+    if (!airfoil) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the dynamic stall.");
+    for (size_t j = 0; j < n; j++)
+        airfoil[j] = bough_stall_airfoil_of(rotor->station[j].polar);
+    rotor->airfoil = airfoil;
+    return bough_ok();
+}
+
 bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                                const bough_rotor **result) {
     *result = NULL;
@@ -256,21 +270,30 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
     }
     fill_mapping(def, dense);
     compress_rows(rotor, dense);
-    *result = rotor;
-    return bough_ok();
+    if (def->stall != BOUGH_STALL_NONE) status = prepare_stall(arena, rotor);
+    if (bough_is_ok(&status)) *result = rotor;
+    return status;
 }
 
 // Stations keep their place on the radius of the undeformed rotor, as the loss factors do.
-static void take_memory(bough_arena *arena, const bough_rotor *rotor, bough_rotor_memory *memory) {
+static void take_inflow(bough_arena *arena, const bough_rotor *rotor, bough_rotor_memory *memory) {
     int n = rotor->n_blade * rotor->n_station;
     memory->station = bough_arena_take(arena, (size_t)n * sizeof *memory->station);
-    memory->clock = bough_arena_take(arena, sizeof *memory->clock);
     if (!memory->station) return;
     for (int k = 0; k < n; k++) {
         double tip_factor = rotor->station[k % rotor->n_station].tip_factor;
         double share = 1 / (1 + 2 * tip_factor / rotor->n_blade); // of B (R − r)/(2 r)
         memory->station[k] = (bough_inflow_station){.share = share, .clock = memory->clock};
     }
+}
+
+static void take_memory(bough_arena *arena, const bough_rotor *rotor, bough_rotor_memory *memory) {
+    size_t n = (size_t)rotor->n_blade * rotor->n_station;
+    bool delayed = rotor->inflow.kind != BOUGH_INFLOW_EQUILIBRIUM;
+    if (!delayed && !rotor->airfoil) return;
+    memory->clock = bough_arena_take(arena, sizeof *memory->clock);
+    if (delayed) take_inflow(arena, rotor, memory);
+    if (rotor->airfoil) memory->stall = bough_arena_take(arena, n * sizeof *memory->stall);
 }
 
 bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor,
@@ -288,7 +311,7 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
         s->line = bough_arena_take(arena, 2 * n_station * sizeof *s->line);
     }
     data->scratch = s;
-    if (rotor->inflow.kind != BOUGH_INFLOW_EQUILIBRIUM) take_memory(arena, rotor, &data->memory);
+    take_memory(arena, rotor, &data->memory);
     if (bough_arena_exhausted(arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's loads.");
     }
@@ -346,6 +369,7 @@ static void move_blade(const bough_rotor *rotor, const bough_rotor_motion *motio
         out->inflow_x = bough_dot(inflow, state->x);
         out->inflow_y = bough_dot(inflow, state->y);
         out->twist = state->twist;
+        if (rotor->airfoil) state->nose_up = bough_dot(spin, state->z);
     }
 }
 
@@ -417,10 +441,18 @@ static void induce(const bough_rotor *rotor, const disk *d, const station_model 
     out->speed = hypot(out->inflow_x * (1 - out->axial), out->inflow_y * (1 + out->tangential));
 }
 
+static bough_coefficients coefficients(const bough_rotor *rotor, const disk *d, int station,
+                                       const station_state *state, const bough_station *out) {
+    const station_model *m = rotor->station + station;
+    if (!d->stall) return bough_polar_at(m->polar, out->alpha);
+    bough_stall_inflow inflow = {out->speed, out->alpha, state->nose_up};
+    return bough_stall_advance(rotor->airfoil + station, m->chord, inflow, d->step,
+                               d->stall + (out - d->first));
+}
+
 // Force and moment per length of one station on the reference axis.
 static void load(const bough_rotor *rotor, const station_model *m, const station_state *state,
-                 bough_station *out, bough_vec3 *force, bough_vec3 *moment) {
-    bough_coefficients k = bough_polar_at(m->polar, out->alpha);
+                 bough_coefficients k, bough_station *out, bough_vec3 *force, bough_vec3 *moment) {
     double q = 0.5 * rotor->density * out->speed * out->speed * m->chord;
     double c = cos(out->phi), s = sin(out->phi);
     out->coefficients = k;
@@ -440,7 +472,8 @@ static void load_blade(const bough_rotor *rotor, const disk *d, int blade, bough
     double tip_radius = fmax(out[rotor->n_station - 1].radius, 1e-3);
     for (int j = 0; j < rotor->n_station; j++) {
         induce(rotor, d, rotor->station + j, state + j, tip_radius, out + j);
-        load(rotor, rotor->station + j, state + j, out + j, force + j, moment + j);
+        bough_coefficients k = coefficients(rotor, d, j, state + j, out + j);
+        load(rotor, rotor->station + j, state + j, k, out + j, force + j, moment + j);
     }
     for (int i = 0; i < rotor->n_vertex; i++) {
         vertex_row row = rotor->row[i];
@@ -472,6 +505,8 @@ void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *moti
     disk d = survey_disk(rotor, motion, data);
     if (data->memory.clock) bough_rotor_resume(motion, data);
     d.memory = data->memory.station;
+    d.stall = data->memory.stall;
+    if (data->memory.clock) d.step = data->memory.clock->step;
     d.first = data->station;
     for (int b = 0; b < rotor->n_blade; b++)
         load_blade(rotor, &d, b, data);
@@ -480,3 +515,4 @@ void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *moti
 }
 
 const bough_inflow_def *bough_rotor_inflow(const bough_rotor *rotor) { return &rotor->inflow; }
+bool bough_rotor_has_stall(const bough_rotor *rotor) { return rotor->airfoil != NULL; }

@@ -11,6 +11,7 @@
 #include "aero/induction.h"
 #include "aero/inflow.h"
 #include "aero/polar.h"
+#include "aero/stall.h"
 #include "aero/tower.h"
 #include "aero/wind.h"
 #include "core/arena.h"
@@ -35,6 +36,7 @@ typedef struct bough_rotor_def {
     bool skew; // Pitt–Peters correction of the axial induction
     bough_induction_options induction;
     bough_inflow_def inflow;
+    bough_stall_kind stall;
     bough_wind_def wind;
     bough_tower_def tower;
 
@@ -51,8 +53,8 @@ typedef struct bough_rotor_def {
     const bough_mat3 *vertex_rotation; // (n_vertex) columns: section axes
 } bough_rotor_def;
 
-// 3 blades, 1.225 kg/m³, every correction on, equilibrium inflow, no tower, no wind; tables left
-// empty.
+// 3 blades, 1.225 kg/m³, every correction on, equilibrium inflow, static polars, no tower, no wind;
+// tables left empty.
 bough_rotor_def bough_rotor_def_default(void);
 
 // The motion at a sample, in ground axes. Blade b's vertex i is at index b·n_vertex + i.
@@ -80,10 +82,11 @@ typedef struct bough_station {
 
 typedef struct bough_rotor bough_rotor; // the constant model
 
-// What dynamic inflow remembers of the samples before; nothing without it.
+// What dynamic inflow and stall remember of the samples before; nothing without them.
 typedef struct bough_rotor_memory {
     bough_inflow_station *station; // (n_blade × n_station); NULL without
-    bough_inflow_clock *clock;
+    bough_stall_state *stall;      // (n_blade × n_station); NULL without
+    bough_inflow_clock *clock;     // NULL without either
 } bough_rotor_memory;
 
 typedef struct bough_rotor_data {
@@ -106,14 +109,15 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
 bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor,
                                     bough_rotor_data *data);
 
-// Evaluates the loads at the given motion. In equilibrium inflow they are a pure function of it:
-// nothing is kept from sample to sample. With dynamic inflow the induction goes on from the last
-// sample's time to this one's, with the time constant of the last. Finite for any finite motion.
+// Evaluates the loads at the given motion. In equilibrium inflow and with static polars they are a
+// pure function of it: nothing is kept from sample to sample. Else the memory goes on from the last
+// sample's time to this one's, with the inflow's time constant of the last. Finite for any finite
+// motion.
 void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
                         bough_rotor_data *data);
 
 // The memory as a row of numbers, for schemes that repeat a step; its length is 0 without dynamic
-// inflow. `to` and `from` have that length.
+// inflow and stall. `to` and `from` have that length.
 int bough_rotor_memory_size(const bough_rotor *rotor);
 void bough_rotor_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to);
 void bough_rotor_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data);

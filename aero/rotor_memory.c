@@ -1,6 +1,7 @@
 #include "aero/rotor_memory.h"
 
 #include <math.h>
+#include <string.h>
 
 // The equilibrium induction, mean over the disk's area, as a share of the wind along the shaft.
 static double mean_induction(const bough_rotor *rotor, const bough_rotor_data *data, double wind) {
@@ -24,53 +25,60 @@ void bough_rotor_resume(const bough_rotor_motion *motion, bough_rotor_data *data
 
 void bough_rotor_remember(const bough_rotor *rotor, const bough_rotor_motion *motion,
                           bough_rotor_data *data) {
-    double wind = bough_dot(data->disk_wind, motion->shaft);
-    double radius = fmax(data->station[bough_rotor_n_station(rotor) - 1].radius, 1e-3);
-    double axial = mean_induction(rotor, data, wind);
     bough_inflow_clock *clock = data->memory.clock;
-    clock->tau = bough_inflow_time(bough_rotor_inflow(rotor), axial, radius, wind);
+    if (data->memory.station) {
+        double wind = bough_dot(data->disk_wind, motion->shaft);
+        double radius = fmax(data->station[bough_rotor_n_station(rotor) - 1].radius, 1e-3);
+        double axial = mean_induction(rotor, data, wind);
+        clock->tau = bough_inflow_time(bough_rotor_inflow(rotor), axial, radius, wind);
+    }
     clock->time = motion->time;
     clock->started = true;
 }
 
-enum { SCALARS = 3, PER_STATION = 6 };
+// -- saving ---------------------------------------------------------------------------------------
 
-static int n_memory(const bough_rotor *rotor) {
-    if (bough_rotor_inflow(rotor)->kind == BOUGH_INFLOW_EQUILIBRIUM) return 0;
+// Both are doubles only: a row of numbers each.
+enum {
+    SCALARS = 3,
+    INFLOW = sizeof(bough_inflow_state) / sizeof(double),
+    STALL = sizeof(bough_stall_state) / sizeof(double),
+};
+
+static bool has_inflow(const bough_rotor *rotor) {
+    return bough_rotor_inflow(rotor)->kind != BOUGH_INFLOW_EQUILIBRIUM;
+}
+
+static int n_section(const bough_rotor *rotor) {
     return bough_rotor_n_blade(rotor) * bough_rotor_n_station(rotor);
 }
 
 int bough_rotor_memory_size(const bough_rotor *rotor) {
-    int n = n_memory(rotor);
-    return n == 0 ? 0 : SCALARS + PER_STATION * n;
+    int per_section =
+        (has_inflow(rotor) ? INFLOW : 0) + (bough_rotor_has_stall(rotor) ? STALL : 0);
+    return per_section == 0 ? 0 : SCALARS + per_section * n_section(rotor);
 }
 
 void bough_rotor_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to) {
-    int n = n_memory(rotor);
-    if (n == 0) return;
-    const bough_inflow_clock *clock = data->memory.clock;
-    *to++ = clock->time;
-    *to++ = clock->tau;
-    *to++ = clock->started;
-    for (int k = 0; k < 2 * n; k++) {
-        const bough_inflow_state *state = &data->memory.station[k / 2].state;
-        *to++ = state->sought[k % 2];
-        *to++ = state->slow[k % 2];
-        *to++ = state->reached[k % 2];
-    }
+    const bough_rotor_memory *memory = &data->memory;
+    if (!memory->clock) return;
+    *to++ = memory->clock->time;
+    *to++ = memory->clock->tau;
+    *to++ = memory->clock->started;
+    for (int k = 0; memory->station && k < n_section(rotor); k++, to += INFLOW)
+        memcpy(to, &memory->station[k].state, sizeof memory->station[k].state);
+    for (int k = 0; memory->stall && k < n_section(rotor); k++, to += STALL)
+        memcpy(to, &memory->stall[k], sizeof memory->stall[k]);
 }
 
 void bough_rotor_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data) {
-    int n = n_memory(rotor);
-    if (n == 0) return;
-    bough_inflow_clock *clock = data->memory.clock;
-    clock->time = *from++;
-    clock->tau = *from++;
-    clock->started = *from++ != 0;
-    for (int k = 0; k < 2 * n; k++) {
-        bough_inflow_state *state = &data->memory.station[k / 2].state;
-        state->sought[k % 2] = *from++;
-        state->slow[k % 2] = *from++;
-        state->reached[k % 2] = *from++;
-    }
+    const bough_rotor_memory *memory = &data->memory;
+    if (!memory->clock) return;
+    memory->clock->time = *from++;
+    memory->clock->tau = *from++;
+    memory->clock->started = *from++ != 0;
+    for (int k = 0; memory->station && k < n_section(rotor); k++, from += INFLOW)
+        memcpy(&memory->station[k].state, from, sizeof memory->station[k].state);
+    for (int k = 0; memory->stall && k < n_section(rotor); k++, from += STALL)
+        memcpy(&memory->stall[k], from, sizeof memory->stall[k]);
 }

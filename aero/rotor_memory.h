@@ -1,4 +1,4 @@
-// Dynamic inflow of a whole rotor: when its stations' states advance, and saving them.
+// Dynamic inflow and stall of a whole rotor: when its stations' states advance, and saving them.
 #ifndef BOUGH_AERO_ROTOR_MEMORY_H
 #define BOUGH_AERO_ROTOR_MEMORY_H
 
@@ -10,5 +10,6 @@ void bough_rotor_remember(const bough_rotor *rotor, const bough_rotor_motion *mo
                           bough_rotor_data *data);
 
 const bough_inflow_def *bough_rotor_inflow(const bough_rotor *rotor);
+bool bough_rotor_has_stall(const bough_rotor *rotor);
 
 #endif

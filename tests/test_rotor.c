@@ -506,6 +506,43 @@ static void inflow_advances_exactly(void **state) {
     assert_true(one.reached[0] > 3 && one.reached[0] < 6);
 }
 
+// -- dynamic stall -------------------------------------------------------------------------------
+
+// Held still the rotor comes to its static loads; on the way, after a step of pitch into stall, it
+// carries more than them; the memory restored, the step repeats to the bit.
+static void stall_is_late_and_repeats(void **state) {
+    (void)state;
+    rig *still = create_flat_rig(), *r = create_flat_rig();
+    r->def.stall = BOUGH_STALL_HGM;
+    r->def.inflow.kind = BOUGH_INFLOW_OYE;
+    operate(still, 16, -8, 12.1);
+    operate(r, 16, 3, 12.1);
+    assert_int_equal(bough_rotor_memory_size(still->rotor), 0);
+    int n = bough_rotor_memory_size(r->rotor);
+    assert_int_equal(n, 3 + (6 + 9) * BLADES * STATIONS);
+    double *memory = calloc((size_t)n, sizeof *memory), most = 0;
+    sample(still, 0);
+    for (int k = 0; k < 50; k++) sample_at(r, 0.02 * k);
+    bough_rotor_save(r->rotor, &r->data, memory);
+    r->pitch = -8 * degree;
+    for (int k = 50; k < 60; k++) {
+        sample_at(r, 0.02 * k);
+        most = fmax(most, r->data.thrust);
+    }
+    double thrust = r->data.thrust;
+    assert_true(most > 1.02 * still->data.thrust);
+    bough_rotor_restore(r->rotor, memory, &r->data);
+    for (int k = 50; k < 60; k++) sample_at(r, 0.02 * k);
+    check_near(r->data.thrust, thrust, 0, 0);
+    // The blade turns in space, cone or not: flat here, so nothing but the static polars is left.
+    for (int k = 1; k < 5; k++) sample_at(r, 1e4 * k);
+    check_near(r->data.thrust, still->data.thrust, 1e-6, 0);
+    check_near(r->data.torque, still->data.torque, 1e-6, 0);
+    free(memory);
+    destroy_rig(still);
+    destroy_rig(r);
+}
+
 static void bad_defs_are_refused(void **state) {
     (void)state;
     for (int i = 0; i < 7; i++) {
@@ -540,6 +577,7 @@ int main(void) {
         cmocka_unit_test(pitch_step_matches_reference),
         cmocka_unit_test(inflow_is_saved_and_restored),
         cmocka_unit_test(inflow_advances_exactly),
+        cmocka_unit_test(stall_is_late_and_repeats),
         cmocka_unit_test(bad_defs_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

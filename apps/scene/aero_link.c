@@ -153,6 +153,8 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     if (aero->induction.inflow == BOUGH_SCENE_OYE) {
         def.inflow = (bough_inflow_def){BOUGH_INFLOW_OYE, aero->induction.inflow_time};
     }
+    def.pitching_moment = aero->pitching_moment;
+    if (aero->dynamic_stall == BOUGH_SCENE_STALL_HGM) def.stall = BOUGH_STALL_HGM;
     def.wind = wind_def(&aero->wind);
     if (aero->tower.node != NULL) def.tower = tower_def(&aero->tower, t->drag);
     def.n_polar = aero->polars.n_polar;

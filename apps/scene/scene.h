@@ -263,6 +263,7 @@ typedef struct bough_scene_polars {
 typedef enum bough_scene_hold { BOUGH_SCENE_LINEAR, BOUGH_SCENE_CONSTANT } bough_scene_hold;
 typedef enum bough_scene_skew { BOUGH_SCENE_SKEW_NONE, BOUGH_SCENE_PITT_PETERS } bough_scene_skew;
 typedef enum bough_scene_inflow { BOUGH_SCENE_EQUILIBRIUM, BOUGH_SCENE_OYE } bough_scene_inflow;
+typedef enum bough_scene_stall { BOUGH_SCENE_STALL_NONE, BOUGH_SCENE_STALL_HGM } bough_scene_stall;
 typedef enum bough_scene_wind_kind {
     BOUGH_SCENE_WIND_UNIFORM,
     BOUGH_SCENE_WIND_POWER,
@@ -326,6 +327,8 @@ typedef struct bough_scene_aero {
     bough_scene_induction induction;
     bough_scene_tower tower;
     double hub_radius; // [m]
+    int dynamic_stall; // bough_scene_stall
+    bool pitching_moment;
 } bough_scene_aero;
 
 // What `bough modes` finds; a run does not read it.

@@ -510,6 +510,12 @@ static const bough_key aero_keys[] = {
      .help = "vertical tower in front of which the blades pass; left out: no influence"},
     {.name = "hub_radius", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = ">= 0",
      .required = true, AT(hub_radius), .help = "from the rotor axis to the blade roots"},
+    {.name = "dynamic_stall", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "hgm"),
+     .fallback = "none", AT(dynamic_stall),
+     .help = "how lift follows the angle of attack: at once, or by the Beddoes-Leishman model of "
+             "Hansen, Gaunaa and Madsen"},
+    {.name = "pitching_moment", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(pitching_moment),
+     .help = "the sections' moment coefficients count"},
 };
 #undef AT
 static const bough_schema aero_schema = {SCHEMA("the aerodynamics", bough_scene_aero, aero_keys)};
