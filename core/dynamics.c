@@ -82,6 +82,15 @@ static void spring_wrenches(const bough_tree *tree, bough_tree_data *d, int spri
     }
 }
 
+bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data *d, int end,
+                                   const double *input) {
+    int i = tree->ends[end].link;
+    bough_wrench w = bough_wrench_load(input);
+    bough_vec3 force = bough_mat3_mul(tree->links[i].joint.placement.rotation, w.force);
+    w.force = bough_mat3_tmul(d->relative[i].rotation, force);
+    return w;
+}
+
 // wrench_i = V ×* I V − I g − f_ext: what resists, without accelerations
 static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t,
                           const double *input) {
@@ -93,6 +102,10 @@ static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t,
     }
     for (int p = 0; input != NULL && p < tree->n_ports; p++) {
         subtract_at(d, &tree->ports[p], bough_wrench_load(input + BOUGH_PORT_INPUTS * p));
+    }
+    for (int e = 0; input != NULL && e < tree->n_ends; e++) {
+        const double *own = input + BOUGH_PORT_INPUTS * tree->n_ports + BOUGH_END_INPUTS * e;
+        subtract_at(d, &tree->ends[e], bough_tree_end_wrench(tree, d, e, own));
     }
     for (int m = 0; m < tree->n_markers; m++) {
         const bough_external *e = &tree->external[m];

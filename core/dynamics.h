@@ -9,8 +9,9 @@
 
 #include "core/tree.h"
 
-// residual (n_v) = M(q) v̇ + h(q, v) − τ(t, q, u) with v̇ = acceleration (n_v), u the port wrenches
-// (6 × n_ports) or NULL for none: springs, joint loads, port and external wrenches are within τ and h.
+// residual (n_v) = M(q) v̇ + h(q, v) − τ(t, q, u) with v̇ = acceleration (n_v), u the wrenches of
+// ports and ends (6 each) or NULL for none: springs, joint loads, these and external wrenches are
+// within τ and h.
 void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
                                  const double *input, const double *acceleration, double *residual);
 
@@ -23,6 +24,10 @@ bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *data, 
 // last bough_tree_forward_dynamics.
 void bough_tree_response(const bough_tree *tree, bough_tree_data *data, const bough_frame *frame,
                          bough_wrench wrench, double *change);
+
+// The wrench on an end in its body's axes, from the six inputs of the end.
+bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data *data, int end,
+                                   const double *input);
 
 // M(q) (n_v × n_v), symmetric, by composite rigid bodies.
 void bough_tree_mass_matrix(const bough_tree *tree, bough_tree_data *data, double *mass);

@@ -139,6 +139,14 @@ static bough_status check_attachments(const bough_tree_def *def) {
                               def->ports[p].name);
         }
     }
+    for (int e = 0; e < def->n_ends; e++) {
+        int body = def->ends[e].body;
+        bool known = body >= 0 && body < def->n_bodies;
+        if (!known || def->bodies[body].kind != BOUGH_JOINT_FREE) {
+            return bough_fail(BOUGH_INVALID, "end '%s': it needs a body on a free joint",
+                              def->ends[e].name);
+        }
+    }
     for (int k = 0; k < def->n_springs; k++) {
         const int *m = def->springs[k].marker;
         if (m[0] < 0 || m[0] >= def->n_markers || m[1] < 0 || m[1] >= def->n_markers) {
@@ -264,6 +272,11 @@ static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
         tree->ports[p].placement = tree->markers[def->ports[p].marker].placement;
         add_inertia(tree, &tree->ports[p], def->ports[p].root);
     }
+    for (int e = 0; e < def->n_ends; e++) {
+        tree->ends[e].link = tree->bodies[def->ends[e].body].link;
+        tree->ends[e].placement = bough_transform_identity();
+        add_inertia(tree, &tree->ends[e], def->ends[e].inertia);
+    }
     for (int k = 0; k < def->n_loads; k++) {
         tree->loads[k] = def->loads[k];
         tree->loads[k].body = tree->bodies[def->loads[k].body].link;
@@ -310,6 +323,8 @@ static bool take_model(bough_arena *arena, const bough_tree_def *def, bough_tree
     tree->ports = bough_arena_take(arena, (size_t)def->n_ports * sizeof(bough_frame));
     tree->loads = bough_arena_take(arena, (size_t)def->n_loads * sizeof(bough_joint_load_def));
     tree->external = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_external));
+    tree->n_ends = def->n_ends;
+    tree->ends = bough_arena_take(arena, (size_t)def->n_ends * sizeof(bough_frame));
     tree->n_springs = def->n_springs;
     tree->springs = bough_arena_take(arena, (size_t)def->n_springs * sizeof(bough_spring_def));
     tree->initial = bough_arena_doubles(arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) *
@@ -326,6 +341,9 @@ static bool take_names(bough_arena *arena, const bough_tree_def *def, bough_tree
     }
     for (int p = 0; p < def->n_ports; p++) {
         tree->ports[p].name = bough_arena_string(arena, def->ports[p].name);
+    }
+    for (int e = 0; e < def->n_ends; e++) {
+        tree->ends[e].name = bough_arena_string(arena, def->ends[e].name);
     }
     return !bough_arena_exhausted(arena);
 }

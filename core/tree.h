@@ -11,7 +11,12 @@
 #include <stdbool.h>
 
 enum { BOUGH_GROUND = -1 }; // as a body's parent, a marker's body or a link's parent
-enum { BOUGH_PORT_INPUTS = 6, BOUGH_PORT_OUTPUTS = 9 };
+enum {
+    BOUGH_PORT_INPUTS = 6,
+    BOUGH_PORT_OUTPUTS = 9,
+    BOUGH_END_INPUTS = 6,
+    BOUGH_END_OUTPUTS = 13,
+};
 
 // -- def -------------------------------------------------------------------------------------
 
@@ -50,6 +55,17 @@ typedef struct bough_port_def {
                         // carries its inertia and weight, so the wrench must not contain them
 } bough_port_def;
 
+// The other end of a flexible body that carries bodies: a body on a free joint, whose joint frame
+// is the flexible body's frame, so that the joint's coordinates are the end's pose there. Inputs, 6
+// per end after those of the ports: the wrench on it, force in joint axes and moment in body axes
+// [N, N m]. Outputs, 13 per end after those of the ports: its absolute velocity in joint axes,
+// angular velocity in body axes, position in joint axes and quaternion [m/s, rad/s, m, –].
+typedef struct bough_end_def {
+    const char *name;
+    int body;              // index, on a free joint
+    bough_inertia inertia; // of the flexible body's vertex there, in body axes, as at a port
+} bough_end_def;
+
 // A load along a joint's axis: value × factor, factor rising linearly from 0 at `start` to 1 at
 // `end`; end <= start means constant from the beginning.
 typedef struct bough_joint_load_def {
@@ -76,6 +92,8 @@ typedef struct bough_tree_def {
     const bough_joint_load_def *loads;
     int n_springs;
     const bough_spring_def *springs;
+    int n_ends;
+    const bough_end_def *ends;
 } bough_tree_def;
 
 // -- model: constant once built, but for the external wrenches ---------------------------------
@@ -117,6 +135,8 @@ typedef struct bough_tree {
     bough_joint_load_def *loads; // (n_loads), body replaced by the link's index
     int n_springs;
     bough_spring_def *springs;   // (n_springs), as in the def
+    int n_ends;
+    bough_frame *ends;           // (n_ends), as in the def, the body's frame
     bough_external *external;    // (n_markers), changed by bough_tree_set_wrench only
     double *initial;             // initial state (n_q + n_v)
 } bough_tree;
@@ -124,6 +144,15 @@ typedef struct bough_tree {
 // Builds the tree in the arena. BOUGH_INVALID for an unknown parent, a cycle, a joint that moves
 // no inertia and the like, naming the body.
 bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bough_tree **tree);
+
+// Sizes of the input and the output of all ports and ends.
+static inline int bough_tree_n_inputs(const bough_tree *tree) {
+    return BOUGH_PORT_INPUTS * tree->n_ports + BOUGH_END_INPUTS * tree->n_ends;
+}
+
+static inline int bough_tree_n_outputs(const bough_tree *tree) {
+    return BOUGH_PORT_OUTPUTS * tree->n_ports + BOUGH_END_OUTPUTS * tree->n_ends;
+}
 
 // Index of a body or marker by name; -1 when there is none.
 int bough_tree_find_body(const bough_tree *tree, const char *name);

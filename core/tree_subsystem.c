@@ -54,6 +54,40 @@ static bool derivative(void *self, double t, const double *state, const double *
 
 static void store3(bough_vec3 x, double *out) { out[0] = x.x, out[1] = x.y, out[2] = x.z; }
 
+// The part of an end's velocity that is the link's, R u: from link to joint axes.
+static bough_vec3 in_joint_axes(const tree_subsystem *s, int link, bough_vec3 u) {
+    bough_mat3 placement = s->tree->links[link].joint.placement.rotation;
+    return bough_mat3_tmul(placement, bough_mat3_mul(s->data->relative[link].rotation, u));
+}
+
+// u, W, x, p of every end.
+static void end_outputs(const tree_subsystem *s, const double *state, double *out) {
+    for (int e = 0; e < s->tree->n_ends; e++, out += BOUGH_END_OUTPUTS) {
+        int i = s->tree->ends[e].link;
+        bough_twist twist = s->data->twist[i];
+        store3(in_joint_axes(s, i, twist.linear), out);
+        store3(twist.angular, out + 3);
+        memcpy(out + 6, state + s->tree->links[i].first_coordinate, 7 * sizeof *out);
+    }
+}
+
+// δ(R u) = R (δu + δη × u); the links' tangents stand in the data.
+static void end_tangents(const tree_subsystem *s, const double *state, const double *change,
+                         double *out) {
+    for (int e = 0; e < s->tree->n_ends; e++, out += BOUGH_END_OUTPUTS) {
+        int i = s->tree->ends[e].link;
+        const bough_link *link = &s->tree->links[i];
+        const double *own = change + link->first_coordinate;
+        double eta[BOUGH_JOINT_SPEEDS];
+        bough_joint_speed(&link->joint, state + link->first_coordinate, own, eta);
+        bough_twist d = s->data->acceleration[i];
+        bough_vec3 turned = bough_cross(bough_v3(eta[3], eta[4], eta[5]), s->data->twist[i].linear);
+        store3(in_joint_axes(s, i, bough_add(d.linear, turned)), out);
+        store3(d.angular, out + 3);
+        memcpy(out + 6, own, 7 * sizeof *out);
+    }
+}
+
 static void output(void *self, double t, const double *state, const double *input, double *out) {
     (void)t, (void)input;
     tree_subsystem *s = self;
@@ -64,6 +98,7 @@ static void output(void *self, double t, const double *state, const double *inpu
         bough_twist_store(bough_tree_frame_twist(s->data, port), out);
         store3(bough_mat3_tmul(port->placement.rotation, g), out + 6);
     }
+    end_outputs(s, state, out);
 }
 
 // NOLINTNEXTLINE(readability-function-size): the contract fixes the parameters
@@ -71,7 +106,7 @@ static void output_tangent(void *self, double t, const double *state, const doub
                            const double *state_rate, const double *input_rate, double *out) {
     (void)t, (void)input, (void)input_rate; // a wrench moves nothing at once
     tree_subsystem *s = self;
-    memset(out, 0, (size_t)s->tree->n_ports * BOUGH_PORT_OUTPUTS * sizeof(double));
+    memset(out, 0, (size_t)bough_tree_n_outputs(s->tree) * sizeof(double));
     if (state_rate == NULL) return;
     bough_tree_kinematics(s->tree, state, s->data);
     bough_tree_tangent(s->tree, state, state_rate, s->data);
@@ -83,6 +118,7 @@ static void output_tangent(void *self, double t, const double *state, const doub
         store3(bough_mat3_tmul(port->placement.rotation, s->data->gravity_rate[port->link]),
                out + 6);
     }
+    end_tangents(s, state, state_rate, out);
 }
 
 static void input_columns(void *self, double t, const double *state, const double *input,
@@ -91,12 +127,15 @@ static void input_columns(void *self, double t, const double *state, const doubl
     const bough_tree *tree = s->tree;
     bough_tree_kinematics(tree, state, s->data);
     bough_tree_forward_dynamics(tree, s->data, t, input, s->r); // for its factors
-    for (int j = 0; j < BOUGH_PORT_INPUTS * tree->n_ports; j++, column += s->n) {
+    for (int j = 0; j < bough_tree_n_inputs(tree); j++, column += s->n) {
         double unit[BOUGH_PORT_INPUTS] = {0};
+        int port = j / BOUGH_PORT_INPUTS, end = port - tree->n_ports; // six inputs of either
         unit[j % BOUGH_PORT_INPUTS] = 1;
+        const bough_frame *frame = end < 0 ? &tree->ports[port] : &tree->ends[end];
+        bough_wrench wrench = end < 0 ? bough_wrench_load(unit)
+                                      : bough_tree_end_wrench(tree, s->data, end, unit);
         memset(column, 0, (size_t)tree->n_q * sizeof(double));
-        bough_tree_response(tree, s->data, &tree->ports[j / BOUGH_PORT_INPUTS],
-                            bough_wrench_load(unit), column + tree->n_q);
+        bough_tree_response(tree, s->data, frame, wrench, column + tree->n_q);
     }
 }
 
@@ -290,7 +329,7 @@ static bool take(bough_arena *arena, tree_subsystem *s) {
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         *vectors[i] = bough_arena_doubles(arena, n);
     }
-    s->input = bough_arena_doubles(arena, BOUGH_PORT_INPUTS * (size_t)s->tree->n_ports);
+    s->input = bough_arena_doubles(arena, (size_t)bough_tree_n_inputs(s->tree));
     s->ida_matrix = bough_arena_doubles(arena, n * n);
     s->newton_matrix = bough_arena_doubles(arena, n * n);
     s->ida_pivot = bough_arena_take(arena, n * sizeof(int));
@@ -314,8 +353,8 @@ static void describe(tree_subsystem *s, bough_subsystem *subsystem) {
         .kind = "tree",
         .solver = "IDA",
         .n_state = s->n,
-        .n_input = BOUGH_PORT_INPUTS * s->tree->n_ports,
-        .n_output = BOUGH_PORT_OUTPUTS * s->tree->n_ports,
+        .n_input = bough_tree_n_inputs(s->tree),
+        .n_output = bough_tree_n_outputs(s->tree),
         .scale = s->scale,
         .time = &s->time,
         .state = s->state,

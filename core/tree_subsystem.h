@@ -1,5 +1,5 @@
 // The rigid tree behind the contract of subsystem.h: kind "tree", solver "IDA". State (q, v), input
-// 6 and output 9 per port as in tree.h. Its own steps solve the implicit form
+// 6 and output 9 per port, 6 and 13 per end as in tree.h. Its own steps solve the implicit form
 //     q̇ − N(q) v = 0,   M(q) v̇ + h(q, v) − τ(t, q, u) = 0
 // by IDA, the second row evaluated by the recursive inverse dynamics in O(n).
 #ifndef BOUGH_CORE_TREE_SUBSYSTEM_H

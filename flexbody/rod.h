@@ -1,9 +1,10 @@
 // The discrete geometrically exact Cosserat rod (THEORY 1): constant model and scratch.
 //
 // Vertex 0 is the root: it is welded to the body reference frame (BRF) and moves as the input
-// says. Of a rod that carries bodies at its end, vertex N is the bodies' and moves as the input says,
-// too. The vertices 1..n between carry the states, n = N or N − 1. Velocities are ABSOLUTE velocities resolved in moving
-// axes, so that inputs are the BRF's twist and gravity only, no acceleration:
+// says. Of a rod that carries bodies at its end, vertex N is the bodies' and moves as the input
+// says, too. The vertices 1..n between carry the states, n = N or N − 1. Velocities are ABSOLUTE
+// velocities resolved in moving axes, so that inputs are the BRF's twist and gravity only, no
+// acceleration:
 //     x  position relative to the BRF, in BRF axes [m]              ẋ = u − u₀ − ω×x
 //     p  rotation BRF ← section, quaternion      ṗ = ½ (p∘(0,W) − (0,ω)∘p) + κ(1 − |p|²)p
 //     u  absolute velocity, in BRF axes [m/s]                       (11)
