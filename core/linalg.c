@@ -10,6 +10,10 @@ extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *
 extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
                     const int *lda, const int *pivot, double *b, const int *ldb, int *info,
                     size_t trans_length);
+extern void zgetrf_(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
+extern void zgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
+                    const int *lda, const int *pivot, double *b, const int *ldb, int *info,
+                    size_t trans_length);
 extern void dgeev_(const char *left, const char *right, const int *n, double *a, const int *lda,
                    double *real, double *imaginary, double *vl, const int *ldvl, double *vr,
                    const int *ldvr, double *work, const int *lwork, int *info, size_t left_length,
@@ -28,12 +32,14 @@ static void prepare(void) {
 }
 
 // A NaN may pass LAPACK's pivot search.
-static bool finite_matrix(int n, const double *a) {
+static bool all_finite(size_t count, const double *a) {
     double sum = 0;
-    for (size_t i = 0; i < (size_t)n * (size_t)n; i++)
+    for (size_t i = 0; i < count; i++)
         sum += fabs(a[i]);
     return isfinite(sum);
 }
+
+static bool finite_matrix(int n, const double *a) { return all_finite((size_t)n * (size_t)n, a); }
 
 bool bough_dense_factor(int n, double *a, int *pivot) {
     if (n == 0) return true;
@@ -48,6 +54,21 @@ void bough_dense_solve(int n, int n_right, const double *factor, const int *pivo
     if (n == 0 || n_right == 0) return;
     int info = 0;
     dgetrs_("N", &n, &n_right, factor, &n, pivot, b, &n, &info, 1);
+}
+
+bool bough_complex_factor(int n, double *a, int *pivot) {
+    if (n == 0) return true;
+    prepare();
+    if (!all_finite(2 * (size_t)n * (size_t)n, a)) return false;
+    int info = 0;
+    zgetrf_(&n, &n, a, &n, pivot, &info);
+    return info == 0;
+}
+
+void bough_complex_solve(int n, const double *factor, const int *pivot, double *b) {
+    if (n == 0) return;
+    int info = 0, one = 1;
+    zgetrs_("N", &n, &one, factor, &n, pivot, b, &n, &info, 1);
 }
 
 bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *work) {

@@ -12,6 +12,11 @@ bool bough_dense_factor(int n, double *a, int *pivot);
 // Solves a x = b in place with those factors: b (n × n_right, column-major).
 void bough_dense_solve(int n, int n_right, const double *factor, const int *pivot, double *b);
 
+// The same for complex matrices and one right side, real and imaginary parts next to each other:
+// a (n × n × 2, column-major), b (n × 2).
+bool bough_complex_factor(int n, double *a, int *pivot);
+void bough_complex_solve(int n, const double *factor, const int *pivot, double *b);
+
 // Eigenvalues of a (n × n, column-major; overwritten): value (2 × n), real parts before imaginary
 // ones, conjugate pairs in sequence. vector (n × n, column-major): the right eigenvectors of length
 // 1, of a pair its real and imaginary part in two columns. work (8 n). False when a is not finite

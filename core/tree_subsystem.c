@@ -4,6 +4,7 @@
 #include "core/base.h"
 #include "core/dynamics.h"
 #include "core/integrator_ida.h"
+#include "core/integrator_radau.h"
 #include "core/linalg.h"
 
 #include <string.h>
@@ -25,8 +26,9 @@ typedef struct tree_subsystem {
     const bough_signal *signal;          // while advancing
     double *input;                       // (n_input) at the evaluation's time
     bool started;                        // the integrator's history belongs to the state
-    bough_ida *ida;                      // NULL without states
-    double *ida_state, *ida_rate;        // (n) as IDA keeps it: quaternions not normalised
+    bough_ida *ida;                      // one of them, none without states
+    bough_radau *radau;
+    double *own_state, *own_rate;        // (n) the integrator's: quaternions not normalised
     double *ida_matrix, *newton_matrix;  // (n × n, column-major)
     int *ida_pivot, *newton_pivot;       // (n)
     double *y, *r, *base, *plus, *minus; // (n) scratch
@@ -227,23 +229,55 @@ static void normalise(tree_subsystem *s) {
 static bool has_drifted(const tree_subsystem *s) {
     for (int i = 0; i < s->tree->n_links; i++) {
         const bough_link *link = &s->tree->links[i];
-        if (bough_joint_drift(&link->joint, s->ida_state + link->first_coordinate) > drift_limit) {
+        if (bough_joint_drift(&link->joint, s->own_state + link->first_coordinate) > drift_limit) {
             return true;
         }
     }
     return false;
 }
 
+// f under the signal, and its derivative by one-sided differences
+static bool rate_of_change(void *self, double t, const double *y, double *rate) {
+    tree_subsystem *s = self;
+    evaluate_input(s, t);
+    return derivative(s, t, y, s->input, rate);
+}
+
+static bool rate_jacobian(void *self, double t, const double *y, double *matrix) {
+    tree_subsystem *s = self;
+    int n = s->n;
+    if (!rate_of_change(s, t, y, s->base)) return false;
+    memcpy(s->y, y, (size_t)n * sizeof(double));
+    for (int j = 0; j < n; j++) {
+        double d = j < s->tree->n_q ? onesided_increment : increment_at(y[j], onesided_increment);
+        s->y[j] = y[j] + d;
+        d = s->y[j] - y[j];
+        if (!derivative(s, t, s->y, s->input, s->plus)) return false;
+        s->y[j] = y[j];
+        for (int i = 0; i < n; i++)
+            matrix[(size_t)n * (size_t)j + (size_t)i] = (s->plus[i] - s->base[i]) / d;
+    }
+    return true;
+}
+
+static bough_status start_radau(tree_subsystem *s) {
+    if (s->started) bough_radau_jump(s->radau);
+    if (!s->started) bough_radau_start(s->radau, s->time, s->state);
+    s->started = true;
+    return bough_ok();
+}
+
 static bough_status start(tree_subsystem *s) {
+    if (s->radau != NULL) return start_radau(s);
     evaluate_input(s, s->time);
-    if (!derivative(s, s->time, s->state, s->input, s->ida_rate)) {
+    if (!derivative(s, s->time, s->state, s->input, s->own_rate)) {
         return bough_fail(BOUGH_FAILED,
                           "%s at t = %.9g s: the accelerations are not finite; try a smaller "
                           "macro step",
                           s->name, s->time);
     }
     s->started = true;
-    return bough_ida_start(s->ida, s->time, s->state, s->ida_rate);
+    return bough_ida_start(s->ida, s->time, s->state, s->own_rate);
 }
 
 static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
@@ -256,14 +290,15 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
     s->signal = input;
     if (restart || !s->started) status = start(s);
     if (bough_is_ok(&status)) {
-        status = bough_ida_advance(s->ida, t1, s->ida_state, s->ida_rate);
+        status = s->radau != NULL ? bough_radau_advance(s->radau, t1, s->own_state)
+                                  : bough_ida_advance(s->ida, t1, s->own_state, s->own_rate);
     }
     if (!bough_is_ok(&status)) {
         s->started = false;
         return status;
     }
     s->time = t1;
-    memcpy(s->state, s->ida_state, (size_t)s->n * sizeof(double));
+    memcpy(s->state, s->own_state, (size_t)s->n * sizeof(double));
     normalise(s);
     if (has_drifted(s)) s->started = false;
     return status;
@@ -271,15 +306,20 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
 
 // -- state -----------------------------------------------------------------------------------
 
+// Of Radau all is kept, of IDA, whose history the library hides, nothing.
 static size_t save_size(void *self) {
     tree_subsystem *s = self;
-    return (1 + (size_t)s->n) * sizeof(double);
+    size_t own = s->radau != NULL ? bough_radau_save_size(s->radau) : 0;
+    return (2 + (size_t)s->n) * sizeof(double) + own;
 }
 
 static void save(void *self, void *copy) {
     tree_subsystem *s = self;
-    memcpy(copy, &s->time, sizeof(double));
-    memcpy((double *)copy + 1, s->state, (size_t)s->n * sizeof(double));
+    double *to = copy;
+    to[0] = s->time;
+    to[1] = s->started && s->radau != NULL;
+    memcpy(to + 2, s->state, (size_t)s->n * sizeof(double));
+    if (s->radau != NULL) bough_radau_save(s->radau, to + 2 + s->n);
 }
 
 static void set_state(void *self, double t, const double *state) {
@@ -292,15 +332,18 @@ static void set_state(void *self, double t, const double *state) {
 
 static void restore(void *self, const void *copy) {
     tree_subsystem *s = self;
-    memcpy(&s->time, copy, sizeof(double));
-    memcpy(s->state, (const double *)copy + 1, (size_t)s->n * sizeof(double));
-    s->started = false;
+    const double *from = copy;
+    s->time = from[0];
+    s->started = from[1] != 0;
+    memcpy(s->state, from + 2, (size_t)s->n * sizeof(double));
+    if (s->radau != NULL) bough_radau_restore(s->radau, from + 2 + s->n);
 }
 
 static void statistics(void *self, bough_statistics *sum) {
     tree_subsystem *s = self;
     *sum = (bough_statistics){0};
     if (s->ida != NULL) bough_ida_statistics(s->ida, sum);
+    if (s->radau != NULL) bough_radau_statistics(s->radau, sum);
     sum->derivatives += s->derivatives;
     sum->factorisations += s->newton_setups;
 }
@@ -324,7 +367,7 @@ static const bough_subsystem_ops operations = {
 
 static bool take(bough_arena *arena, tree_subsystem *s) {
     size_t n = (size_t)s->n;
-    double **vectors[] = {&s->state, &s->scale, &s->ida_state, &s->ida_rate, &s->y,
+    double **vectors[] = {&s->state, &s->scale, &s->own_state, &s->own_rate, &s->y,
                           &s->r,     &s->base,  &s->plus,      &s->minus};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         *vectors[i] = bough_arena_doubles(arena, n);
@@ -337,21 +380,27 @@ static bool take(bough_arena *arena, tree_subsystem *s) {
     return !bough_arena_exhausted(arena);
 }
 
-static bough_status create_integrator(bough_arena *arena, tree_subsystem *s, double rtol) {
+static bough_status create_integrator(bough_arena *arena, tree_subsystem *s,
+                                      bough_tree_solver solver, double rtol) {
+    if (s->n == 0) return bough_ok();
+    if (solver == BOUGH_TREE_RADAU) {
+        bough_ode ode = {s->name, s->n, s, rate_of_change, rate_jacobian};
+        return bough_radau_create(arena, &ode, s->scale, rtol, &s->radau);
+    }
     bough_dae dae = {.name = s->name,
                      .n = s->n,
                      .self = s,
                      .residual = residual,
                      .setup = residual_setup,
                      .solve = residual_solve};
-    return s->n == 0 ? bough_ok() : bough_ida_create(arena, &dae, s->scale, rtol, &s->ida);
+    return bough_ida_create(arena, &dae, s->scale, rtol, &s->ida);
 }
 
 static void describe(tree_subsystem *s, bough_subsystem *subsystem) {
     *subsystem = (bough_subsystem){
         .name = s->name,
         .kind = "tree",
-        .solver = "IDA",
+        .solver = s->radau != NULL ? "Radau IIA" : "IDA",
         .n_state = s->n,
         .n_input = bough_tree_n_inputs(s->tree),
         .n_output = bough_tree_n_outputs(s->tree),
@@ -364,7 +413,7 @@ static void describe(tree_subsystem *s, bough_subsystem *subsystem) {
 }
 
 bough_status bough_tree_subsystem_create(bough_arena *arena, bough_tree *tree, const char *name,
-                                         double start_time, double rtol,
+                                         double start_time, bough_tree_solver solver, double rtol,
                                          bough_subsystem *subsystem) {
     tree_subsystem *s = bough_arena_take(arena, sizeof *s);
     if (s == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's integrator");
@@ -379,7 +428,7 @@ bough_status bough_tree_subsystem_create(bough_arena *arena, bough_tree *tree, c
     for (int i = 0; i < s->n; i++)
         s->scale[i] = 1;
     set_state(s, start_time, tree->initial);
-    status = create_integrator(arena, s, rtol);
+    status = create_integrator(arena, s, solver, rtol);
     if (bough_is_ok(&status)) describe(s, subsystem);
     return status;
 }

@@ -34,6 +34,22 @@ static void lu_refuses_singular_and_nan(void **state) {
     bough_dense_solve(0, 1, NULL, NULL, NULL);
 }
 
+static void complex_lu_solves(void **state) {
+    (void)state;
+    // ((0, 2 + i), (1 − i, 3)) (1 + 2i, −1) = (−2 − i, 0 + i)
+    double a[8] = {0, 0, 1, -1, 2, 1, 3, 0}, b[4] = {-2, -1, 0, 1};
+    const double x[4] = {1, 2, -1, 0};
+    int pivot[2];
+    assert_true(bough_complex_factor(2, a, pivot));
+    bough_complex_solve(2, a, pivot, b);
+    for (int i = 0; i < 4; i++)
+        check_near(b[i], x[i], 0, 1e-14);
+    double nan[8] = {0, NAN, 1, 0, 1, 0, 1, 0}, singular[8] = {1, 1, 2, 2, 1, 1, 2, 2};
+    assert_false(bough_complex_factor(2, nan, pivot));
+    assert_false(bough_complex_factor(2, singular, pivot));
+    assert_true(bough_complex_factor(0, NULL, NULL));
+}
+
 // A rotation scaled by 0.5 beside the number 3, seen through a change of basis.
 static void eigenvalues_and_vectors(void **state) {
     (void)state;
@@ -98,6 +114,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lu_solves_with_interchanges),
         cmocka_unit_test(lu_refuses_singular_and_nan),
+        cmocka_unit_test(complex_lu_solves),
         cmocka_unit_test(eigenvalues_and_vectors),
         cmocka_unit_test(cholesky_finds_the_factor),
         cmocka_unit_test(cholesky_refuses_indefinite_and_nearly_singular),

@@ -21,17 +21,21 @@ typedef struct fixture {
     bough_subsystem s;
 } fixture;
 
-static fixture build(const bough_tree_def *def, double rtol) {
+static fixture build_with(const bough_tree_def *def, bough_tree_solver solver, double rtol) {
     fixture f = {.arena = bough_arena_create()};
     bough_status status = bough_tree_create(f.arena, def, &f.tree);
     if (!bough_is_ok(&status)) print_error("%s\n", status.message);
     assert_int_equal(status.code, BOUGH_OK);
     status = bough_tree_data_create(f.arena, f.tree, &f.data);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0, rtol, &f.s);
+    status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0, solver, rtol, &f.s);
     assert_int_equal(status.code, BOUGH_OK);
     assert_true(f.s.n_state <= MOST);
     return f;
+}
+
+static fixture build(const bough_tree_def *def, double rtol) {
+    return build_with(def, BOUGH_TREE_IDA, rtol);
 }
 
 static void advance(fixture *f, double t1, bool restart) {
@@ -84,7 +88,7 @@ static bough_body_def random_body(unsigned *seed, const char *name, int parent,
 
 // Every kind of joint, branches, a welded body in between, bodies out of order, two ports (one on
 // the welded body), a joint load with a ramp and an external wrench.
-static fixture everything(double rtol) {
+static fixture everything_with(bough_tree_solver solver, double rtol) {
     static const char *names[] = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"};
     static const int parents[] = {8, 0, 7, 9, 3, 4, BOUGH_GROUND, BOUGH_GROUND, 2, 2};
     static const bough_joint_kind kinds[] = {
@@ -122,11 +126,13 @@ static fixture everything(double rtol) {
                           .loads = loads,
                           .n_springs = 2,
                           .springs = springs};
-    fixture f = build(&def, rtol);
+    fixture f = build_with(&def, solver, rtol);
     double value[6] = {1, 2, 3, -1, -2, 0.5}, rate[6] = {0.5, 0, 1, 0, 1, 0};
     bough_tree_set_wrench(f.tree, 2, 0.05, value, rate);
     return f;
 }
+
+static fixture everything(double rtol) { return everything_with(BOUGH_TREE_IDA, rtol); }
 
 static const double some_input[12] = {1, -2, 0.5, 0.3, 0.8, -0.6, -1, 0.4, 2, 0.7, -0.1, 0.9};
 
@@ -716,13 +722,15 @@ static void bad_defs_are_named(void **state) {
 
 static void tree_fulfils_the_contract(void **state) {
     (void)state;
-    fixture f = everything(1e-8);
-    double y[MOST];
-    memcpy(y, f.s.state, (size_t)f.s.n_state * sizeof(double));
-    contract_point at = {0.2, y, some_input, 1e-5};
-    contract_check(&f.s, at, 0.07, 0.05);
-    contract_set_state(&f.s, at, 1e-4);
-    bough_arena_destroy(f.arena);
+    for (int solver = BOUGH_TREE_IDA; solver <= BOUGH_TREE_RADAU; solver++) {
+        fixture f = everything_with(solver, 1e-8);
+        double y[MOST];
+        memcpy(y, f.s.state, (size_t)f.s.n_state * sizeof(double));
+        contract_point at = {0.2, y, some_input, 1e-5};
+        contract_check(&f.s, at, 0.07, 0.05);
+        contract_set_state(&f.s, at, 1e-4);
+        bough_arena_destroy(f.arena);
+    }
 }
 
 static void restored_copies_repeat_bit_by_bit(void **state) {
@@ -751,6 +759,34 @@ static void restored_copies_repeat_bit_by_bit(void **state) {
     assert_memory_equal(first, second, (size_t)n * sizeof(double));
     free(copy);
     bough_arena_destroy(f.arena);
+}
+
+// Radau is a one-step method: a copy of it lacks nothing.
+static void radau_goes_on_from_a_copy_as_if_nothing_had_been(void **state) {
+    (void)state;
+    fixture f = everything_with(BOUGH_TREE_RADAU, 1e-7), tight = everything(1e-11);
+    size_t n = (size_t)f.s.n_state * sizeof(double);
+    double coefficient[48] = {0}, first[MOST];
+    for (int i = 0; i < 24; i++)
+        coefficient[i] = some_input[i % 12];
+    bough_signal signal = {12, 0, 1, coefficient};
+    void *copy = malloc(f.s.ops->save_size(f.s.self));
+    for (int k = 1; k <= 25; k++) {
+        f.s.ops->save(f.s.self, copy);
+        f.s.ops->advance(f.s.self, 0.02 * k, &signal, k == 16); // the ramp's end is a kink
+        memcpy(first, f.s.state, n);
+        f.s.ops->advance(f.s.self, 0.02 * k + 0.1, &signal, true);
+        f.s.ops->restore(f.s.self, copy);
+        f.s.ops->advance(f.s.self, 0.02 * k, &signal, k == 16);
+        assert_memory_equal(first, f.s.state, n);
+    }
+    tight.s.ops->advance(tight.s.self, 0.3, &signal, true);
+    tight.s.ops->advance(tight.s.self, 0.5, &signal, true);
+    for (int i = 0; i < f.s.n_state; i++)
+        check_near(f.s.state[i], tight.s.state[i], 1e-6, 1e-6);
+    free(copy);
+    bough_arena_destroy(f.arena);
+    bough_arena_destroy(tight.arena);
 }
 
 // Kept history over many macro steps agrees with a far tighter run.
@@ -852,6 +888,7 @@ int main(void) {
         cmocka_unit_test(bad_defs_are_named),
         cmocka_unit_test(tree_fulfils_the_contract),
         cmocka_unit_test(restored_copies_repeat_bit_by_bit),
+        cmocka_unit_test(radau_goes_on_from_a_copy_as_if_nothing_had_been),
         cmocka_unit_test(kept_history_keeps_the_accuracy),
         cmocka_unit_test(external_wrench_acts_as_a_port_does),
         cmocka_unit_test(frame_velocity_is_the_rate_of_the_pose),

@@ -280,8 +280,11 @@ static bough_status build_tree(builder *b) {
     bough_status status = bough_tree_create(b->arena, &def, &s->tree);
     if (bough_is_ok(&status)) status = bough_tree_data_create(b->arena, s->tree, &s->view);
     if (!bough_is_ok(&status)) return status;
-    return bough_tree_subsystem_create(b->arena, s->tree, "tree", 0,
-                                       scene->simulation.master.rtol, &s->trunk);
+    const bough_scene_solver *master = &scene->simulation.master;
+    bough_tree_solver solver =
+        master->solver == BOUGH_SCENE_RADAU ? BOUGH_TREE_RADAU : BOUGH_TREE_IDA;
+    return bough_tree_subsystem_create(b->arena, s->tree, "tree", 0, solver, master->rtol,
+                                       &s->trunk);
 }
 
 static bough_micro_options micro_options(const builder *b, const bough_scene_body *body) {

@@ -48,7 +48,10 @@ typedef struct bough_scene_coupling {
     int iterations;    // most in a macro step
 } bough_scene_coupling;
 
-typedef enum bough_scene_master_kind { BOUGH_SCENE_IDA } bough_scene_master_kind;
+typedef enum bough_scene_master_kind {
+    BOUGH_SCENE_IDA,
+    BOUGH_SCENE_RADAU,
+} bough_scene_master_kind;
 typedef enum bough_scene_micro_kind {
     BOUGH_SCENE_CVODE_BDF,
     BOUGH_SCENE_GENERALIZED_ALPHA,

@@ -84,10 +84,13 @@ static const bough_schema rod_schema = {SCHEMA("a rod", bough_scene_rod, rod_key
 #define RTOL(value)                                                                                \
     {.name = "rtol", .kind = BOUGH_KEY_NUMBER, .range = "[1e-14, 0.1]", .fallback = value,         \
      .offset = offsetof(bough_scene_solver, rtol), .help = "relative tolerance"}
-#define SOLVER(value)                                                                              \
-    {.name = "solver", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES(value), .fallback = value,     \
-     .offset = offsetof(bough_scene_solver, solver), .help = "time integrator"}
-static const bough_key master_keys[] = {SOLVER("ida"), RTOL("1e-6")};
+static const bough_key master_keys[] = {
+    {.name = "solver", .kind = BOUGH_KEY_CHOICE, .fallback = "ida",
+     .choices = CHOICES("ida", "radau5"), .offset = offsetof(bough_scene_solver, solver),
+     .help = "time integrator: BDF of variable order, or Radau IIA of order 5, which input that "
+             "jumps does not slow; the monolithic scheme has its own, ida"},
+    RTOL("1e-6"),
+};
 #define AT(field) .offset = offsetof(bough_scene_solver, field)
 static const bough_key micro_keys[] = {
     {.name = "solver", .kind = BOUGH_KEY_CHOICE, .fallback = "cvode-bdf",
