@@ -516,3 +516,7 @@ void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *moti
 
 const bough_inflow_def *bough_rotor_inflow(const bough_rotor *rotor) { return &rotor->inflow; }
 bool bough_rotor_has_stall(const bough_rotor *rotor) { return rotor->airfoil != NULL; }
+
+bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius) {
+    return bough_wind_covers(&rotor->wind, hub, radius);
+}

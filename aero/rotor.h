@@ -122,6 +122,9 @@ int bough_rotor_memory_size(const bough_rotor *rotor);
 void bough_rotor_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to);
 void bough_rotor_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data);
 
+// Whether the wind is known all over a disk: bough_wind_covers.
+bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius);
+
 // The number of blades, stations per blade and vertices per blade.
 int bough_rotor_n_blade(const bough_rotor *rotor);
 int bough_rotor_n_station(const bough_rotor *rotor);

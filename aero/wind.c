@@ -30,11 +30,37 @@ static const double *copied(bough_arena *arena, const double *from, int n) {
     return to;
 }
 
+static bough_status read_hub(bough_arena *arena, bough_wind *wind) {
+    bough_wind_hub *hub = bough_arena_take(arena, sizeof *hub);
+    if (!hub) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
+    hub->reference_height = wind->def.reference_height;
+    hub->reference_length = wind->def.reference_length;
+    if (!(hub->reference_height > 0 && hub->reference_length > 0)) {
+        return bough_fail(BOUGH_INVALID, "Wind: reference height and length must be positive.");
+    }
+    wind->hub = hub;
+    return bough_wind_hub_read(arena, wind->def.file, hub);
+}
+
+static bough_status read_box(bough_arena *arena, bough_wind *wind) {
+    bough_wind_box *box = bough_arena_take(arena, sizeof *box);
+    if (!box) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
+    wind->box = box;
+    bough_status status = bough_wind_box_read(arena, wind->def.file, box);
+    if (!bough_is_ok(&status) || bough_wind_box_lasts(box, wind->def.until)) return status;
+    return bough_fail(BOUGH_INVALID,
+                      "%s does not repeat and is too short: it has %g s, of which %g s pass before "
+                      "it reaches the rotor whole; %g s are needed.", wind->def.file,
+                      box->duration, box->half_width / box->mean, wind->def.until);
+}
+
 bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind) {
-    bough_status status = check(def);
-    if (!bough_is_ok(&status)) return status;
     *wind = (bough_wind){
         .def = *def, .along_x = cos(def->direction), .along_y = sin(def->direction)};
+    if (def->source == BOUGH_WIND_HUB_FILE) return read_hub(arena, wind);
+    if (def->source == BOUGH_WIND_BOX_FILE) return read_box(arena, wind);
+    bough_status status = check(def);
+    if (!bough_is_ok(&status)) return status;
     if (def->shear == BOUGH_WIND_LOG) {
         wind->shear_scale = 1 / log(def->reference_height / def->roughness);
     }
@@ -77,7 +103,33 @@ static double share_at(const bough_wind *wind, double height) {
     return 1;
 }
 
+// From ground axes to those in which a file's wind blows along x.
+static bough_vec3 to_file(const bough_wind *wind, bough_vec3 v) {
+    return bough_v3(wind->along_x * v.x + wind->along_y * v.y,
+                    wind->along_x * v.y - wind->along_y * v.x, v.z);
+}
+
+static bough_vec3 from_file(const bough_wind *wind, bough_vec3 v) {
+    return bough_v3(wind->along_x * v.x - wind->along_y * v.y,
+                    wind->along_x * v.y + wind->along_y * v.x, v.z);
+}
+
+bool bough_wind_covers(const bough_wind *wind, bough_vec3 centre, double radius) {
+    const bough_wind_box *box = wind->box;
+    if (!box) return true;
+    bough_vec3 p = to_file(wind, centre);
+    double top = box->bottom + box->dz * (box->n_z - 1);
+    return fabs(p.y) + radius <= box->half_width && p.z + radius <= top &&
+           p.z - radius >= box->bottom;
+}
+
 bough_vec3 bough_wind_at(const bough_wind *wind, bough_vec3 position, double t) {
+    if (wind->hub) {
+        return from_file(wind, bough_wind_hub_at(wind->hub, to_file(wind, position), t));
+    }
+    if (wind->box) {
+        return from_file(wind, bough_wind_box_at(wind->box, to_file(wind, position), t));
+    }
     double speed = speed_at(&wind->def, t) * share_at(wind, position.z);
     return bough_v3(wind->along_x * speed, wind->along_y * speed, wind->def.vertical);
 }

@@ -1,11 +1,19 @@
 // Undisturbed wind: one direction everywhere, sheared over the height, its speed constant or a
-// table over time. The whole field changes speed at once: a gust does not travel.
+// table over time, when the whole field changes speed at once; or a file of the field.
 #ifndef BOUGH_AERO_WIND_H
 #define BOUGH_AERO_WIND_H
 
+#include "aero/wind_box.h"
+#include "aero/wind_hub.h"
 #include "core/arena.h"
 #include "core/status.h"
 #include "core/vec3.h"
+
+typedef enum bough_wind_source {
+    BOUGH_WIND_FORMULA,
+    BOUGH_WIND_HUB_FILE, // .wnd
+    BOUGH_WIND_BOX_FILE, // .bts
+} bough_wind_source;
 
 // How the horizontal speed grows with the height above z = 0.
 typedef enum bough_wind_shear {
@@ -26,6 +34,11 @@ typedef struct bough_wind_def {
     int n_time;
     const double *time;          // (n_time) increasing [s]
     const double *speed_at_time; // (n_time) at the reference height [m/s]
+    // In place of all but the direction, about which the file's wind is turned.
+    bough_wind_source source;
+    const char *file;
+    double reference_length; // of the linear shears of a hub file [m]
+    double until;            // how long a box must last [s]
 } bough_wind_def;
 
 // 0 m/s along x, uniform, reference height 90 m; 0.2 and 0.03 m if sheared.
@@ -35,9 +48,14 @@ typedef struct bough_wind {
     bough_wind_def def; // its tables are the model's own
     double along_x, along_y;
     double shear_scale; // of the logarithmic law: 1/ln(z_ref/z_0)
+    const bough_wind_hub *hub; // NULL: no such file
+    const bough_wind_box *box; // likewise
 } bough_wind;
 
 bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind);
+
+// Whether a wind of a box is known all over a disk of that radius across it [m].
+bool bough_wind_covers(const bough_wind *wind, bough_vec3 centre, double radius);
 
 // The wind at a point in global axes (z up) and a time [s].
 bough_vec3 bough_wind_at(const bough_wind *wind, bough_vec3 position, double t);

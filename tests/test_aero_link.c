@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char turbine[] = "tests/scenes/example-turbine.yaml";
 
@@ -171,6 +172,25 @@ static void wind_of_the_scene_reaches_the_rotor(void **context) {
 }
 
 // Dynamic inflow begins in equilibrium; after a sudden gust the old induction stays for a while.
+static void wind_of_a_file_reaches_the_rotor(void **context) {
+    (void)context;
+    char path[] = "/tmp/bough-wind-XXXXXX", set[160];
+    int file = mkstemp(path);
+    assert_true(file >= 0);
+    static const char text[] = "! time speed direction\n0 12 0 0 0 0 0 0\n2 6 0 4 0 0 0 0\n";
+    assert_int_equal(write(file, text, sizeof text - 1), sizeof text - 1);
+    close(file);
+    snprintf(set, sizeof set, "aero.wind={kind: wnd, file: %s, reference_height: 90 m, "
+             "reference_length: 126 m, direction: 90 deg}", path);
+    const char *const sets[] = {set, NULL};
+    fixture f = open_turbine(sets);
+    sample(&f, 1, 1 + period);
+    double factor;
+    check_vec3(bough_aero_link_data(f.s->aero, &factor)->disk_wind, bough_v3(0, 9, 2), 0.5);
+    close_turbine(&f);
+    unlink(path);
+}
+
 static void inflow_of_the_scene_reaches_the_rotor(void **context) {
     (void)context;
 #define GUST "aero.wind={table: {times: [0 s, 1 s, 1.02 s], speeds: [12, 12, 15]}}"
@@ -291,6 +311,7 @@ int main(void) {
         cmocka_unit_test(bodies_receive_what_the_rotor_gives),
         cmocka_unit_test(rotor_sees_the_motion_of_the_hub),
         cmocka_unit_test(wind_of_the_scene_reaches_the_rotor),
+        cmocka_unit_test(wind_of_a_file_reaches_the_rotor),
         cmocka_unit_test(inflow_of_the_scene_reaches_the_rotor),
         cmocka_unit_test(linear_hold_is_continuous_and_exact_for_linear_loads),
         cmocka_unit_test(constant_hold_takes_each_sample_at_once),

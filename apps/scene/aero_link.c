@@ -118,11 +118,17 @@ static bough_tower_def tower_def(const bough_scene_tower *tower, const double *d
     };
 }
 
-static bough_wind_def wind_def(const bough_scene_wind *wind) {
+static bough_wind_def wind_def(const bough_scene_wind *wind, double duration) {
     static const bough_wind_shear shears[] = {
         [BOUGH_SCENE_WIND_UNIFORM] = BOUGH_WIND_UNIFORM,
         [BOUGH_SCENE_WIND_POWER] = BOUGH_WIND_POWER,
         [BOUGH_SCENE_WIND_LOG] = BOUGH_WIND_LOG,
+        [BOUGH_SCENE_WIND_WND] = BOUGH_WIND_UNIFORM,
+        [BOUGH_SCENE_WIND_BTS] = BOUGH_WIND_UNIFORM,
+    };
+    static const bough_wind_source sources[] = {
+        [BOUGH_SCENE_WIND_WND] = BOUGH_WIND_HUB_FILE,
+        [BOUGH_SCENE_WIND_BTS] = BOUGH_WIND_BOX_FILE,
     };
     return (bough_wind_def){
         .speed = wind->speed,
@@ -135,6 +141,10 @@ static bough_wind_def wind_def(const bough_scene_wind *wind) {
         .n_time = wind->table.n_time,
         .time = wind->table.time,
         .speed_at_time = wind->table.speed,
+        .source = sources[wind->kind],
+        .file = wind->file,
+        .reference_length = wind->reference_length,
+        .until = duration,
     };
 }
 
@@ -155,7 +165,7 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     }
     def.pitching_moment = aero->pitching_moment;
     if (aero->dynamic_stall == BOUGH_SCENE_STALL_HGM) def.stall = BOUGH_STALL_HGM;
-    def.wind = wind_def(&aero->wind);
+    def.wind = wind_def(&aero->wind, l->simulation->scene->simulation.duration);
     if (aero->tower.node != NULL) def.tower = tower_def(&aero->tower, t->drag);
     def.n_polar = aero->polars.n_polar;
     def.polar = t->polar;
@@ -166,6 +176,19 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     def.vertex_position = mesh->position;
     def.vertex_rotation = t->rotation;
     return def;
+}
+
+// A box must reach over the undeformed rotor.
+static bough_status check_reach(const bough_aero_link *l) {
+    const bough_scene *scene = l->simulation->scene;
+    const bough_frame *rotor = &l->simulation->tree->bodies[scene->turbine.rotor];
+    const bough_scene_aero_blade *blade = &scene->aero.blade;
+    bough_vec3 hub = bough_tree_frame_pose(l->simulation->view, rotor).position;
+    double radius = scene->aero.hub_radius + blade->station[blade->n_station - 1].span;
+    if (bough_rotor_in_wind(l->rotor, hub, radius)) return bough_ok();
+    return bough_fail(BOUGH_INVALID,
+                      "aero.wind: the box of %s is too small for a rotor of %g m radius at %g m",
+                      scene->aero.wind.file, radius, hub.z);
 }
 
 bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation,
@@ -182,6 +205,7 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
     }
     bough_rotor_def def = rotor_def(l, &t);
     status = bough_rotor_build(arena, &def, &l->rotor);
+    if (bough_is_ok(&status)) status = check_reach(l);
     if (bough_is_ok(&status)) status = bough_rotor_data_build(arena, l->rotor, &l->data);
     if (bough_is_ok(&status)) *link = l;
     return status;

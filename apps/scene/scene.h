@@ -271,6 +271,8 @@ typedef enum bough_scene_wind_kind {
     BOUGH_SCENE_WIND_UNIFORM,
     BOUGH_SCENE_WIND_POWER,
     BOUGH_SCENE_WIND_LOG,
+    BOUGH_SCENE_WIND_WND,
+    BOUGH_SCENE_WIND_BTS,
 } bough_scene_wind_kind;
 typedef enum bough_scene_influence {
     BOUGH_SCENE_POTENTIAL,
@@ -296,6 +298,8 @@ typedef struct bough_scene_wind {
     double direction;             // where it blows to, from ground x about z [rad]
     double vertical;              // upwards [m/s]
     bough_scene_wind_table table; // in place of the speed
+    const char *file;             // of kinds wnd and bts; once checked its path
+    double reference_length;      // of the linear shears of a wnd file [m]
 } bough_scene_wind;
 
 typedef struct bough_scene_induction {

@@ -424,11 +424,14 @@ static const bough_schema wind_table_schema = {
 
 #define AT(member) .offset = offsetof(bough_scene_wind, member)
 static const bough_key wind_keys[] = {
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("uniform", "power", "log"),
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("uniform", "power", "log", "wnd", "bts"),
      .fallback = "uniform", AT(kind),
-     .help = "how the speed grows with the height: not, by a power or a logarithmic law"},
+     .help = "how the speed grows with the height: not, by a power or a logarithmic law; or from a "
+             "file: uniform (hub height) or TurbSim's box"},
+    {.name = "file", .kind = BOUGH_KEY_TEXT, .required = true, .when_key = "kind",
+     .when = "wnd|bts", AT(file), .help = "relative to the scene"},
     {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .range = ">= 0",
-     AT(speed), .help = "horizontal, at the reference height; required without a table"},
+     AT(speed), .help = "horizontal, at the reference height; required without table and file"},
     {.name = "table", .kind = BOUGH_KEY_MAPPING, .of = &wind_table_schema, AT(table),
      .help = "in place of speed: the speed over time, for gusts and ramps"},
     {.name = "exponent", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.2",
@@ -437,8 +440,11 @@ static const bough_key wind_keys[] = {
      .fallback = "0.03", .when_key = "kind", .when = "log", AT(roughness),
      .help = "length z0: speed grows with ln(height/z0)"},
     {.name = "reference_height", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH,
-     .range = "> 0", .required = true, .when_key = "kind", .when = "power|log",
+     .range = "> 0", .required = true, .when_key = "kind", .when = "power|log|wnd",
      AT(reference_height), .help = "above ground z = 0"},
+    {.name = "reference_length", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH,
+     .range = "> 0", .required = true, .when_key = "kind", .when = "wnd", AT(reference_length),
+     .help = "over which the file's linear shears are told: the rotor's diameter"},
     {.name = "direction", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
      AT(direction), .help = "where the wind blows to, from ground x about z"},
     {.name = "vertical", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .fallback = "0",

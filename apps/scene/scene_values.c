@@ -319,8 +319,22 @@ void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
     check_increasing(r, t->node, "times", t->time, "s");
 }
 
+// The wind of a file is all in it; its path becomes relative to where the program runs.
+static void check_wind_file(bough_schema_reader *r, bough_scene_wind *w) {
+    static const char *const unused[] = {"speed", "table", "vertical"};
+    for (int i = 0; i < 3; i++) {
+        const bough_node *node = bough_node_find(w->node, unused[i]);
+        if (node) bough_schema_error(r, node, unused[i], "only used without a file");
+    }
+    if (w->file != NULL) w->file = bough_schema_path(r, w->file);
+}
+
 void bough_scene_check_wind(bough_schema_reader *r, void *item) {
-    const bough_scene_wind *w = item;
+    bough_scene_wind *w = item;
+    if (w->kind >= BOUGH_SCENE_WIND_WND) {
+        check_wind_file(r, w);
+        return;
+    }
     const bough_node *speed = bough_node_find(w->node, "speed");
     if (speed != NULL && w->table.node != NULL) {
         bough_schema_error(r, speed, "speed", "only used without a table");

@@ -436,7 +436,7 @@ static void read_table(bough_schema_reader *r, const bough_key *key, const bough
 // -- files
 // ------------------------------------------------------------------------------------------
 
-static const char *resolve(bough_schema_reader *r, const char *name) {
+const char *bough_schema_path(bough_schema_reader *r, const char *name) {
     if (name[0] == '/') return name;
     size_t size = strlen(r->directory) + strlen(name) + 1;
     char *path = bough_arena_take(r->arena, size);
@@ -467,7 +467,7 @@ static void read_file(bough_schema_reader *r, const bough_schema *schema, const 
         expected(r, node, "the name of a file");
         return;
     }
-    const char *path = resolve(r, node->text);
+    const char *path = bough_schema_path(r, node->text);
     if (path == NULL) return;
     for (struct bough_schema_file *f = r->files; f != NULL; f = f->next) {
         if (f->schema != schema || strcmp(f->path, path) != 0) continue;

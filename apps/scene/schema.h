@@ -92,6 +92,9 @@ void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema,
 void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
 
+// The path of a file that the scene names, relative to its directory; NULL without memory.
+const char *bough_schema_path(bough_schema_reader *reader, const char *name);
+
 // Reads a number with or without a unit; NaN after adding an error.
 double bough_schema_number(bough_schema_reader *reader, const bough_node *node,
                            bough_dimension dimension);
