@@ -137,6 +137,10 @@ static void joint_loads(const bough_tree *tree, bough_tree_data *d, double t) {
     }
 }
 
+static double prescribed_acceleration(const bough_link *link, double t) {
+    return bough_motion_at(link->motion, t).a;
+}
+
 // -- inverse dynamics ------------------------------------------------------------------------
 
 void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, double t,
@@ -147,7 +151,9 @@ void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, dou
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         // A_i = X_i A_λ + V_i × S v + S v̇
-        bough_twist own = bough_joint_twist(&link->joint, acceleration + link->first_speed);
+        const double *rate = acceleration + link->first_speed;
+        double given = link->motion == NULL ? 0 : prescribed_acceleration(link, t);
+        bough_twist own = bough_joint_twist(&link->joint, link->motion == NULL ? rate : &given);
         bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
         d->acceleration[i] = bough_twist_add(
             from_parent(d, tree->links, i, d->acceleration, no_twist), bough_twist_add(turn, own));
@@ -160,6 +166,10 @@ void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, dou
         bough_joint_force(&link->joint, d->wrench[i], row); // Sᵀ f_i
         for (int k = 0; k < link->n_speeds; k++)
             row[k] -= d->force[link->first_speed + k];
+        if (link->motion != NULL) {
+            d->drive[link->first_speed] = row[0];
+            row[0] = acceleration[link->first_speed] - prescribed_acceleration(link, t);
+        }
         if (link->parent < 0) continue;
         bough_wrench *up = &d->wrench[link->parent];
         *up = bough_wrench_add(*up, bough_wrench_to_parent(&d->relative[i], d->wrench[i]));
@@ -283,6 +293,32 @@ static void accelerate(const bough_link *link, bough_tree_data *d, int i, bough_
     d->acceleration[i] = bough_twist_add(arriving, bough_joint_twist(&link->joint, own));
 }
 
+// pᵃ = pᴬ + Iᵃ c + U D⁻¹ u; through a prescribed joint pᴬ + Iᴬ (c + S v̇) and Iᵃ = Iᴬ
+static bough_wrench pass_down(const bough_link *link, bough_tree_data *d, int i, double t) {
+    double *own = d->articulated + NN * i, *gain = d->joint_gain + NN * i;
+    double *factor = d->joint_factor + NN * i;
+    bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
+    if (link->motion != NULL) {
+        double given = prescribed_acceleration(link, t);
+        turn = bough_twist_add(turn, bough_joint_twist(&link->joint, &given));
+        return bough_wrench_add(d->wrench[i], matrix_mul(own, turn));
+    }
+    double *u = joint_remainder(link, d, i);
+    release_joint(link, gain, factor, own);
+    return bough_wrench_add(d->wrench[i], bough_wrench_add(matrix_mul(own, turn),
+                                                           gain_solve(link, gain, factor, u)));
+}
+
+// A = a' + S v̇ with v̇ as given, and what drives the joint
+static void follow(const bough_link *link, bough_tree_data *d, int i, bough_twist arriving,
+                   double given) {
+    double needed[N];
+    d->acceleration[i] = bough_twist_add(arriving, bough_joint_twist(&link->joint, &given));
+    bough_wrench inertial = matrix_mul(d->articulated + NN * i, d->acceleration[i]);
+    bough_joint_force(&link->joint, bough_wrench_add(inertial, d->wrench[i]), needed);
+    d->drive[link->first_speed] = needed[0] - d->force[link->first_speed];
+}
+
 bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, double t,
                                  const double *input, double *acceleration) {
     bias_wrenches(tree, d, t, input);
@@ -293,28 +329,32 @@ bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, dou
     }
     for (int i = tree->n_links - 1; i >= 0; i--) {
         const bough_link *link = &tree->links[i];
-        double *own = d->articulated + NN * i, *gain = d->joint_gain + NN * i;
-        double *factor = d->joint_factor + NN * i;
-        if (!factor_joint(link, own, gain, factor)) {
+        double *own = d->articulated + NN * i;
+        if (link->motion == NULL &&
+            !factor_joint(link, own, d->joint_gain + NN * i, d->joint_factor + NN * i)) {
             d->singular = i;
             return false;
         }
-        double *u = joint_remainder(link, d, i);
-        if (link->parent < 0) continue;
-        release_joint(link, gain, factor, own);
+        if (link->parent < 0) {
+            if (link->motion == NULL) joint_remainder(link, d, i);
+            continue;
+        }
+        bough_wrench passed = pass_down(link, d, i, t);
         add_to_parent(&d->relative[i], own, d->articulated + NN * link->parent);
-        // pᵃ = pᴬ + Iᵃ c + U D⁻¹ u
-        bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
-        bough_wrench passed =
-            bough_wrench_add(d->wrench[i], bough_wrench_add(matrix_mul(own, turn),
-                                                            gain_solve(link, gain, factor, u)));
         bough_wrench *up = &d->wrench[link->parent];
         *up = bough_wrench_add(*up, bough_wrench_to_parent(&d->relative[i], passed));
     }
     for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
         bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
         bough_twist carried = from_parent(d, tree->links, i, d->acceleration, no_twist);
-        accelerate(&tree->links[i], d, i, bough_twist_add(carried, turn), acceleration);
+        bough_twist arriving = bough_twist_add(carried, turn);
+        if (link->motion == NULL) {
+            accelerate(link, d, i, arriving, acceleration);
+        } else {
+            acceleration[link->first_speed] = prescribed_acceleration(link, t);
+            follow(link, d, i, arriving, acceleration[link->first_speed]);
+        }
     }
     return true;
 }
@@ -329,15 +369,22 @@ void bough_tree_response(const bough_tree *tree, bough_tree_data *d, const bough
     subtract_at(d, frame, wrench);
     for (int i = frame->link; i >= 0; i = tree->links[i].parent) { // only ancestors feel it
         const bough_link *link = &tree->links[i];
-        double *u = joint_remainder(link, d, i);
+        bough_wrench passed = d->wrench[i];
+        if (link->motion == NULL) {
+            const double *gain = d->joint_gain + NN * i, *factor = d->joint_factor + NN * i;
+            double *u = joint_remainder(link, d, i);
+            passed = bough_wrench_add(passed, gain_solve(link, gain, factor, u));
+        }
         if (link->parent < 0) break;
-        bough_wrench passed = bough_wrench_add(
-            d->wrench[i], gain_solve(link, d->joint_gain + NN * i, d->joint_factor + NN * i, u));
         d->wrench[link->parent] = bough_wrench_to_parent(&d->relative[i], passed);
     }
     for (int i = 0; i < tree->n_links; i++) {
         bough_twist carried = from_parent(d, tree->links, i, d->acceleration, no_twist);
-        accelerate(&tree->links[i], d, i, carried, change);
+        if (tree->links[i].motion == NULL) {
+            accelerate(&tree->links[i], d, i, carried, change);
+        } else {
+            d->acceleration[i] = carried;
+        }
     }
 }
 

@@ -2,7 +2,8 @@
 // state. Everything is expressed in link axes at the link's origin, so that the equations are
 //     V_i = X_i V_λ + S v ,   A_i = X_i A_λ + V_i × S v + S v̇ ,
 //     f_i = I_i (A_i − g_i) + V_i ×* I_i V_i − f_ext + Σ X_jᵀ f_j ,   Sᵀ f_i = τ ,
-// λ the parent, j the children, A the rate of V's components.
+// λ the parent, j the children, A the rate of V's components. Of a joint with prescribed motion v̇ is
+// given; Sᵀ f_i − τ is then what drives it.
 // Reference: R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 5 to 7.
 #ifndef BOUGH_CORE_DYNAMICS_H
 #define BOUGH_CORE_DYNAMICS_H
@@ -11,12 +12,12 @@
 
 // residual (n_v) = M(q) v̇ + h(q, v) − τ(t, q, u) with v̇ = acceleration (n_v), u the wrenches of
 // ports and ends (6 each) or NULL for none: springs, joint loads, these and external wrenches are
-// within τ and h.
+// within τ and h. Of a prescribed joint it is v̇ − a(t), the others are under a(t); data->drive is set.
 void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
                                  const double *input, const double *acceleration, double *residual);
 
 // acceleration v̇ (n_v) that makes the residual zero, by articulated bodies. False when a joint
-// moves no inertia. Leaves the links' accelerations and the factors in data.
+// moves no inertia. Leaves the links' accelerations, the factors and `drive` in data.
 bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
                                  const double *input, double *acceleration);
 

@@ -90,6 +90,15 @@ static bough_status check_spring(const bough_body_def *b) {
     return bough_ok();
 }
 
+static bough_status check_motion(const bough_body_def *b) {
+    bool axis = b->kind == BOUGH_JOINT_REVOLUTE || b->kind == BOUGH_JOINT_PRISMATIC;
+    if (!b->motion.given || axis) return bough_ok();
+    return bough_fail(BOUGH_INVALID,
+                      "body '%s': motion is prescribed of revolute and prismatic joints, not of a "
+                      "%s one",
+                      b->name, bough_joint_name(b->kind));
+}
+
 static bough_status check_body(const bough_tree_def *def, int body) {
     const bough_body_def *b = &def->bodies[body];
     if (b->parent < BOUGH_GROUND || b->parent >= def->n_bodies) {
@@ -105,6 +114,7 @@ static bough_status check_body(const bough_tree_def *def, int body) {
     }
     bough_status status = check_joint(b);
     if (bough_is_ok(&status)) status = check_spring(b);
+    if (bough_is_ok(&status)) status = check_motion(b);
     return bough_is_ok(&status) ? check_placement("joint of body", b->name, b->joint) : status;
 }
 
@@ -283,6 +293,24 @@ static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
     }
 }
 
+static bough_status create_motions(bough_arena *arena, const bough_tree_def *def,
+                                   bough_tree *tree) {
+    for (int i = 0; i < tree->n_links; i++) {
+        bough_link *link = &tree->links[i];
+        const bough_body_def *b = &def->bodies[link->body];
+        if (!b->motion.given) continue;
+        bough_motion *motion = NULL;
+        bough_status status =
+            bough_motion_create(arena, &b->motion, b->coordinates[0], &motion);
+        if (status.code == BOUGH_INVALID) {
+            return bough_fail(BOUGH_INVALID, "body '%s': %s", b->name, status.message);
+        }
+        if (!bough_is_ok(&status)) return status;
+        link->motion = motion;
+    }
+    return bough_ok();
+}
+
 static void set_initial(bough_tree *tree, const bough_tree_def *def) {
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
@@ -293,6 +321,7 @@ static void set_initial(bough_tree *tree, const bough_tree_def *def) {
                (size_t)link->n_speeds * sizeof(double));
         bough_joint_normalise(&link->joint, q);
     }
+    bough_tree_prescribe(tree, 0, tree->initial);
 }
 
 static bool take_tables(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
@@ -378,6 +407,8 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     if (!take_tables(arena, def, tree)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tables of joint loads");
     }
+    status = create_motions(arena, def, tree);
+    if (!bough_is_ok(&status)) return status;
     set_initial(tree, def);
     *out = tree;
     return check_inertia(arena, def, tree);
@@ -401,6 +432,7 @@ bough_status bough_tree_data_create(bough_arena *arena, const bough_tree *tree,
         d->joint_gain = bough_arena_doubles(arena, 36 * n);
         d->joint_factor = bough_arena_doubles(arena, 36 * n);
         d->force = bough_arena_doubles(arena, (size_t)tree->n_v);
+        d->drive = bough_arena_doubles(arena, (size_t)tree->n_v);
         d->passive = bough_arena_doubles(arena, (size_t)tree->n_v);
     }
     *out = d;
@@ -423,6 +455,16 @@ int bough_tree_find_body(const bough_tree *tree, const char *name) {
 
 int bough_tree_find_marker(const bough_tree *tree, const char *name) {
     return find(tree->markers, tree->n_markers, name);
+}
+
+void bough_tree_prescribe(const bough_tree *tree, double t, double *state) {
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        if (link->motion == NULL) continue;
+        bough_motion_point p = bough_motion_at(link->motion, t);
+        state[link->first_coordinate] = p.q;
+        state[tree->n_q + link->first_speed] = p.v;
+    }
 }
 
 bool bough_tree_joint_rows(const bough_tree *tree, int body, int *coordinate, int *speed) {

@@ -6,6 +6,7 @@
 
 #include "core/arena.h"
 #include "core/joint.h"
+#include "core/motion.h"
 #include "core/status.h"
 
 #include <stdbool.h>
@@ -28,6 +29,7 @@ typedef struct bough_body_def {
     bough_vec3 axis;       // in joint axes, scaled to length 1; of those that have one
     bough_vec3 second_axis; // normal to it, scaled to length 1; universal and planar
     bough_joint_spring spring;  // of a revolute or prismatic joint; zero: none
+    bough_motion_def motion;    // of a revolute or prismatic joint; zero: moved by forces
     double coordinates[BOUGH_JOINT_COORDINATES]; // initial, see joint.h [rad, m, –]
     double speeds[BOUGH_JOINT_SPEEDS];           // initial, see joint.h [rad/s, m/s]
     double mass;                                 // [kg]
@@ -105,6 +107,7 @@ typedef struct bough_link {
     int part;                            // 0; of a universal joint 0, then 1: it is two links,
                                          // the first without a body
     bough_joint_spring spring;           // zero: none
+    const bough_motion *motion;          // NULL: moved by forces
     bough_joint joint;                   // placed in the parent link's frame
     int first_coordinate, n_coordinates; // its rows of q
     int first_speed, n_speeds;           // its rows of v
@@ -162,6 +165,9 @@ int bough_tree_find_marker(const bough_tree *tree, const char *name);
 // the same row of the state's rate is its acceleration. False when the joint is fixed.
 bool bough_tree_joint_rows(const bough_tree *tree, int body, int *coordinate, int *speed);
 
+// Coordinates and speeds of the prescribed joints at t into a state (n_q + n_v).
+void bough_tree_prescribe(const bough_tree *tree, double t, double *state);
+
 // The external wrench on the tree at a marker from now on: value + rate (t − start), each (6),
 // force then moment, in marker axes at the marker's origin. NULL for zero.
 void bough_tree_set_wrench(bough_tree *tree, int marker, double start, const double *value,
@@ -187,6 +193,7 @@ typedef struct bough_tree_data {
     double *joint_factor;      // Cholesky factor of SᵀU (n_links × 6 × 6, row-major)
     bough_inertia *composite;  // composite rigid bodies (n_links)
     double *force;             // generalised forces (n_v)
+    double *drive;             // what makes prescribed joints move so, else 0 (n_v) [N m, N]
     int singular;              // the link whose joint moves no inertia, else -1
 } bough_tree_data;
 

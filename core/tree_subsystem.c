@@ -181,6 +181,18 @@ static void evaluate_input(tree_subsystem *s, double t) {
     if (s->signal != NULL && s->signal->n > 0) bough_signal_value(s->signal, t, s->input);
 }
 
+// Prescribed joints are where they should be, not where their integrated acceleration takes them.
+static void prescribed_rows(const bough_tree *tree, double t, const double *y, double *r) {
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        if (link->motion == NULL) continue;
+        int q = link->first_coordinate, v = tree->n_q + link->first_speed;
+        bough_motion_point p = bough_motion_at(link->motion, t);
+        r[q] = y[q] - p.q;
+        r[v] = y[v] - p.v;
+    }
+}
+
 static bool residual(void *self, double t, const double *y, const double *rate, double *r) {
     tree_subsystem *s = self;
     const bough_tree *tree = s->tree;
@@ -190,6 +202,7 @@ static bool residual(void *self, double t, const double *y, const double *rate, 
     for (int i = 0; i < tree->n_q; i++)
         r[i] = rate[i] - r[i]; // q̇ − N(q) v
     bough_tree_inverse_dynamics(tree, s->data, t, s->input, rate + tree->n_q, r + tree->n_q);
+    prescribed_rows(tree, t, y, r);
     return true;
 }
 
@@ -299,6 +312,7 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
     }
     s->time = t1;
     memcpy(s->state, s->own_state, (size_t)s->n * sizeof(double));
+    bough_tree_prescribe(s->tree, t1, s->state);
     normalise(s);
     if (has_drifted(s)) s->started = false;
     return status;

@@ -2,7 +2,8 @@
 // per port, 6 and 13 per end as in tree.h. Its own steps solve, by IDA, the implicit form
 //     q̇ − N(q) v = 0,   M(q) v̇ + h(q, v) − τ(t, q, u) = 0,
 // the second row evaluated by the recursive inverse dynamics, or, by Radau IIA, ẏ = f with the
-// recursive forward dynamics; both in O(n).
+// recursive forward dynamics; both in O(n). For prescribed joints both rows are algebraic under IDA,
+// q = q(t) and v = v(t), so that nothing drifts.
 #ifndef BOUGH_CORE_TREE_SUBSYSTEM_H
 #define BOUGH_CORE_TREE_SUBSYSTEM_H
 

@@ -62,6 +62,12 @@ static bough_mat3 tensor(const double j[6]) {
     return (bough_mat3){{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
 }
 
+static void set_motion(const bough_scene_motion *from, bough_body_def *to) {
+    if (from->node == NULL) return;
+    to->motion = (bough_motion_def){true, from->speed, from->from, from->to, from->ramp[0],
+                                    from->ramp[1], from->n_time, from->times, from->values};
+}
+
 static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) {
     double *q = to->coordinates, *v = to->speeds;
     double c = cos(joint->angle), s = sin(joint->angle);
@@ -83,6 +89,7 @@ static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) 
         q[0] = joint->position, v[0] = joint->speed;
         to->spring = (bough_joint_spring){joint->stiffness, joint->damping, joint->rest,
                                           joint->stop[0], joint->stop[1], joint->stop_stiffness};
+        set_motion(&joint->motion, to);
         break;
     }
 }
@@ -222,7 +229,13 @@ static void add_ramp(builder *b, const double ramp[2]) {
     b->event[b->n_event++] = ramp[1];
 }
 
+static void add_motion(builder *b, const bough_scene_motion *motion) {
+    add_ramp(b, motion->ramp);
+    for (int i = 0; i < motion->n_time; i++) b->event[b->n_event++] = motion->times[i];
+}
+
 static void set_loads(builder *b) {
+    for (int k = 0; k < b->scene->n_body; k++) add_motion(b, &b->scene->body[k].joint.motion);
     for (int k = 0; k < b->scene->n_load; k++) {
         const bough_scene_load *load = &b->scene->load[k];
         add_ramp(b, load->ramp);
@@ -238,6 +251,7 @@ static void set_loads(builder *b) {
 static size_t count_corners(const bough_scene *scene) {
     size_t n = 2 * (size_t)scene->n_load + 2; // two per ramp, of loads and of the aerodynamics
     for (int k = 0; k < scene->n_load; k++) n += (size_t)scene->load[k].n_time;
+    for (int k = 0; k < scene->n_body; k++) n += 2 + (size_t)scene->body[k].joint.motion.n_time;
     return n;
 }
 
@@ -279,6 +293,7 @@ static bough_status build_tree(builder *b) {
                           .springs = b->spring};
     bough_status status = bough_tree_create(b->arena, &def, &s->tree);
     if (bough_is_ok(&status)) status = bough_tree_data_create(b->arena, s->tree, &s->view);
+    if (bough_is_ok(&status)) s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);
     if (!bough_is_ok(&status)) return status;
     const bough_scene_solver *master = &scene->simulation.master;
     bough_tree_solver solver =

@@ -25,6 +25,7 @@ typedef struct bough_simulation {
     const bough_scene *scene;
     bough_tree *tree;
     bough_tree_data *view; // for queries between steps
+    double *acceleration;  // of the tree (n_v), scratch of queries
     bough_subsystem trunk;
     int n_beam;
     bough_beam *beam;      // (n_beam) bodies that have a rod, in the scene's order

@@ -2,6 +2,7 @@
 // where the quantity is the same.
 #include "apps/scene/aero_link.h"
 #include "apps/scene/build.h"
+#include "core/dynamics.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -108,6 +109,37 @@ static bough_status add_rotor(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_rotor, s);
     if (bough_is_ok(&status)) status = bough_channels_add(list, "rpm", "RotSpeed");
     if (bough_is_ok(&status)) status = bough_channels_add(list, "deg", "Azimuth");
+    return status;
+}
+
+// What the joints with prescribed motion take, under the rods' present forces.
+static void sample_drives(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
+    for (int i = 0; i < s->scene->n_body; i++) {
+        int q, v;
+        if (s->scene->body[i].joint.motion.node == NULL) continue;
+        bough_tree_joint_rows(s->tree, i, &q, &v);
+        *value++ = s->view->drive[v - s->tree->n_q];
+    }
+}
+
+static bool has_motion(const bough_scene *scene) {
+    for (int i = 0; i < scene->n_body; i++) {
+        if (scene->body[i].joint.motion.node != NULL) return true;
+    }
+    return false;
+}
+
+static bough_status add_drives(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_drives, s);
+    for (int i = 0; i < s->scene->n_body && bough_is_ok(&status); i++) {
+        const bough_scene_body *body = &s->scene->body[i];
+        if (body->joint.motion.node == NULL) continue;
+        bool torque = body->joint.kind == BOUGH_SCENE_REVOLUTE;
+        status = bough_channels_add(list, torque ? "N-m" : "N", torque ? "%sTrq" : "%sFrc",
+                                    body->name);
+    }
     return status;
 }
 
@@ -252,6 +284,7 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     bough_status status = bough_ok();
     if (s->scene->turbine.node != NULL) status = add_rotor(s, channels);
     if (bough_is_ok(&status)) status = add_joints(s, channels);
+    if (bough_is_ok(&status) && has_motion(s->scene)) status = add_drives(s, channels);
     if (bough_is_ok(&status) && s->scene->n_spring > 0) status = add_springs(s, channels);
     if (bough_is_ok(&status) && s->scene->turbine.node != NULL) status = add_blades(s, channels);
     if (bough_is_ok(&status)) status = add_tips(s, channels);

@@ -100,6 +100,15 @@ typedef enum bough_scene_joint_kind {
     BOUGH_SCENE_PLANAR,
 } bough_scene_joint_kind;
 
+// Of a revolute [rad, rad/s] or prismatic [m, m/s] joint.
+typedef struct bough_scene_motion {
+    const bough_node *node;  // NULL: moved by forces
+    bool speed;              // the speed is given, else the angle or displacement
+    double from, to, ramp[2]; // smoothly between the two times [s]; from == to: constant
+    int n_time;              // rows of a table in place of them, 0: none
+    double *times, *values;  // (n_time) [s]
+} bough_scene_motion;
+
 // The joint that carries a body: placement from the parent's frame to the joint's frame, which is
 // the body's frame at zero joint displacement.
 typedef struct bough_scene_joint {
@@ -123,6 +132,7 @@ typedef struct bough_scene_joint {
     // Of revolute [rad, N m/rad, …] and prismatic [m, N/m, …]:
     double stiffness, damping, rest;
     double stop[2], stop_stiffness; // 0: no stops
+    bough_scene_motion motion;
 } bough_scene_joint;
 
 // A section of a rod. Between stations everything is linear in span.

@@ -177,7 +177,8 @@ static void check_moving_mass(bough_schema_reader *r, const bough_scene *s) {
         const bough_scene_body *b = &s->body[i];
         carries[i] = carries[i] || has_mass(b);
         if (carries[i] && b->joint.parent >= 0) carries[b->joint.parent] = true;
-        if (carries[i] || b->joint.kind <= BOUGH_SCENE_FIXED) continue;
+        bool driven = b->joint.motion.node != NULL;
+        if (carries[i] || driven || b->joint.kind <= BOUGH_SCENE_FIXED) continue;
         at(r, "bodies[%d]", i);
         bough_schema_error(r, b->node, "",
                            "a joint that moves must carry mass: give 'mass' here or "

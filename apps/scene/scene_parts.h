@@ -13,6 +13,7 @@ void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, 
 void bough_scene_read_axis_offset(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_torque(bough_schema_reader *r, const bough_node *node, void *field);
@@ -29,6 +30,7 @@ void bough_scene_check_wind_table(bough_schema_reader *r, void *item);
 void bough_scene_check_wind(bough_schema_reader *r, void *item);
 void bough_scene_check_tower(bough_schema_reader *r, void *item);
 void bough_scene_check_joint(bough_schema_reader *r, void *item);
+void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint);
 void bough_scene_check_load(bough_schema_reader *r, void *item);
 void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]);
 

@@ -159,6 +159,13 @@ static const bough_key joint_keys[] = {
      .dimension = BOUGH_ANGULAR_SPEED, .fallback = zero3, .when_key = "kind",
      .when = "spherical|free", AT(angular_velocity),
      .help = "initial angular velocity in the joint's frame"},
+    {.name = "motion", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_motion, .when_key = "kind",
+     .when = "revolute|prismatic", .offset = 0,
+     .form = "{speed: VALUES}, {angle: VALUES} or {position: VALUES}; VALUES a number, {from: 0, "
+             "to: ..., ramp: [...]} or {times: [...], values: [...]}",
+     .help = "makes the joint move so, whatever force that takes (channel Trq or Frc); a ramp is "
+             "smooth to the second derivative, a table of speeds linear, of positions a cubic "
+             "spline at rest at its ends"},
     {.name = "stiffness", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0",
      .when_key = "kind", .when = "revolute|prismatic", AT(stiffness),
      .help = "of a spring along the axis, in N m/rad or N/m"},

@@ -59,6 +59,7 @@ void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, 
 
 void bough_scene_check_joint(bough_schema_reader *r, void *item) {
     const bough_scene_joint *joint = item;
+    bough_scene_check_motion(r, joint);
     const bough_node *stop = bough_node_find(joint->node, "stop");
     const bough_node *stiffness = bough_node_find(joint->node, "stop_stiffness");
     if ((stop == NULL) != (stiffness == NULL)) {

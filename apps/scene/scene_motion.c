@@ -1,0 +1,157 @@
+// The prescribed motion of a joint: its speed or itself, constant, by a ramp or by a table.
+#include "apps/scene/scene_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+// -- a table or a ramp ----------------------------------------------------------------------------
+
+typedef struct table {
+    const bough_node *node;
+    int n_time, n_value;
+    double *times, *values;
+} table;
+
+typedef struct ramp {
+    const bough_node *node;
+    double from, to, ramp[2];
+} ramp;
+
+// clang-format off
+#define TABLE(unit)                                                                                \
+    (const bough_key[]){                                                                           \
+        {.name = "times", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_TIME, .range = ">= 0",     \
+         .count = 2, .required = true, .offset = offsetof(table, times),                           \
+         .count_offset = offsetof(table, n_time)},                                                 \
+        {.name = "values", .kind = BOUGH_KEY_NUMBERS, .dimension = unit, .count = 2,               \
+         .required = true, .offset = offsetof(table, values),                                      \
+         .count_offset = offsetof(table, n_value)}}
+#define RAMP(unit)                                                                                 \
+    (const bough_key[]){                                                                           \
+        {.name = "from", .kind = BOUGH_KEY_NUMBER, .dimension = unit, .fallback = "0",             \
+         .offset = offsetof(ramp, from)},                                                          \
+        {.name = "to", .kind = BOUGH_KEY_NUMBER, .dimension = unit, .required = true,              \
+         .offset = offsetof(ramp, to)},                                                            \
+        {.name = "ramp", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_TIME,            \
+         .range = ">= 0", .required = true, .offset = offsetof(ramp, ramp)}}
+#define FORMS(unit)                                                                                \
+    [unit] = {{.name = "a table", .size = sizeof(table), .n_key = 2, .key = TABLE(unit)},          \
+              {.name = "a ramp", .size = sizeof(ramp), .n_key = 3, .key = RAMP(unit)}}
+static const struct {
+    bough_schema table, ramp;
+} forms[] = {FORMS(BOUGH_LENGTH), FORMS(BOUGH_ANGLE), FORMS(BOUGH_SPEED),
+             FORMS(BOUGH_ANGULAR_SPEED)};
+// clang-format on
+
+static void read_table(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
+                       bough_scene_motion *motion) {
+    table t = {0};
+    int before = r->errors->n + r->errors->dropped;
+    bough_schema_read(r, &forms[unit].table, node, &t);
+    if (r->errors->n + r->errors->dropped > before || t.times == NULL) return;
+    if (t.n_time != t.n_value) {
+        bough_schema_error(r, node, "", "%d times, but %d values", t.n_time, t.n_value);
+        return;
+    }
+    for (int i = 1; i < t.n_time; i++) {
+        if (t.times[i] > t.times[i - 1]) continue;
+        bough_schema_error(r, bough_node_find(node, "times")->value[i], "times", "must increase");
+        return;
+    }
+    motion->n_time = t.n_time;
+    motion->times = t.times;
+    motion->values = t.values;
+}
+
+static void read_ramp(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
+                      bough_scene_motion *motion) {
+    ramp x = {0};
+    int before = r->errors->n + r->errors->dropped;
+    bough_schema_read(r, &forms[unit].ramp, node, &x);
+    if (r->errors->n + r->errors->dropped > before) return;
+    if (!(x.ramp[1] > x.ramp[0])) {
+        bough_schema_error(r, bough_node_find(node, "ramp"), "ramp",
+                           "must end after it starts, got [%g s, %g s]", x.ramp[0], x.ramp[1]);
+    }
+    motion->from = x.from;
+    motion->to = x.to;
+    memcpy(motion->ramp, x.ramp, sizeof x.ramp);
+}
+
+// A number, a ramp or a table.
+static void read_values(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
+                        bough_scene_motion *motion) {
+    if (node->kind != BOUGH_MAPPING) {
+        motion->from = motion->to = bough_schema_number(r, node, unit);
+    } else if (bough_node_find(node, "times") != NULL || bough_node_find(node, "values") != NULL) {
+        read_table(r, node, unit, motion);
+    } else {
+        read_ramp(r, node, unit, motion);
+    }
+}
+
+// -- the motion -----------------------------------------------------------------------------------
+
+static void read_angle(bough_schema_reader *r, const bough_node *node, void *field) {
+    read_values(r, node, BOUGH_ANGLE, field);
+}
+
+static void read_angular_speed(bough_schema_reader *r, const bough_node *node, void *field) {
+    read_values(r, node, BOUGH_ANGULAR_SPEED, field);
+}
+
+static void read_position(bough_schema_reader *r, const bough_node *node, void *field) {
+    read_values(r, node, BOUGH_LENGTH, field);
+}
+
+static void read_speed(bough_schema_reader *r, const bough_node *node, void *field) {
+    read_values(r, node, BOUGH_SPEED, field);
+}
+
+#define FORM .form = "a number, {from: 0, to: ..., ramp: [...]} or {times: [...], values: [...]}"
+static const bough_key revolute_keys[] = {
+    {.name = "speed", .kind = BOUGH_KEY_CUSTOM, .read = read_angular_speed, FORM},
+    {.name = "angle", .kind = BOUGH_KEY_CUSTOM, .read = read_angle, FORM},
+};
+static const bough_key prismatic_keys[] = {
+    {.name = "speed", .kind = BOUGH_KEY_CUSTOM, .read = read_speed, FORM},
+    {.name = "position", .kind = BOUGH_KEY_CUSTOM, .read = read_position, FORM},
+};
+#undef FORM
+
+static void check_motion(bough_schema_reader *r, void *item) {
+    bough_scene_motion *motion = item;
+    motion->speed = bough_node_find(motion->node, "speed") != NULL;
+    if (motion->node->n == 1) return;
+    bough_schema_error(r, motion->node, "", "expected either the speed or where the joint is");
+}
+
+static const bough_schema revolute_motion = {.name = "the motion of a revolute joint",
+                                             .size = sizeof(bough_scene_motion),
+                                             .n_key = 2,
+                                             .key = revolute_keys,
+                                             .check = check_motion};
+static const bough_schema prismatic_motion = {.name = "the motion of a prismatic joint",
+                                              .size = sizeof(bough_scene_motion),
+                                              .n_key = 2,
+                                              .key = prismatic_keys,
+                                              .check = check_motion};
+
+// field: the joint, whose kind is read before
+void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_joint *joint = field;
+    bool revolute = joint->kind == BOUGH_SCENE_REVOLUTE;
+    bough_schema_read(r, revolute ? &revolute_motion : &prismatic_motion, node, &joint->motion);
+}
+
+// The joint starts where and as fast as its motion says.
+void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint) {
+    const bough_node *motion = bough_node_find(joint->node, "motion");
+    if (motion == NULL) return;
+    static const char *const keys[] = {"speed", "angle", "position"};
+    for (int k = 0; k < 3; k++) {
+        const bough_node *given = bough_node_find(joint->node, keys[k]);
+        if (given == NULL || (k > 0 && joint->motion.speed)) continue;
+        bough_schema_error(r, given, keys[k], "follows from the joint's motion");
+    }
+}
