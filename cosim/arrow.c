@@ -132,11 +132,16 @@ static void add_interface(bough_arrow *arrow, int i) {
 }
 
 void bough_arrow_solve(bough_arrow *arrow, double *x) {
+    bough_arrow_solve_driven(arrow, NULL, x);
+}
+
+void bough_arrow_solve_driven(bough_arrow *arrow, const double *outside, double *x) {
     int n = arrow->assembly->n_input;
     arrow->x = x;
     each(arrow, solve_alone);
     for (int j = 0; j < n; j++) {
         arrow->change[j] = arrow->output_change[arrow->assembly->source[j]];
+        if (outside) arrow->change[j] += outside[j];
     }
     if (n > 0) bough_dense_solve(n, 1, arrow->matrix, arrow->pivot, arrow->change);
     each(arrow, add_interface);

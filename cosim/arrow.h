@@ -48,7 +48,10 @@ bough_status bough_arrow_rate(bough_arrow *arrow, double t, const double *state,
 bough_status bough_arrow_setup(bough_arrow *arrow, double t, const double *state,
                                const double *input, double gamma);
 
-// x ← (I − γJ)⁻¹ x, x (n_state).
+// x ← (I − γJ)⁻¹ x, x (n_state); arrow->change is then the change of the inputs with it.
 void bough_arrow_solve(bough_arrow *arrow, double *x);
+
+// The same with `outside` (n_input) added to the inputs' changes, δu = P δo + outside; NULL: 0.
+void bough_arrow_solve_driven(bough_arrow *arrow, const double *outside, double *x);
 
 #endif

@@ -19,6 +19,7 @@ static bool take(bough_coupling *c, bough_arena *arena) {
     c->seen = bough_arena_doubles(arena, n_input);
     c->seen_rate = bough_arena_doubles(arena, n_input);
     c->status = bough_arena_take(arena, n_member * sizeof *c->status);
+    c->followed = bough_arena_take(arena, n_input * sizeof *c->followed);
     c->signal = bough_arena_take(arena, n_member * sizeof *c->signal);
     for (int i = 0; i < a->n_member && c->signal; i++) {
         c->signal[i].n = a->member[i]->n_input;
@@ -74,6 +75,7 @@ bough_status bough_coupling_each(bough_coupling *c, int stage,
 }
 
 void bough_coupling_begin(bough_coupling *c) {
+    memset(c->followed, 0, (size_t)c->assembly->n_input * sizeof *c->followed);
     for (int i = 0; i < c->assembly->n_member; i++) {
         c->signal[i].t0 = c->t0;
         c->signal[i].t1 = c->t1;
@@ -170,6 +172,7 @@ void bough_coupling_interpolate(bough_coupling *c, int member, int j) {
         interpolate_polynomial(c, &c->signal[member], local, j);
         return;
     }
+    c->followed[j] = true;
     bough_port_hermite(&c->signal[member], local, 1,
                        (bough_port_end){c->input + j, c->start_rate + source},
                        (bough_port_end){c->end_output + source, c->end_rate + source});

@@ -48,6 +48,7 @@ typedef struct bough_coupling {
 
     // during a step, by the scheme
     bough_signal *signal;  // (n_member) what each member sees on the step
+    bool *followed;        // (n_input) the motion that was really made: no defect
     double *start_rate;    // (n_output) rates of the outputs at t0, of members already advanced
     double *end_output;    // (n_output) outputs at t1, likewise
     double *end_rate;      // (n_output)

@@ -79,6 +79,9 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     if (bough_is_ok(&status)) {
         status = bough_monitor_create(arena, m->scheme, m->coupling, &m->monitor);
     }
+    if (bough_is_ok(&status) && m->scheme != &bough_scheme_monolithic) {
+        status = bough_error_estimate_create(arena, m->coupling, &m->estimate);
+    }
     if (!bough_is_ok(&status)) return status;
     judge(m);
     *master = m;
@@ -161,5 +164,7 @@ bough_status bough_step(bough_master *m) {
     if (!bough_is_ok(&status)) return status;
     set_time(m, c->t1);
     m->steps++;
+    if (m->estimate) bough_error_estimate_step(m->estimate, c);
+    if (m->estimate && bough_master_done(m)) bough_error_estimate_finish(m->estimate, c);
     return bough_ok();
 }

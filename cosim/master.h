@@ -3,6 +3,7 @@
 #ifndef BOUGH_COSIM_MASTER_H
 #define BOUGH_COSIM_MASTER_H
 
+#include "cosim/error_estimate.h"
 #include "cosim/monitor.h"
 #include "cosim/stability.h"
 
@@ -38,6 +39,7 @@ typedef struct bough_master {
     const bough_scheme *scheme;
     bough_coupling *coupling;
     bough_monitor *monitor;
+    bough_error_estimate *estimate; // NULL: the scheme makes no coupling error
     int n_load;
     bough_sampled_load *load; // (n_load)
     long *load_every;         // (n_load) macro steps per period

@@ -24,7 +24,11 @@ bough_status bough_monitor_step(bough_monitor *m, const bough_coupling *c);
 
 bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_coupling *c);
 
-// Residual of one interface [J].
-double bough_monitor_energy_residual(const bough_monitor *m, int interface);
+// Energy at one interface over the run so far [J].
+typedef struct bough_interface_energy {
+    double residual;  // ∫ (obtained − used wrench) · twist dt
+    double exchanged; // ∫ |wrench · twist| dt
+} bough_interface_energy;
+bough_interface_energy bough_monitor_energy(const bough_monitor *m, int interface);
 
 #endif

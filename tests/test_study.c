@@ -229,7 +229,7 @@ static void every_run_has_a_row(void **state) {
     assert_true(bough_is_ok(&status));
     assert_int_equal(count_in(*state, "table.csv", "\n"), 1 + 1 + 4);
     assert_int_equal(count_in(*state, "cells.csv", "\n"), 1 + 1 + 4);
-    assert_int_equal(count_in(*state, "table.csv", ",tip [m],angle [rad],"), 1);
+    assert_int_equal(count_in(*state, "table.csv", ",tip [m],tip estimated [m],angle [rad],"), 1);
     char *text = scratch_read(*state, "table.txt");
     assert_string_equal(text, table);
     free(text);

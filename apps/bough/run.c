@@ -51,6 +51,7 @@ static bough_status step(bough_run *run) {
                           m->time, m->duration, run->folder);
     }
     bough_status status = bough_step(m);
+    bough_error_probe_update(&run->probe);
     if (bough_is_ok(&status) && row_is_due(run)) status = record(run);
     return status;
 }
@@ -109,6 +110,9 @@ static bough_status build(bough_run *run) {
     if (!bough_is_ok(&status)) return status;
     run->channels = bough_channels_start(run->arena);
     status = bough_simulation_channels(run->simulation, &run->channels);
+    if (bough_is_ok(&status)) {
+        status = bough_error_probe_create(run->arena, run->simulation, &run->channels, &run->probe);
+    }
     run->build_s = bough_wall_clock() - began;
     return status;
 }

@@ -5,13 +5,14 @@
 #include "apps/bough/options.h"
 #include "apps/output/channels.h"
 #include "apps/output/recorder.h"
-#include "apps/scene/build.h"
+#include "apps/scene/error_probe.h"
 
 typedef struct bough_run {
     const bough_options *options;
     bough_arena *arena;
     bough_simulation *simulation;
     bough_channels channels;
+    bough_error_probe probe;
     bough_recorder *recorder;
     const char *folder;
     long next_row;   // multiple of the output interval that is due next

@@ -84,6 +84,43 @@ static void write_accuracy(bough_summary *s, const bough_run *run) {
     bough_summary_number(s, "energy_exchanged", report.energy_exchanged);
 }
 
+// Per interface: energy, and the largest estimated error of the wrench on the receiver.
+static void write_interfaces(bough_summary *s, const bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    const bough_assembly *a = m->assembly;
+    bough_summary_array(s, "interfaces");
+    for (int k = 0; k < a->n_interface; k++) {
+        bough_interface_energy energy = bough_monitor_energy(m->monitor, k);
+        bough_summary_object(s, NULL);
+        bough_summary_text(s, "body", a->member[a->interface[k].body]->name);
+        bough_summary_number(s, "energy_residual", energy.residual);
+        bough_summary_number(s, "energy_exchanged", energy.exchanged);
+        bough_summary_array(s, "wrench_error_estimate");
+        for (int j = 0; m->estimate && j < a->interface[k].count; j++) {
+            int input = a->interface[k].wrench + j;
+            bough_summary_number(s, NULL, bough_error_estimate_input(m->estimate, input));
+        }
+        bough_summary_end(s);
+        bough_summary_end(s);
+    }
+    bough_summary_end(s);
+}
+
+// Per channel that follows from the states: the largest estimated coupling error, in its unit and
+// relative to its range.
+static void write_estimates(bough_summary *s, const bough_run *run) {
+    bough_summary_object(s, "coupling_error_estimate");
+    for (int k = 0; k < run->channels.count; k++) {
+        if (!bough_error_probe_knows(&run->probe, k)) continue;
+        bough_summary_object(s, run->channels.channel[k].name);
+        bough_summary_text(s, "unit", run->channels.channel[k].unit);
+        bough_summary_number(s, "largest", run->probe.largest[k]);
+        bough_summary_number(s, "relative", bough_error_probe_relative(&run->probe, k));
+        bough_summary_end(s);
+    }
+    bough_summary_end(s);
+}
+
 static void write_subsystem(bough_summary *s, const bough_subsystem *subsystem) {
     bough_statistics done = {0};
     subsystem->ops->statistics(subsystem->self, &done);
@@ -111,6 +148,8 @@ bough_status bough_run_summarise(const bough_run *run) {
     write_cost(&s, run);
     write_size(&s, run);
     write_accuracy(&s, run);
+    write_interfaces(&s, run);
+    write_estimates(&s, run);
     const bough_assembly *assembly = run->simulation->master->assembly;
     bough_summary_array(&s, "subsystems");
     for (int i = 0; i < assembly->n_member; i++)
@@ -135,6 +174,20 @@ static void tell_channels(const bough_run *run, FILE *stream) {
         int k = turbine ? bough_channels_find(c, main_channels[i]) : i;
         if (k < 0 || k >= c->count) continue;
         fprintf(stream, "%s: %.6g %s\n", c->channel[k].name, value[k], c->channel[k].unit);
+        if (!bough_error_probe_knows(&run->probe, k)) continue;
+        fprintf(stream, "%s_coupling_error: %.2g %s\n", c->channel[k].name,
+                run->probe.largest[k], c->channel[k].unit);
+    }
+}
+
+static void tell_energy(const bough_run *run, FILE *stream) {
+    const bough_master *m = run->simulation->master;
+    const bough_assembly *a = m->assembly;
+    for (int k = 0; k < a->n_interface; k++) {
+        bough_interface_energy energy = bough_monitor_energy(m->monitor, k);
+        if (!(energy.exchanged > 0)) continue;
+        fprintf(stream, "%s_energy_residual: %.2g of what the interface exchanged\n",
+                a->member[a->interface[k].body]->name, energy.residual / energy.exchanged);
     }
 }
 
@@ -146,5 +199,6 @@ void bough_run_tell(const bough_run *run, FILE *stream) {
     fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);
     // After a failure the state means nothing.
     if (strcmp(outcome_name(run), "failed") != 0) tell_channels(run, stream);
+    tell_energy(run, stream);
     fprintf(stream, "out: %s\n", run->folder);
 }

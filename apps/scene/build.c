@@ -472,8 +472,8 @@ static vertex rigid_vertex(const bough_beam *beam, int i, bough_twist twist) {
                     bough_rotation_matrix(beam->def.rotation[i])};
 }
 
-static vertex rod_vertex(const bough_beam *beam, int i) {
-    const double *y = bough_rod_body_state(beam->rod) + i - 1;
+static vertex rod_vertex(const bough_simulation *s, const bough_beam *beam, int i) {
+    const double *y = s->rod[beam->port].state + i - 1;
     int n = beam->def.n_segment;
     bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
     bough_mat3 r = bough_rotation_matrix(bough_quaternion_normalised(p));
@@ -491,7 +491,7 @@ void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *b
     bough_twist twist = bough_tree_frame_twist(s->view, frame);
     for (int i = 0; i <= beam->def.n_segment; i++) {
         vertex v = i == 0 || beam->rod == NULL ? rigid_vertex(beam, i, twist)
-                                               : rod_vertex(beam, i);
+                                               : rod_vertex(s, beam, i);
         motion.position[i] = bough_add(pose.position, bough_mat3_mul(pose.rotation, v.position));
         motion.rotation[i] = bough_mat3_product(pose.rotation, v.rotation);
         motion.velocity[i] = bough_mat3_mul(pose.rotation, v.velocity);

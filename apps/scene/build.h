@@ -33,6 +33,7 @@ typedef struct bough_simulation {
     int n_rod;
     struct bough_aero_link *aero; // NULL without an aero block
     bough_master *master;
+    int n_motion_channel; // the first channels: they follow from the states
 } bough_simulation;
 
 // Builds everything the scene names, and nothing else, in the arena.

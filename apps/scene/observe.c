@@ -165,11 +165,12 @@ static bough_status add_springs(bough_simulation *s, bough_channels *list) {
 
 // Displacement of the tip and rotation vector of its section against the undeformed one, in the
 // body's axes.
-static void tip(const bough_beam *beam, bough_vec3 *displacement, bough_vec3 *rotation) {
+static void tip(const bough_simulation *s, const bough_beam *beam, bough_vec3 *displacement,
+                bough_vec3 *rotation) {
     int n = beam->def.n_segment;
     *displacement = *rotation = bough_v3(0, 0, 0);
     if (beam->rod == NULL) return;
-    const double *y = bough_rod_body_state(beam->rod) + n - 1;
+    const double *y = s->rod[beam->port].state + n - 1;
     bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
     bough_quaternion undeformed = bough_quaternion_conjugate(beam->def.rotation[n]);
     bough_quaternion turn =
@@ -189,7 +190,7 @@ static void sample_blades(void *self, double t, double *value) {
         double c = cos(beam->body->pitch), sine = sin(beam->body->pitch);
         double input[BOUGH_ROD_INPUTS], root[BOUGH_ROD_OUTPUTS] = {0};
         bough_vec3 d, turn;
-        tip(beam, &d, &turn);
+        tip(s, beam, &d, &turn);
         if (beam->rod != NULL) {
             const bough_subsystem *rod = &s->rod[beam->port];
             const double *motion = s->master->coupling->output + BOUGH_PORT_OUTPUTS * beam->port;
@@ -237,7 +238,7 @@ static void sample_tips(void *self, double t, double *value) {
         bough_transform pose =
             bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
         bough_vec3 d, turn;
-        tip(beam, &d, &turn);
+        tip(s, beam, &d, &turn);
         bough_vec3 x = bough_add(beam->def.position[beam->def.n_segment], d);
         x = bough_add(pose.position, bough_mat3_mul(pose.rotation, x));
         value[0] = x.x;
@@ -288,6 +289,7 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     if (bough_is_ok(&status) && s->scene->n_spring > 0) status = add_springs(s, channels);
     if (bough_is_ok(&status) && s->scene->turbine.node != NULL) status = add_blades(s, channels);
     if (bough_is_ok(&status)) status = add_tips(s, channels);
+    s->n_motion_channel = channels->count;
     if (bough_is_ok(&status) && s->aero != NULL) status = add_aero(s, channels);
     return status;
 }

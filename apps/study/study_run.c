@@ -1,6 +1,6 @@
 #include "apps/study/study_run.h"
 
-#include "apps/scene/build.h"
+#include "apps/scene/error_probe.h"
 
 #include <assert.h>
 #include <math.h>
@@ -18,6 +18,8 @@ typedef struct run {
     int *column;   // (n_channel) of the study's channels among the simulation's
     double *value; // (channels.count) scratch
     bough_study_series *series;
+    bough_error_probe probe;
+    double *gathered, *zero; // (n_channel) scratch
 } run;
 
 static double cpu_clock(void) {
@@ -48,6 +50,46 @@ static void sample_when_due(run *r) {
     s->filled++;
 }
 
+// -- norms ----------------------------------------------------------------------------------------
+
+// The larger of the two; a NaN wins and stays.
+static double larger(double a, double b) { return isnan(b) || b > a ? b : a; }
+
+// Of n components in one row.
+static double difference(const double *a, const double *b, int n, int norm) {
+    double sum = 0, largest = 0;
+    for (int i = 0; i < n; i++) {
+        sum += (a[i] - b[i]) * (a[i] - b[i]);
+        largest = larger(largest, fabs(a[i] - b[i]));
+    }
+    return norm == BOUGH_STUDY_EUCLID ? sqrt(sum) : largest;
+}
+
+// -- the run's own estimate -----------------------------------------------------------------------
+
+// A channel that does not follow from the states has none.
+static void gather_estimate(run *r) {
+    for (int i = 0; i < r->study->n_channel; i++) {
+        bool known = r->column[i] < r->simulation->n_motion_channel;
+        r->gathered[i] = known ? r->probe.difference[r->column[i]] : (double)NAN;
+    }
+}
+
+static void update_estimates(run *r, double *estimate) {
+    if (!bough_error_probe_update(&r->probe)) return;
+    gather_estimate(r);
+    int first = 0;
+    for (int i = 0; i < r->study->n_measure; i++) {
+        const bough_study_measure *m = &r->study->measure[i];
+        double worst = 0;
+        for (int k = 0; k < m->channels.n; first += m->channels.item[k++].n) {
+            worst = larger(worst, difference(r->gathered + first, r->zero, m->channels.item[k].n,
+                                             m->norm));
+        }
+        estimate[i] = larger(estimate[i], m->scale * worst);
+    }
+}
+
 // -- one run --------------------------------------------------------------------------------------
 
 static void show_progress(bough_study_drive *drive, const bough_master *m) {
@@ -58,13 +100,14 @@ static void show_progress(bough_study_drive *drive, const bough_master *m) {
     fflush(stderr);
 }
 
-static bough_status step_all(run *r) {
+static bough_status step_all(run *r, double *estimate) {
     bough_master *m = r->simulation->master;
     bough_status status = bough_ok();
     sample_when_due(r);
     while (bough_is_ok(&status) && !bough_master_done(m)) {
         if (r->drive->stop && r->drive->stop()) return bough_fail(BOUGH_INTERRUPTED, "interrupted");
         status = bough_step(m);
+        update_estimates(r, estimate);
         if (bough_is_ok(&status)) sample_when_due(r);
         show_progress(r->drive, m);
     }
@@ -78,14 +121,16 @@ static bough_status find_channels(bough_arena *arena, run *r) {
     if (!bough_is_ok(&status)) return status;
     r->column = bough_arena_take(arena, (size_t)s->n_channel * sizeof *r->column);
     r->value = bough_arena_doubles(arena, (size_t)r->channels.count);
-    if (!r->column || !r->value) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    r->gathered = bough_arena_doubles(arena, (size_t)s->n_channel);
+    r->zero = bough_arena_doubles(arena, (size_t)s->n_channel);
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < s->n_channel; i++) {
         r->column[i] = bough_channels_find(&r->channels, s->channel[i]);
         if (r->column[i] < 0) {
             return bough_fail(BOUGH_INVALID, "this run has no channel '%.80s'", s->channel[i]);
         }
     }
-    return status;
+    return bough_error_probe_create(arena, r->simulation, &r->channels, &r->probe);
 }
 
 static bough_status build(bough_arena *arena, const bough_study_cell *cell, run *r) {
@@ -107,7 +152,8 @@ static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, run
     const bough_master *m = r->simulation->master;
     r->series->filled = 0;
     double wall = bough_wall_clock(), cpu = cpu_clock();
-    status = step_all(r);
+    for (int i = 0; i < r->study->n_measure; i++) result->estimate[i] = m->estimate ? 0 : (double)NAN;
+    status = step_all(r, result->estimate);
     result->cpu = cpu_clock() - cpu;
     result->wall = bough_wall_clock() - wall;
     result->time = m->time;
@@ -156,25 +202,12 @@ bough_status bough_study_run(const bough_study *study, const bough_study_cell *c
     result->wall = good ? median(wall, n) : wall[n - 1];
     result->cpu = good ? median(cpu, n) : cpu[n - 1];
     for (int i = 0; i < study->n_measure; i++)
-        result->error[i] = NAN;
+        result->error[i] = (double)NAN;
     result->done = true;
     return bough_ok();
 }
 
 // -- differences ----------------------------------------------------------------------------------
-
-// The larger of the two; a NaN wins and stays.
-static double larger(double a, double b) { return isnan(b) || b > a ? b : a; }
-
-// Of n components in one row.
-static double difference(const double *a, const double *b, int n, int norm) {
-    double sum = 0, largest = 0;
-    for (int i = 0; i < n; i++) {
-        sum += (a[i] - b[i]) * (a[i] - b[i]);
-        largest = larger(largest, fabs(a[i] - b[i]));
-    }
-    return norm == BOUGH_STUDY_EUCLID ? sqrt(sum) : largest;
-}
 
 // Of n components from `first`, over all rows.
 static double largest_difference(const bough_study_series *a, const bough_study_series *b,

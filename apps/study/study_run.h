@@ -19,6 +19,7 @@ typedef struct bough_study_result {
     double wall, cpu;     // of the stepping, medians of the repeats [s]
     bough_coupling_report coupling;
     double error[BOUGH_STUDY_MEASURES]; // NaN when the run failed
+    double estimate[BOUGH_STUDY_MEASURES]; // the run's own of the same; NaN where it has none
     bool done;                          // ended, well or not
 } bough_study_result;
 

@@ -7,11 +7,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE = 8192, FIELDS = 12 };
+enum { LINE = 8192, FIELDS = 13 };
 
 static const char head[] =
     "fingerprint,settings,code,time [s],wall [s],cpu [s],defect_max [1],defect_rms [1],"
-    "energy_residual [J],energy_exchanged [J],errors,diagnosis\n";
+    "energy_residual [J],energy_exchanged [J],errors,estimates,diagnosis\n";
 
 static bough_status io_error(const bough_study_store *store, const char *what) {
     return bough_fail(BOUGH_IO, "cannot %s '%.200s': %s", what, store->path,
@@ -40,6 +40,9 @@ static void write_line(FILE *f, const bough_study *s, const bough_study_cell *ce
             c->energy_exchanged);
     for (int i = 0; i < s->n_measure; i++)
         fprintf(f, "%s%.17g", i ? " " : "", r->error[i]);
+    fputc(',', f);
+    for (int i = 0; i < s->n_measure; i++)
+        fprintf(f, "%s%.17g", i ? " " : "", r->estimate[i]);
     fputc(',', f);
     bough_csv_text(f, bough_is_ok(&r->outcome) ? "" : r->outcome.message);
     fputc('\n', f);
@@ -99,8 +102,10 @@ static void read_result(char *const field[FIELDS], int n_measure, bough_study_re
         .done = true,
     };
     int code = atoi(field[2]);
-    if (code != BOUGH_OK) read.outcome = bough_fail((bough_code)code, "%s", field[11]);
-    if (read_errors(field[10], n_measure, read.error)) *r = read;
+    if (code != BOUGH_OK) read.outcome = bough_fail((bough_code)code, "%s", field[12]);
+    bool whole = read_errors(field[10], n_measure, read.error) &&
+                 read_errors(field[11], n_measure, read.estimate);
+    if (whole) *r = read;
 }
 
 static void read_line(const bough_study *s, char *line, bough_study_result *reference,

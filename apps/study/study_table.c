@@ -7,7 +7,7 @@
 #include <stdarg.h>
 #include <string.h>
 
-enum { COLUMNS = BOUGH_STUDY_AXES + BOUGH_STUDY_MEASURES + 8, WIDTH = 48, SHORT = 100 };
+enum { COLUMNS = BOUGH_STUDY_AXES + 2 * BOUGH_STUDY_MEASURES + 8, WIDTH = 48, SHORT = 100 };
 
 void bough_study_status(const bough_study_result *result, char text[40]) {
     if (!result->done) {
@@ -63,8 +63,10 @@ static void put_head(line *l, const bough_study *s) {
     put(l, "wall [s]");
     put(l, "cpu [s]");
     put(l, "x real time");
-    for (int i = 0; i < s->n_measure; i++)
+    for (int i = 0; i < s->n_measure; i++) {
         put(l, "%.30s [%.12s]", s->measure[i].name, s->measure[i].unit);
+        put(l, "estimated");
+    }
     put(l, "defect rms [1]");
     put(l, "energy defect [1]");
 }
@@ -89,8 +91,10 @@ static void put_row(line *l, const bough_study_results *results, int row) {
     put_number(l, r->done, r->wall);
     put_number(l, r->done, r->cpu);
     put_number(l, r->done && r->wall > 0, real_time_factor(r));
-    for (int i = 0; i < s->n_measure; i++)
+    for (int i = 0; i < s->n_measure; i++) {
         put_number(l, good, r->error[i]);
+        put_number(l, good && isfinite(r->estimate[i]), r->estimate[i]);
+    }
     put_number(l, r->done, r->coupling.defect_rms);
     double exchanged = r->coupling.energy_exchanged;
     put_number(l, r->done && exchanged > 0, r->coupling.energy_residual / exchanged);
@@ -169,6 +173,10 @@ static void write_csv_head(const bough_study *s, FILE *f) {
         snprintf(name, sizeof name, "%.120s [%.60s]", s->measure[i].name, s->measure[i].unit);
         fputc(',', f);
         bough_csv_text(f, name);
+        snprintf(name, sizeof name, "%.120s estimated [%.50s]", s->measure[i].name,
+                 s->measure[i].unit);
+        fputc(',', f);
+        bough_csv_text(f, name);
     }
     fputs(",defect_max [1],defect_rms [1],energy_residual [J],energy_exchanged [J],diagnosis\n", f);
 }
@@ -186,8 +194,10 @@ static void write_csv_numbers(const bough_study *s, const bough_study_result *r,
     write_csv_number(f, r->wall);
     write_csv_number(f, r->cpu);
     write_csv_number(f, real_time_factor(r));
-    for (int i = 0; i < s->n_measure; i++)
+    for (int i = 0; i < s->n_measure; i++) {
         write_csv_number(f, r->error[i]);
+        write_csv_number(f, r->estimate[i]);
+    }
     write_csv_number(f, r->coupling.defect_max);
     write_csv_number(f, r->coupling.defect_rms);
     write_csv_number(f, r->coupling.energy_residual);

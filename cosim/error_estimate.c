@@ -1,0 +1,181 @@
+#include "cosim/error_estimate.h"
+
+#include "cosim/arrow.h"
+#include "cosim/port.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { BATCH = 32, POINTS = 4 };
+static const double longest_batch = 0.25; // the members are linearised once in it [s]
+static const double longest_step = 0.02;  // of the SDIRK method [s]
+static const double sdirk_gamma = 0.29289321881345248; // 1 − 1/√2
+
+struct bough_error_estimate {
+    const bough_assembly *assembly;
+    // the batch
+    int n_step;
+    double start[BATCH], end[BATCH]; // [s]
+    double *defect;                  // (BATCH × 4 × n_input) cubics as in bough_signal
+    long batches;
+    bool lost; // a member could not be linearised
+    // reconstruction of the inputs
+    int n_point;            // valid entries of the two below
+    double time[POINTS];    // newest first [s]
+    double *value[POINTS];  // (n_input) inputs there
+    bough_signal curve;     // (n_input) through them
+    // the error
+    double *error;      // (n_state) ε
+    double *input_worst; // (n_input) largest |P (C ε + D υ)|
+    // linearisation
+    bough_arrow *arrow;
+    double gamma;    // of the factors in place
+    double *at;      // (n_state) where
+    // scratch
+    double *x;       // (n_state)
+    double *outside; // (n_input) δ at a time
+};
+
+// -- building -------------------------------------------------------------------------------------
+
+static bool take(bough_error_estimate *e, bough_arena *arena) {
+    const bough_assembly *a = e->assembly;
+    size_t n = (size_t)a->n_state, n_input = (size_t)a->n_input;
+    e->defect = bough_arena_doubles(arena, BATCH * 4 * n_input);
+    for (int p = 0; p < POINTS; p++) e->value[p] = bough_arena_doubles(arena, n_input);
+    e->curve = bough_port_signal(arena, a->n_input);
+    e->error = bough_arena_doubles(arena, n);
+    e->input_worst = bough_arena_doubles(arena, n_input);
+    e->at = bough_arena_doubles(arena, n);
+    e->x = bough_arena_doubles(arena, n);
+    e->outside = bough_arena_doubles(arena, n_input);
+    return !bough_arena_exhausted(arena);
+}
+
+bough_status bough_error_estimate_create(bough_arena *arena, const bough_coupling *c,
+                                         bough_error_estimate **estimate) {
+    bough_error_estimate *e = bough_arena_take(arena, sizeof *e);
+    if (!e) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    e->assembly = c->assembly;
+    if (!take(e, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    e->n_point = 1;
+    e->time[0] = c->t1;
+    memcpy(e->value[0], c->input, (size_t)c->assembly->n_input * sizeof(double));
+    *estimate = e;
+    return bough_arrow_create(arena, c->assembly, c->threads, &e->arrow);
+}
+
+// -- defects --------------------------------------------------------------------------------------
+
+// The inputs as they turned out to be: the polynomial through the last synchronisation points, none
+// of them before a jump.
+static void reconstruct(bough_error_estimate *e, const bough_coupling *c) {
+    double *oldest = e->value[POINTS - 1];
+    if (c->restart) e->n_point = 1;
+    for (int p = POINTS - 1; p > 0; p--) {
+        e->value[p] = e->value[p - 1];
+        e->time[p] = e->time[p - 1];
+    }
+    e->value[0] = oldest;
+    e->time[0] = c->t1;
+    memcpy(oldest, c->input, (size_t)e->assembly->n_input * sizeof(double));
+    if (e->n_point < POINTS) e->n_point++;
+    e->curve.t0 = c->t0;
+    e->curve.t1 = c->t1;
+    bough_port_polynomial(&e->curve, 0, e->curve.n, e->n_point, e->time,
+                          (const double *const *)e->value);
+}
+
+static void keep_defects(bough_error_estimate *e, const bough_coupling *c) {
+    const bough_assembly *a = e->assembly;
+    int n = a->n_input;
+    double *defect = e->defect + (size_t)e->n_step * 4 * (size_t)n;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_signal *s = &c->signal[i];
+        for (int j = 0, k = a->input_offset[i]; j < s->n; j++, k++) {
+            for (int p = 0; p < 4; p++) {
+                double difference = s->coefficient[p * s->n + j] - e->curve.coefficient[p * n + k];
+                defect[p * n + k] = c->followed[k] ? 0 : difference;
+            }
+        }
+    }
+    e->start[e->n_step] = c->t0;
+    e->end[e->n_step] = c->t1;
+    e->n_step++;
+}
+
+void bough_error_estimate_step(bough_error_estimate *e, const bough_coupling *c) {
+    reconstruct(e, c);
+    keep_defects(e, c);
+    if (e->n_step == BATCH || c->t1 - e->start[0] >= longest_batch) {
+        bough_error_estimate_finish(e, c);
+    }
+}
+
+// -- propagation ----------------------------------------------------------------------------------
+
+// Factors for steps with this γ; `fresh` where the members are now.
+static bool linearise(bough_error_estimate *e, const bough_coupling *c, bool fresh, double gamma) {
+    const bough_assembly *a = e->assembly;
+    if (!fresh && fabs(gamma - e->gamma) <= 1e-7 * gamma) return true;
+    e->gamma = gamma;
+    for (int i = 0; i < a->n_member && fresh; i++) {
+        const bough_subsystem *s = a->member[i];
+        memcpy(e->at + a->state_offset[i], s->state, (size_t)s->n_state * sizeof(double));
+    }
+    bough_status status = bough_arrow_setup(e->arrow, c->t1, e->at, c->input, gamma);
+    return bough_is_ok(&status);
+}
+
+static void defect_at(bough_error_estimate *e, int step, double t) {
+    int n = e->assembly->n_input;
+    bough_signal s = {.n = n,
+                      .t0 = e->start[step],
+                      .t1 = e->end[step],
+                      .coefficient = e->defect + (size_t)step * 4 * (size_t)n};
+    bough_signal_value(&s, t, e->outside);
+}
+
+// One SDIRK step of length h from t, as of the shadows.
+static void advance(bough_error_estimate *e, int step, double t, double h) {
+    int n = e->assembly->n_state;
+    double share = (1 - sdirk_gamma) / sdirk_gamma;
+    memcpy(e->x, e->error, (size_t)n * sizeof(double));
+    defect_at(e, step, t + sdirk_gamma * h);
+    bough_arrow_solve_driven(e->arrow, e->outside, e->x);
+    for (int k = 0; k < n; k++) e->error[k] += share * (e->x[k] - e->error[k]);
+    defect_at(e, step, t + h);
+    bough_arrow_solve_driven(e->arrow, e->outside, e->error);
+}
+
+static bool propagate(bough_error_estimate *e, const bough_coupling *c, int step) {
+    double length = e->end[step] - e->start[step];
+    int n = (int)fmax(1, ceil(length / longest_step - 1e-6));
+    double h = length / n;
+    if (!linearise(e, c, step == 0, sdirk_gamma * h)) return false;
+    for (int k = 0; k < n; k++) advance(e, step, e->start[step] + k * h, h);
+    for (int j = 0; j < e->assembly->n_input; j++) {
+        e->input_worst[j] = fmax(e->input_worst[j], fabs(e->arrow->change[j] - e->outside[j]));
+    }
+    return true;
+}
+
+void bough_error_estimate_finish(bough_error_estimate *e, const bough_coupling *c) {
+    for (int k = 0; k < e->n_step && !e->lost; k++) e->lost = !propagate(e, c, k);
+    if (e->n_step > 0) e->batches++;
+    e->n_step = 0;
+}
+
+// -- answers --------------------------------------------------------------------------------------
+
+long bough_error_estimate_batches(const bough_error_estimate *e) {
+    return e->batches;
+}
+
+const double *bough_error_estimate_states(const bough_error_estimate *e) {
+    return e->lost ? NULL : e->error;
+}
+
+double bough_error_estimate_input(const bough_error_estimate *e, int j) {
+    return e->lost ? (double)NAN : BOUGH_ERROR_SAFETY * e->input_worst[j];
+}
