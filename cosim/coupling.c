@@ -178,9 +178,33 @@ void bough_coupling_interpolate(bough_coupling *c, int member, int j) {
                        (bough_port_end){c->end_output + source, c->end_rate + source});
 }
 
+double bough_coupling_curvature(const bough_coupling *c, int j, double end) {
+    if (c->n_past < 2 || c->restart) return 0;
+    double h = c->t1 - c->t0, before = c->t0 - c->past_time[1];
+    double now = c->past[0][j], last = c->past[1][j];
+    return 2 * ((end - now) / h - (now - last) / before) / (h + before);
+}
+
+// What a port was over the step, by that parabola, less what its receiver saw.
+static void settle(bough_coupling *c, int member) {
+    const bough_assembly *a = c->assembly;
+    const bough_signal *s = &c->signal[member];
+    double h = c->t1 - c->t0;
+    for (int k = 0; k < s->n; k++) {
+        const double *seen = s->coefficient + k;
+        int j = a->input_offset[member] + k, n = s->n;
+        double curvature = bough_coupling_curvature(c, j, c->input[j]);
+        double was = 0.5 * (c->past[0][j] + c->input[j]) - h * h / 12 * curvature;
+        c->owed[j] += h * (was - seen[0] - seen[n] / 2 - seen[2 * n] / 3 - seen[3 * n] / 4);
+    }
+}
+
 void bough_coupling_exchange(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     bough_assembly_outputs(a, c->t1, c->output, c->input);
+    for (int i = 0; i < a->n_member && c->owed != NULL; i++) {
+        if (a->stage[i] == 0) settle(c, i);
+    }
     for (int i = 0; i < a->n_member; i++) {
         bough_signal_value(&c->signal[i], c->t1, c->used + a->input_offset[i]);
     }

@@ -42,6 +42,8 @@ typedef struct bough_coupling {
     double *output; // (n_output) of all members at their current states
     double *input;  // (n_input) the same, as their receivers see it
     double *used;   // (n_input) what the receivers saw on the step, at its end
+    double *owed;   // (n_input) ∫ of what a port was − what its receiver saw, over all steps;
+                    // of stage 0; NULL unless the scheme pays it back
     int n_past;     // valid entries of the two below
     double past_time[BOUGH_HISTORY]; // the last synchronisation points, newest first [s]
     double *past[BOUGH_HISTORY];     // (n_input each) inputs there
@@ -96,6 +98,10 @@ bough_status bough_coupling_advance_lead(bough_coupling *c, int stage, bool rest
 
 // Fills input j (numbered over all inputs) of its member from the new output that feeds it.
 void bough_coupling_interpolate(bough_coupling *c, int member, int j);
+
+// Second derivative at the step of the parabola through the last two values of input j (numbered
+// over all inputs) and `end` at t1; 0 where there are no such values or a jump parts them.
+double bough_coupling_curvature(const bough_coupling *c, int j, double end);
 
 // Outputs and inputs at t1, end values of the signals; the history moves on.
 void bough_coupling_exchange(bough_coupling *c);

@@ -15,7 +15,8 @@ static const double span = 0.06;      // this time passes per Arnoldi vector [s]
 static const double sub_step = 5e-3;  // of the shadows at most [s]
 static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
 
-// The map z → z after `repeat` macro steps; z = (states, inputs one and two steps ago, used inputs).
+// The map z → z after `repeat` macro steps; z = (states, inputs one and two steps ago, used inputs,
+// owed impulses).
 typedef struct map {
     bough_arena *arena;
     const bough_scheme *scheme;
@@ -95,7 +96,7 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     m->scheme = bough_scheme_find(options->name);
     if (m->scheme->create) status = m->scheme->create(c, m->arena);
     if (!bough_is_ok(&status)) return status;
-    m->n = a->n_state + 3 * a->n_input;
+    m->n = a->n_state + (c->owed != NULL ? 4 : 3) * a->n_input;
     m->dimension = m->n < DIMENSION ? m->n : DIMENSION;
     m->repeat = (int)fmin(ceil(span / m->macro_step - 1e-6), MOST_REPEATED);
     return take(m);
@@ -116,6 +117,10 @@ static void load(map *m, const double *z) {
     memcpy(c->past[1], z + a->n_state, size);
     memcpy(c->past[2], z + a->n_state + a->n_input, size);
     memcpy(c->used, z + a->n_state + 2 * a->n_input, size);
+    for (int j = 0; j < a->n_input && c->owed != NULL; j++) {
+        bool paid = j < a->input_offset[1];
+        c->owed[j] = paid ? z[a->n_state + 3 * a->n_input + j] : 0;
+    }
     for (int p = 0; p < BOUGH_HISTORY; p++) c->past_time[p] = -p * m->macro_step;
     c->n_past = BOUGH_HISTORY;
     c->t1 = 0;
@@ -132,6 +137,7 @@ static void store(const map *m, double *z) {
     memcpy(z + a->n_state, c->past[1], size);
     memcpy(z + a->n_state + a->n_input, c->past[2], size);
     memcpy(z + a->n_state + 2 * a->n_input, c->used, size);
+    if (c->owed != NULL) memcpy(z + a->n_state + 3 * a->n_input, c->owed, size);
 }
 
 // image = z after `count` macro steps
@@ -192,6 +198,8 @@ static void choose_weights(map *m, const double *z) {
         double weight = largest > 0 ? sqrt(sum / a->n_input) / largest : 1;
         for (int j = first; j < last; j++) {
             for (int p = 0; p < 3; p++) m->weight[a->n_state + p * a->n_input + j] = weight;
+            if (m->coupling->owed == NULL) continue;
+            m->weight[a->n_state + 3 * a->n_input + j] = weight / m->macro_step;
         }
     }
 }

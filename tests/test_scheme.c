@@ -119,15 +119,16 @@ static void stability_limits(void **state) {
     }
 }
 
-static void ramp_is_of_order_two(void **state) {
+// Impulses paid back make it 3; they are not where θ is not 1/2 or the interface body is light.
+static void ramp_is_of_order_three_on_a_heavy_body(void **state) {
     (void)state;
     double error[3];
     for (int i = 0; i < 3; i++) {
         error[i] = error_of(two_mass_default(), definition("ramp", .04 / (1 << i)));
     }
-    check_near(log2(error[0] / error[1]), 2, 0, .1);
-    check_near(log2(error[1] / error[2]), 2, 0, .1);
-    assert_true(error[0] < 2e-3); // linear extrapolation: 6.31e-3
+    check_near(log2(error[0] / error[1]), 3, 0, .25);
+    check_near(log2(error[1] / error[2]), 3, 0, .25);
+    assert_true(error[0] < 1e-3); // linear extrapolation: 6.31e-3
 }
 
 static void ramp_is_stable_beyond_every_explicit_limit(void **state) {
@@ -263,7 +264,7 @@ int main(void) {
         cmocka_unit_test(parallel_errors_and_orders),
         cmocka_unit_test(sequential_errors_and_orders),
         cmocka_unit_test(stability_limits),
-        cmocka_unit_test(ramp_is_of_order_two),
+        cmocka_unit_test(ramp_is_of_order_three_on_a_heavy_body),
         cmocka_unit_test(ramp_is_stable_beyond_every_explicit_limit),
         cmocka_unit_test(ramp_takes_a_light_interface_body),
         cmocka_unit_test(unstable_run_ends_with_a_diagnosis),
