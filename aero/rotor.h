@@ -116,6 +116,9 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
 void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
                         bough_rotor_data *data);
 
+// Makes the next sample the first.
+void bough_rotor_forget(const bough_rotor *rotor, bough_rotor_data *data);
+
 // The memory as a row of numbers, for schemes that repeat a step; its length is 0 without dynamic
 // inflow and stall. `to` and `from` have that length.
 int bough_rotor_memory_size(const bough_rotor *rotor);

@@ -36,6 +36,17 @@ void bough_rotor_remember(const bough_rotor *rotor, const bough_rotor_motion *mo
     clock->started = true;
 }
 
+static int n_section(const bough_rotor *rotor) {
+    return bough_rotor_n_blade(rotor) * bough_rotor_n_station(rotor);
+}
+
+void bough_rotor_forget(const bough_rotor *rotor, bough_rotor_data *data) {
+    bough_rotor_memory *memory = &data->memory;
+    if (!memory->clock) return;
+    memory->clock->started = false;
+    for (int k = 0; memory->stall && k < n_section(rotor); k++) memory->stall[k].started = 0;
+}
+
 // -- saving ---------------------------------------------------------------------------------------
 
 // Both are doubles only: a row of numbers each.
@@ -47,10 +58,6 @@ enum {
 
 static bool has_inflow(const bough_rotor *rotor) {
     return bough_rotor_inflow(rotor)->kind != BOUGH_INFLOW_EQUILIBRIUM;
-}
-
-static int n_section(const bough_rotor *rotor) {
-    return bough_rotor_n_blade(rotor) * bough_rotor_n_station(rotor);
 }
 
 int bough_rotor_memory_size(const bough_rotor *rotor) {

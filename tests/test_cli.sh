@@ -303,8 +303,13 @@ statics() {
     has out/blade/static.csv '^rod,span (m),ux (m),'
     has out/blade/static.csv '^blade,61.5,7.6'
     rm -r out
-    refused "the joint of 'hub' moves; static equilibrium of moving trees is not built yet" \
-        static "$turbine"
+    expect 0 static "$turbine" --out turning
+    has ../stdout '^whole scene: .* steps, .* samples of the air, loads at 20 s$'
+    has ../stdout '^joint hub: revolute 0 deg, keeps its speed 0.5$'
+    [ "$(wc -l <turning/static.csv)" -eq 148 ] || fail "$said: static.csv has not 148 lines"
+    rm -r turning
+    expect 3 static "$turbine" --set bodies[2].joint.speed=0 --out failed
+    has ../stderr 'no equilibrium found in .* a free joint needs a spring or a speed to keep'
     refused "'x' is not\|there is no body 'x'" static "$blade" \
         --set 'loads=[{body: x, at: tip, force: [1, 0, 0]}]'
     expect 3 static "$blade" --set 'bodies[0].rod.segments=4' --out failed \

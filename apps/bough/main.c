@@ -19,7 +19,7 @@ const bough_verb bough_verbs[] = {
      bough_verb_check},
     {"static",
      {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET | BOUGH_OPTION_OUT},
-     "finds the shape of each rod at rest under gravity and loads",
+     "finds the shape of rods and joints at rest under gravity, loads and air",
      bough_verb_static},
     {"modes",
      {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET | BOUGH_OPTION_OUT},

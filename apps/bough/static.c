@@ -1,7 +1,9 @@
-// bough static: the shape of each rod at rest under gravity and the scene's loads.
+// bough static: the shape of each rod and the angles of the joints at rest, or in steady rotation,
+// under gravity and the whole of the scene's loads.
 #include "apps/bough/open.h"
 #include "apps/bough/verb.h"
 #include "apps/output/folder.h"
+#include "apps/scene/settle.h"
 #include "apps/scene/steady.h"
 
 enum { MOTION = 6 }; // displacement and rotation, or force and moment
@@ -42,12 +44,13 @@ static void print_three(const char *what, const double *v, const char *unit) {
 static void print_rod(bough_steady *x) {
     const bough_rod_model *m = x->model;
     double value[MOTION];
-    printf("rod %s: %d segments, %.9g m, %d iterations\n", m->name, m->n, m->span[m->n],
-           x->work.iterations);
+    printf("rod %s: %d segments, %.9g m", m->name, m->n_segment, m->span[m->n_segment]);
+    if (x->work.iterations > 0) printf(", %d iterations", x->work.iterations);
+    putchar('\n');
     printf("%10s %12s %12s %12s %12s %12s %12s\n", "span", "ux", "uy", "uz", "rx", "ry", "rz");
     printf("%10s %12s %12s %12s %12s %12s %12s\n", "(m)", "(m)", "(m)", "(m)", "(deg)", "(deg)",
            "(deg)");
-    for (int i = 0; i <= m->n; i++) {
+    for (int i = 0; i <= m->n_segment; i++) {
         motion_of(x, i, value);
         print_row(m->span[i], value);
     }
@@ -55,18 +58,39 @@ static void print_rod(bough_steady *x) {
            "bend x", "bend y", "twist");
     printf("%10s %12s %12s %12s %12s %12s %12s\n", "(m)", "(N)", "(N)", "(N)", "(N m)", "(N m)",
            "(N m)");
-    for (int n = 0; n < m->n; n++) {
+    for (int n = 0; n < m->n_segment; n++) {
         stress_of(x, n, value);
         print_row(middle_of(x, n), value);
     }
-    motion_of(x, m->n, value);
+    motion_of(x, m->n_segment, value);
     printf("tip %s:", m->name);
     print_three(" u", value, "m,");
     print_three(" r", value + 3, "deg\n");
-    bough_rod_root_wrench(m, &x->work.scaled, 0, x->state, x->input, &x->work.scratch, value);
+    bough_rod_root_wrench(m, &x->work.scaled, x->time, x->state, x->input, &x->work.scratch, value);
     printf("root %s:", m->name);
     print_three(" force", value, "N,");
     print_three(" moment", value + 3, "N m\n");
+}
+
+// Coordinates and speeds of the joints, and the speeds that are kept.
+static void print_joints(const bough_simulation *s) {
+    for (int i = 0; i < s->tree->n_links; i++) {
+        const bough_link *link = &s->tree->links[i];
+        const double *q = s->trunk.state + link->first_coordinate;
+        const double *v = s->trunk.state + s->tree->n_q + link->first_speed;
+        printf("joint %s: %s", s->tree->bodies[link->body].name,
+               bough_joint_name(link->joint.kind));
+        if (link->joint.kind == BOUGH_JOINT_REVOLUTE) {
+            printf(" %.7g deg", q[0] / degree);
+        } else {
+            for (int k = 0; k < link->n_coordinates; k++) printf(" %.7g", q[k]);
+        }
+        for (int k = 0; k < link->n_speeds; k++) {
+            if (s->tree->initial[s->tree->n_q + link->first_speed + k] == 0) continue;
+            printf(", keeps its speed %.6g", v[k]);
+        }
+        putchar('\n');
+    }
 }
 
 // -- file -----------------------------------------------------------------------------------------
@@ -84,11 +108,11 @@ static void write_values(FILE *file, double span, const double value[MOTION]) {
 static void write_rod(FILE *file, const bough_steady *x) {
     const bough_rod_model *m = x->model;
     double value[MOTION];
-    for (int i = 0; i <= m->n; i++) {
+    for (int i = 0; i <= m->n_segment; i++) {
         fputs(m->name, file);
         motion_of(x, i, value);
         write_values(file, m->span[i], value);
-        if (i < m->n) {
+        if (i < m->n_segment) {
             stress_of(x, i, value);
             write_values(file, middle_of(x, i), value);
         } else {
@@ -112,38 +136,52 @@ static bough_status write_file(const char *folder, const bough_steady *steady, i
 
 // -- the command ----------------------------------------------------------------------------------
 
-static bough_status check_rods(const bough_simulation *s) {
-    if (s->n_rod == 0) {
-        return bough_fail(BOUGH_INVALID, "%.200s: no body has fidelity rod", s->scene->file);
-    }
+// Each rod by itself.
+static bough_status find_apart(bough_arena *arena, const bough_simulation *s,
+                               bough_steady *steady) {
+    const bough_turning rest = {0};
+    int n = 0;
     for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].rod == NULL) continue;
-        const bough_scene_body *mover = bough_beam_mover(s, &s->beam[k]);
-        if (mover == NULL) continue;
-        return bough_fail(BOUGH_INVALID, "rod %s: the joint of '%s' moves; static equilibrium of"
-                          " moving trees is not built yet: make that joint fixed",
-                          s->beam[k].body->name, mover->name);
+        bough_status status = bough_steady_find(arena, s, &s->beam[k], &rest, &steady[n++]);
+        if (!bough_is_ok(&status)) return status;
     }
     return bough_ok();
 }
 
+// All together.
+static bough_status find_whole(bough_arena *arena, bough_simulation *s, bough_steady *steady) {
+    bough_settling settling;
+    double time = bough_settle_loaded(s);
+    bough_status status = bough_settle(s, s->master->assembly, time, &settling);
+    if (!bough_is_ok(&status)) return status;
+    printf("whole scene: %d steps", settling.steps);
+    if (settling.samples > 0) printf(", %d samples of the air", settling.samples);
+    if (time > 0) printf(", loads at %.6g s", time);
+    putchar('\n');
+    print_joints(s);
+    int n = 0;
+    for (int k = 0; k < s->n_beam && bough_is_ok(&status); k++) {
+        if (s->beam[k].rod == NULL) continue;
+        status = bough_steady_settled(arena, s, &s->beam[k], time, &steady[n++]);
+    }
+    return status;
+}
+
 bough_status bough_verb_static(bough_arena *arena, const bough_options *options) {
-    const bough_turning rest = {0};
     bough_simulation *s;
     bough_status status = bough_open(arena, options, &s);
-    if (bough_is_ok(&status)) status = check_rods(s);
     if (!bough_is_ok(&status)) return status;
-    const char *folder = bough_out_folder(arena, options);
-    bough_steady *steady = bough_arena_take(arena, (size_t)s->n_rod * sizeof *steady);
-    if (!steady || !folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    int n = 0;
-    for (int k = 0; k < s->n_beam; k++) {
-        if (s->beam[k].rod == NULL) continue;
-        status = bough_steady_find(arena, s, &s->beam[k], &rest, &steady[n]);
-        if (!bough_is_ok(&status)) return status;
-        print_rod(&steady[n++]);
+    if (s->n_rod == 0 && s->tree->n_v == 0) {
+        return bough_fail(BOUGH_INVALID, "%.200s: nothing in it moves or bends", s->scene->file);
     }
-    status = write_file(folder, steady, n);
+    const char *folder = bough_out_folder(arena, options);
+    bough_steady *steady = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *steady);
+    if (!steady || !folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    status = bough_settle_apart(s) ? find_apart(arena, s, steady) : find_whole(arena, s, steady);
+    if (!bough_is_ok(&status)) return status;
+    for (int k = 0; k < s->n_rod; k++) print_rod(&steady[k]);
+    status = write_file(folder, steady, s->n_rod);
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }

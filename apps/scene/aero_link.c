@@ -314,6 +314,15 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     return bough_ok();
 }
 
+void bough_aero_link_hold(bough_aero_link *link, double t) {
+    bool jumped;
+    link->started = false;
+    bough_rotor_forget(link->rotor, &link->data);
+    sample(link, t, t + 1, &jumped); // constant: there is none before it
+    link->started = false;
+    bough_rotor_forget(link->rotor, &link->data);
+}
+
 bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
     return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample};
 }

@@ -15,6 +15,9 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
 // The sampled load for the master's loop.
 bough_sampled_load bough_aero_link_load(bough_aero_link *link);
 
+// Samples the blades as they are and holds the loads from t on; the next sample starts anew.
+void bough_aero_link_hold(bough_aero_link *link, double t);
+
 // Results of the last sample, with the ramp's factor at its time.
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor);
 

@@ -2,6 +2,7 @@
 
 #include "apps/scene/aero_link.h"
 #include "apps/scene/load_link.h"
+#include "apps/scene/settle.h"
 #include "core/tree_subsystem.h"
 #include "flexbody/section.h"
 
@@ -379,6 +380,18 @@ static bough_scheme_options scheme_options(const bough_scene *scene) {
     return options;
 }
 
+// The run starts from equilibrium: the members move there before their master is built.
+static bough_status settle(const bough_assembly_def *def, bough_simulation *s) {
+    bough_arena *arena = bough_arena_create();
+    bough_assembly *assembly;
+    bough_settling settling;
+    if (arena == NULL) return out_of_memory();
+    bough_status status = bough_assembly_build(arena, def, &assembly);
+    if (bough_is_ok(&status)) status = bough_settle(s, assembly, 0, &settling);
+    bough_arena_destroy(arena);
+    return status;
+}
+
 static bough_status build_master(builder *b) {
     bough_simulation *s = b->s;
     const bough_scene_simulation *sim = &b->scene->simulation;
@@ -395,6 +408,10 @@ static bough_status build_master(builder *b) {
         load = bough_aero_link_load(s->aero);
         def.load = &load;
         def.n_load = 1;
+    }
+    if (sim->initial == BOUGH_SCENE_IN_EQUILIBRIUM) {
+        bough_status status = settle(&def.assembly, s);
+        if (!bough_is_ok(&status)) return status;
     }
     return bough_master_build(b->arena, &def, &s->master);
 }

@@ -71,10 +71,16 @@ typedef struct bough_scene_output {
     double interval; // [s], a multiple of the macro step
 } bough_scene_output;
 
+typedef enum bough_scene_initial {
+    BOUGH_SCENE_UNDEFORMED,
+    BOUGH_SCENE_IN_EQUILIBRIUM, // under the loads at time 0
+} bough_scene_initial;
+
 typedef struct bough_scene_simulation {
     const bough_node *node;
     double duration;   // [s], a multiple of the macro step
     double macro_step; // [s]
+    int initial;       // bough_scene_initial: how the rods and joints start
     bough_scene_coupling coupling;
     bough_scene_solver master, micro;
     int threads;

@@ -262,6 +262,10 @@ static const bough_key simulation_keys[] = {
      .required = true, AT(duration), .help = "simulated time, a multiple of the macro step"},
     {.name = "macro_step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .required = true, AT(macro_step), .help = "time between exchanges"},
+    {.name = "initial", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("undeformed", "equilibrium"),
+     .fallback = "undeformed", AT(initial),
+     .help = "start as the scene says, or from equilibrium with the loads at time 0; a joint with a "
+             "speed keeps it"},
     {.name = "coupling", .kind = BOUGH_KEY_MAPPING, .of = &coupling_schema, AT(coupling),
      .help = "the coupling scheme"},
     {.name = "master", .kind = BOUGH_KEY_MAPPING, .of = &master_schema, AT(master),

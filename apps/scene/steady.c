@@ -1,5 +1,7 @@
 #include "apps/scene/steady.h"
 
+#include <string.h>
+
 const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_beam *beam) {
     const bough_scene_body *body = beam->body;
     while (body->joint.kind == BOUGH_SCENE_FIXED) {
@@ -107,11 +109,32 @@ bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,
                             &steady->work, steady->state);
 }
 
+bough_status bough_steady_settled(bough_arena *arena, const bough_simulation *s,
+                                  const bough_beam *beam, double time, bough_steady *steady) {
+    const bough_assembly *a = s->master->assembly;
+    const bough_coupling *c = s->master->coupling;
+    const double *input = c->input + a->input_offset[beam->port + 1];
+    const bough_rod_model *m = bough_rod_body_model(beam->rod);
+    *steady = (bough_steady){.beam = beam, .model = m, .time = time};
+    steady->state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * m->n);
+    if (!bough_rod_static_init(&steady->work, arena, m)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", m->name);
+    }
+    bough_assembly_outputs(a, time, c->output, c->input);
+    memcpy(steady->input, input, (size_t)bough_rod_n_inputs(m) * sizeof *input);
+    memcpy(steady->state, bough_rod_body_state(beam->rod),
+           (size_t)BOUGH_ROD_STATES * m->n * sizeof *input);
+    steady->work.scaled = *bough_rod_body_loads(beam->rod);
+    bough_rod_gather(m, steady->state, steady->input, &steady->work.scratch);
+    return bough_ok();
+}
+
 void bough_steady_displacement(const bough_steady *steady, int i, bough_vec3 *shift,
                                bough_vec3 *turn) {
     const bough_rod_model *m = steady->model;
-    const double *y = steady->state + i - 1;
-    int n = m->n;
+    bool end = i > m->n; // belongs to what the rod carries: its x and p after u and W
+    const double *y = end ? steady->input + BOUGH_ROD_INPUTS + 6 : steady->state + i - 1;
+    int n = end ? 1 : m->n;
     *shift = *turn = bough_v3(0, 0, 0);
     if (i == 0) return;
     bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};

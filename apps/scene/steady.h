@@ -1,5 +1,5 @@
-// A scene's rods one by one, root held, at rest or turning steadily: their equilibrium, for statics
-// and eigenvalues.
+// A scene's rods in equilibrium: one by one, root held, at rest or turning steadily, for statics and
+// eigenvalues; or as the scene settled (settle.h).
 #ifndef BOUGH_APPS_SCENE_STEADY_H
 #define BOUGH_APPS_SCENE_STEADY_H
 
@@ -9,9 +9,11 @@
 typedef struct bough_steady {
     const bough_beam *beam;
     const bough_rod_model *model;
-    double input[BOUGH_ROD_INPUTS]; // constant twist and gravity of the body's frame, in its axes
-    double *state;                  // in equilibrium (13 n)
-    bough_rod_static work;          // work.scaled: the loads, all of them
+    double input[BOUGH_ROD_MOST_INPUTS]; // constant twist and gravity of the body's frame, in its
+                                         // axes, and the motion of the end that carries bodies
+    double time;           // of the loads [s]
+    double *state;         // in equilibrium (13 n)
+    bough_rod_static work; // work.scaled: the loads, all of them; work.scratch: the rod gathered
 } bough_steady;
 
 // A steady rotation of a rod's frame; speed 0: rest.
@@ -34,6 +36,10 @@ const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_
 bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,
                                const bough_beam *beam, const bough_turning *turning,
                                bough_steady *steady);
+
+// The rod of the whole scene after it settled under the loads at `time`.
+bough_status bough_steady_settled(bough_arena *arena, const bough_simulation *s,
+                                  const bough_beam *beam, double time, bough_steady *steady);
 
 // Displacement [m] and rotation vector [rad] of vertex i from the undeformed rod, in body axes.
 void bough_steady_displacement(const bough_steady *steady, int i, bough_vec3 *shift,

@@ -1,0 +1,31 @@
+// Static equilibrium of the whole scene: tree, rods and springs together, under gravity, the loads at
+// one time and the air's forces, which are sampled anew where the bodies come to rest.
+//
+// A joint with an initial speed keeps coordinate and speed: what it carries turns steadily, at the
+// azimuth where it is (frozen azimuth: gravity does not go round). All other joints come to rest.
+#ifndef BOUGH_APPS_SCENE_SETTLE_H
+#define BOUGH_APPS_SCENE_SETTLE_H
+
+#include "apps/scene/build.h"
+
+typedef struct bough_settling {
+    int steps;   // of the solution, all samples of the air together
+    int samples; // of the air; 0 without aerodynamics
+} bough_settling;
+
+// Whether the rods do not know of each other: each is held by the ground, without air. Then each
+// has its own equilibrium and modes.
+bool bough_settle_apart(const bough_simulation *s);
+
+// The time after which no load grows any more [s].
+double bough_settle_loaded(const bough_simulation *s);
+
+// Brings the members of the assembly, the simulation's, to equilibrium under the loads at `time`;
+// their clocks stay at 0. BOUGH_FAILED names the body that does not settle.
+bough_status bough_settle(bough_simulation *s, const bough_assembly *assembly, double time,
+                          bough_settling *settling);
+
+// States of all members (n_state) into a row.
+void bough_settle_state(const bough_assembly *assembly, double *state);
+
+#endif

@@ -1,0 +1,134 @@
+#include "cosim/equilibrium.h"
+
+#include "core/linalg.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+// What the second correction of a step may be of the first: the step is taken below `contracting`,
+// and the next one longer by `growth` below `easy`.
+static const double contracting = 0.5, easy = 0.1, growth = 8, shrink = 0.2;
+
+static const double shortest = 1e-9;  // γ below which there is no hope [s]
+static const double rounding = 1e-6; // changes that only rounding keeps from contracting
+
+bough_equilibrium_def bough_equilibrium_def_default(void) {
+    return (bough_equilibrium_def){.step = 0.1, .tolerance = 1e-10, .steps = 300};
+}
+
+typedef struct search {
+    bough_arrow *arrow;
+    const bough_equilibrium_def *def;
+    int n;                                // states
+    double *scale, *rate, *first, *second, *trial; // (n)
+    double *column;     // (n_held × n): (I − γJ)⁻¹ of each held state's unit vector
+    double *multiplier; // (n_held × n_held) their held entries, factored
+    double *share;      // (n_held)
+    int *pivot;         // (n_held)
+    double gamma;
+} search;
+
+static bool take(search *s, bough_arena *arena) {
+    size_t n = (size_t)s->n, held = (size_t)s->def->n_held;
+    s->scale = bough_arena_doubles(arena, n);
+    s->rate = bough_arena_doubles(arena, n);
+    s->first = bough_arena_doubles(arena, n);
+    s->second = bough_arena_doubles(arena, n);
+    s->trial = bough_arena_doubles(arena, n);
+    s->column = bough_arena_doubles(arena, held * n);
+    s->multiplier = bough_arena_doubles(arena, held * held);
+    s->share = bough_arena_doubles(arena, held);
+    s->pivot = bough_arena_take(arena, (held + 1) * sizeof(int));
+    return !bough_arena_exhausted(arena);
+}
+
+// Factors I − γJ bordered by the held states.
+static bool setup(search *s, const double *state) {
+    int held = s->def->n_held;
+    bough_status status = bough_arrow_setup(s->arrow, s->def->time, state, s->arrow->input,
+                                            s->gamma);
+    if (!bough_is_ok(&status)) return false;
+    for (int j = 0; j < held; j++) {
+        double *column = s->column + (size_t)j * s->n;
+        memset(column, 0, (size_t)s->n * sizeof *column);
+        column[s->def->held[j]] = 1;
+        bough_arrow_solve(s->arrow, column);
+        for (int i = 0; i < held; i++) s->multiplier[j * held + i] = column[s->def->held[i]];
+    }
+    return held == 0 || bough_dense_factor(held, s->multiplier, s->pivot);
+}
+
+// x ← (I − γJ)⁻¹(x + Σ λ e) with the λ that keep the held states.
+static void solve(search *s, double *x) {
+    int held = s->def->n_held;
+    bough_arrow_solve(s->arrow, x);
+    for (int i = 0; i < held; i++) s->share[i] = x[s->def->held[i]];
+    if (held > 0) bough_dense_solve(held, 1, s->multiplier, s->pivot, s->share);
+    for (int j = 0; j < held; j++) {
+        const double *column = s->column + (size_t)j * s->n;
+        for (int k = 0; k < s->n; k++) x[k] -= s->share[j] * column[k];
+    }
+    for (int i = 0; i < held; i++) x[s->def->held[i]] = 0;
+}
+
+static bool find_rate(search *s, const double *state) {
+    bough_status status = bough_arrow_rate(s->arrow, s->def->time, state, s->rate);
+    return bough_is_ok(&status);
+}
+
+static double size_of(const search *s, const double *x, int *row) {
+    double largest = 0;
+    for (int k = 0; k < s->n; k++) {
+        double size = fabs(x[k]) / s->scale[k];
+        if (size > largest) *row = k;
+        largest = fmax(largest, size);
+    }
+    return largest;
+}
+
+// Two corrections of one implicit Euler step from `state`, into first and second; what the second
+// is of the first, infinite when the step leads nowhere. s->rate belongs to `state`.
+static double step(search *s, const double *state, bough_equilibrium_report *report) {
+    int row = 0;
+    if (!setup(s, state)) return INFINITY;
+    for (int k = 0; k < s->n; k++) s->first[k] = s->gamma * s->rate[k];
+    solve(s, s->first);
+    report->change = size_of(s, s->first, &report->row);
+    report->rate = s->rate[report->row];
+    if (!isfinite(report->change)) return INFINITY;
+    for (int k = 0; k < s->n; k++) s->trial[k] = state[k] + s->first[k];
+    if (!find_rate(s, s->trial)) return INFINITY;
+    for (int k = 0; k < s->n; k++) s->second[k] = s->gamma * s->rate[k] - s->first[k];
+    solve(s, s->second);
+    return size_of(s, s->second, &row) / (report->change + DBL_MIN);
+}
+
+bough_status bough_equilibrium_find(bough_arena *arena, bough_arrow *arrow,
+                                    const bough_equilibrium_def *def, double *state,
+                                    bough_equilibrium_report *report) {
+    const bough_assembly *a = arrow->assembly;
+    search s = {.arrow = arrow, .def = def, .n = a->n_state, .gamma = def->step};
+    *report = (bough_equilibrium_report){0};
+    if (!take(&s, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    for (int i = 0; i < a->n_member; i++) {
+        size_t size = (size_t)a->member[i]->n_state * sizeof(double);
+        memcpy(s.scale + a->state_offset[i], a->member[i]->scale, size);
+    }
+    while (report->steps < def->steps && s.gamma > shortest && find_rate(&s, state)) {
+        double contraction = step(&s, state, report);
+        bool last = s.gamma >= BOUGH_EQUILIBRIUM_LONGEST;
+        report->steps++;
+        if (last && (report->change < def->tolerance ||
+                     (report->change < rounding && contraction > contracting))) {
+            return bough_ok();
+        }
+        if (!(contraction < contracting)) {
+            s.gamma *= shrink;
+            continue;
+        }
+        for (int k = 0; k < s.n; k++) state[k] = s.trial[k] + s.second[k];
+        if (contraction < easy) s.gamma = fmin(growth * s.gamma, BOUGH_EQUILIBRIUM_LONGEST);
+    }
+    return bough_fail(BOUGH_FAILED, "no equilibrium found in %d steps", report->steps);
+}

@@ -1,0 +1,38 @@
+// Equilibrium of the coupled system, F(t, y) = 0 at a fixed time, but for states that are held: an
+// angle that goes on turning and its speed, say, whose rates F need not vanish. Method: implicit
+// Euler steps with one linearisation each and growing length γ, which follow the damped motion from
+// the initial state until, at the longest, they are Newton's method. An equilibrium near the initial
+// state may be found though it is unstable.
+#ifndef BOUGH_COSIM_EQUILIBRIUM_H
+#define BOUGH_COSIM_EQUILIBRIUM_H
+
+#include "cosim/arrow.h"
+
+typedef struct bough_equilibrium_def {
+    double time;     // [s]
+    int n_held;
+    const int *held; // (n_held) states that keep their values
+    double step;     // the first γ [s]
+    double tolerance; // of the last step, in units of the members' scales
+    int steps;        // most, refused ones among them
+} bough_equilibrium_def;
+
+// Time 0, nothing held, 0.1 s, 1e-10, 300 steps.
+bough_equilibrium_def bough_equilibrium_def_default(void);
+
+enum { BOUGH_EQUILIBRIUM_LONGEST = 1000 }; // γ of the last steps [s]
+
+typedef struct bough_equilibrium_report {
+    int steps;     // taken and refused
+    int row;       // the state that moved most in the last step
+    double change; // by how much, in units of its scale
+    double rate;   // its rate of change [units per s]
+} bough_equilibrium_report;
+
+// Brings `state` (n_state) to equilibrium. BOUGH_FAILED when it is not found: the report tells where
+// it did not settle, the state is the last one reached.
+bough_status bough_equilibrium_find(bough_arena *arena, bough_arrow *arrow,
+                                    const bough_equilibrium_def *def, double *state,
+                                    bough_equilibrium_report *report);
+
+#endif

@@ -1,0 +1,154 @@
+// Equilibrium of whole scenes.
+#include "apps/scene/settle.h"
+#include "apps/scene/steady.h"
+#include "tests/built_scene.h"
+
+#include <string.h>
+
+static const char runup[] = "apps/turbine/runup.yaml";
+
+static bough_settling settled(bough_simulation *s) {
+    bough_settling settling;
+    bough_status status = bough_settle(s, s->master->assembly, bough_settle_loaded(s), &settling);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    return settling;
+}
+
+static double joint_angle(const bough_simulation *s, int body) {
+    int coordinate, speed;
+    assert_true(bough_tree_joint_rows(s->tree, body, &coordinate, &speed));
+    return s->trunk.state[coordinate];
+}
+
+// A bob of 1 kg at 1 m from the horizontal on a spring: k θ + m g cos θ = 0.
+static void spring_holds_the_pendulum(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[0].joint.stiffness=20", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
+    settled(s);
+    double angle = joint_angle(s, 0);
+    assert_true(angle < -0.1);
+    check_near(20 * angle, -9.81 * cos(angle), 0, 1e-9);
+    bough_arena_destroy(arena);
+}
+
+// Started above the hinge: it falls and hangs.
+static void chain_hangs(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[0].joint.angle=-45 deg", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/mechanisms/chain.yaml", sets);
+    settled(s);
+    check_near(sin(joint_angle(s, 0)), 1, 0, 1e-9);
+    for (int body = 1; body < 5; body++) {
+        check_near(sin(joint_angle(s, body)), 0, 0, 1e-9);
+        check_near(cos(joint_angle(s, body)), 1, 0, 1e-9);
+    }
+    bough_arena_destroy(arena);
+}
+
+// x″ = −k² x with x′(L) = 1, k² = ρA Ω²/EA: the tip of a turning bar is at tan(kL)/k.
+static void turning_bar_stretches(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[1].joint.speed=20 rad/s", "loads=[]", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/beams/spin-up.yaml", sets);
+    settled(s);
+    double k = sqrt(1.2 * 20 * 20 / 2.8e7), z = tan(10 * k) / k - 10;
+    int n = s->beam[0].def.n_segment;
+    const double *y = bough_rod_body_state(s->beam[0].rod);
+    check_near(y[3 * n - 1] - 10, z, 2e-3, 0);
+    check_near(y[n - 1], 0, 0, 1e-9);
+    check_near(joint_angle(s, 1), 0, 0, 0);
+    bough_arena_destroy(arena);
+}
+
+// The rod's own solution, by Newton's method with increments of load.
+static void rod_alone_settles_where_its_own_statics_says(void **context) {
+    (void)context;
+    const char *sets[] = {"loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "tests/scenes/blade.yaml", sets);
+    bough_turning rest = {0};
+    bough_steady steady;
+    bough_status status = bough_steady_find(arena, s, &s->beam[0], &rest, &steady);
+    assert_true(bough_is_ok(&status));
+    settled(s);
+    int n = s->beam[0].def.n_segment;
+    const double *y = bough_rod_body_state(s->beam[0].rod);
+    for (int k = 0; k < 7 * n; k++) check_near(y[k], steady.state[k], 0, 1e-8);
+    bough_arena_destroy(arena);
+}
+
+// Nothing moves in a run that starts from the equilibrium of the parked turbine in its wind.
+static void parked_turbine_stays_at_rest(void **context) {
+    (void)context;
+    const char *sets[] = {"simulation.initial=equilibrium", "bodies[2].joint.speed=0",
+                          "bodies[2].joint.stiffness=1e10", "loads=[]",
+                          "aero.ramp=[0, 0]", "bodies[3].rod.segments=24",
+                          "bodies[4].rod.segments=24", "bodies[5].rod.segments=24", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, runup, sets);
+    size_t bytes = (size_t)s->rod[0].n_state * sizeof(double);
+    double *before = bough_arena_take(arena, 3 * bytes);
+    for (int k = 0; k < 3; k++) memcpy(before + k * s->rod[0].n_state, s->rod[k].state, bytes);
+    int n = s->rod[0].n_state / BOUGH_ROD_STATES;
+    assert_true(fabs(before[n - 1]) > 0.5); // bent
+    for (int step = 0; step < 50; step++) scene_step(s);
+    for (int k = 0; k < 3; k++) {
+        for (int i = 0; i < 3 * n; i++) {
+            check_near(s->rod[k].state[i], before[k * s->rod[0].n_state + i], 0, 1e-6);
+        }
+    }
+    bough_arena_destroy(arena);
+}
+
+// At the speed where load and air balance, only the tower excites.
+static void turning_rotor_starts_smoothly(void **context) {
+    (void)context;
+    const char *sets[] = {"simulation.initial=equilibrium", "bodies[2].joint.speed=1.49", "loads[0].ramp=[0, 0]",
+                          "aero.ramp=[0, 0]", "gravity=[0, 0, 0]", NULL};
+    const char *undeformed[] = {"bodies[2].joint.speed=1.49", "loads[0].ramp=[0, 0]", "aero.ramp=[0, 0]",
+                                "gravity=[0, 0, 0]", NULL};
+    double moved[2] = {0, 0};
+    for (int k = 0; k < 2; k++) {
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, runup, k == 0 ? sets : undeformed);
+        int n = s->rod[0].n_state / BOUGH_ROD_STATES;
+        double start = s->rod[1].state[n - 1]; // the tip of a blade away from the tower
+        for (int step = 0; step < 25; step++) {
+            scene_step(s);
+            moved[k] = fmax(moved[k], fabs(s->rod[1].state[n - 1] - start));
+        }
+        bough_arena_destroy(arena);
+    }
+    printf("tip moves by %.3g m, from undeformed by %.3g m\n", moved[0], moved[1]);
+    assert_true(moved[0] < 0.02 * moved[1]);
+}
+
+static void driven_free_rotor_has_none(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[2].joint.speed=0", "aero.ramp=[0, 0]", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, runup, sets);
+    bough_settling settling;
+    bough_status status = bough_settle(s, s->master->assembly, 0, &settling);
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_non_null(strstr(status.message, "no equilibrium"));
+    assert_non_null(strstr(status.message, "spring or a speed"));
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(spring_holds_the_pendulum),
+        cmocka_unit_test(chain_hangs),
+        cmocka_unit_test(turning_bar_stretches),
+        cmocka_unit_test(rod_alone_settles_where_its_own_statics_says),
+        cmocka_unit_test(parked_turbine_stays_at_rest),
+        cmocka_unit_test(turning_rotor_starts_smoothly),
+        cmocka_unit_test(driven_free_rotor_has_none),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
