@@ -94,6 +94,8 @@ static void assemble_interface(bough_arrow *arrow) {
     }
 }
 
+static bool factor_border(bough_arrow *arrow);
+
 bough_status bough_arrow_setup(bough_arrow *arrow, double t, const double *state,
                                const double *input, double gamma) {
     int n = arrow->assembly->n_input;
@@ -104,7 +106,9 @@ bough_status bough_arrow_setup(bough_arrow *arrow, double t, const double *state
     bough_status status = each(arrow, factor);
     if (!bough_is_ok(&status)) return status;
     assemble_interface(arrow);
-    if (n == 0 || bough_dense_factor(n, arrow->matrix, arrow->pivot)) return status;
+    if (n == 0 || bough_dense_factor(n, arrow->matrix, arrow->pivot)) {
+        if (factor_border(arrow)) return status;
+    }
     return bough_fail(BOUGH_RETRY, "the interface's Newton matrix is singular");
 }
 
@@ -131,7 +135,7 @@ static void add_interface(bough_arrow *arrow, int i) {
     }
 }
 
-void bough_arrow_solve(bough_arrow *arrow, double *x) {
+static void solve_free(bough_arrow *arrow, double *x) {
     bough_arrow_solve_driven(arrow, NULL, x);
 }
 
@@ -145,6 +149,34 @@ void bough_arrow_solve_driven(bough_arrow *arrow, const double *outside, double 
     }
     if (n > 0) bough_dense_solve(n, 1, arrow->matrix, arrow->pivot, arrow->change);
     each(arrow, add_interface);
+}
+
+// The border's multipliers make the held entries of its solutions vanish.
+static bool factor_border(bough_arrow *arrow) {
+    int n = arrow->assembly->n_state, held = arrow->n_held;
+    for (int j = 0; j < held; j++) {
+        double *column = arrow->border + (size_t)j * n;
+        memset(column, 0, (size_t)n * sizeof *column);
+        column[arrow->held[j]] = 1;
+        solve_free(arrow, column);
+        for (int i = 0; i < held; i++) {
+            arrow->multiplier[j * held + i] = column[arrow->held[i]];
+        }
+    }
+    return held == 0 || bough_dense_factor(held, arrow->multiplier, arrow->held_pivot);
+}
+
+void bough_arrow_solve(bough_arrow *arrow, double *x) {
+    int n = arrow->assembly->n_state, held = arrow->n_held;
+    solve_free(arrow, x);
+    if (held == 0) return;
+    for (int i = 0; i < held; i++) arrow->share[i] = x[arrow->held[i]];
+    bough_dense_solve(held, 1, arrow->multiplier, arrow->held_pivot, arrow->share);
+    for (int j = 0; j < held; j++) {
+        const double *column = arrow->border + (size_t)j * n;
+        for (int k = 0; k < n; k++) x[k] -= arrow->share[j] * column[k];
+    }
+    for (int i = 0; i < held; i++) x[arrow->held[i]] = 0;
 }
 
 // -- memory ---------------------------------------------------------------------------------------
@@ -187,4 +219,16 @@ bough_status bough_arrow_create(bough_arena *arena, const bough_assembly *assemb
     if (!take(a, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     *arrow = a;
     return bough_ok();
+}
+
+bough_status bough_arrow_hold(bough_arena *arena, bough_arrow *arrow, int n, const int *held) {
+    size_t count = (size_t)n;
+    arrow->n_held = n;
+    arrow->held = held;
+    arrow->border = bough_arena_doubles(arena, count * (size_t)arrow->assembly->n_state);
+    arrow->multiplier = bough_arena_doubles(arena, count * count);
+    arrow->share = bough_arena_doubles(arena, count);
+    arrow->held_pivot = bough_arena_take(arena, (count + 1) * sizeof(int));
+    return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
+                                        : bough_ok();
 }

@@ -31,11 +31,22 @@ typedef struct bough_arrow {
     int *pivot;       // (n_input)
     double *unit, *change; // (n_input) increments of the inputs
     double *output_change; // (n_output)
+
+    // states that are held
+    int n_held;
+    const int *held;    // (n_held)
+    double *border;     // (n_held × n_state): (I − γJ)⁻¹ of each held state's unit vector
+    double *multiplier; // (n_held × n_held) their held entries, factored
+    double *share;      // (n_held)
+    int *held_pivot;    // (n_held)
 } bough_arrow;
 
 // Builds the memory in the arena; members are worked on by `threads` threads.
 bough_status bough_arrow_create(bough_arena *arena, const bough_assembly *assembly, int threads,
                                 bough_arrow **arrow);
+
+// From now on solutions keep these states (n, borrowed): x is 0 there, whatever force that takes.
+bough_status bough_arrow_hold(bough_arena *arena, bough_arrow *arrow, int n, const int *held);
 
 // Outputs and inputs at a state (n_state) into arrow->output and arrow->input.
 void bough_arrow_inputs(bough_arrow *arrow, double t, const double *state);

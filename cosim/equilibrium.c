@@ -1,7 +1,5 @@
 #include "cosim/equilibrium.h"
 
-#include "core/linalg.h"
-
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -22,54 +20,17 @@ typedef struct search {
     const bough_equilibrium_def *def;
     int n;                                // states
     double *scale, *rate, *first, *second, *trial; // (n)
-    double *column;     // (n_held × n): (I − γJ)⁻¹ of each held state's unit vector
-    double *multiplier; // (n_held × n_held) their held entries, factored
-    double *share;      // (n_held)
-    int *pivot;         // (n_held)
     double gamma;
 } search;
 
 static bool take(search *s, bough_arena *arena) {
-    size_t n = (size_t)s->n, held = (size_t)s->def->n_held;
+    size_t n = (size_t)s->n;
     s->scale = bough_arena_doubles(arena, n);
     s->rate = bough_arena_doubles(arena, n);
     s->first = bough_arena_doubles(arena, n);
     s->second = bough_arena_doubles(arena, n);
     s->trial = bough_arena_doubles(arena, n);
-    s->column = bough_arena_doubles(arena, held * n);
-    s->multiplier = bough_arena_doubles(arena, held * held);
-    s->share = bough_arena_doubles(arena, held);
-    s->pivot = bough_arena_take(arena, (held + 1) * sizeof(int));
     return !bough_arena_exhausted(arena);
-}
-
-// Factors I − γJ bordered by the held states.
-static bool setup(search *s, const double *state) {
-    int held = s->def->n_held;
-    bough_status status = bough_arrow_setup(s->arrow, s->def->time, state, s->arrow->input,
-                                            s->gamma);
-    if (!bough_is_ok(&status)) return false;
-    for (int j = 0; j < held; j++) {
-        double *column = s->column + (size_t)j * s->n;
-        memset(column, 0, (size_t)s->n * sizeof *column);
-        column[s->def->held[j]] = 1;
-        bough_arrow_solve(s->arrow, column);
-        for (int i = 0; i < held; i++) s->multiplier[j * held + i] = column[s->def->held[i]];
-    }
-    return held == 0 || bough_dense_factor(held, s->multiplier, s->pivot);
-}
-
-// x ← (I − γJ)⁻¹(x + Σ λ e) with the λ that keep the held states.
-static void solve(search *s, double *x) {
-    int held = s->def->n_held;
-    bough_arrow_solve(s->arrow, x);
-    for (int i = 0; i < held; i++) s->share[i] = x[s->def->held[i]];
-    if (held > 0) bough_dense_solve(held, 1, s->multiplier, s->pivot, s->share);
-    for (int j = 0; j < held; j++) {
-        const double *column = s->column + (size_t)j * s->n;
-        for (int k = 0; k < s->n; k++) x[k] -= s->share[j] * column[k];
-    }
-    for (int i = 0; i < held; i++) x[s->def->held[i]] = 0;
 }
 
 static bool find_rate(search *s, const double *state) {
@@ -91,16 +52,18 @@ static double size_of(const search *s, const double *x, int *row) {
 // is of the first, infinite when the step leads nowhere. s->rate belongs to `state`.
 static double step(search *s, const double *state, bough_equilibrium_report *report) {
     int row = 0;
-    if (!setup(s, state)) return INFINITY;
+    bough_status status = bough_arrow_setup(s->arrow, s->def->time, state, s->arrow->input,
+                                            s->gamma);
+    if (!bough_is_ok(&status)) return INFINITY;
     for (int k = 0; k < s->n; k++) s->first[k] = s->gamma * s->rate[k];
-    solve(s, s->first);
+    bough_arrow_solve(s->arrow, s->first);
     report->change = size_of(s, s->first, &report->row);
     report->rate = s->rate[report->row];
     if (!isfinite(report->change)) return INFINITY;
     for (int k = 0; k < s->n; k++) s->trial[k] = state[k] + s->first[k];
     if (!find_rate(s, s->trial)) return INFINITY;
     for (int k = 0; k < s->n; k++) s->second[k] = s->gamma * s->rate[k] - s->first[k];
-    solve(s, s->second);
+    bough_arrow_solve(s->arrow, s->second);
     return size_of(s, s->second, &row) / (report->change + DBL_MIN);
 }
 
@@ -128,6 +91,7 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_arrow *arrow,
             continue;
         }
         for (int k = 0; k < s.n; k++) state[k] = s.trial[k] + s.second[k];
+        if (def->calm) def->calm(def->self, state);
         if (contraction < easy) s.gamma = fmin(growth * s.gamma, BOUGH_EQUILIBRIUM_LONGEST);
     }
     return bough_fail(BOUGH_FAILED, "no equilibrium found in %d steps", report->steps);

@@ -1,5 +1,5 @@
-// Equilibrium of the coupled system, F(t, y) = 0 at a fixed time, but for states that are held: an
-// angle that goes on turning and its speed, say, whose rates F need not vanish. Method: implicit
+// Equilibrium of the coupled system, F(t, y) = 0 at a fixed time, but for the states that the arrow
+// holds: an angle that goes on turning and its speed, say, whose rates need not vanish. Method: implicit
 // Euler steps with one linearisation each and growing length γ, which follow the damped motion from
 // the initial state until, at the longest, they are Newton's method. An equilibrium near the initial
 // state may be found though it is unstable.
@@ -10,14 +10,15 @@
 
 typedef struct bough_equilibrium_def {
     double time;     // [s]
-    int n_held;
-    const int *held; // (n_held) states that keep their values
     double step;     // the first γ [s]
     double tolerance; // of the last step, in units of the members' scales
     int steps;        // most, refused ones among them
+    void *self;
+    // Takes the motion that is not part of the equilibrium out of a state, after each step; NULL: none.
+    void (*calm)(void *self, double *state);
 } bough_equilibrium_def;
 
-// Time 0, nothing held, 0.1 s, 1e-10, 300 steps.
+// Time 0, 0.1 s, 1e-10, 300 steps.
 bough_equilibrium_def bough_equilibrium_def_default(void);
 
 enum { BOUGH_EQUILIBRIUM_LONGEST = 1000 }; // γ of the last steps [s]

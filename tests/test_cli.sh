@@ -309,7 +309,7 @@ statics() {
     [ "$(wc -l <turning/static.csv)" -eq 148 ] || fail "$said: static.csv has not 148 lines"
     rm -r turning
     expect 3 static "$turbine" --set bodies[2].joint.speed=0 --out failed
-    has ../stderr 'no equilibrium found in .* a free joint needs a spring or a speed to keep'
+    has ../stderr 'no equilibrium found in .* a free joint needs a spring, a speed or a motion'
     refused "'x' is not\|there is no body 'x'" static "$blade" \
         --set 'loads=[{body: x, at: tip, force: [1, 0, 0]}]'
     expect 3 static "$blade" --set 'bodies[0].rod.segments=4' --out failed \

@@ -2,6 +2,7 @@
 
 #include "apps/scene/aero_link.h"
 #include "cosim/equilibrium.h"
+#include "flexbody/rod_linear.h"
 
 #include <string.h>
 
@@ -35,16 +36,17 @@ static void set_state(bough_simulation *s, const bough_assembly *assembly, const
     bough_simulation_update(s);
 }
 
-// Rows of the joints that have a speed: the tree's states come first.
-static int held_rows(const bough_tree *tree, int *row) {
+// The tree's states are the first of all.
+int bough_settle_held(const bough_tree *tree, bool turning, int *row) {
     int n = 0;
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         const double *speed = tree->initial + tree->n_q + link->first_speed;
-        bool moves = false;
-        for (int k = 0; k < link->n_speeds; k++) moves = moves || speed[k] != 0;
-        for (int k = 0; moves && k < link->n_coordinates; k++) row[n++] = link->first_coordinate + k;
-        for (int k = 0; moves && k < link->n_speeds; k++) row[n++] = tree->n_q + link->first_speed + k;
+        bool held = link->motion != NULL;
+        for (int k = 0; k < link->n_speeds; k++) held = held || (turning && speed[k] != 0);
+        if (!held) continue;
+        for (int k = 0; k < link->n_coordinates; k++) row[n++] = link->first_coordinate + k;
+        for (int k = 0; k < link->n_speeds; k++) row[n++] = tree->n_q + link->first_speed + k;
     }
     return n;
 }
@@ -69,7 +71,7 @@ static bough_status explain(const bough_simulation *s, const bough_assembly *ass
                             const bough_equilibrium_report *report) {
     return bough_fail(BOUGH_FAILED,
                       "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale in"
-                      " a step, at a rate of %.3g; a free joint needs a spring or a speed to keep,"
+                      " a step, at a rate of %.3g; a free joint needs a spring, a speed or a motion,"
                       " a load may be too large (try a part of it), a mesh too coarse",
                       body_of(s, assembly, report->row), report->steps, report->change,
                       report->rate);
@@ -120,6 +122,35 @@ static bough_status settle_in_air(bough_arena *arena, bough_simulation *s, bough
                       change, settling->samples);
 }
 
+// What settles.
+typedef struct settler {
+    bough_simulation *simulation;
+    bough_arrow *arrow;
+    double time;
+} settler;
+
+// Joints rest but for those held, and the rods ride on them: without the vibration that the search's
+// steps would follow.
+static void calm(void *self, double *state) {
+    const settler *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_assembly *a = x->arrow->assembly;
+    const bough_tree *tree = s->tree;
+    for (int k = tree->n_q; k < tree->n_q + tree->n_v; k++) {
+        bool held = false;
+        for (int i = 0; i < x->arrow->n_held; i++) held = held || x->arrow->held[i] == k;
+        if (!held) state[k] = 0;
+    }
+    bough_arrow_inputs(x->arrow, x->time, state);
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        if (beam->rod == NULL) continue;
+        int member = beam->port + 1;
+        bough_rod_ride(bough_rod_body_model(beam->rod), x->arrow->input + a->input_offset[member],
+                       state + a->state_offset[member]);
+    }
+}
+
 static bough_status settle_members(bough_arena *arena, bough_simulation *s,
                                    const bough_assembly *assembly, double time,
                                    bough_settling *settling) {
@@ -132,9 +163,14 @@ static bough_status settle_members(bough_arena *arena, bough_simulation *s,
         bough_arrow_create(arena, assembly, s->scene->simulation.threads, &arrow);
     if (!bough_is_ok(&status)) return status;
     def.time = time;
-    def.n_held = held_rows(s->tree, row);
-    def.held = row;
+    status = bough_arrow_hold(arena, arrow, bough_settle_held(s->tree, true, row), row);
+    if (!bough_is_ok(&status)) return status;
     bough_settle_state(assembly, state);
+    bough_tree_prescribe(s->tree, time, state);
+    settler self = {s, arrow, time};
+    def.self = &self;
+    def.calm = calm;
+    calm(&self, state);
     return s->aero ? settle_in_air(arena, s, arrow, &def, state, settling)
                    : settle(arena, s, arrow, &def, state, settling);
 }

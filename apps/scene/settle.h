@@ -1,8 +1,9 @@
 // Static equilibrium of the whole scene: tree, rods and springs together, under gravity, the loads at
 // one time and the air's forces, which are sampled anew where the bodies come to rest.
 //
-// A joint with an initial speed keeps coordinate and speed: what it carries turns steadily, at the
-// azimuth where it is (frozen azimuth: gravity does not go round). All other joints come to rest.
+// A joint of prescribed motion is where it is then; one with an initial speed keeps coordinate and
+// speed. What they carry turns steadily, at the azimuth where it is (frozen azimuth: gravity does not
+// go round). All other joints come to rest.
 #ifndef BOUGH_APPS_SCENE_SETTLE_H
 #define BOUGH_APPS_SCENE_SETTLE_H
 
@@ -12,6 +13,10 @@ typedef struct bough_settling {
     int steps;   // of the solution, all samples of the air together
     int samples; // of the air; 0 without aerodynamics
 } bough_settling;
+
+// Rows of the tree's states that are held (n_q + n_v at most): of joints of prescribed motion and,
+// with `turning`, of those with an initial speed. Returns their number.
+int bough_settle_held(const bough_tree *tree, bool turning, int *row);
 
 // Whether the rods do not know of each other: each is held by the ground, without air. Then each
 // has its own equilibrium and modes.
