@@ -1,122 +1,145 @@
-// Block Gaussian elimination. After factoring, with D' the reduced diagonal blocks,
-//   lower    holds  L D'⁻¹ of the row above,
-//   diagonal holds  D'⁻¹,
-//   upper    holds  D'⁻¹ U,
-// so that both sweeps of a solution are products only, with no division in their long dependence.
+// Block Gaussian elimination from both ends towards row n/2, so that two chains of dependent blocks
+// run side by side. After factoring, with D' the reduced diagonal blocks,
+//                  rows up to n/2             rows after it
+//   lower    holds  L D'⁻¹ of the row above    D'⁻¹ L
+//   diagonal holds  D'⁻¹                       D'⁻¹
+//   upper    holds  D'⁻¹ U                     U D'⁻¹ of the row below
+// (row n/2 takes L as the first and U as the second), so that a solution's sweeps are products only,
+// with no division in their long dependence.
 #include "core/block_tridiagonal.h"
+
+#include "core/base.h"
 
 #include <math.h>
 #include <stddef.h>
 
-enum { W = 8 }; // padded row
+enum { W = 8 }; // padded column
 
 bool bough_block_tridiagonal_init(bough_block_tridiagonal *m, bough_arena *arena, int n) {
     m->n = n;
-    m->lower = bough_arena_doubles(arena, (size_t)n * BOUGH_BLOCK);
-    m->diagonal = bough_arena_doubles(arena, (size_t)n * BOUGH_BLOCK);
-    m->upper = bough_arena_doubles(arena, (size_t)n * BOUGH_BLOCK);
+    size_t count = (size_t)bough_padded(n) * BOUGH_BLOCK;
+    m->lower = bough_arena_doubles(arena, count);
+    m->diagonal = bough_arena_doubles(arena, count);
+    m->upper = bough_arena_doubles(arena, count);
     return m->lower != NULL && m->diagonal != NULL && m->upper != NULL;
 }
 
-// Row i of a product: Σ_k a_ik b_k over the padded row j.
-#define ROW_PRODUCT(a, b, i, j)                                                                    \
-    ((a[W * (i)] * b[j] + a[W * (i) + 1] * b[W + (j)]) +                                           \
-     (a[W * (i) + 2] * b[2 * W + (j)] + a[W * (i) + 3] * b[3 * W + (j)]) +                         \
-     (a[W * (i) + 4] * b[4 * W + (j)] + a[W * (i) + 5] * b[5 * W + (j)]))
+// Entry i of Σ_k a_k b_k over the columns a_k, padding included.
+#define COLUMN_SUM(a, b, i)                                                                        \
+    ((a[i] * b[0] + a[W + (i)] * b[1]) + (a[2 * W + (i)] * b[2] + a[3 * W + (i)] * b[3]) +         \
+     (a[4 * W + (i)] * b[4] + a[5 * W + (i)] * b[5]))
+
+// y −= A x
+static inline void subtract_matvec(const double *restrict a, const double *restrict x,
+                                   double *restrict y) {
+#pragma omp simd
+    for (int i = 0; i < W; i++) y[i] -= COLUMN_SUM(a, x, i);
+}
 
 // c = a b
 static inline void product(const double *restrict a, const double *restrict b,
                            double *restrict c) {
-    for (int i = 0; i < 6; i++) {
+    for (int j = 0; j < 6; j++) {
+        const double *restrict column = b + W * j;
 #pragma omp simd
-        for (int j = 0; j < W; j++) c[W * i + j] = ROW_PRODUCT(a, b, i, j);
+        for (int i = 0; i < W; i++) c[W * j + i] = COLUMN_SUM(a, column, i);
     }
 }
 
 // c −= a b
 static inline void subtract_product(const double *restrict a, const double *restrict b,
                                     double *restrict c) {
-    for (int i = 0; i < 6; i++) {
-#pragma omp simd
-        for (int j = 0; j < W; j++) c[W * i + j] -= ROW_PRODUCT(a, b, i, j);
-    }
+    for (int j = 0; j < 6; j++) subtract_matvec(a, b + W * j, c + W * j);
 }
 
-// a ← a⁻¹ by Gauss–Jordan elimination in place. Whole rows are stored, never single entries: a
-// row loaded after a store to one of its entries would wait for the store to reach the cache.
-static bool invert(double *restrict a) {
+// One pivot of Gauss–Jordan elimination in place, on columns. Whole columns are stored, never single
+// entries: a column loaded after a store to one of its entries would wait for the store to reach the
+// cache.
+static inline bool eliminate_pivot(double *restrict a, int k) {
     static const double unit[6][W] = {{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 0, 1},
                                       {0, 0, 0, 0, 0, 1}};
-    for (int k = 0; k < 6; k++) {
-        double pivot = 1 / a[W * k + k];
-        if (!isfinite(pivot) || pivot == 0) return false; // zero: of an infinite entry
-        double r[W];
+    double pivot = 1 / a[W * k + k], r[W];
+    bool ok = isfinite(pivot) && pivot != 0; // zero: of an infinite entry
+#pragma omp simd
+    for (int j = 0; j < W; j++) r[j] = (a[W * k + j] * (1 - unit[k][j]) + unit[k][j]) * pivot;
+    for (int i = 0; i < 6; i++) {
+        double factor = a[W * i + k];
 #pragma omp simd
         for (int j = 0; j < W; j++) {
-            r[j] = (a[W * k + j] * (1 - unit[k][j]) + unit[k][j]) * pivot;
+            a[W * i + j] = a[W * i + j] * (1 - unit[k][j]) - factor * r[j];
         }
-        for (int i = 0; i < 6; i++) {
-            double factor = a[W * i + k];
-#pragma omp simd
-            for (int j = 0; j < W; j++) {
-                a[W * i + j] = a[W * i + j] * (1 - unit[k][j]) - factor * r[j];
-            }
-        }
-#pragma omp simd
-        for (int j = 0; j < W; j++) a[W * k + j] = r[j];
     }
-    return true;
+#pragma omp simd
+    for (int j = 0; j < W; j++) a[W * k + j] = r[j];
+    return ok;
+}
+
+// a ← a⁻¹ and, side by side, b ← b⁻¹.
+static bool invert_pair(double *restrict a, double *restrict b) {
+    bool ok = true;
+    for (int k = 0; k < 6; k++) {
+        bool first = eliminate_pivot(a, k), second = eliminate_pivot(b, k);
+        ok = ok && first && second;
+    }
+    return ok;
+}
+
+static bool invert(double *a) {
+    bool ok = true;
+    for (int k = 0; k < 6; k++) ok = eliminate_pivot(a, k) && ok;
+    return ok;
 }
 
 static inline void copy_block(const double *restrict from, double *restrict to) {
     for (int j = 0; j < BOUGH_BLOCK; j++) to[j] = from[j];
 }
 
-bool bough_block_tridiagonal_factor(bough_block_tridiagonal *m) {
+static double *block(double *blocks, int i) { return blocks + (size_t)i * BOUGH_BLOCK; }
+
+// Takes the unknowns of a neighbour, whose D'⁻¹ is `inverse`, out of a row with the diagonal block
+// `diagonal`: `to` couples the row to the neighbour, `back` the neighbour to the row.
+static inline void eliminate(const double *inverse, double *to, double *back, double *diagonal) {
     double scratch[BOUGH_BLOCK];
-    for (int i = 0; i < m->n; i++) {
-        double *d = m->diagonal + (size_t)i * BOUGH_BLOCK;
-        if (i > 0) {
-            // L ← L D'⁻¹ and D' = D − L D'⁻¹ U of the row above, whose U is still unscaled
-            double *l = m->lower + (size_t)i * BOUGH_BLOCK;
-            double *u = m->upper + (size_t)(i - 1) * BOUGH_BLOCK;
-            product(l, d - BOUGH_BLOCK, scratch);
-            copy_block(scratch, l);
-            subtract_product(l, u, d);
-            product(d - BOUGH_BLOCK, u, scratch);
-            copy_block(scratch, u);
-        }
-        if (!invert(d)) return false;
-    }
-    return true;
+    product(to, inverse, scratch);
+    copy_block(scratch, to);
+    subtract_product(to, back, diagonal); // `back` is still unscaled
+    product(inverse, back, scratch);
+    copy_block(scratch, back);
 }
 
-// y −= A x
-static inline void subtract_matvec(const double *restrict a, const double *restrict x,
-                                   double *restrict y) {
-    for (int i = 0; i < 6; i++) {
-        const double *row = a + W * i;
-        double sum = ((row[0] * x[0] + row[1] * x[1]) + (row[2] * x[2] + row[3] * x[3])) +
-                     (row[4] * x[4] + row[5] * x[5]);
-        y[i] -= sum;
+bool bough_block_tridiagonal_factor(bough_block_tridiagonal *m) {
+    int middle = m->n / 2, last = m->n - 1;
+    bool ok = true;
+    for (int k = 1; ok && k <= middle; k++) { // the upper half is never the shorter one
+        int up = last - k;
+        double *above = block(m->diagonal, k - 1), *below = block(m->diagonal, up + 1);
+        ok = up >= middle ? invert_pair(above, below) : invert(above);
+        eliminate(above, block(m->lower, k), block(m->upper, k - 1), block(m->diagonal, k));
+        if (up < middle) continue;
+        eliminate(below, block(m->upper, up), block(m->lower, up + 1), block(m->diagonal, up));
     }
+    return ok && (m->n == 0 || invert(block(m->diagonal, middle)));
 }
 
 void bough_block_tridiagonal_solve(const bough_block_tridiagonal *m, double *x) {
-    for (int i = 1; i < m->n; i++) {
-        subtract_matvec(m->lower + (size_t)i * BOUGH_BLOCK, x + (size_t)W * (i - 1),
-                        x + (size_t)W * i);
+    int middle = m->n / 2, last = m->n - 1;
+    for (int k = 1; k <= middle; k++) {
+        int up = last - k;
+        subtract_matvec(block(m->lower, k), x + W * (k - 1), x + W * k);
+        if (up >= middle) subtract_matvec(block(m->upper, up), x + W * (up + 1), x + W * up);
     }
     // x ← D'⁻¹ x for all rows at once, off the sequential path
     for (int i = 0; i < m->n; i++) {
-        const double *d = m->diagonal + (size_t)i * BOUGH_BLOCK;
-        double y[6] = {0};
-        subtract_matvec(d, x + (size_t)W * i, y);
-        for (int j = 0; j < 6; j++) x[W * i + j] = -y[j];
+        const double *restrict d = block(m->diagonal, i);
+        double *restrict row = x + W * i;
+        const double b[6] = {row[0], row[1], row[2], row[3], row[4], row[5]};
+#pragma omp simd
+        for (int j = 0; j < W; j++) row[j] = COLUMN_SUM(d, b, j);
     }
-    for (int i = m->n - 2; i >= 0; i--) {
-        subtract_matvec(m->upper + (size_t)i * BOUGH_BLOCK, x + (size_t)W * (i + 1),
-                        x + (size_t)W * i);
+    for (int k = middle; k > 0; k--) {
+        int up = last - k;
+        subtract_matvec(block(m->upper, k - 1), x + W * k, x + W * (k - 1));
+        if (up >= middle) subtract_matvec(block(m->lower, up + 1), x + W * up, x + W * (up + 1));
     }
 }
 

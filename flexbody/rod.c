@@ -92,7 +92,7 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
                           m->n_segment, def->carries ? " that carries bodies" : "",
                           def->carries ? 2 : 1);
     }
-    m->stride = bough_padded(m->n_segment + 1);
+    m->stride = bough_padded(m->n_segment + BOUGH_LANES); // vertices go by lanes from 1 on
     if (!take_arrays(m, arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", def->name);
     }

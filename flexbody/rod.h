@@ -60,7 +60,7 @@ typedef struct bough_rod_model {
     const char *name;
     int n;         // moving vertices
     int n_segment; // N: n, or n + 1 if the rod carries bodies
-    int stride;    // of the arrays over vertices and segments below: padded N + 1
+    int stride;    // of the arrays over vertices and segments below: padded, more than N + 7
     double *span;               // (N + 1) [m]
     bough_vec3 *position0;      // undeformed (N + 1) [m]
     bough_quaternion *rotation0; // undeformed (N + 1)

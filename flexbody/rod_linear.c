@@ -22,12 +22,12 @@ void bough_rod_ride(const bough_rod_model *m, const double *input, double *state
 }
 
 static void put_cross(bough_vec3 a, double *block, int at) {
-    block[W8 * at + at + 1] = -a.z;
-    block[W8 * at + at + 2] = a.y;
-    block[W8 * (at + 1) + at] = a.z;
-    block[W8 * (at + 1) + at + 2] = -a.x;
-    block[W8 * (at + 2) + at] = -a.y;
-    block[W8 * (at + 2) + at + 1] = a.x;
+    block[W8 * at + at + 1] = a.z;
+    block[W8 * at + at + 2] = -a.y;
+    block[W8 * (at + 1) + at] = -a.z;
+    block[W8 * (at + 1) + at + 2] = a.x;
+    block[W8 * (at + 2) + at] = a.y;
+    block[W8 * (at + 2) + at + 1] = -a.x;
 }
 
 // B of vertex i + 1

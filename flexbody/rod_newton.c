@@ -41,119 +41,67 @@ static void eliminate_rotations(const bough_rod_model *m, bough_rod_tangent *k) 
     }
 }
 
-// Combines three directions of one force: out = γ(D + γ K A), A (3×3 by rows) for each segment at
-// `a` with stride s, or one for all when s is 0.
-static inline void combine(const double *restrict position, const double *restrict velocity,
-                           const double *restrict a, int sa, double gamma, int n, int s,
-                           double *restrict out) {
-    size_t step = (size_t)FORCES * s;
-    const double *restrict p1 = position + step, *restrict p2 = p1 + step;
-    const double *restrict d1 = velocity + step, *restrict d2 = d1 + step;
-    double *restrict o1 = out + step, *restrict o2 = o1 + step;
-#define A(i, j) a[(3 * (i) + (j)) * (sa == 0 ? 1 : sa) + (sa == 0 ? 0 : k)]
-#pragma omp simd
-    for (int k = 0; k < n; k++) {
-        double x = gamma * position[k], y = gamma * p1[k], z = gamma * p2[k];
-        out[k] = gamma * (velocity[k] + x * A(0, 0) + y * A(1, 0) + z * A(2, 0));
-        o1[k] = gamma * (d1[k] + x * A(0, 1) + y * A(1, 1) + z * A(2, 1));
-        o2[k] = gamma * (d2[k] + x * A(0, 2) + y * A(1, 2) + z * A(2, 2));
+// Column j of γ² A of a vertex has entries in three rows only: of shifts in 0..2, the same for all
+// vertices, of rotations in 3..5.
+typedef struct elimination {
+    double shift[3][3]; // by columns
+    const double *turn; // row 3 i + k of A_φ at [(3 i + k)·stride]
+    int stride;
+    double square;      // γ²
+} elimination;
+
+// Column j of mass − γ Dᵥ − γ² K A for one block; the mass is NULL off the diagonal.
+static inline void form_column(const elimination *e, int v, int j, const double *position,
+                               const double *velocity, const double *mass, double gamma,
+                               double *restrict out) {
+    const double *restrict k = position + (j < 3 ? 0 : W8 * 3);
+    double a[3];
+    for (int i = 0; i < 3; i++) {
+        a[i] = j < 3 ? e->shift[j][i] : e->square * e->turn[(3 * i + j - 3) * e->stride + v];
     }
-#undef A
+#pragma omp simd
+    for (int i = 0; i < W8; i++) {
+        double sum = k[i] * a[0] + k[W8 + i] * a[1] + k[2 * W8 + i] * a[2];
+        out[i] = (mass == NULL ? 0 : mass[i]) - gamma * velocity[i] - sum;
+    }
 }
 
-// γ(Dᵥ + γ K A) of all segments.
-static void combine_segments(const bough_rod_model *m, bough_rod_tangent *k) {
-    int n = m->n_segment, s = m->stride;
-    const double *position = k->variation, *velocity = position + (size_t)TANGENTS * s;
-    const double *turn = k->vertex + (size_t)KEPT_TURN * s;
-    double shift[9];
-    bough_vec3 g = bough_scale(k->gamma, k->omega);
+static inline void form_block(const elimination *e, int v, const double *position,
+                              const double *velocity, const double *mass, double gamma,
+                              double *out) {
+    for (int j = 0; j < 6; j++) {
+        form_column(e, v, j, position, velocity + W8 * j, mass == NULL ? NULL : mass + W8 * j,
+                    gamma, out + W8 * j);
+    }
+}
+
+// M − γ(Dᵥ + γ K A): the columns of a block belong to the vertex on whose variation it acts.
+static void form_matrix(const bough_rod_model *m, bough_rod_tangent *k) {
+    const bough_block_tridiagonal *p = &k->blocks.position, *d = &k->blocks.velocity;
+    double g = k->gamma;
+    elimination e = {.turn = k->vertex + (size_t)KEPT_TURN * m->stride,
+                     .stride = m->stride,
+                     .square = g * g};
     for (int j = 0; j < 3; j++) {
-        bough_vec3 column = solve_cross(g, unit_vector(j));
-        shift[j] = column.x;
-        shift[3 + j] = column.y;
-        shift[6 + j] = column.z;
+        bough_vec3 column = solve_cross(bough_scale(g, k->omega), unit_vector(j));
+        e.shift[j][0] = e.square * column.x;
+        e.shift[j][1] = e.square * column.y;
+        e.shift[j][2] = e.square * column.z;
     }
-    for (int force = 0; force < FORCES; force++) {
-        size_t x = (size_t)force * s, l = x + (size_t)LEFT * FORCES * s;
-        size_t r = x + (size_t)RIGHT * FORCES * s;
-        combine(position + x, velocity + x, shift, 0, k->gamma, n, s, k->combined + x);
-        combine(position + l, velocity + l, turn, s, k->gamma, n, s, k->combined + l);
-        combine(position + r, velocity + r, turn + 1, s, k->gamma, n, s, k->combined + r);
-    }
-}
-
-// Where entry (i, j) of the blocks comes from among the segments' combined tangents.
-typedef struct entry_source {
-    const double *right; // of the segment whose right vertex it is
-    const double *left;  // of the segment whose left vertex it is
-    const double *lower, *upper;
-    double right_sign, left_sign, lower_sign;
-} entry_source;
-
-static const double *combined_at(const bough_rod_tangent *k, int s, int direction, int force) {
-    return k->combined + (size_t)(FORCES * direction + force) * s;
-}
-
-static entry_source source_of(const bough_rod_tangent *k, int s, int i, int j) {
-    bool force = i < 3, shift = j < 3;
-    int right = force ? F + i : LR + i - 3, left = force ? F + i : LL + i - 3;
-    int turn = j - 3;
-    return (entry_source){.right = combined_at(k, s, shift ? DELTA + j : RIGHT + turn, right),
-                          .left = combined_at(k, s, shift ? DELTA + j : LEFT + turn, left),
-                          .lower = combined_at(k, s, shift ? DELTA + j : LEFT + turn, right),
-                          .upper = combined_at(k, s, shift ? DELTA + j : RIGHT + turn, left),
-                          .right_sign = force ? 1 : -1,
-                          .left_sign = shift ? 1 : -1,
-                          .lower_sign = force == shift ? -1 : 1};
-}
-
-// Entry (i, j) of every block, vertex after vertex: blocks are formed by strided stores, whole
-// arrays at a time.
-static void store_entry(bough_rod_tangent *k, int n, int s, int i, int j) {
-    entry_source from = source_of(k, s, i, j);
-    const double *restrict right = from.right, *restrict left = from.left;
-    const double *restrict below = from.lower, *restrict above = from.upper;
-    const double *restrict mass = k->mass + (6 * i + j) * s;
-    const double *restrict own = k->local_velocity + (6 * i + j) * s;
-    double *restrict diagonal = k->matrix.diagonal + W8 * i + j;
-    double *restrict lower = k->matrix.lower + W8 * i + j;
-    double *restrict upper = k->matrix.upper + W8 * i + j;
-    double gamma = k->gamma;
-#pragma omp simd
-    for (int v = 1; v <= n; v++) {
-        double segments = from.right_sign * right[v - 1] + from.left_sign * left[v];
-        diagonal[BOUGH_BLOCK * (v - 1)] = mass[v] - gamma * own[v] + segments;
-    }
-#pragma omp simd
-    for (int v = 1; v < n; v++) {
-        lower[BOUGH_BLOCK * v] = from.lower_sign * below[v];
-        upper[BOUGH_BLOCK * (v - 1)] = -above[v];
-    }
-}
-
-// Takes γ² times the vertices' own rotation tangents, eliminated, off entry (i, 3 + j).
-static void subtract_rotation(bough_rod_tangent *k, int n, int s, int i, int j) {
-    const double *restrict x = k->local_position + i * s;
-    const double *restrict y = x + 6 * s, *restrict z = y + 6 * s;
-    const double *restrict turn = k->vertex + (size_t)(KEPT_TURN + j) * s;
-    double *restrict diagonal = k->matrix.diagonal + W8 * i + 3 + j;
-    double square = k->gamma * k->gamma;
-#pragma omp simd
-    for (int v = 1; v <= n; v++) {
-        double sum = x[v] * turn[v] + y[v] * turn[3 * s + v] + z[v] * turn[6 * s + v];
-        diagonal[BOUGH_BLOCK * (v - 1)] -= square * sum;
+    for (int v = 1; v <= m->n; v++) {
+        size_t at = (size_t)(v - 1) * BOUGH_BLOCK, next = at + BOUGH_BLOCK;
+        form_block(&e, v, p->diagonal + at, d->diagonal + at, k->blocks.mass + at, g,
+                   k->matrix.diagonal + at);
+        if (v == m->n) break;
+        form_block(&e, v + 1, p->upper + at, d->upper + at, NULL, g, k->matrix.upper + at);
+        form_block(&e, v, p->lower + next, d->lower + next, NULL, g, k->matrix.lower + next);
     }
 }
 
 bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma) {
     k->gamma = gamma;
     eliminate_rotations(m, k);
-    combine_segments(m, k);
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) store_entry(k, m->n, m->stride, i, j);
-        for (int j = 0; j < 3; j++) subtract_rotation(k, m->n, m->stride, i, j);
-    }
+    form_matrix(m, k);
     return bough_block_tridiagonal_factor(&k->matrix);
 }
 

@@ -9,7 +9,6 @@
 bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m) {
     size_t s = (size_t)m->stride;
     k->variation = bough_arena_doubles(arena, 2 * TANGENTS * s);
-    k->combined = bough_arena_doubles(arena, TANGENTS * s);
     k->mass = bough_arena_doubles(arena, 36 * s);
     k->local_velocity = bough_arena_doubles(arena, 36 * s);
     k->local_position = bough_arena_doubles(arena, 18 * s);
@@ -18,13 +17,8 @@ bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
     k->rate = bough_arena_doubles(arena, BOUGH_ROD_STATES * s);
     k->packed = bough_arena_doubles(arena, (size_t)m->n * W8);
     bool ok = bough_block_tridiagonal_init(&k->matrix, arena, m->n);
+    ok = bough_rod_blocks_init(&k->blocks, arena, m) && ok;
     return ok && !bough_arena_exhausted(arena);
-}
-
-bool bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m) {
-    b->mass = bough_arena_doubles(arena, (size_t)m->n * BOUGH_BLOCK);
-    bool ok = bough_block_tridiagonal_init(&b->position, arena, m->n);
-    return bough_block_tridiagonal_init(&b->velocity, arena, m->n) && ok && b->mass != NULL;
 }
 
 // -- segments ------------------------------------------------------------------------------------
@@ -224,76 +218,6 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
     position_variations(m, scratch->vertex, 0, m->n_segment, k->variation);
     velocity_variations(m, scratch->vertex, 0, m->n_segment,
                         k->variation + (size_t)TANGENTS * m->stride);
+    bough_rod_form_blocks(m, k);
     return true;
-}
-
-// -- blocks ---------------------------------------------------------------------------------------
-
-// Adds sign·G to the 3×3 part of a block at (row, column): G the tangents of three forces from
-// `force` in the three directions from `direction`, of segment n.
-static inline void add_part(double *restrict block, int row, int column, double sign,
-                            const double *restrict g, int s) {
-    for (int k = 0; k < 3; k++) {
-        for (int i = 0; i < 3; i++) {
-            block[W8 * (row + i) + column + k] += sign * g[(FORCES * k + i) * s];
-        }
-    }
-}
-
-static inline const double *tangent_at(const double *g, int s, int direction, int force, int n) {
-    return g + (size_t)(FORCES * direction + force) * s + n;
-}
-
-// The blocks of row v − 1 of sign·∂(vertex force)/∂(…) from the tangents g of all segments. A
-// segment pulls its left vertex by f and its right one by −f.
-static inline void add_segments(bough_block_tridiagonal *b, const double *g, int n_segment, int s,
-                                int v, double sign) {
-    size_t at = (size_t)(v - 1) * BOUGH_BLOCK;
-    double *diagonal = b->diagonal + at, *lower = b->lower + at, *upper = b->upper + at;
-    int l = v - 1; // the segment on the left
-    add_part(diagonal, 0, 0, -sign, tangent_at(g, s, DELTA, F, l), s);
-    add_part(diagonal, 0, 3, -sign, tangent_at(g, s, RIGHT, F, l), s);
-    add_part(diagonal, 3, 0, sign, tangent_at(g, s, DELTA, LR, l), s);
-    add_part(diagonal, 3, 3, sign, tangent_at(g, s, RIGHT, LR, l), s);
-    add_part(lower, 0, 0, sign, tangent_at(g, s, DELTA, F, l), s);
-    add_part(lower, 0, 3, -sign, tangent_at(g, s, LEFT, F, l), s);
-    add_part(lower, 3, 0, -sign, tangent_at(g, s, DELTA, LR, l), s);
-    add_part(lower, 3, 3, sign, tangent_at(g, s, LEFT, LR, l), s);
-    if (v == n_segment) return;
-    add_part(diagonal, 0, 0, -sign, tangent_at(g, s, DELTA, F, v), s);
-    add_part(diagonal, 0, 3, sign, tangent_at(g, s, LEFT, F, v), s);
-    add_part(diagonal, 3, 0, -sign, tangent_at(g, s, DELTA, LL, v), s);
-    add_part(diagonal, 3, 3, sign, tangent_at(g, s, LEFT, LL, v), s);
-    if (v == b->n) return;
-    add_part(upper, 0, 0, sign, tangent_at(g, s, DELTA, F, v), s);
-    add_part(upper, 0, 3, sign, tangent_at(g, s, RIGHT, F, v), s);
-    add_part(upper, 3, 0, sign, tangent_at(g, s, DELTA, LL, v), s);
-    add_part(upper, 3, 3, sign, tangent_at(g, s, RIGHT, LL, v), s);
-}
-
-static void clear_row(bough_block_tridiagonal *b, int v) {
-    size_t at = (size_t)(v - 1) * BOUGH_BLOCK, bytes = BOUGH_BLOCK * sizeof(double);
-    memset(b->lower + at, 0, bytes);
-    memset(b->diagonal + at, 0, bytes);
-    memset(b->upper + at, 0, bytes);
-}
-
-void bough_rod_assemble(const bough_rod_model *m, const bough_rod_tangent *k, bough_rod_blocks *b) {
-    int s = m->stride;
-    for (int v = 1; v <= m->n; v++) {
-        size_t at = (size_t)(v - 1) * BOUGH_BLOCK;
-        clear_row(&b->position, v);
-        clear_row(&b->velocity, v);
-        add_segments(&b->position, k->variation, m->n_segment, s, v, 1);
-        add_segments(&b->velocity, k->variation + (size_t)TANGENTS * s, m->n_segment, s, v, 1);
-        for (int i = 0; i < 6; i++) {
-            for (int j = 0; j < 6; j++) {
-                b->mass[at + W8 * i + j] = k->mass[(6 * i + j) * s + v];
-                b->velocity.diagonal[at + W8 * i + j] += k->local_velocity[(6 * i + j) * s + v];
-            }
-            for (int j = 0; j < 3; j++) {
-                b->position.diagonal[at + W8 * i + 3 + j] += k->local_position[(6 * j + i) * s + v];
-            }
-        }
-    }
 }

@@ -2,13 +2,20 @@
 // solution of (I − γ ∂f/∂y) x = b through the 6×6 block-tridiagonal system in the velocities
 //     (M − γ(Dᵥ + γ K A)) δv = M r_v + γ K A r_q,
 // K, Dᵥ the tangents of force with respect to configuration and velocity, A the elimination of the
-// configuration increments. Tangents are kept per segment and per vertex as structures of arrays;
-// blocks are formed only for factoring.
+// configuration increments. Tangents are found per segment and per vertex as structures of arrays and
+// then put into blocks, of which each factorisation forms its matrix.
 #ifndef BOUGH_FLEXBODY_ROD_TANGENT_H
 #define BOUGH_FLEXBODY_ROD_TANGENT_H
 
 #include "core/block_tridiagonal.h"
 #include "flexbody/rod.h"
+
+// The tangents as blocks: M v̇ = K δq + Dᵥ δv.
+typedef struct bough_rod_blocks {
+    bough_block_tridiagonal position; // K: ∂(vertex force)/∂(x, φ)
+    bough_block_tridiagonal velocity; // Dᵥ: ∂(vertex force)/∂(u, W)
+    double *mass;                     // (padded n × block)
+} bough_rod_blocks;
 
 // A linearisation and its factorisation; several may exist for one rod. Arrays over segments and
 // vertices have the model's stride; moving vertex v is at index v = 1..n.
@@ -21,20 +28,13 @@ typedef struct bough_rod_tangent {
     double *vertex;         // see rod_tangent_layout.h
     bough_vec3 omega;       // of the BRF
     double *rate;           // f (13 × stride)
+    bough_rod_blocks blocks;
     // computed by bough_rod_factor
     double gamma;
-    double *combined;       // γ(Dᵥ + γ K A) of segments (9 × 9 × stride)
     bough_block_tridiagonal matrix;
     double *work;           // of a solution
     double *packed;         // (n × 8)
 } bough_rod_tangent;
-
-// The tangents as blocks, for statics and eigenvalues: M v̇ = K δq + Dᵥ δv.
-typedef struct bough_rod_blocks {
-    bough_block_tridiagonal position; // K: ∂(vertex force)/∂(x, φ)
-    bough_block_tridiagonal velocity; // Dᵥ: ∂(vertex force)/∂(u, W)
-    double *mass;                     // (n × block)
-} bough_rod_blocks;
 
 bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m);
 bool bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m);
@@ -44,8 +44,11 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
                          const double *state, const double *input, bough_rod_scratch *scratch,
                          bough_rod_tangent *k);
 
-// The blocks of the last linearisation.
+// A copy of the blocks of the last linearisation.
 void bough_rod_assemble(const bough_rod_model *m, const bough_rod_tangent *k, bough_rod_blocks *b);
+
+// Puts the tangents of segments and vertices into blocks.
+void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k);
 
 // Factors I − γ ∂f/∂y of the last linearisation. False when singular.
 bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma);

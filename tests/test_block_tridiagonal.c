@@ -24,7 +24,7 @@ static fixture take(int n) {
 // Random blocks in [−size, size]² with `diagonal` added to the diagonal.
 static void fill_block(double *b, unsigned *seed, double size, double diagonal) {
     for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) b[W * i + j] = size * sample_random(seed);
+        for (int j = 0; j < 6; j++) b[W * j + i] = size * sample_random(seed);
         b[W * i + i] += diagonal;
     }
 }
@@ -59,7 +59,7 @@ static void fill(bough_block_tridiagonal *m, double skewed) {
 
 static void place(const double *block, int n, int row, int column, double *dense) {
     for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) dense[(column + j) * n + row + i] = block[W * i + j];
+        for (int j = 0; j < 6; j++) dense[(column + j) * n + row + i] = block[W * j + i];
     }
 }
 
@@ -158,7 +158,7 @@ static void residual_vanishes_for_badly_scaled_rows(void **context) {
         for (int k = 0; k < 3 * 36; k++) {
             int row = k % 36 / 6, column = k % 6;
             double scale = (row < 3 ? 1e4 : 1e-2) * (column < 3 ? 1e4 : 1e-2);
-            parts[k / 36][W * row + column] *= scale;
+            parts[k / 36][W * column + row] *= scale;
         }
     }
     size_t bytes = (size_t)MOST * BOUGH_BLOCK * sizeof(double);
@@ -238,12 +238,12 @@ static void single_blocks_multiply(void **context) {
     bough_block_subtract(a, x, y);
     for (int i = 0; i < 6; i++) {
         double ax = 0;
-        for (int k = 0; k < 6; k++) ax += a[W * i + k] * x[k];
+        for (int k = 0; k < 6; k++) ax += a[W * k + i] * x[k];
         check_near(y[i], start[i] - ax, 1e-14, 1e-14);
         for (int j = 0; j < 6; j++) {
             double ab = 0;
-            for (int k = 0; k < 6; k++) ab += a[W * i + k] * b[W * k + j];
-            check_near(c[W * i + j], ab, 1e-14, 1e-14);
+            for (int k = 0; k < 6; k++) ab += a[W * k + i] * b[W * j + k];
+            check_near(c[W * j + i], ab, 1e-14, 1e-14);
         }
     }
     check_padding(c, 6);
