@@ -260,10 +260,13 @@ static void place_body(bough_tree *tree, const bough_body_def *b, int body) {
     add_inertia(tree, frame, bough_inertia_of(b->mass, b->mass_centre, b->inertia));
 }
 
-static void place_bodies(bough_tree *tree, const bough_tree_def *def) {
+// Level by level; levels (n_bodies) is scratch.
+static void place_bodies(bough_tree *tree, const bough_tree_def *def, int *levels) {
+    for (int b = 0; b < def->n_bodies; b++)
+        levels[b] = depth(def, b);
     for (int placed = 0, level = 0; placed < def->n_bodies; level++) {
         for (int b = 0; b < def->n_bodies; b++) {
-            if (depth(def, b) != level) continue;
+            if (levels[b] != level) continue;
             place_body(tree, &def->bodies[b], b);
             placed++;
         }
@@ -400,7 +403,9 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     if (tree == NULL || !take_model(arena, def, tree) || !take_names(arena, def, tree)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for a tree of %d bodies", def->n_bodies);
     }
-    place_bodies(tree, def);
+    int *levels = bough_arena_take(arena, (size_t)def->n_bodies * sizeof *levels);
+    if (levels == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory to build the tree");
+    place_bodies(tree, def, levels);
     place_attachments(tree, def);
     for (int k = 0; k < def->n_springs; k++)
         tree->springs[k] = def->springs[k];

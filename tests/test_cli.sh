@@ -5,6 +5,7 @@ set -u
 bough=$1
 scenes=$2/tests/scenes
 bar=$2/apps/beams/rubber-bar.yaml
+mechanisms=$2/apps/mechanisms
 beam=$2/tests/scenes/example-beam.yaml
 turbine=$2/apps/turbine/runup.yaml
 version=$3
@@ -153,7 +154,7 @@ checks() {
     has ../stdout '^joints: 3 moving, 0 fixed$'
     expect 0 check "$scenes/springs.yaml"
     has ../stdout '^body slider: .* 1 degree of freedom, spring 50 N/m, damper 0.5 N s/m, stops 3000 N/m'
-    expect 0 check "$scenes/elastic-pendulum.yaml"
+    expect 0 check "$mechanisms/elastic-pendulum.yaml"
     has ../stdout '^springs: 1$'
     expect 0 check "$bar" --set 'simulation.coupling={scheme: extrapolated, order: 2}' \
         --set 'simulation.duration=10 ms' --set 'simulation.macro_step=2.5 ms'

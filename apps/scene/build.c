@@ -14,7 +14,7 @@ typedef struct builder {
     const bough_scene *scene;
     bough_simulation *s;
     bough_body_def *body;          // (n_body): the tree's body i is the scene's body i
-    bough_marker_def *marker;      // (n_beam), then two per spring
+    bough_marker_def *marker;      // (n_beam), then two per spring, then the scene's
     bough_spring_def *spring;      // (n_spring)
     bough_port_def *port;          // (n_rod)
     bough_joint_load_def *load;    // (n_load): those on joints
@@ -276,14 +276,25 @@ static void set_springs(builder *b) {
     }
 }
 
+static void set_markers(builder *b) {
+    b->s->first_marker = b->s->n_beam + 2 * b->scene->n_spring;
+    for (int k = 0; k < b->scene->n_marker; k++) {
+        const bough_scene_marker *from = &b->scene->marker[k];
+        bough_marker_def *marker = &b->marker[b->s->first_marker + k];
+        *marker = (bough_marker_def){from->name, from->body, bough_transform_identity()};
+        marker->placement.position = bough_v3(from->point[0], from->point[1], from->point[2]);
+    }
+}
+
 static bough_status build_tree(builder *b) {
     set_springs(b);
+    set_markers(b);
     const bough_scene *scene = b->scene;
     bough_simulation *s = b->s;
     bough_tree_def def = {.gravity = bough_v3(scene->gravity[0], scene->gravity[1],
                                               scene->gravity[2]),
                           .n_bodies = scene->n_body,
-                          .n_markers = s->n_beam + 2 * scene->n_spring,
+                          .n_markers = s->first_marker + scene->n_marker,
                           .n_ports = s->n_rod,
                           .n_loads = b->n_load,
                           .bodies = b->body,
@@ -422,8 +433,8 @@ static bool take_arrays(builder *b) {
     size_t bodies = (size_t)b->scene->n_body, loads = (size_t)b->scene->n_load;
     b->s = bough_arena_take(b->arena, sizeof *b->s);
     b->body = bough_arena_take(b->arena, bodies * sizeof *b->body);
-    size_t springs = (size_t)b->scene->n_spring;
-    b->marker = bough_arena_take(b->arena, (bodies + 2 * springs) * sizeof *b->marker);
+    size_t springs = (size_t)b->scene->n_spring, markers = (size_t)b->scene->n_marker;
+    b->marker = bough_arena_take(b->arena, (bodies + 2 * springs + markers) * sizeof *b->marker);
     b->spring = bough_arena_take(b->arena, (springs + 1) * sizeof *b->spring);
     b->port = bough_arena_take(b->arena, bodies * sizeof *b->port);
     b->load = bough_arena_take(b->arena, (loads + 1) * sizeof *b->load);

@@ -161,6 +161,26 @@ static bough_status add_springs(bough_simulation *s, bough_channels *list) {
     return status;
 }
 
+static void sample_markers(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    for (int k = 0; k < s->scene->n_marker; k++, value += 3) {
+        const bough_frame *marker = &s->tree->markers[s->first_marker + k];
+        bough_vec3 x = bough_tree_frame_pose(s->view, marker).position;
+        value[0] = x.x, value[1] = x.y, value[2] = x.z;
+    }
+}
+
+static bough_status add_markers(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_markers, s);
+    for (int k = 0; k < s->scene->n_marker; k++) {
+        for (int c = 0; c < 3 && bough_is_ok(&status); c++) {
+            status = bough_channels_add(list, "m", "%s%c", s->scene->marker[k].name, "XYZ"[c]);
+        }
+    }
+    return status;
+}
+
 // -- beams ----------------------------------------------------------------------------------------
 
 // Displacement of the tip and rotation vector of its section against the undeformed one, in the
@@ -287,6 +307,7 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     if (bough_is_ok(&status)) status = add_joints(s, channels);
     if (bough_is_ok(&status) && has_motion(s->scene)) status = add_drives(s, channels);
     if (bough_is_ok(&status) && s->scene->n_spring > 0) status = add_springs(s, channels);
+    if (bough_is_ok(&status) && s->scene->n_marker > 0) status = add_markers(s, channels);
     if (bough_is_ok(&status) && s->scene->turbine.node != NULL) status = add_blades(s, channels);
     if (bough_is_ok(&status)) status = add_tips(s, channels);
     s->n_motion_channel = channels->count;

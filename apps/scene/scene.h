@@ -178,6 +178,7 @@ typedef enum bough_scene_fidelity { BOUGH_SCENE_RIGID, BOUGH_SCENE_ROD } bough_s
 typedef struct bough_scene_body {
     const bough_node *node;
     const char *name;
+    int repeat;   // so many in a row; each stands alone in the scene once it is read
     int fidelity; // bough_scene_fidelity
     bough_scene_joint joint;
     double pitch;             // [rad]: last rotation of the placement, about z by −pitch
@@ -222,6 +223,14 @@ typedef struct bough_scene_load {
     int frame;              // bough_scene_load_frame
     double ramp[2];         // [s]
 } bough_scene_load;
+
+// A point of a rigid body or the ground that is recorded.
+typedef struct bough_scene_marker {
+    const bough_node *node;
+    const char *name, *body_name;
+    int body;        // index, or BOUGH_SCENE_GROUND
+    double point[3]; // in the body's frame [m]
+} bough_scene_marker;
 
 // A linear spring and damper between points of two rigid bodies or the ground.
 typedef struct bough_scene_spring {
@@ -379,6 +388,8 @@ typedef struct bough_scene {
     bough_scene_load *load; // (n_load)
     int n_spring;
     bough_scene_spring *spring; // (n_spring)
+    int n_marker;
+    bough_scene_marker *marker; // (n_marker)
     bough_scene_turbine turbine;
     bough_scene_aero aero; // needs the turbine
     bough_scene_modes modes;

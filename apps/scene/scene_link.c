@@ -249,6 +249,15 @@ static void link_spring(bough_schema_reader *r, const bough_scene *s, bough_scen
     }
 }
 
+static void link_marker(bough_schema_reader *r, const bough_scene *s, bough_scene_marker *marker) {
+    marker->body = BOUGH_SCENE_GROUND;
+    if (marker->body_name == NULL || strcmp(marker->body_name, "ground") == 0) return;
+    const bough_node *node = value_of(marker->node, "body");
+    marker->body = resolve(r, s, node, "body", marker->body_name);
+    if (marker->body < 0 || s->body[marker->body].fidelity != BOUGH_SCENE_ROD) return;
+    bough_schema_error(r, node, "body", "'%s' is a rod, whose tip is recorded", marker->body_name);
+}
+
 // Whether `ancestor` carries body i; false in a loop or where a name is unknown.
 static bool hangs_on(const bough_scene *s, int i, int ancestor) {
     for (int steps = 0; i >= 0 && steps <= s->n_body; steps++) {
@@ -428,6 +437,10 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
     for (int i = 0; i < scene->n_load; i++) {
         at(r, "loads[%d]", i);
         if (scene->load[i].node != NULL) link_load(r, scene, &scene->load[i]);
+    }
+    for (int i = 0; i < scene->n_marker; i++) {
+        at(r, "markers[%d]", i);
+        if (scene->marker[i].node != NULL) link_marker(r, scene, &scene->marker[i]);
     }
     for (int i = 0; i < scene->n_spring; i++) {
         at(r, "springs[%d]", i);

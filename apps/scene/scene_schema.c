@@ -195,6 +195,9 @@ static const bough_schema joint_schema = {SCHEMA("a joint", bough_scene_joint, j
 static const bough_key body_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
      .help = "letters, digits, '_' and '-'; unique"},
+    {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 100000]", .fallback = "1",
+     AT(repeat), .help = "so many such bodies in a row, each hung on the one before by the same "
+                         "joint; named with numbers from 1"},
     {.name = "fidelity", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("rigid", "rod"),
      .required = true, AT(fidelity), .help = "how the body is modelled"},
     {.name = "joint", .kind = BOUGH_KEY_MAPPING, .of = &joint_schema, .required = true, AT(joint),
@@ -338,6 +341,18 @@ static const bough_key spring_keys[] = {
 };
 #undef AT
 static const bough_schema spring_schema = {SCHEMA("a spring", bough_scene_spring, spring_keys)};
+
+#define AT(member) .offset = offsetof(bough_scene_marker, member)
+static const bough_key marker_keys[] = {
+    {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
+     .help = "of its channels: X, Y, Z in ground axes"},
+    {.name = "body", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name),
+     .help = "name of a rigid body, or ground"},
+    {.name = "point", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
+     .fallback = zero3, AT(point), .help = "in that body's frame"},
+};
+#undef AT
+static const bough_schema marker_schema = {SCHEMA("a marker", bough_scene_marker, marker_keys)};
 
 #define AT(member) .offset = offsetof(bough_scene_turbine, member)
 static const bough_key turbine_keys[] = {
@@ -577,6 +592,8 @@ static const bough_key scene_keys[] = {
     {.name = "springs", .kind = BOUGH_KEY_LIST, .of = &spring_schema, AT(spring),
      .count_offset = offsetof(bough_scene, n_spring),
      .help = "springs and dampers between points of rigid bodies"},
+    {.name = "markers", .kind = BOUGH_KEY_LIST, .of = &marker_schema, AT(marker),
+     .count_offset = offsetof(bough_scene, n_marker), .help = "points that are recorded"},
     {.name = "turbine", .kind = BOUGH_KEY_MAPPING, .of = &turbine_schema, AT(turbine),
      .help = "names what channels and aerodynamics need"},
     {.name = "aero", .kind = BOUGH_KEY_MAPPING, .of = &aero_schema, AT(aero),

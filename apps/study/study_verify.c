@@ -234,6 +234,8 @@ static const bough_key case_keys[] = {
      .help = "numbers of segments that grow by a constant factor; default the scene's"},
     {.name = "mesh_key", .kind = BOUGH_KEY_TEXT, .fallback = "bodies[0].rod.segments",
      AT(mesh_key), .help = "key of the scene that takes them"},
+    {.name = "mesh_of", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0", AT(mesh_of),
+     .help = "what is divided by them for that key, as a time for a step; 0: nothing"},
     {.name = "expect", .kind = BOUGH_KEY_LIST, .of = &expect_schema, .count = 1, .required = true,
      AT(expect), .count_offset = offsetof(bough_verify_case, n_expect),
      .help = "what should come out"},
@@ -259,10 +261,15 @@ static const bough_schema verify_schema = {
 
 // -- reading --------------------------------------------------------------------------------------
 
+void bough_verify_mesh(const bough_verify_case *x, int k, char line[160]) {
+    double value = x->mesh_of > 0 ? x->mesh_of / x->mesh[k] : x->mesh[k];
+    snprintf(line, 160, "%.120s=%.15g", x->mesh_key, value);
+}
+
 static void set_mesh(bough_arena *arena, bough_verify_case *x) {
     for (int i = 0; i < x->n_mesh; i++) { // x.set has room for one more
         char line[160];
-        snprintf(line, sizeof line, "%.120s=%.0f", x->mesh_key, x->mesh[i]);
+        bough_verify_mesh(x, i, line);
         x->set.item[x->set.n] = bough_arena_string(arena, line);
     }
 }

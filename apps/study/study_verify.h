@@ -25,7 +25,7 @@ typedef enum bough_verify_what {
                             // largest value, of the energy without gravity's
 } bough_verify_what;
 
-// What the rods have together; conserved in free flight.
+// What the bodies have together; conserved in free flight.
 typedef enum bough_verify_invariant {
     BOUGH_VERIFY_ENERGY, // kinetic, elastic and of gravity [J]
     BOUGH_VERIFY_MOMENTUM,
@@ -60,6 +60,7 @@ typedef struct bough_verify_case {
     const char *mesh_key;           // "bodies[0].rod.segments"
     int n_mesh;
     double *mesh; // (n_mesh) numbers of segments, growing by a constant factor
+    double mesh_of; // what is divided by them; 0: the key takes the numbers themselves
     struct {
         int n;
         const char **item; // (n) "key=value", for bough_scene_read
@@ -81,6 +82,9 @@ typedef struct bough_verify_result {
     bough_status outcome;
     double *value; // (n_expect), NaN where there is none
 } bough_verify_result;
+
+// The replacement "key=value" that mesh k of a case stands for.
+void bough_verify_mesh(const bough_verify_case *x, int k, char line[160]);
 
 // Reads the cases from the root of a study in the file `path`, and every scene with its
 // replacements; adds what is wrong to `errors`.

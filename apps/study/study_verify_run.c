@@ -21,7 +21,7 @@ static bough_status open_scene(bough_arena *arena, const bough_verify_case *x, i
         set[i] = x->set.item[i];
     int n = x->set.n;
     if (x->n_mesh > 0) {
-        snprintf(mesh, sizeof mesh, "%.120s=%.0f", x->mesh_key, x->mesh[k]);
+        bough_verify_mesh(x, k, mesh);
         set[n++] = mesh;
     }
     bough_status status = bough_scene_read(arena, x->scene, set, n, &errors, &scene);
@@ -107,7 +107,7 @@ static bough_status do_modes(bough_arena *arena, const bough_verify_case *x,
 
 // -- invariants -----------------------------------------------------------------------------------
 
-// A sum over all vertices of all rods.
+// Of the whole scene.
 typedef struct invariants {
     double energy, strain_energy;
     double motion_energy; // without gravity's
@@ -156,18 +156,24 @@ static void add_vertex(const bough_beam *beam, const bough_beam_motion *m, int i
     sum->energy += kinetic - bough_dot(gravity, bough_axpy(v->mass, x, moment));
 }
 
+// The tree has the rigid bodies and, of every rod, the vertices that it carries.
 static invariants measure(const gauge *g) {
-    invariants sum = {0};
     bough_simulation *s = g->simulation;
     bough_simulation_update(s);
+    bough_tree_sums tree = bough_tree_sum(s->tree, s->view);
+    invariants sum = {.energy = tree.kinetic + tree.potential,
+                      .motion_energy = tree.kinetic,
+                      .strain_energy = tree.elastic,
+                      .momentum = tree.linear_momentum,
+                      .angular = tree.angular_momentum};
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
-        bough_simulation_beam_motion(s, beam, g->motion[k]);
-        for (int i = 0; i <= beam->def.n_segment; i++)
-            add_vertex(beam, &g->motion[k], i, s->tree->gravity, &sum);
         if (!beam->rod) continue;
-        const double input[BOUGH_ROD_INPUTS] = {0}; // of no consequence to the strains
+        const double input[BOUGH_ROD_MOST_INPUTS] = {0}; // of no consequence to the strains
         const bough_rod_model *model = bough_rod_body_model(beam->rod);
+        bough_simulation_beam_motion(s, beam, g->motion[k]);
+        for (int i = 1; i <= model->n; i++)
+            add_vertex(beam, &g->motion[k], i, s->tree->gravity, &sum);
         bough_rod_gather(model, bough_rod_body_state(beam->rod), input, &g->scratch[k]);
         sum.strain_energy += bough_rod_elastic_energy(model, &g->scratch[k]);
     }
