@@ -5,16 +5,18 @@
 
 enum { MOST_ITERATIONS = 10, MOST_HALVINGS = 8 };
 
-static const double slow = 0.3;     // contraction beyond which the tangents are renewed
+static const double slow = 0.1;     // contraction beyond which the tangents are renewed
+static const double forget = 0.3;   // share of an earlier step's contraction that a better one keeps
 static const double newton_share = 0.1; // of rtol: what Newton's method may leave
 
 struct bough_micro_alpha {
     bough_ode ode;
-    const double *scale; // (n)
+    double *weight; // 1/scale (n)
     bough_micro_alpha_options options;
     double am, af, gamma;  // α_m, α_f, γ
     double factored;       // γ of I − γ ∂f/∂y in the factors; 0: none
     bool stale;            // the tangents are to be renewed
+    double contraction;    // per iteration with these factors, 1 until it is seen
     bool started;
     double *rate;          // ẏ₀ (n)
     double *next, *next_rate, *middle, *residual; // y₁, ẏ₁, y_f, work (n)
@@ -28,11 +30,11 @@ bough_status bough_micro_alpha_create(bough_arena *arena, const bough_ode *ode,
     size_t n = (size_t)ode->n;
     if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
     m->ode = *ode;
-    m->scale = scale;
     m->options = options;
     m->am = 0.5 * (3 - options.rho) / (1 + options.rho);
     m->af = 1 / (1 + options.rho);
     m->gamma = 0.5 + m->am - m->af;
+    m->weight = bough_arena_doubles(arena, n);
     m->rate = bough_arena_doubles(arena, n);
     m->next = bough_arena_doubles(arena, n);
     m->next_rate = bough_arena_doubles(arena, n);
@@ -41,6 +43,7 @@ bough_status bough_micro_alpha_create(bough_arena *arena, const bough_ode *ode,
     if (bough_arena_exhausted(arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
     }
+    for (size_t i = 0; i < n; i++) m->weight[i] = 1 / scale[i];
     *micro = m;
     return bough_ok();
 }
@@ -67,6 +70,7 @@ static bool renew_factors(bough_micro_alpha *m, double t, const double *y, doubl
     if (fabs(m->factored - gamma) <= 1e-9 * gamma) return true;
     m->sum.factorisations++;
     m->factored = gamma;
+    m->contraction = 1;
     return m->ode.factor(m->ode.self, gamma);
 }
 
@@ -88,20 +92,26 @@ static bool balance(bough_micro_alpha *m, double t, const double *restrict y, do
 // Adds the solved step to ẏ₁ and y₁; returns its size against scale, root mean square.
 static double correct(bough_micro_alpha *m, double h) {
     double *restrict next = m->next, *restrict next_rate = m->next_rate;
-    const double *restrict step = m->residual, *restrict scale = m->scale;
-    double inverse = 1 / m->am, weight = m->gamma * h, sum = 0;
+    const double *restrict step = m->residual, *restrict weight = m->weight;
+    double inverse = 1 / m->am, share = m->gamma * h, sum = 0;
 #pragma omp simd reduction(+ : sum)
     for (int i = 0; i < m->ode.n; i++) {
         double d = inverse * step[i];
         next_rate[i] += d;
-        next[i] += weight * d;
-        double part = weight * d / scale[i];
+        next[i] += share * d;
+        double part = share * d * weight[i];
         sum += part * part;
     }
     return sqrt(sum / m->ode.n);
 }
 
-// Newton's method for one step. False when it does not converge.
+// What all further iterations would add, against the last one.
+static double remainder_share(double contraction) {
+    return contraction < 0.5 ? contraction / (1 - contraction) : 1;
+}
+
+// Newton's method for one step: it ends when what is left, by the contraction seen with these
+// factors, is small; so most steps take one iteration. False when it does not converge.
 static bool converge(bough_micro_alpha *m, double t, const double *y, double h) {
     double limit = newton_share * m->options.rtol, before = 0;
     for (int k = 0; k < MOST_ITERATIONS; k++) {
@@ -110,10 +120,13 @@ static bool converge(bough_micro_alpha *m, double t, const double *y, double h) 
         m->ode.solve(m->ode.self, m->residual);
         double size = correct(m, h);
         if (!isfinite(size)) return false;
-        double contraction = k > 0 ? size / before : 0;
-        if (contraction > slow) m->stale = true;
-        if (size < limit || (k > 0 && size * contraction < limit * (1 - contraction))) return true;
-        if (contraction > 2) return false;
+        if (k > 0) {
+            double contraction = size / before;
+            if (contraction > 2) return false;
+            if (contraction > slow) m->stale = true;
+            m->contraction = fmax(forget * m->contraction, contraction);
+        }
+        if (size * remainder_share(m->contraction) < limit) return true;
         before = size;
     }
     return false;

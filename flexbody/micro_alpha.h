@@ -17,7 +17,7 @@ typedef struct bough_micro_alpha_options {
 
 typedef struct bough_micro_alpha bough_micro_alpha;
 
-// Builds the integrator in the arena; scale (n) is borrowed.
+// Builds the integrator in the arena with the error scale of each state (n).
 bough_status bough_micro_alpha_create(bough_arena *arena, const bough_ode *ode,
                                       const double *scale, bough_micro_alpha_options options,
                                       bough_micro_alpha **micro);
