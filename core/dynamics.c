@@ -3,6 +3,7 @@
 
 #include "core/base.h"
 #include "core/linalg.h"
+#include "core/loop.h"
 
 #include <string.h>
 
@@ -113,6 +114,7 @@ static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t,
     }
     for (int k = 0; k < tree->n_springs; k++)
         spring_wrenches(tree, d, k);
+    if (d->loops != NULL) bough_loops_subtract(tree, d);
 }
 
 static double table_value(const bough_joint_load_def *load, double t) {
@@ -319,8 +321,8 @@ static void follow(const bough_link *link, bough_tree_data *d, int i, bough_twis
     d->drive[link->first_speed] = needed[0] - d->force[link->first_speed];
 }
 
-bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, double t,
-                                 const double *input, double *acceleration) {
+bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double t,
+                              const double *input, double *acceleration) {
     bias_wrenches(tree, d, t, input);
     joint_loads(tree, d, t);
     d->singular = -1;
@@ -359,8 +361,8 @@ bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, dou
     return true;
 }
 
-void bough_tree_response(const bough_tree *tree, bough_tree_data *d, const bough_frame *frame,
-                         bough_wrench wrench, double *change) {
+void bough_tree_free_response(const bough_tree *tree, bough_tree_data *d,
+                              const bough_frame *frame, bough_wrench wrench, double *change) {
     memset(change, 0, (size_t)tree->n_v * sizeof(double));
     if (frame->link < 0) return;
     memset(d->force, 0, (size_t)tree->n_v * sizeof(double));

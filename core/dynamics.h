@@ -21,6 +21,11 @@ void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *data, 
 bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
                                  const double *input, double *acceleration);
 
+// The same as if all closures were cut open and the tree moved under their wrenches, whose
+// multipliers stand in data->loops.
+bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
+                              const double *input, double *acceleration);
+
 // change (n_v) of v̇ by a wrench at a frame of the tree, in frame axes. Uses the factors of the
 // last bough_tree_forward_dynamics.
 void bough_tree_response(const bough_tree *tree, bough_tree_data *data, const bough_frame *frame,
@@ -29,6 +34,10 @@ void bough_tree_response(const bough_tree *tree, bough_tree_data *data, const bo
 // The wrench on an end in its body's axes, from the six inputs of the end.
 bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data *data, int end,
                                    const double *input);
+
+// The same without closures. Leaves the change of the links' accelerations in data.
+void bough_tree_free_response(const bough_tree *tree, bough_tree_data *data,
+                              const bough_frame *frame, bough_wrench wrench, double *change);
 
 // M(q) (n_v × n_v), symmetric, by composite rigid bodies.
 void bough_tree_mass_matrix(const bough_tree *tree, bough_tree_data *data, double *mass);

@@ -18,6 +18,9 @@ extern void dgeev_(const char *left, const char *right, const int *n, double *a,
                    double *real, double *imaginary, double *vl, const int *ldvl, double *vr,
                    const int *ldvr, double *work, const int *lwork, int *info, size_t left_length,
                    size_t right_length);
+extern void dsyev_(const char *vectors, const char *triangle, const int *n, double *a,
+                   const int *lda, double *value, double *work, const int *lwork, int *info,
+                   size_t vectors_length, size_t triangle_length);
 // Only OpenBLAS has it; other libraries leave the symbol null.
 extern void openblas_set_num_threads(int n) __attribute__((weak));
 
@@ -78,6 +81,15 @@ bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *
     int info = 0, one = 1, n_work = 8 * n;
     dgeev_("N", "V", &n, a, &n, value, value + n, NULL, &one, vector, &n, work, &n_work, &info, 1,
            1);
+    return info == 0;
+}
+
+bool bough_symmetric_eigen(int n, double *a, double *value, double *work) {
+    if (n == 0) return true;
+    prepare();
+    if (!finite_matrix(n, a)) return false;
+    int info = 0, n_work = 8 * n;
+    dsyev_("V", "U", &n, a, &n, value, work, &n_work, &info, 1, 1);
     return info == 0;
 }
 

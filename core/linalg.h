@@ -23,6 +23,11 @@ void bough_complex_solve(int n, const double *factor, const int *pivot, double *
 // or the iteration does not converge.
 bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *work);
 
+// Eigenvalues of a symmetric matrix (n × n; its lower triangle), rising, into value (n), and its
+// orthonormal eigenvectors in place, the k-th in a[n k] and on. work (8 n). False when a is not
+// finite or the iteration does not converge.
+bool bough_symmetric_eigen(int n, double *a, double *value, double *work);
+
 // The Cholesky factor L of a symmetric matrix (n × n, row-major; its lower triangle) in place,
 // a = L Lᵀ. False unless it is positive definite, with every pivot above 1e-12 of its diagonal.
 bool bough_cholesky_factor(int n, double *a);

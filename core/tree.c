@@ -3,6 +3,7 @@
 
 #include "core/base.h"
 #include "core/dynamics.h"
+#include "core/loop.h"
 
 #include <string.h>
 
@@ -380,15 +381,17 @@ static bool take_names(bough_arena *arena, const bough_tree_def *def, bough_tree
     return !bough_arena_exhausted(arena);
 }
 
-// A joint that moves no inertia has no acceleration.
-static bough_status check_inertia(bough_arena *arena, const bough_tree_def *def,
-                                  const bough_tree *tree) {
+// A joint that moves no inertia has no acceleration; loops must close.
+static bough_status check_dynamics(bough_arena *arena, const bough_tree_def *def,
+                                   bough_tree *tree) {
     bough_tree_data *data;
     bough_status status = bough_tree_data_create(arena, tree, &data);
     double *acceleration = bough_arena_doubles(arena, (size_t)tree->n_v);
     if (!bough_is_ok(&status) || bough_arena_exhausted(arena)) return status;
     bough_tree_kinematics(tree, tree->initial, data);
-    if (bough_tree_forward_dynamics(tree, data, 0, NULL, acceleration)) return bough_ok();
+    if (bough_tree_free_dynamics(tree, data, 0, NULL, acceleration)) {
+        return bough_loops_assemble(tree, data);
+    }
     const bough_body_def *b = &def->bodies[tree->links[data->singular].body];
     return bough_fail(BOUGH_INVALID,
                       "body '%s': its %s joint moves no inertia in some direction; give the body "
@@ -416,7 +419,8 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     if (!bough_is_ok(&status)) return status;
     set_initial(tree, def);
     *out = tree;
-    return check_inertia(arena, def, tree);
+    status = bough_loops_place(arena, def, tree);
+    return bough_is_ok(&status) ? check_dynamics(arena, def, tree) : status;
 }
 
 bough_status bough_tree_data_create(bough_arena *arena, const bough_tree *tree,
@@ -441,7 +445,7 @@ bough_status bough_tree_data_create(bough_arena *arena, const bough_tree *tree,
         d->passive = bough_arena_doubles(arena, (size_t)tree->n_v);
     }
     *out = d;
-    if (!bough_arena_exhausted(arena)) return bough_ok();
+    if (!bough_arena_exhausted(arena)) return bough_loops_create(arena, tree, &d->loops);
     return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for a tree of %d bodies", tree->n_bodies);
 }
 

@@ -5,6 +5,7 @@
 #define BOUGH_CORE_TREE_H
 
 #include "core/arena.h"
+#include "core/constraint.h"
 #include "core/joint.h"
 #include "core/motion.h"
 #include "core/status.h"
@@ -85,6 +86,16 @@ typedef struct bough_spring_def {
     double stiffness, damping, length; // [N/m], [N s/m], without force [m]
 } bough_spring_def;
 
+// A joint between two markers that closes a loop, loop.h. The kinds are those of joints but free; the
+// axis has the same components in both markers' axes, a universal joint's second axis is the second
+// marker's.
+typedef struct bough_closure_def {
+    const char *name;
+    bough_joint_kind kind;
+    int marker[2]; // indices
+    bough_vec3 axis, second_axis;
+} bough_closure_def;
+
 typedef struct bough_tree_def {
     bough_vec3 gravity; // in ground axes [m/s²]
     int n_bodies, n_markers, n_ports, n_loads;
@@ -94,6 +105,9 @@ typedef struct bough_tree_def {
     const bough_joint_load_def *loads;
     int n_springs;
     const bough_spring_def *springs;
+    int n_closures;
+    const bough_closure_def *closures;
+    double closure_time; // in which violations of closures decay; 0: 0.01 [s]
     int n_ends;
     const bough_end_def *ends;
 } bough_tree_def;
@@ -127,6 +141,13 @@ typedef struct bough_external {
     bough_wrench value, rate; // in marker axes [N, N m; per s]
 } bough_external;
 
+typedef struct bough_closure {
+    char *name;
+    int marker[2];
+    bough_constraint constraint;
+    int first_row; // of the equations of all closures
+} bough_closure;
+
 typedef struct bough_tree {
     bough_vec3 gravity; // in ground axes [m/s²]
     int n_links, n_bodies, n_markers, n_ports, n_loads;
@@ -138,6 +159,11 @@ typedef struct bough_tree {
     bough_joint_load_def *loads; // (n_loads), body replaced by the link's index
     int n_springs;
     bough_spring_def *springs;   // (n_springs), as in the def
+    int n_closures, n_rows;      // n_rows: equations of all closures
+    bough_closure *closures;     // (n_closures), as in the def
+    double closure_time;         // [s]
+    int closure_rank;            // how many of the equations are independent at the start
+    double closure_moved;        // how far assembly moved a coordinate [rad, m]
     int n_ends;
     bough_frame *ends;           // (n_ends), as in the def, the body's frame
     bough_external *external;    // (n_markers), changed by bough_tree_set_wrench only
@@ -195,6 +221,7 @@ typedef struct bough_tree_data {
     double *force;             // generalised forces (n_v)
     double *drive;             // what makes prescribed joints move so, else 0 (n_v) [N m, N]
     int singular;              // the link whose joint moves no inertia, else -1
+    struct bough_loops *loops; // of the closures, loop.h; NULL without
 } bough_tree_data;
 
 // Data for evaluations of the tree; as many as there are threads or users.

@@ -6,6 +6,7 @@
 #include "core/integrator_ida.h"
 #include "core/integrator_radau.h"
 #include "core/linalg.h"
+#include "core/loop.h"
 
 #include <string.h>
 
@@ -28,7 +29,8 @@ typedef struct tree_subsystem {
     bool started;                        // the integrator's history belongs to the state
     bough_ida *ida;                      // one of them, none without states
     bough_radau *radau;
-    double *own_state, *own_rate;        // (n) the integrator's: quaternions not normalised
+    double *own_state, *own_rate;        // (n) of IDA: quaternions not normalised; of Radau
+                                         // own_rate is scratch
     double *ida_matrix, *newton_matrix;  // (n × n, column-major)
     int *ida_pivot, *newton_pivot;       // (n)
     double *y, *r, *base, *plus, *minus; // (n) scratch
@@ -51,6 +53,7 @@ static bool derivative(void *self, double t, const double *state, const double *
     bough_tree_kinematics(s->tree, state, s->data);
     bough_tree_coordinate_rate(s->tree, state, rate); // q̇ = N(q) v
     bool ok = bough_tree_forward_dynamics(s->tree, s->data, t, input, rate + s->tree->n_q);
+    if (ok && s->data->loops != NULL) bough_loops_correct(s->tree, s->data, state, rate);
     return ok && all_finite(rate, s->n);
 }
 
@@ -197,6 +200,13 @@ static bool residual(void *self, double t, const double *y, const double *rate, 
     tree_subsystem *s = self;
     const bough_tree *tree = s->tree;
     evaluate_input(s, t);
+    if (s->data->loops != NULL) { // the multipliers need the forward dynamics anyway
+        bool ok = derivative(s, t, y, s->input, r);
+        for (int i = 0; i < s->n; i++)
+            r[i] = rate[i] - r[i];
+        prescribed_rows(tree, t, y, r);
+        return ok;
+    }
     bough_tree_kinematics(tree, y, s->data);
     bough_tree_coordinate_rate(tree, y, r);
     for (int i = 0; i < tree->n_q; i++)
@@ -249,11 +259,13 @@ static bool has_drifted(const tree_subsystem *s) {
     return false;
 }
 
-// f under the signal, and its derivative by one-sided differences
+// f under the signal, prescribed joints where they should be; its derivative by one-sided differences
 static bool rate_of_change(void *self, double t, const double *y, double *rate) {
     tree_subsystem *s = self;
     evaluate_input(s, t);
-    return derivative(s, t, y, s->input, rate);
+    memcpy(s->own_rate, y, (size_t)s->n * sizeof(double));
+    bough_tree_prescribe(s->tree, t, s->own_rate);
+    return derivative(s, t, s->own_rate, s->input, rate);
 }
 
 static bool rate_jacobian(void *self, double t, const double *y, double *matrix) {
@@ -265,7 +277,7 @@ static bool rate_jacobian(void *self, double t, const double *y, double *matrix)
         double d = j < s->tree->n_q ? onesided_increment : increment_at(y[j], onesided_increment);
         s->y[j] = y[j] + d;
         d = s->y[j] - y[j];
-        if (!derivative(s, t, s->y, s->input, s->plus)) return false;
+        if (!rate_of_change(s, t, s->y, s->plus)) return false;
         s->y[j] = y[j];
         for (int i = 0; i < n; i++)
             matrix[(size_t)n * (size_t)j + (size_t)i] = (s->plus[i] - s->base[i]) / d;

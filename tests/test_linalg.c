@@ -50,6 +50,34 @@ static void complex_lu_solves(void **state) {
     assert_true(bough_complex_factor(0, NULL, NULL));
 }
 
+// Eigenvalues 1, 2, 4 of Q diag Qᵀ with a Householder reflection Q, and the product again.
+static void symmetric_eigenvectors_rebuild_the_matrix(void **state) {
+    (void)state;
+    const double v[3] = {1, 2, -2}, expected[3] = {1, 2, 4};
+    double q[3][3], a[9] = {0}, copy[9], value[3], work[24];
+    for (int i = 0; i < 3; i++) {
+        for (int j = 0; j < 3; j++)
+            q[i][j] = (i == j) - 2 * v[i] * v[j] / 9;
+    }
+    for (int k = 0; k < 9; k++) {
+        for (int e = 0; e < 3; e++)
+            a[k] += q[k / 3][e] * expected[e] * q[k % 3][e];
+    }
+    memcpy(copy, a, sizeof a);
+    assert_true(bough_symmetric_eigen(3, copy, value, work));
+    for (int k = 0; k < 9; k++) {
+        double sum = 0;
+        for (int e = 0; e < 3; e++)
+            sum += copy[3 * e + k / 3] * value[e] * copy[3 * e + k % 3];
+        check_near(sum, a[k], 0, 1e-14);
+    }
+    for (int e = 0; e < 3; e++)
+        check_near(value[e], expected[e], 1e-14, 0);
+    copy[0] = NAN;
+    assert_false(bough_symmetric_eigen(3, copy, value, work));
+    assert_true(bough_symmetric_eigen(0, NULL, NULL, NULL));
+}
+
 // A rotation scaled by 0.5 beside the number 3, seen through a change of basis.
 static void eigenvalues_and_vectors(void **state) {
     (void)state;
@@ -115,6 +143,7 @@ int main(void) {
         cmocka_unit_test(lu_solves_with_interchanges),
         cmocka_unit_test(lu_refuses_singular_and_nan),
         cmocka_unit_test(complex_lu_solves),
+        cmocka_unit_test(symmetric_eigenvectors_rebuild_the_matrix),
         cmocka_unit_test(eigenvalues_and_vectors),
         cmocka_unit_test(cholesky_finds_the_factor),
         cmocka_unit_test(cholesky_refuses_indefinite_and_nearly_singular),

@@ -1,0 +1,302 @@
+#include "core/loop.h"
+
+#include "core/base.h"
+#include "core/dynamics.h"
+#include "core/linalg.h"
+#include "core/loop_parts.h"
+
+#include <string.h>
+
+// Of the scaled matrix' eigenvalues: below this share of the largest, equations depend on each
+// other.
+static const double dependent = 1e-10;
+// Of the diagonal's largest entry of the same kind: below this nothing moves.
+static const double rigid = 1e-13;
+
+// -- construction ------------------------------------------------------------------------------
+
+static bool has_direction(bough_vec3 axis) {
+    return bough_norm(axis) > 0 && isfinite(bough_norm(axis));
+}
+
+static bough_status check(const bough_tree_def *def, const bough_tree *tree,
+                          const bough_closure_def *c) {
+    for (int end = 0; end < 2; end++) {
+        if (c->marker[end] < 0 || c->marker[end] >= def->n_markers) {
+            return bough_fail(BOUGH_INVALID, "closure '%s': its marker does not exist", c->name);
+        }
+    }
+    if (c->kind == BOUGH_JOINT_FREE || c->kind > BOUGH_JOINT_PLANAR) {
+        return bough_fail(BOUGH_INVALID, "closure '%s': a %s joint closes nothing", c->name,
+                          c->kind == BOUGH_JOINT_FREE ? "free" : "unknown");
+    }
+    bool universal = c->kind == BOUGH_JOINT_UNIVERSAL;
+    if ((bough_joint_n_axes(c->kind) > 0 && !has_direction(c->axis)) ||
+        (universal && !has_direction(c->second_axis))) {
+        return bough_fail(BOUGH_INVALID, "closure '%s': its axis has no direction", c->name);
+    }
+    if (tree->markers[c->marker[0]].link == tree->markers[c->marker[1]].link) {
+        return bough_fail(BOUGH_INVALID,
+                          "closure '%s': its ends cannot move against each other, so there is "
+                          "nothing to close",
+                          c->name);
+    }
+    return bough_ok();
+}
+
+bough_status bough_loops_place(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+    tree->closures = bough_arena_take(arena, (size_t)def->n_closures * sizeof(bough_closure));
+    tree->closure_time = def->closure_time > 0 ? def->closure_time : 0.01;
+    for (int k = 0; k < def->n_closures && !bough_arena_exhausted(arena); k++) {
+        const bough_closure_def *from = &def->closures[k];
+        bough_closure *to = &tree->closures[k];
+        bough_status status = check(def, tree, from);
+        if (!bough_is_ok(&status)) return status;
+        to->name = bough_arena_string(arena, from->name);
+        to->marker[0] = from->marker[0], to->marker[1] = from->marker[1];
+        to->constraint = bough_constraint_make(from->kind, from->axis, from->second_axis);
+        to->first_row = tree->n_rows;
+        tree->n_rows += bough_constraint_n_rows(&to->constraint);
+        tree->n_closures++;
+    }
+    if (!bough_arena_exhausted(arena)) return bough_ok();
+    return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for %d closures", def->n_closures);
+}
+
+bough_status bough_loops_create(bough_arena *arena, const bough_tree *tree, bough_loops **out) {
+    *out = NULL;
+    if (tree->n_closures == 0) return bough_ok();
+    size_t m = (size_t)tree->n_rows, n = (size_t)tree->n_v;
+    bough_loops *l = bough_arena_take(arena, sizeof *l);
+    if (l != NULL) {
+        l->row = bough_arena_take(arena, m * sizeof *l->row);
+        l->response = bough_arena_doubles(arena, m * n);
+        l->matrix = bough_arena_doubles(arena, m * m);
+        l->value = bough_arena_doubles(arena, m);
+        l->scale = bough_arena_doubles(arena, m);
+        l->work = bough_arena_doubles(arena, 8 * m);
+        l->multiplier = bough_arena_doubles(arena, m);
+        l->correction = bough_arena_doubles(arena, n);
+        l->speed = bough_arena_doubles(arena, n);
+    }
+    *out = l;
+    if (!bough_arena_exhausted(arena)) return bough_ok();
+    return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for %d closures", tree->n_closures);
+}
+
+// -- rows ------------------------------------------------------------------------------------
+
+const bough_frame *bough_loops_end(const bough_tree *tree, int closure, int end) {
+    return &tree->markers[tree->closures[closure].marker[end]];
+}
+
+static bough_frame_motion motion_of(const bough_tree_data *d, const bough_frame *frame) {
+    return (bough_frame_motion){bough_tree_frame_pose(d, frame), bough_tree_frame_twist(d, frame)};
+}
+
+void bough_loops_rows(const bough_tree *tree, bough_tree_data *d) {
+    for (int c = 0; c < tree->n_closures; c++) {
+        bough_frame_motion a = motion_of(d, bough_loops_end(tree, c, 0)),
+                           b = motion_of(d, bough_loops_end(tree, c, 1));
+        bough_constraint_rows(&tree->closures[c].constraint, &a, &b,
+                              d->loops->row + tree->closures[c].first_row);
+    }
+}
+
+int bough_loops_of_row(const bough_tree *tree, int row) {
+    int c = tree->n_closures - 1;
+    while (tree->closures[c].first_row > row)
+        c--;
+    return c;
+}
+
+static bough_twist rate_of(const bough_tree_data *d, const bough_frame *frame) {
+    static const bough_twist none;
+    return frame->link < 0 ? none
+                           : bough_twist_to_child(&frame->placement, d->acceleration[frame->link]);
+}
+
+// x = G v̇ with the links' accelerations that stand in the data
+static void find_rates(const bough_tree *tree, const bough_tree_data *d, double *x) {
+    for (int c = 0; c < tree->n_closures; c++) {
+        bough_twist a = rate_of(d, bough_loops_end(tree, c, 0)),
+                    b = rate_of(d, bough_loops_end(tree, c, 1));
+        int first = tree->closures[c].first_row;
+        for (int k = first; k < first + bough_constraint_n_rows(&tree->closures[c].constraint);
+             k++) {
+            const bough_wrench *w = d->loops->row[k].wrench;
+            x[k] = bough_power(a, w[0]) + bough_power(b, w[1]);
+        }
+    }
+}
+
+// -- the equations of the multipliers ---------------------------------------------------------
+
+// Row `row` of M⁻¹Gᵀ, and G times it into the matrix
+static void respond(const bough_tree *tree, bough_tree_data *d, int row) {
+    bough_loops *l = d->loops;
+    int c = bough_loops_of_row(tree, row), m = tree->n_rows, n = tree->n_v;
+    double *sum = l->response + (size_t)row * (size_t)n,
+           *column = l->matrix + (size_t)row * (size_t)m;
+    memset(sum, 0, (size_t)n * sizeof(double));
+    memset(column, 0, (size_t)m * sizeof(double));
+    for (int end = 0; end < 2; end++) {
+        const bough_frame *frame = bough_loops_end(tree, c, end);
+        if (frame->link < 0) continue;
+        bough_tree_free_response(tree, d, frame, l->row[row].wrench[end], l->speed);
+        find_rates(tree, d, l->work);
+        for (int k = 0; k < n; k++)
+            sum[k] += l->speed[k];
+        for (int k = 0; k < m; k++)
+            column[k] += l->work[k];
+    }
+}
+
+// Scales the matrix to a diagonal of one and finds its eigenvectors. Rows that nothing moves drop
+// out.
+bool bough_loops_factor(const bough_tree *tree, bough_loops *l) {
+    int m = tree->n_rows;
+    double largest[2] = {0, 0}; // of translations and of rotations
+    for (int k = 0; k < m; k++) {
+        const bough_closure *c = &tree->closures[bough_loops_of_row(tree, k)];
+        bool turns = k - c->first_row >= c->constraint.n_translation;
+        largest[turns] = fmax(largest[turns], l->matrix[k * m + k]);
+    }
+    for (int k = 0; k < m; k++) {
+        const bough_closure *c = &tree->closures[bough_loops_of_row(tree, k)];
+        bool turns = k - c->first_row >= c->constraint.n_translation;
+        double diagonal = l->matrix[k * m + k];
+        l->scale[k] = diagonal > rigid * largest[turns] ? 1 / sqrt(diagonal) : 0;
+    }
+    for (int j = 0; j < m; j++) {
+        for (int k = 0; k < m; k++)
+            l->matrix[j * m + k] *= l->scale[j] * l->scale[k];
+    }
+    if (!bough_symmetric_eigen(m, l->matrix, l->value, l->work)) return false;
+    l->rank = 0;
+    for (int k = 0; k < m; k++) {
+        if (l->value[k] > dependent * l->value[m - 1]) l->rank++;
+    }
+    return true;
+}
+
+// After kinematics, bough_loops_rows and free dynamics at this state.
+bool bough_loops_mobility(const bough_tree *tree, bough_tree_data *d) {
+    for (int k = 0; k < tree->n_rows; k++)
+        respond(tree, d, k);
+    return bough_loops_factor(tree, d->loops);
+}
+
+// The least x of all that make G M⁻¹Gᵀ x = x as far as it can be, in place
+void bough_loops_solve(const bough_tree *tree, const bough_loops *l, double *x) {
+    int m = tree->n_rows;
+    double *part = l->work;
+    for (int i = 0; i < m; i++) {
+        part[i] = 0;
+        if (l->value[i] <= dependent * l->value[m - 1]) continue;
+        for (int k = 0; k < m; k++)
+            part[i] += l->matrix[i * m + k] * l->scale[k] * x[k];
+        part[i] /= l->value[i];
+    }
+    for (int k = 0; k < m; k++) {
+        double sum = 0;
+        for (int i = 0; i < m; i++)
+            sum += l->matrix[i * m + k] * part[i];
+        x[k] = l->scale[k] * sum;
+    }
+}
+
+// speed (n_v) = M⁻¹Gᵀ x
+void bough_loops_spread(const bough_tree *tree, const bough_loops *l, const double *x,
+                        double *speed) {
+    int n = tree->n_v;
+    memset(speed, 0, (size_t)n * sizeof(double));
+    for (int j = 0; j < tree->n_rows; j++) {
+        for (int k = 0; k < n; k++)
+            speed[k] += x[j] * l->response[(size_t)j * (size_t)n + (size_t)k];
+    }
+}
+
+// -- dynamics ---------------------------------------------------------------------------------
+
+bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, double t,
+                                 const double *input, double *acceleration) {
+    bough_loops *l = d->loops;
+    if (l == NULL) return bough_tree_free_dynamics(tree, d, t, input, acceleration);
+    int m = tree->n_rows;
+    double *x = l->work + 4 * m;
+    memset(l->multiplier, 0, (size_t)m * sizeof(double));
+    if (!bough_tree_free_dynamics(tree, d, t, input, acceleration)) return false;
+    bough_loops_rows(tree, d);
+    find_rates(tree, d, x);
+    for (int k = 0; k < m; k++)
+        l->multiplier[k] = -(x[k] + l->row[k].bias + l->row[k].rate / tree->closure_time);
+    if (!bough_loops_mobility(tree, d)) return false;
+    bough_loops_solve(tree, l, l->multiplier);
+    for (int k = 0; k < m; k++)
+        x[k] = l->row[k].value / tree->closure_time;
+    bough_loops_solve(tree, l, x);
+    bough_loops_spread(tree, l, x, l->correction);
+    return bough_tree_free_dynamics(tree, d, t, input, acceleration);
+}
+
+void bough_tree_response(const bough_tree *tree, bough_tree_data *d, const bough_frame *frame,
+                         bough_wrench wrench, double *change) {
+    bough_tree_free_response(tree, d, frame, wrench, change);
+    bough_loops *l = d->loops;
+    if (l == NULL || frame->link < 0) return;
+    double *x = l->work + 4 * tree->n_rows;
+    find_rates(tree, d, x);
+    bough_loops_solve(tree, l, x);
+    bough_loops_spread(tree, l, x, l->speed);
+    for (int k = 0; k < tree->n_v; k++)
+        change[k] -= l->speed[k];
+}
+
+void bough_loops_subtract(const bough_tree *tree, bough_tree_data *d) {
+    for (int k = 0; k < tree->n_rows; k++) {
+        double lambda = d->loops->multiplier[k];
+        for (int end = 0; end < 2 && lambda != 0; end++) {
+            const bough_frame *frame = bough_loops_end(tree, bough_loops_of_row(tree, k), end);
+            if (frame->link < 0) continue;
+            bough_wrench w = d->loops->row[k].wrench[end];
+            w = (bough_wrench){bough_scale(lambda, w.force), bough_scale(lambda, w.moment)};
+            bough_wrench *sum = &d->wrench[frame->link];
+            *sum = bough_wrench_sub(*sum, bough_wrench_to_parent(&frame->placement, w));
+        }
+    }
+}
+
+void bough_loops_correct(const bough_tree *tree, const bough_tree_data *d, const double *state,
+                         double *rate) {
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        double own[BOUGH_JOINT_COORDINATES];
+        bough_joint_rate(&link->joint, state + link->first_coordinate,
+                         d->loops->correction + link->first_speed, own);
+        for (int k = 0; k < link->n_coordinates; k++)
+            rate[link->first_coordinate + k] -= own[k];
+    }
+}
+
+bough_wrench bough_loops_wrench(const bough_tree *tree, const bough_tree_data *d, int closure) {
+    bough_wrench sum = {{0, 0, 0}, {0, 0, 0}};
+    const bough_closure *c = &tree->closures[closure];
+    for (int k = c->first_row; k < c->first_row + bough_constraint_n_rows(&c->constraint); k++) {
+        bough_wrench w = d->loops->row[k].wrench[1];
+        sum.force = bough_axpy(d->loops->multiplier[k], w.force, sum.force);
+        sum.moment = bough_axpy(d->loops->multiplier[k], w.moment, sum.moment);
+    }
+    return sum;
+}
+
+void bough_loops_residual(const bough_tree *tree, bough_tree_data *d, int closure, double *value,
+                          double *rate) {
+    const bough_closure *c = &tree->closures[closure];
+    bough_loops_rows(tree, d);
+    *value = *rate = 0;
+    for (int k = c->first_row; k < c->first_row + bough_constraint_n_rows(&c->constraint); k++) {
+        *value = fmax(*value, fabs(d->loops->row[k].value));
+        *rate = fmax(*rate, fabs(d->loops->row[k].rate));
+    }
+}

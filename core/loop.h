@@ -1,0 +1,58 @@
+// Closed loops of the tree. The joints form a tree; closures are constraints between two of its
+// markers with G v = 0 at the level of speeds, and with them the tree is the ordinary differential
+// equation
+//     q̇ = N(q)(v − M⁻¹Gᵀ μ),   G M⁻¹Gᵀ μ = g/T,
+//     M v̇ + h − τ = Gᵀ λ,      G v̇ + Ġ v = −G v/T.
+// On g = 0, G v = 0 it is the motion of the closed mechanism exactly; off it both decay with the
+// time constant T, so that every integrator and coupling scheme keeps them at its own tolerance.
+// Equations that depend on each other are the normal case (a plane four-bar in space): λ and μ are
+// the least of all that solve them, each measured by what it moves, so that units do not matter.
+// Reference: U. Ascher, H. Chin, L. Petzold, S. Reich, Stabilization of constrained mechanical
+// systems with DAEs and invariant manifolds, Mech. Struct. Mach. 23 (1995).
+#ifndef BOUGH_CORE_LOOP_H
+#define BOUGH_CORE_LOOP_H
+
+#include "core/tree.h"
+
+typedef struct bough_loops {
+    bough_constraint_row *row; // (n_rows)
+    double *response;          // M⁻¹Gᵀ (n_rows × n_v), a row per equation
+    double *matrix;            // eigenvectors of the scaled G M⁻¹Gᵀ (n_rows × n_rows)
+    double *value;             // its eigenvalues (n_rows)
+    double *scale;             // (n_rows) 1/√ of its diagonal; 0: nothing moves
+    double *work;              // (8 n_rows)
+    double *multiplier;        // λ (n_rows) [N, N m]
+    double *correction;        // M⁻¹Gᵀ μ (n_v)
+    double *speed;             // (n_v) scratch
+    int rank;                  // how many equations are independent
+} bough_loops;
+
+// Checks the def's closures and places them in the tree, whose markers stand. BOUGH_INVALID names
+// the closure.
+bough_status bough_loops_place(bough_arena *arena, const bough_tree_def *def, bough_tree *tree);
+
+// Scratch of the tree's closures; NULL without closures.
+bough_status bough_loops_create(bough_arena *arena, const bough_tree *tree, bough_loops **loops);
+
+// Subtracts the closures' wrenches at the present multipliers from data->wrench.
+void bough_loops_subtract(const bough_tree *tree, bough_tree_data *data);
+
+// Subtracts N(q) M⁻¹Gᵀ μ from q̇ (n_q), after bough_tree_forward_dynamics at this state.
+void bough_loops_correct(const bough_tree *tree, const bough_tree_data *data, const double *state,
+                         double *rate);
+
+// The wrench of a closure on its second marker, in that marker's axes at its origin [N, N m], after
+// bough_tree_forward_dynamics.
+bough_wrench bough_loops_wrench(const bough_tree *tree, const bough_tree_data *data, int closure);
+
+// How far a closure is from being satisfied, after bough_tree_kinematics: the largest of its
+// equations [m, –] and of their rates [m/s, 1/s].
+void bough_loops_residual(const bough_tree *tree, bough_tree_data *data, int closure, double *value,
+                          double *rate);
+
+// Makes the tree's initial state satisfy its closures: coordinates by Newton's method from near,
+// and speeds, of which those that are zero follow the others. BOUGH_INVALID, naming the closure and
+// what remains, where that is impossible. Sets closure_rank and closure_moved of the tree.
+bough_status bough_loops_assemble(bough_tree *tree, bough_tree_data *data);
+
+#endif
