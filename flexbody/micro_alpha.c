@@ -8,6 +8,7 @@ enum { MOST_ITERATIONS = 10, MOST_HALVINGS = 8 };
 static const double slow = 0.1;     // contraction beyond which the tangents are renewed
 static const double forget = 0.3;   // share of an earlier step's contraction that a better one keeps
 static const double newton_share = 0.1; // of rtol: what Newton's method may leave
+static const double rounding = 1e-9; // of times and steps that are meant to be equal, relative
 
 struct bough_micro_alpha {
     bough_ode ode;
@@ -67,7 +68,7 @@ static bool renew_factors(bough_micro_alpha *m, double t, const double *y, doubl
         m->factored = 0;
     }
     // equal steps differ by rounding of the time
-    if (fabs(m->factored - gamma) <= 1e-9 * gamma) return true;
+    if (fabs(m->factored - gamma) <= rounding * gamma) return true;
     m->sum.factorisations++;
     m->factored = gamma;
     m->contraction = 1;
@@ -166,7 +167,7 @@ bough_status bough_micro_alpha_advance(bough_micro_alpha *micro, double t, doubl
     double at = t, longest = m->options.step;
     bool ok = (!restart && m->started) || start(m, t, y);
     for (int halvings = 0; ok && at < t1;) {
-        double parts = ceil((t1 - at) / longest * (1 - 1e-12));
+        double parts = ceil((t1 - at) / longest * (1 - rounding));
         double h = (t1 - at) / parts;
         if (take_step(m, at, h, y)) {
             at = parts <= 1 ? t1 : at + h;
