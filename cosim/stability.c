@@ -12,7 +12,8 @@
 
 enum { DIMENSION = 48, WARM_UP = 2, MOST_REPEATED = 24 };
 static const double span = 0.06;      // this time passes per Arnoldi vector [s]
-static const double sub_step = 5e-3;  // of the shadows at most [s]
+static const double sub_step = 5e-3;  // of the shadows at most [s]; a quarter of a macro step, so that
+                                      // their own damping does not hide what rings
 static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
 
 // The map z → z after `repeat` macro steps; z = (states, inputs one and two steps ago, used inputs,
@@ -44,7 +45,7 @@ static bough_status build_shadows(map *m, const bough_assembly *a, const double 
     m->shadow = bough_arena_take(m->arena, (size_t)a->n_member * sizeof *m->shadow);
     m->assembly.member = bough_arena_take(m->arena, (size_t)a->n_member * sizeof(void *));
     if (bough_arena_exhausted(m->arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    double longest = fmin(m->macro_step, sub_step);
+    double longest = fmin(m->macro_step / 4, sub_step);
     for (int i = 0; i < a->n_member; i++) {
         bough_status status = bough_shadow_create(m->arena, a->member[i],
                                                   input + a->input_offset[i], longest,

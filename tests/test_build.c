@@ -104,38 +104,54 @@ static void rigid_blades_leave_the_tree_alone(void **context) {
     bough_arena_destroy(arena);
 }
 
-static const char rod_on_rod[] = "tests/scenes/rod-on-rod.yaml";
-
-static void body_on_a_rod_is_refused(void **context) {
-    (void)context;
-    bough_arena *arena = bough_arena_create();
-    bough_errors errors = {.arena = arena};
-    bough_scene *scene = NULL;
-    bough_simulation *s = NULL;
-    char path[512];
-    snprintf(path, sizeof path, BOUGH_SOURCE_DIR "/%s", rod_on_rod);
-    bough_status status = bough_scene_read(arena, path, NULL, 0, &errors, &scene);
-    assert_int_equal(status.code, BOUGH_INVALID);
-    assert_int_equal(errors.n, 1);
-    assert_string_equal(errors.item[0].path, "bodies[1].joint.parent");
-    // and a scene that does not come from a file
-    static const char *const sets[] = {"bodies[0].fidelity=rigid", NULL};
-    scene = scene_read(arena, rod_on_rod, sets);
-    scene->body[0].fidelity = BOUGH_SCENE_ROD;
-    status = bough_simulation_build(arena, scene, &s);
-    assert_int_equal(status.code, BOUGH_INVALID);
-    assert_string_equal(status.message,
-                        "body weight hangs on the rod cable: a rod carries no bodies yet; hang it"
-                        " on the rod's parent or make cable rigid");
-    assert_null(s);
-    scene_build(arena, rod_on_rod, sets); // as the message says
-    bough_arena_destroy(arena);
-}
-
 // -- placement and initial motion -----------------------------------------------------------------
 
 static bough_transform pose_of(const bough_simulation *s, const char *body) {
     return bough_tree_frame_pose(s->view, &s->tree->bodies[bough_tree_find_body(s->tree, body)]);
+}
+
+static const char carrying[] = "tests/scenes/carrying.yaml";
+
+// From the undeformed end, in the axes of the rod's body whatever the section's twist.
+static void bodies_hang_on_the_end_of_a_rod_bent_or_rigid(void **context) {
+    (void)context;
+    static const char *const fidelity[] = {"bodies[0].fidelity=rod", "bodies[0].fidelity=rigid"};
+    for (int k = 0; k < 2; k++) {
+        const char *const sets[] = {fidelity[k], NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, carrying, sets);
+        bough_transform pose = pose_of(s, "weight");
+        check_near(pose.position.x, 1, 1e-14, 0);
+        check_near(pose.position.y, -0.3, 1e-14, 0);
+        check_near(pose.position.z, 2, 1e-14, 0);
+        check_near(pose.rotation.c1.x, 0, 0, 1e-15);
+        check_near(pose.rotation.c1.y, 1, 1e-14, 0);
+        check_near(pose.rotation.c3.z, 1, 1e-14, 0);
+        bough_arena_destroy(arena);
+    }
+}
+
+static void end_of_a_rod_is_connected_to_its_body(void **context) {
+    (void)context;
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, carrying, no_sets);
+    const bough_assembly *a = s->master->assembly;
+    const bough_beam *beam = &s->beam[0];
+    assert_int_equal(beam->end, 0);
+    assert_int_equal(s->n_end, 1);
+    assert_int_equal(s->tree->n_bodies, 3);
+    assert_string_equal(s->tree->ends[0].name, "cable end");
+    assert_int_equal(s->trunk.n_state, 13); // the end is free, the weight welded to it
+    assert_int_equal(s->rod[0].n_state, 13 * 3);
+    assert_int_equal(a->n_interface, 2);
+    assert_int_equal(a->interface[1].body, 1);
+    assert_int_equal(a->interface[1].twist, a->input_offset[1] + BOUGH_ROD_INPUTS);
+    assert_int_equal(a->interface[1].wrench, BOUGH_PORT_INPUTS);
+    const double *end = bough_simulation_rod_input(s, beam) + BOUGH_ROD_INPUTS;
+    bough_quaternion p = beam->def.rotation[4];
+    const double expected[BOUGH_ROD_END_INPUTS] = {0, 0, 0, 0, 0, 0, 0, 0, 2, p.w, p.x, p.y, p.z};
+    for (int k = 0; k < BOUGH_ROD_END_INPUTS; k++) check_near(end[k], expected[k], 1e-15, 1e-15);
+    bough_arena_destroy(arena);
 }
 
 static bough_twist velocity_of(const bough_simulation *s, const char *body) {
@@ -412,7 +428,8 @@ int main(void) {
         cmocka_unit_test(rods_take_ports_in_the_order_of_the_scene),
         cmocka_unit_test(rods_are_connected_to_their_roots),
         cmocka_unit_test(rigid_blades_leave_the_tree_alone),
-        cmocka_unit_test(body_on_a_rod_is_refused),
+        cmocka_unit_test(bodies_hang_on_the_end_of_a_rod_bent_or_rigid),
+        cmocka_unit_test(end_of_a_rod_is_connected_to_its_body),
         cmocka_unit_test(bodies_start_where_the_scene_puts_them),
         cmocka_unit_test(beams_move_with_the_hub_at_first),
         cmocka_unit_test(a_body_may_have_its_own_sub_solver),

@@ -479,10 +479,6 @@ static void body_keys_fit_the_fidelity(void **state) {
                      "0]}\n",
             "s.yaml:6:11: error: bodies[0].mass: follows from the body's rod\n"
             "s.yaml:7:14: error: bodies[0].inertia: follows from the body's rod\n");
-    refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, "
-                     "0]}\n" BODY("b", "a"),
-            "s.yaml:7:61: error: bodies[1].joint.parent: 'a' is a rod; bodies hang on rigid bodies "
-            "only\n");
     refuses(ONE_BODY "    inertia: [1, 1, 1, 2, 0, 0]\n",
             "s.yaml:6:14: error: bodies[0].inertia: the inertia matrix must not be negative about "
             "any axis\n");

@@ -14,11 +14,16 @@ static const char *plural(int n) { return n == 1 ? "" : "s"; }
 
 // -- bodies ---------------------------------------------------------------------------------------
 
-// What a fixed body moves with: the first body below it whose joint moves, or the ground.
+static bool is_rod(const bough_scene *scene, int body) {
+    return body != BOUGH_SCENE_GROUND && scene->body[body].fidelity == BOUGH_SCENE_ROD;
+}
+
+// What a fixed body moves with: the first body below it whose joint moves, a rod, or the ground.
 static int carrier(const bough_scene *scene, int body) {
-    while (body != BOUGH_SCENE_GROUND && scene->body[body].joint.kind == BOUGH_SCENE_FIXED) {
+    do {
         body = scene->body[body].joint.parent;
-    }
+    } while (body != BOUGH_SCENE_GROUND && !is_rod(scene, body) &&
+             scene->body[body].joint.kind == BOUGH_SCENE_FIXED);
     return body;
 }
 
@@ -45,8 +50,10 @@ static void print_joint(const bough_scene *scene, int body) {
                  [BOUGH_SCENE_PLANAR] = {"planar", 3, "normal to"}};
     const bough_scene_joint *joint = &scene->body[body].joint;
     if (joint->kind == BOUGH_SCENE_FIXED) {
-        printf("; fixed to %s, welded to %s: no states in the tree",
-               body_name(scene, joint->parent), body_name(scene, carrier(scene, body)));
+        int on = carrier(scene, body);
+        printf("; fixed to %s, welded to %s%s: no states in the tree",
+               body_name(scene, joint->parent), is_rod(scene, on) ? "the end of " : "",
+               body_name(scene, on));
         return;
     }
     int n = kinds[joint->kind].freedoms;
@@ -137,6 +144,10 @@ static void print_coupling(const bough_simulation *s) {
     printf(" (%s)\n", m->scheme->summary);
     printf("ports: %d, each %d motions and gravities to the rod, %d forces and moments back\n",
            s->tree->n_ports, BOUGH_PORT_OUTPUTS, BOUGH_PORT_INPUTS);
+    if (s->n_end > 0) {
+        printf("ends of rods that carry: %d, each %d motions to the rod, %d forces and moments back\n",
+               s->n_end, BOUGH_END_OUTPUTS, BOUGH_END_INPUTS);
+    }
     printf("duration: %.9g s\n", m->duration);
     printf("macro_step: %.9g s\n", m->macro_step);
     printf("macro_steps: %ld\n", count_steps(m));

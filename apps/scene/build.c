@@ -6,6 +6,7 @@
 #include "core/tree_subsystem.h"
 #include "flexbody/section.h"
 
+#include <stdio.h>
 #include <string.h>
 
 // What is gathered while building; the pieces point into the arena.
@@ -13,14 +14,17 @@ typedef struct builder {
     bough_arena *arena;
     const bough_scene *scene;
     bough_simulation *s;
-    bough_body_def *body;          // (n_body): the tree's body i is the scene's body i
+    bough_body_def *body;          // (n_body + n_end): the tree's body i is the scene's body i; after
+                                   // them what each carrying rod ends in
+    bough_end_def *end;            // (n_end)
     bough_marker_def *marker;      // (n_beam), then two per spring, then the scene's
     bough_spring_def *spring;      // (n_spring)
     bough_port_def *port;          // (n_rod)
     bough_joint_load_def *load;    // (n_load): those on joints
     int n_load;
     bough_member *member;          // trunk, then rods
-    bough_connection *connection;  // two per rod
+    bough_connection *connection;  // two per rod, two more of one that carries bodies
+    int n_connection;
     double *event;                 // corners of loads and of the aerodynamics
     int n_event;
 } builder;
@@ -37,9 +41,9 @@ static bough_mat3 turn_about(int axis, double angle) {
     return bough_rotation_matrix(bough_quaternion_exponential(bough_scale(angle, unit_axis(axis))));
 }
 
-// The joint frame in the parent's frame: the steps in order, then the pitch.
-static bough_transform placement(const bough_scene_body *body) {
-    bough_transform x = bough_transform_identity();
+// The joint frame in the frame of the tree's body it hangs on: from where bodies hang on the parent
+// the steps in order, then the pitch.
+static bough_transform placement(const bough_scene_body *body, bough_transform x) {
     for (int k = 0; k < body->joint.n_placement; k++) {
         const bough_scene_step *step = &body->joint.placement[k];
         bough_transform move = bough_transform_identity();
@@ -95,7 +99,30 @@ static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) 
     }
 }
 
-static void set_joint(const bough_scene_body *from, bough_body_def *to) {
+// Where bodies hang on a beam: at its end, in the axes of the beam's body, which turn with the last
+// section. So a placement means the same whether the beam bends or not.
+static bough_transform beam_end(const bough_beam *beam) {
+    int n = beam->def.n_segment;
+    bough_mat3 section = bough_rotation_matrix(beam->def.rotation[n]);
+    if (beam->end < 0) {
+        return (bough_transform){beam->def.position[n], bough_transform_identity().rotation};
+    }
+    return (bough_transform){{0, 0, 0}, bough_mat3_transpose(section)};
+}
+
+static void set_parent(const builder *b, const bough_scene_body *from, bough_body_def *to) {
+    int parent = from->joint.parent;
+    bough_transform start = bough_transform_identity();
+    to->parent = parent == BOUGH_SCENE_GROUND ? BOUGH_GROUND : parent;
+    const bough_beam *beam = parent < 0 ? NULL : bough_simulation_beam(b->s, parent);
+    if (beam != NULL) {
+        start = beam_end(beam);
+        if (beam->end >= 0) to->parent = b->end[beam->end].body;
+    }
+    to->joint = placement(from, start);
+}
+
+static void set_joint(const builder *b, const bough_scene_body *from, bough_body_def *to) {
     static const bough_joint_kind kinds[] = {
         [BOUGH_SCENE_FIXED] = BOUGH_JOINT_FIXED,
         [BOUGH_SCENE_REVOLUTE] = BOUGH_JOINT_REVOLUTE,
@@ -106,9 +133,8 @@ static void set_joint(const bough_scene_body *from, bough_body_def *to) {
         [BOUGH_SCENE_UNIVERSAL] = BOUGH_JOINT_UNIVERSAL,
         [BOUGH_SCENE_PLANAR] = BOUGH_JOINT_PLANAR};
     const bough_scene_joint *joint = &from->joint;
-    to->parent = joint->parent == BOUGH_SCENE_GROUND ? BOUGH_GROUND : joint->parent;
     to->kind = kinds[joint->kind];
-    to->joint = placement(from);
+    set_parent(b, from, to);
     bool universal = to->kind == BOUGH_JOINT_UNIVERSAL;
     to->axis = unit_axis(joint->axis);
     to->second_axis = unit_axis(universal ? joint->second_axis : (joint->axis + 1) % 3);
@@ -168,12 +194,45 @@ static bough_status discretise(builder *b, bough_beam *beam) {
                                     &beam->def);
 }
 
+static bough_inertia vertex_inertia(const bough_vertex_inertia *v) {
+    return (bough_inertia){v->mass, v->moment, tensor(v->inertia)};
+}
+
 // The root vertex' inertia in the body's frame, about its origin.
 static bough_inertia root_inertia(const bough_rod_def *def) {
-    const bough_vertex_inertia *v = &def->inertia[0];
-    bough_mat3 r = bough_rotation_matrix(def->rotation[0]);
-    bough_transform x = {{0, 0, 0}, r};
-    return bough_inertia_to_parent(&x, (bough_inertia){v->mass, v->moment, tensor(v->inertia)});
+    bough_transform x = {{0, 0, 0}, bough_rotation_matrix(def->rotation[0])};
+    return bough_inertia_to_parent(&x, vertex_inertia(&def->inertia[0]));
+}
+
+static bool carries_bodies(const bough_scene *scene, int body) {
+    for (int i = 0; i < scene->n_body; i++) {
+        if (scene->body[i].joint.parent == body) return true;
+    }
+    return false;
+}
+
+// The last vertex becomes a body of the tree, free against the rod's frame; what the rod carries
+// hangs on it.
+static bough_status add_end(builder *b, bough_beam *beam, int index) {
+    const bough_rod_def *def = &beam->def;
+    int n = def->n_segment, body = b->scene->n_body + b->s->n_end;
+    size_t length = strlen(beam->body->name) + sizeof " end";
+    char *name = bough_arena_take(b->arena, length);
+    if (name == NULL) return out_of_memory();
+    snprintf(name, length, "%s end", beam->body->name);
+    bough_quaternion p = def->rotation[n];
+    bough_vec3 x = def->position[n];
+    const double q[BOUGH_JOINT_COORDINATES] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z};
+    bough_body_def *to = &b->body[body];
+    *to = bough_body_def_default();
+    to->name = name;
+    to->parent = index;
+    to->kind = BOUGH_JOINT_FREE;
+    memcpy(to->coordinates, q, sizeof q);
+    beam->end = b->s->n_end++;
+    beam->def.carries = true;
+    b->end[beam->end] = (bough_end_def){name, body, vertex_inertia(&def->inertia[n])};
+    return bough_ok();
 }
 
 static bough_status add_beam(builder *b, int index) {
@@ -181,7 +240,7 @@ static bough_status add_beam(builder *b, int index) {
     bough_beam *beam = &s->beam[s->n_beam];
     beam->body = &b->scene->body[index];
     beam->marker = s->n_beam;
-    beam->port = -1;
+    beam->port = beam->end = -1;
     bough_status status = discretise(b, beam);
     if (!bough_is_ok(&status)) return status;
     b->marker[s->n_beam++] = (bough_marker_def){beam->body->name, index,
@@ -190,34 +249,23 @@ static bough_status add_beam(builder *b, int index) {
     beam->port = s->n_rod;
     b->port[s->n_rod++] = (bough_port_def){beam->body->name, beam->marker,
                                            root_inertia(&beam->def)};
-    return bough_ok();
-}
-
-static bough_status hangs_on_rod(const builder *b, int index) {
-    const bough_scene_body *body = &b->scene->body[index];
-    int parent = body->joint.parent;
-    if (parent < 0 || b->scene->body[parent].fidelity != BOUGH_SCENE_ROD) return bough_ok();
-    return bough_fail(BOUGH_INVALID,
-                      "body %s hangs on the rod %s: a rod carries no bodies yet; hang it on the"
-                      " rod's parent or make %s rigid",
-                      body->name, b->scene->body[parent].name, b->scene->body[parent].name);
+    return carries_bodies(b->scene, index) ? add_end(b, beam, index) : bough_ok();
 }
 
 static bough_status set_bodies(builder *b) {
+    for (int i = 0; i < b->scene->n_body; i++) { // bodies hang on beams that stand already
+        if (b->scene->body[i].rod.node == NULL) continue;
+        bough_status status = add_beam(b, i);
+        if (!bough_is_ok(&status)) return status;
+    }
     for (int i = 0; i < b->scene->n_body; i++) {
         const bough_scene_body *from = &b->scene->body[i];
         bough_body_def *to = &b->body[i];
-        bough_beam *beam = NULL;
-        bough_status status = hangs_on_rod(b, i);
-        if (bough_is_ok(&status) && from->rod.node != NULL) {
-            beam = &b->s->beam[b->s->n_beam];
-            status = add_beam(b, i);
-        }
-        if (!bough_is_ok(&status)) return status;
         *to = bough_body_def_default();
         to->name = from->name;
-        set_joint(from, to);
-        if (from->fidelity == BOUGH_SCENE_RIGID) set_mass(from, beam, to);
+        set_joint(b, from, to);
+        if (from->fidelity != BOUGH_SCENE_RIGID) continue;
+        set_mass(from, bough_simulation_beam(b->s, i), to);
     }
     return bough_ok();
 }
@@ -293,7 +341,7 @@ static bough_status build_tree(builder *b) {
     bough_simulation *s = b->s;
     bough_tree_def def = {.gravity = bough_v3(scene->gravity[0], scene->gravity[1],
                                               scene->gravity[2]),
-                          .n_bodies = scene->n_body,
+                          .n_bodies = scene->n_body + s->n_end,
                           .n_markers = s->first_marker + scene->n_marker,
                           .n_ports = s->n_rod,
                           .n_loads = b->n_load,
@@ -302,7 +350,9 @@ static bough_status build_tree(builder *b) {
                           .ports = b->port,
                           .loads = b->load,
                           .n_springs = scene->n_spring,
-                          .springs = b->spring};
+                          .springs = b->spring,
+                          .n_ends = s->n_end,
+                          .ends = b->end};
     bough_status status = bough_tree_create(b->arena, &def, &s->tree);
     if (bough_is_ok(&status)) status = bough_tree_data_create(b->arena, s->tree, &s->view);
     if (bough_is_ok(&status)) s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);
@@ -325,7 +375,7 @@ static bough_micro_options micro_options(const builder *b, const bough_scene_bod
 
 static bough_status build_rods(builder *b) {
     bough_simulation *s = b->s;
-    double *motion = bough_arena_doubles(b->arena, (size_t)BOUGH_PORT_OUTPUTS * s->n_rod + 1);
+    double *motion = bough_arena_doubles(b->arena, (size_t)bough_tree_n_outputs(s->tree) + 1);
     if (motion == NULL) return out_of_memory();
     s->trunk.ops->output(s->trunk.self, 0, s->trunk.state, NULL, motion);
     for (int k = 0; k < s->n_beam; k++) {
@@ -344,19 +394,43 @@ static bough_status build_rods(builder *b) {
     return bough_ok();
 }
 
+// A motion to a rod and the wrench that answers it.
+static void add_port(builder *b, int rod, const bough_connection *motion,
+                     const bough_connection *wrench) {
+    bough_connection *to = &b->connection[b->n_connection], *back = to + 1;
+    b->n_connection += 2;
+    *to = *motion;
+    *back = *wrench;
+    to->to = back->from = rod + 1;
+    to->kinematic = true;
+}
+
+static void connect_end(builder *b, const bough_beam *beam) {
+    const bough_tree *tree = b->s->tree;
+    int outputs = BOUGH_PORT_OUTPUTS * tree->n_ports, inputs = BOUGH_PORT_INPUTS * tree->n_ports;
+    bough_connection motion = {.from_offset = outputs + BOUGH_END_OUTPUTS * beam->end,
+                               .to_offset = BOUGH_ROD_INPUTS,
+                               .count = BOUGH_ROD_END_INPUTS};
+    bough_connection wrench = {.from_offset = BOUGH_ROD_OUTPUTS,
+                               .to_offset = inputs + BOUGH_END_INPUTS * beam->end,
+                               .count = BOUGH_ROD_END_OUTPUTS};
+    add_port(b, beam->port, &motion, &wrench);
+}
+
 static void connect(builder *b) {
     bough_simulation *s = b->s;
     b->member[0] = (bough_member){&s->trunk, 0};
-    for (int k = 0; k < s->n_rod; k++) {
+    for (int i = 0; i < s->n_beam; i++) {
+        const bough_beam *beam = &s->beam[i];
+        int k = beam->port;
+        if (k < 0) continue;
         b->member[k + 1] = (bough_member){&s->rod[k], 1};
-        b->connection[2 * k] = (bough_connection){.from = 0,
-                                                  .from_offset = BOUGH_PORT_OUTPUTS * k,
-                                                  .to = k + 1,
-                                                  .count = BOUGH_PORT_OUTPUTS,
-                                                  .kinematic = true};
-        b->connection[2 * k + 1] = (bough_connection){.from = k + 1,
-                                                      .to_offset = BOUGH_PORT_INPUTS * k,
-                                                      .count = BOUGH_PORT_INPUTS};
+        bough_connection motion = {.from_offset = BOUGH_PORT_OUTPUTS * k,
+                                   .count = BOUGH_PORT_OUTPUTS};
+        bough_connection wrench = {.to_offset = BOUGH_PORT_INPUTS * k,
+                                   .count = BOUGH_PORT_INPUTS};
+        add_port(b, k, &motion, &wrench);
+        if (beam->end >= 0) connect_end(b, beam);
     }
 }
 
@@ -408,7 +482,8 @@ static bough_status build_master(builder *b) {
     const bough_scene_simulation *sim = &b->scene->simulation;
     bough_master_def def = bough_master_def_default();
     bough_sampled_load load;
-    def.assembly = (bough_assembly_def){s->n_rod + 1, b->member, 2 * s->n_rod, b->connection};
+    def.assembly = (bough_assembly_def){s->n_rod + 1, b->member, b->n_connection,
+                                        b->connection};
     def.scheme = scheme_options(b->scene);
     def.macro_step = sim->macro_step;
     def.duration = sim->duration;
@@ -432,14 +507,15 @@ static bough_status build_master(builder *b) {
 static bool take_arrays(builder *b) {
     size_t bodies = (size_t)b->scene->n_body, loads = (size_t)b->scene->n_load;
     b->s = bough_arena_take(b->arena, sizeof *b->s);
-    b->body = bough_arena_take(b->arena, bodies * sizeof *b->body);
+    b->body = bough_arena_take(b->arena, 2 * bodies * sizeof *b->body);
+    b->end = bough_arena_take(b->arena, bodies * sizeof *b->end);
     size_t springs = (size_t)b->scene->n_spring, markers = (size_t)b->scene->n_marker;
     b->marker = bough_arena_take(b->arena, (bodies + 2 * springs + markers) * sizeof *b->marker);
     b->spring = bough_arena_take(b->arena, (springs + 1) * sizeof *b->spring);
     b->port = bough_arena_take(b->arena, bodies * sizeof *b->port);
     b->load = bough_arena_take(b->arena, (loads + 1) * sizeof *b->load);
     b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);
-    b->connection = bough_arena_take(b->arena, 2 * bodies * sizeof *b->connection);
+    b->connection = bough_arena_take(b->arena, 4 * bodies * sizeof *b->connection);
     b->event = bough_arena_doubles(b->arena, count_corners(b->scene));
     if (b->s == NULL) return false;
     b->s->scene = b->scene;
@@ -502,7 +578,7 @@ static vertex rigid_vertex(const bough_beam *beam, int i, bough_twist twist) {
 
 static vertex rod_vertex(const bough_simulation *s, const bough_beam *beam, int i) {
     const double *y = s->rod[beam->port].state + i - 1;
-    int n = beam->def.n_segment;
+    int n = bough_rod_body_model(beam->rod)->n;
     bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
     bough_mat3 r = bough_rotation_matrix(bough_quaternion_normalised(p));
     bough_vec3 w = {y[10 * n], y[11 * n], y[12 * n]};
@@ -512,14 +588,52 @@ static vertex rod_vertex(const bough_simulation *s, const bough_beam *beam, int 
                     r};
 }
 
+// The last vertex of a rod that carries bodies; its velocity is resolved in its own axes.
+static vertex end_vertex(const bough_simulation *s, const bough_beam *beam) {
+    bough_quaternion p;
+    bough_vec3 x = bough_simulation_beam_tip(s, beam, &p);
+    bough_mat3 r = bough_rotation_matrix(p);
+    bough_twist twist = s->view->twist[s->tree->ends[beam->end].link];
+    return (vertex){x, bough_mat3_mul(r, twist.linear), bough_mat3_mul(r, twist.angular), r};
+}
+
+static vertex vertex_of(const bough_simulation *s, const bough_beam *beam, int i,
+                        bough_twist twist) {
+    if (i == 0 || beam->rod == NULL) return rigid_vertex(beam, i, twist);
+    if (i > bough_rod_body_model(beam->rod)->n) return end_vertex(s, beam);
+    return rod_vertex(s, beam, i);
+}
+
+bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
+                                     bough_quaternion *rotation) {
+    int last = beam->def.n_segment, stride = 1;
+    const double *x = NULL;
+    *rotation = beam->def.rotation[last];
+    if (beam->rod == NULL) return beam->def.position[last];
+    if (beam->end < 0) {
+        stride = last;
+        x = s->rod[beam->port].state + last - 1;
+    } else {
+        x = s->trunk.state + s->tree->links[s->tree->ends[beam->end].link].first_coordinate;
+    }
+    const double *p = x + 3 * stride;
+    *rotation = bough_quaternion_normalised(
+        (bough_quaternion){p[0], p[stride], p[2 * stride], p[3 * stride]});
+    return bough_v3(x[0], x[stride], x[2 * stride]);
+}
+
+const double *bough_simulation_rod_input(const bough_simulation *s, const bough_beam *beam) {
+    const bough_coupling *c = s->master->coupling;
+    return c->input + c->assembly->input_offset[beam->port + 1];
+}
+
 void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam,
                                   bough_beam_motion motion) {
     const bough_frame *frame = &s->tree->markers[beam->marker];
     bough_transform pose = bough_tree_frame_pose(s->view, frame);
     bough_twist twist = bough_tree_frame_twist(s->view, frame);
     for (int i = 0; i <= beam->def.n_segment; i++) {
-        vertex v = i == 0 || beam->rod == NULL ? rigid_vertex(beam, i, twist)
-                                               : rod_vertex(s, beam, i);
+        vertex v = vertex_of(s, beam, i, twist);
         motion.position[i] = bough_add(pose.position, bough_mat3_mul(pose.rotation, v.position));
         motion.rotation[i] = bough_mat3_product(pose.rotation, v.rotation);
         motion.velocity[i] = bough_mat3_mul(pose.rotation, v.velocity);

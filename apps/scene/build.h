@@ -18,6 +18,7 @@ typedef struct bough_beam {
     bough_rod_def def;    // the undeformed mesh in the body's frame
     int marker;           // of the tree, the body's frame
     int port;             // of the tree; −1 when rigid
+    int end;              // of the tree, where bodies hang on the rod; −1 when it carries none
     bough_rod_body *rod;  // NULL when rigid
 } bough_beam;
 
@@ -31,7 +32,7 @@ typedef struct bough_simulation {
     int n_beam;
     bough_beam *beam;      // (n_beam) bodies that have a rod, in the scene's order
     bough_subsystem *rod;  // (number of rods) their contracts, in port order
-    int n_rod;
+    int n_rod, n_end;
     struct bough_aero_link *aero; // NULL without an aero block
     bough_master *master;
     int n_motion_channel; // the first channels: they follow from the states
@@ -52,6 +53,13 @@ int bough_simulation_n_joints(const bough_simulation *s);
 
 // The beam of a scene body; NULL when it has no rod.
 bough_beam *bough_simulation_beam(const bough_simulation *s, int body);
+
+// What a rod is told at the current synchronisation point: see rod.h.
+const double *bough_simulation_rod_input(const bough_simulation *s, const bough_beam *beam);
+
+// Position of a beam's last vertex in the body's frame, in which `rotation` is its section's.
+bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
+                                     bough_quaternion *rotation);
 
 // Motion of all vertices of a beam in ground axes, from `view` and the rod's state: position,
 // section axes, velocity and angular velocity, each (n_segment + 1).

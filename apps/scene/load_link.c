@@ -12,7 +12,7 @@ static bough_rod_reach reach_of(const bough_scene_load *load, const bough_rod_mo
     case BOUGH_SCENE_ALONG: return (bough_rod_reach){load->span[0], load->span[1]};
     case BOUGH_SCENE_AT_TIP: break;
     }
-    return (bough_rod_reach){m->span[m->n], m->span[m->n]};
+    return (bough_rod_reach){m->span[m->n_segment], m->span[m->n_segment]};
 }
 
 // Force and moment in the axes that the rod wants.

@@ -188,15 +188,18 @@ static bough_status add_markers(bough_simulation *s, bough_channels *list) {
 static void tip(const bough_simulation *s, const bough_beam *beam, bough_vec3 *displacement,
                 bough_vec3 *rotation) {
     int n = beam->def.n_segment;
-    *displacement = *rotation = bough_v3(0, 0, 0);
+    bough_quaternion p, undeformed = bough_quaternion_conjugate(beam->def.rotation[n]);
+    bough_vec3 x = bough_simulation_beam_tip(s, beam, &p);
+    *displacement = bough_sub(x, beam->def.position[n]);
+    *rotation = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
+}
+
+// Of a rod on its carrier, in the body's axes [N, N m]; zero of a rigid body.
+static void root_wrench(const bough_simulation *s, const bough_beam *beam, double t, double *root) {
+    memset(root, 0, BOUGH_ROD_MOST_OUTPUTS * sizeof *root);
     if (beam->rod == NULL) return;
-    const double *y = s->rod[beam->port].state + n - 1;
-    bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
-    bough_quaternion undeformed = bough_quaternion_conjugate(beam->def.rotation[n]);
-    bough_quaternion turn =
-        bough_quaternion_product(bough_quaternion_normalised(p), undeformed);
-    *displacement = bough_sub(bough_v3(y[0], y[n], y[2 * n]), beam->def.position[n]);
-    *rotation = bough_quaternion_logarithm(turn);
+    const bough_subsystem *rod = &s->rod[beam->port];
+    rod->ops->output(rod->self, t, rod->state, bough_simulation_rod_input(s, beam), root);
 }
 
 enum { BLADE_CHANNELS = 12 };
@@ -208,15 +211,10 @@ static void sample_blades(void *self, double t, double *value) {
     for (int b = 0; b < s->scene->turbine.n_blade; b++, value += BLADE_CHANNELS) {
         const bough_beam *beam = bough_simulation_beam(s, s->scene->turbine.blade[b]);
         double c = cos(beam->body->pitch), sine = sin(beam->body->pitch);
-        double input[BOUGH_ROD_INPUTS], root[BOUGH_ROD_OUTPUTS] = {0};
+        double root[BOUGH_ROD_MOST_OUTPUTS];
         bough_vec3 d, turn;
         tip(s, beam, &d, &turn);
-        if (beam->rod != NULL) {
-            const bough_subsystem *rod = &s->rod[beam->port];
-            const double *motion = s->master->coupling->output + BOUGH_PORT_OUTPUTS * beam->port;
-            for (int k = 0; k < BOUGH_ROD_INPUTS; k++) input[k] = motion[k];
-            rod->ops->output(rod->self, t, rod->state, input, root);
-        }
+        root_wrench(s, beam, t, root);
         const double values[BLADE_CHANNELS] = {
             d.x * c + d.y * sine, d.y * c - d.x * sine, turn.z / DEGREE, d.x, d.y, d.z,
             root[0] / 1e3, root[1] / 1e3, root[2] / 1e3,

@@ -106,10 +106,6 @@ static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
     }
     const bough_node *node = value_of(joint->node, "parent");
     joint->parent = resolve(r, s, node, "parent", joint->parent_name);
-    if (joint->parent >= 0 && s->body[joint->parent].fidelity == BOUGH_SCENE_ROD) {
-        bough_schema_error(r, node, "parent", "'%s' is a rod; bodies hang on rigid bodies only",
-                           joint->parent_name);
-    }
 }
 
 // The body at which a walk towards the ground comes back to itself, from any body above a loop.

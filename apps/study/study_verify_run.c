@@ -169,12 +169,12 @@ static invariants measure(const gauge *g) {
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         if (!beam->rod) continue;
-        const double input[BOUGH_ROD_MOST_INPUTS] = {0}; // of no consequence to the strains
         const bough_rod_model *model = bough_rod_body_model(beam->rod);
         bough_simulation_beam_motion(s, beam, g->motion[k]);
         for (int i = 1; i <= model->n; i++)
             add_vertex(beam, &g->motion[k], i, s->tree->gravity, &sum);
-        bough_rod_gather(model, bough_rod_body_state(beam->rod), input, &g->scratch[k]);
+        bough_rod_gather(model, bough_rod_body_state(beam->rod),
+                         bough_simulation_rod_input(s, beam), &g->scratch[k]);
         sum.strain_energy += bough_rod_elastic_energy(model, &g->scratch[k]);
     }
     sum.energy += sum.strain_energy;
