@@ -3,6 +3,7 @@
 #include "flexbody/micro_alpha.h"
 #include "flexbody/micro_arkode.h"
 #include "flexbody/micro_cvode.h"
+#include "flexbody/micro_rosenbrock.h"
 
 static bough_status advance_cvode(void *self, double t, double t1, bool restart, double *y) {
     return bough_micro_cvode_advance(self, t, t1, restart, y);
@@ -26,6 +27,14 @@ static bough_status advance_alpha(void *self, double t, double t1, bool restart,
 
 static void count_alpha(const void *self, bough_statistics *sum) {
     bough_micro_alpha_statistics(self, sum);
+}
+
+static bough_status advance_rosenbrock(void *self, double t, double t1, bool restart, double *y) {
+    return bough_micro_rosenbrock_advance(self, t, t1, restart, y);
+}
+
+static void count_rosenbrock(const void *self, bough_statistics *sum) {
+    bough_micro_rosenbrock_statistics(self, sum);
 }
 
 static bough_status create_cvode(bough_arena *arena, const bough_ode *ode, const double *scale,
@@ -53,11 +62,22 @@ static bough_status create_alpha(bough_arena *arena, const bough_ode *ode, const
     return status;
 }
 
+static bough_status create_rosenbrock(bough_arena *arena, const bough_ode *ode,
+                                      const double *scale, bough_micro_options options,
+                                      bough_micro *micro) {
+    bough_micro_rosenbrock *self = NULL;
+    bough_micro_rosenbrock_options own = {options.step, options.rtol};
+    bough_status status = bough_micro_rosenbrock_create(arena, ode, scale, own, &self);
+    *micro = (bough_micro){"Rosenbrock", self, advance_rosenbrock, count_rosenbrock};
+    return status;
+}
+
 bough_status bough_micro_create(bough_arena *arena, const bough_ode *ode, const double *scale,
                                 bough_micro_options options, bough_micro *micro) {
     switch (options.kind) {
     case BOUGH_MICRO_ARKODE_ESDIRK: return create_arkode(arena, ode, scale, options, micro);
     case BOUGH_MICRO_GENERALIZED_ALPHA: return create_alpha(arena, ode, scale, options, micro);
+    case BOUGH_MICRO_ROSENBROCK: return create_rosenbrock(arena, ode, scale, options, micro);
     default: return create_cvode(arena, ode, scale, options, micro);
     }
 }

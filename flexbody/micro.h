@@ -22,12 +22,13 @@ typedef enum bough_micro_kind {
     BOUGH_MICRO_CVODE_BDF,
     BOUGH_MICRO_GENERALIZED_ALPHA,
     BOUGH_MICRO_ARKODE_ESDIRK,
+    BOUGH_MICRO_ROSENBROCK,
 } bough_micro_kind;
 
 typedef struct bough_micro_options {
     bough_micro_kind kind;
     double rtol; // tolerance per state: rtol · scale; of Newton's method in generalised-α
-    double step; // longest step of generalised-α [s]
+    double step; // longest step of generalised-α and the Rosenbrock method [s]
     double rho;  // its spectral radius at infinite frequency, 0 … 1
 } bough_micro_options;
 

@@ -368,7 +368,8 @@ static bough_micro_options micro_options(const builder *b, const bough_scene_bod
     static const bough_micro_kind kinds[] = {
         [BOUGH_SCENE_CVODE_BDF] = BOUGH_MICRO_CVODE_BDF,
         [BOUGH_SCENE_GENERALIZED_ALPHA] = BOUGH_MICRO_GENERALIZED_ALPHA,
-        [BOUGH_SCENE_ARKODE_ESDIRK] = BOUGH_MICRO_ARKODE_ESDIRK};
+        [BOUGH_SCENE_ARKODE_ESDIRK] = BOUGH_MICRO_ARKODE_ESDIRK,
+        [BOUGH_SCENE_ROSENBROCK] = BOUGH_MICRO_ROSENBROCK};
     const bough_scene_solver *micro = bough_scene_micro(b->scene, body);
     return (bough_micro_options){kinds[micro->solver], micro->rtol, micro->step, micro->rho};
 }

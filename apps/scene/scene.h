@@ -56,13 +56,14 @@ typedef enum bough_scene_micro_kind {
     BOUGH_SCENE_CVODE_BDF,
     BOUGH_SCENE_GENERALIZED_ALPHA,
     BOUGH_SCENE_ARKODE_ESDIRK,
+    BOUGH_SCENE_ROSENBROCK,
 } bough_scene_micro_kind;
 
 typedef struct bough_scene_solver {
     const bough_node *node;
     int solver;  // bough_scene_master_kind or bough_scene_micro_kind
     double rtol; // [-]
-    double step; // micro, generalised-α: longest step [s]
+    double step; // micro, generalised-α and Rosenbrock: longest step [s]
     double rho;  // its spectral radius at infinite frequency [-]
 } bough_scene_solver;
 

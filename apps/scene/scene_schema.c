@@ -94,11 +94,12 @@ static const bough_key master_keys[] = {
 #define AT(field) .offset = offsetof(bough_scene_solver, field)
 static const bough_key micro_keys[] = {
     {.name = "solver", .kind = BOUGH_KEY_CHOICE, .fallback = "cvode-bdf",
-     .choices = CHOICES("cvode-bdf", "generalized-alpha", "arkode-esdirk"), AT(solver),
+     .choices = CHOICES("cvode-bdf", "generalized-alpha", "arkode-esdirk",
+                        "rosenbrock"), AT(solver),
      .help = "time integrator of each rod"},
     RTOL("1e-4"),
     {.name = "step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "[1e-7, 10]",
-     .fallback = "5e-3", AT(step), .help = "of generalized-alpha: longest step"},
+     .fallback = "5e-3", AT(step), .help = "of generalized-alpha and rosenbrock: longest step"},
     {.name = "rho", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.8", AT(rho),
      .help = "of generalized-alpha: what a step leaves of the highest frequencies"},
 };

@@ -1,0 +1,206 @@
+#include "flexbody/micro_rosenbrock.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { STAGES = 4, MOST_STEPS = 20000 };
+enum { MOST_AGE = 32 }; // steps with the same tangents; on a blade, up to 64 cost no accuracy
+
+// The published coefficients α, Γ, b, b̂ in the form that needs no product with J: a = A Γ⁻¹,
+// c = E − γ Γ⁻¹, m = bᵀ Γ⁻¹, e = (b − b̂)ᵀ Γ⁻¹. The last row of a is m without its last entry, 1.
+static const double gamma_h = 0.4358665215084590;
+static const double alpha[STAGES] = {0, 0.8717330430169180, 0.7315799577888524, 1};
+static const double slope[STAGES] = {0.4358665215084590, -0.4358665215084590,
+                                     -0.4133333762338865, 0};
+static const double a[STAGES][3] = {
+    {0, 0, 0},
+    {2, 0, 0},
+    {1.4192173174557647, -0.2592322116729697, 0},
+    {4.1847604823191600, -0.2851920173554959, 2.2942803602790420}};
+static const double c[STAGES][3] = {
+    {0, 0, 0},
+    {-2, 0, 0},
+    {-1.8239969947745136, 0.1243056525667201, 0},
+    {-2.7756761163024684, -2.9619836625547890, 1.2509798950560604}};
+static const double e[STAGES] = {0.2777499476479672, -1.4032398951759988, 1.7726301276675507, 0.5};
+
+struct bough_micro_rosenbrock {
+    bough_ode ode;
+    const double *scale; // (n)
+    bough_micro_rosenbrock_options options;
+    double longest;  // step allowed next [s]
+    double factored; // γh of the factors; 0: none
+    int age;         // steps since the tangents were found
+    bool started;
+    double *rate, *drift;       // f(t, y) and ∂f/∂t (n)
+    double *stage[STAGES];      // u_i (n)
+    double *at;                 // argument of f, then y₁ (n)
+    bough_statistics sum;
+};
+
+bough_status bough_micro_rosenbrock_create(bough_arena *arena, const bough_ode *ode,
+                                           const double *scale,
+                                           bough_micro_rosenbrock_options options,
+                                           bough_micro_rosenbrock **micro) {
+    bough_micro_rosenbrock *m = bough_arena_take(arena, sizeof *m);
+    size_t n = (size_t)ode->n;
+    if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
+    m->ode = *ode;
+    m->scale = scale;
+    m->options = options;
+    m->rate = bough_arena_doubles(arena, n);
+    m->drift = bough_arena_doubles(arena, n);
+    m->at = bough_arena_doubles(arena, n);
+    for (int i = 0; i < STAGES; i++) m->stage[i] = bough_arena_doubles(arena, n);
+    if (bough_arena_exhausted(arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
+    }
+    *micro = m;
+    return bough_ok();
+}
+
+// -- one step -------------------------------------------------------------------------------------
+
+static bool renew_factors(bough_micro_rosenbrock *m, double t, const double *y, double h) {
+    double gamma = gamma_h * h;
+    if (m->age >= MOST_AGE) {
+        m->sum.jacobians++;
+        if (!m->ode.linearise(m->ode.self, t, y)) return false;
+        m->age = 0;
+        m->factored = 0;
+    }
+    // equal steps differ by rounding of the time
+    if (fabs(m->factored - gamma) <= 1e-9 * gamma) return true;
+    m->sum.factorisations++;
+    m->factored = gamma;
+    return m->ode.factor(m->ode.self, gamma);
+}
+
+static bool evaluate(bough_micro_rosenbrock *m, double t, const double *y, double *rate) {
+    m->sum.derivatives++;
+    return m->ode.derivative(m->ode.self, t, y, rate);
+}
+
+// f(t, y), and ∂f/∂t as its mean over the step: the inputs move.
+static bool find_rates(bough_micro_rosenbrock *m, double t, double h, const double *y) {
+    if (!evaluate(m, t, y, m->rate) || !evaluate(m, t + h, y, m->drift)) return false;
+    double *restrict drift = m->drift;
+    const double *restrict rate = m->rate;
+#pragma omp simd
+    for (int k = 0; k < m->ode.n; k++) drift[k] = (drift[k] - rate[k]) / h;
+    return true;
+}
+
+// at = y + Σ_j a_ij u_j
+static void set_argument(bough_micro_rosenbrock *m, int i, const double *restrict y) {
+    double *restrict at = m->at;
+    const double *restrict u0 = m->stage[0], *restrict u1 = m->stage[1], *restrict u2 = m->stage[2];
+    double a0 = a[i][0], a1 = a[i][1], a2 = a[i][2];
+#pragma omp simd
+    for (int k = 0; k < m->ode.n; k++) at[k] = y[k] + a0 * u0[k] + a1 * u1[k] + a2 * u2[k];
+}
+
+// u_i = γh [f + γ_i h ∂f/∂t] + Σ_j c_ij u_j, f standing in u_i
+static void set_right_side(bough_micro_rosenbrock *m, int i, double h) {
+    double *restrict u = m->stage[i];
+    const double *restrict u0 = m->stage[0], *restrict u1 = m->stage[1], *restrict u2 = m->stage[2];
+    const double *restrict drift = m->drift;
+    double f = gamma_h * h, d = gamma_h * h * slope[i] * h;
+    double c0 = c[i][0], c1 = c[i][1], c2 = c[i][2];
+#pragma omp simd
+    for (int k = 0; k < m->ode.n; k++) {
+        u[k] = f * u[k] + d * drift[k] + c0 * u0[k] + c1 * u1[k] + c2 * u2[k];
+    }
+}
+
+static bool find_stages(bough_micro_rosenbrock *m, double t, double h, const double *y) {
+    for (int i = 1; i < STAGES - 1; i++) memset(m->stage[i], 0, (size_t)m->ode.n * sizeof *y);
+    for (int i = 0; i < STAGES; i++) {
+        if (i == 0) {
+            memcpy(m->stage[0], m->rate, (size_t)m->ode.n * sizeof *y);
+        } else {
+            set_argument(m, i, y);
+            if (!evaluate(m, t + alpha[i] * h, m->at, m->stage[i])) return false;
+        }
+        set_right_side(m, i, h);
+        m->ode.solve(m->ode.self, m->stage[i]);
+    }
+    return true;
+}
+
+// y₁ into `at`, whose last argument lacks the last stage only; the error against the tolerance, root
+// mean square.
+static double finish(bough_micro_rosenbrock *m) {
+    double *restrict at = m->at;
+    const double *restrict u0 = m->stage[0], *restrict u1 = m->stage[1], *restrict u2 = m->stage[2];
+    const double *restrict u3 = m->stage[3], *restrict scale = m->scale;
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (int k = 0; k < m->ode.n; k++) {
+        at[k] += u3[k];
+        double error = (e[0] * u0[k] + e[1] * u1[k] + e[2] * u2[k] + e[3] * u3[k]) / scale[k];
+        sum += error * error;
+    }
+    return sqrt(sum / m->ode.n) / m->options.rtol;
+}
+
+// The error of a step against the tolerance; infinite where f has no value.
+static double try_step(bough_micro_rosenbrock *m, double t, double h, const double *y) {
+    if (!find_rates(m, t, h, y) || !renew_factors(m, t, y, h)) return (double)INFINITY;
+    if (!find_stages(m, t, h, y)) return (double)INFINITY;
+    double error = finish(m);
+    return isfinite(error) ? error : (double)INFINITY;
+}
+
+// -- steps ----------------------------------------------------------------------------------------
+
+// Equal parts of the way that is left, none longer than allowed. A step that fails with old tangents
+// is tried with new ones first.
+static bool cross(bough_micro_rosenbrock *m, double *t, double t1, double *y) {
+    for (int n = 0; *t < t1; n++) {
+        double parts = ceil((t1 - *t) / m->longest * (1 - 1e-12));
+        double h = (t1 - *t) / fmax(parts, 1);
+        double error = try_step(m, *t, h, y);
+        if (n == MOST_STEPS || (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3))) return false;
+        if (error > 1) {
+            m->sum.failed_steps++;
+            bool tangents_blamed = m->age > 0 && isfinite(error);
+            if (!tangents_blamed) m->longest = h * fmax(0.1, 0.9 * cbrt(1 / error));
+            m->age = MOST_AGE;
+            continue;
+        }
+        memcpy(y, m->at, (size_t)m->ode.n * sizeof *y);
+        m->sum.steps++;
+        m->age++;
+        double grown = 0.9 * h * fmin(5, cbrt(1 / fmax(error, 1e-6)));
+        m->longest = fmin(m->options.step, fmax(h, grown));
+        *t = parts <= 1 ? t1 : *t + h;
+    }
+    return true;
+}
+
+bough_status bough_micro_rosenbrock_advance(bough_micro_rosenbrock *micro, double t, double t1,
+                                            bool restart, double *y) {
+    if (restart || !micro->started) {
+        if (micro->started) micro->sum.restarts++;
+        micro->started = true;
+        micro->age = MOST_AGE;
+        micro->longest = micro->options.step;
+    }
+    double at = t;
+    if (cross(micro, &at, t1, y)) return bough_ok();
+    micro->started = false;
+    return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: the Rosenbrock method cannot go on: the error"
+                      " test fails down to the smallest step (a segment that turns by more than"
+                      " 120°, or a value that overflows)", micro->ode.name, at);
+}
+
+void bough_micro_rosenbrock_statistics(const bough_micro_rosenbrock *micro,
+                                       bough_statistics *sum) {
+    sum->steps += micro->sum.steps;
+    sum->failed_steps += micro->sum.failed_steps;
+    sum->derivatives += micro->sum.derivatives;
+    sum->jacobians += micro->sum.jacobians;
+    sum->factorisations += micro->sum.factorisations;
+    sum->restarts += micro->sum.restarts;
+}
