@@ -120,7 +120,9 @@ bough_status bough_motion_create(bough_arena *arena, const bough_motion_def *def
     if (!bough_is_ok(&status)) return status;
     size_t n = (size_t)def->n;
     bough_motion *m = bough_arena_take(arena, sizeof *m);
-    double *times = bough_arena_doubles(arena, n), *piece = bough_arena_doubles(arena, 4 * n + 4);
+    size_t room = n > 0 ? n : 1; // what is steered has a break
+    double *times = bough_arena_doubles(arena, room);
+    double *piece = bough_arena_doubles(arena, 4 * room + 4);
     double *slope = bough_arena_doubles(arena, 2 * n);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     *m = (bough_motion){.n = def->n, .times = times, .piece = piece, .of_speed = def->speed};
@@ -140,4 +142,17 @@ bough_status bough_motion_create(bough_arena *arena, const bough_motion_def *def
         piece[4 * i] += shift;
     *out = m;
     return bough_ok();
+}
+
+void bough_motion_steer(bough_motion *m, double t, double span, bough_motion_point from,
+                        bough_motion_point to) {
+    double chord = (to.q - from.q) / span, *c = m->piece;
+    m->n = 1;
+    m->times[0] = t;
+    m->rise = 0;
+    c[0] = from.q;
+    c[1] = from.v;
+    c[2] = (3 * chord - 2 * from.v - to.v) / span;
+    c[3] = (from.v + to.v - 2 * chord) / (span * span);
+    memcpy(c + 4, c, 4 * sizeof *c);
 }

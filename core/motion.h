@@ -37,6 +37,11 @@ typedef struct bough_motion_point {
 bough_status bough_motion_create(bough_arena *arena, const bough_motion_def *def, double initial,
                                  bough_motion **motion);
 
+// From t on goes by a cubic from one point to another `span` [s] later, accelerations aside, and on
+// from there: for motions that are told sample by sample. What was given before is forgotten.
+void bough_motion_steer(bough_motion *motion, double t, double span, bough_motion_point from,
+                        bough_motion_point to);
+
 // At a corner of a table the acceleration is that from then on.
 bough_motion_point bough_motion_at(const bough_motion *motion, double t);
 

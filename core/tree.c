@@ -543,3 +543,18 @@ bough_tree_sums bough_tree_sum(const bough_tree *tree, const bough_tree_data *da
     if (s.mass > 0) s.mass_centre = bough_scale(1 / s.mass, first);
     return s;
 }
+
+void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_motion_point from,
+                      bough_motion_point to) {
+    bough_motion_steer(tree->links[tree->bodies[body].link].motion, t, span, from, to);
+}
+
+void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from,
+                           double to) {
+    bough_joint_load_def *l = &tree->loads[load];
+    double *times = (double *)l->times, *values = (double *)l->values; // the tree's own copies
+    times[0] = t;
+    times[1] = t + span;
+    values[0] = from;
+    values[1] = to;
+}

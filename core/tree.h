@@ -112,7 +112,7 @@ typedef struct bough_tree_def {
     const bough_end_def *ends;
 } bough_tree_def;
 
-// -- model: constant once built, but for the external wrenches ---------------------------------
+// -- model: constant once built, but for external wrenches and what is steered -------------------
 
 // A moving body with all that is welded to it; its frame is the moving body's.
 typedef struct bough_link {
@@ -121,7 +121,7 @@ typedef struct bough_link {
     int part;                            // 0; of a universal joint 0, then 1: it is two links,
                                          // the first without a body
     bough_joint_spring spring;           // zero: none
-    const bough_motion *motion;          // NULL: moved by forces
+    bough_motion *motion;                // NULL: moved by forces; changed by bough_tree_steer only
     bough_joint joint;                   // placed in the parent link's frame
     int first_coordinate, n_coordinates; // its rows of q
     int first_speed, n_speeds;           // its rows of v
@@ -193,6 +193,14 @@ bool bough_tree_joint_rows(const bough_tree *tree, int body, int *coordinate, in
 
 // Coordinates and speeds of the prescribed joints at t into a state (n_q + n_v).
 void bough_tree_prescribe(const bough_tree *tree, double t, double *state);
+
+// A prescribed joint goes from one point to another in [t, t + span]: bough_motion_steer.
+void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_motion_point from,
+                      bough_motion_point to);
+
+// A load with a table of two rows goes linearly from one value to another in [t, t + span].
+void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from,
+                           double to);
 
 // The external wrench on the tree at a marker from now on: value + rate (t − start), each (6),
 // force then moment, in marker axes at the marker's origin. NULL for zero.

@@ -271,6 +271,26 @@ static void scenes_drive_joints(void **state) {
     bough_arena_destroy(arena);
 }
 
+// Told every tenth of a second where a sine will be, a motion follows it without a jump in speed,
+// to the fourth order; the first span starts at rest from where the motion is.
+static void steered_motion_follows(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_motion *m = motion_of(arena, (bough_motion_def){.from = 0.3, .to = 0.3}, 0);
+    double worst = 0;
+    for (int k = 0; k < 40; k++) {
+        double t = 0.1 * k, next = 0.1 * (k + 1);
+        bough_motion_point from = {sin(t), cos(t), 0}, to = {sin(next), cos(next), 0};
+        bough_motion_steer(m, t, 0.1, from, to);
+        check_near(bough_motion_at(m, t).q, sin(t), 1e-14, 1e-14);
+        check_near(bough_motion_at(m, next).v, cos(next), 1e-12, 1e-12);
+        worst = fmax(worst, fabs(bough_motion_at(m, t + 0.05).q - sin(t + 0.05)));
+        check_derivatives(m, true);
+    }
+    assert_true(worst > 1e-8 && worst < 1e-4 / 384 * 1.1); // h⁴/384 of the fourth derivative
+    bough_arena_destroy(arena);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ramp_of_speed_is_the_published_one),
@@ -281,6 +301,7 @@ int main(void) {
         cmocka_unit_test(driven_tree_fulfils_the_contract),
         cmocka_unit_test(locked_joint_reports_its_torque),
         cmocka_unit_test(scenes_drive_joints),
+        cmocka_unit_test(steered_motion_follows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,7 @@
 #include "apps/scene/build.h"
 
 #include "apps/scene/aero_link.h"
+#include "apps/scene/control_link.h"
 #include "apps/scene/load_link.h"
 #include "apps/scene/settle.h"
 #include "core/tree_subsystem.h"
@@ -283,6 +284,13 @@ static void add_motion(builder *b, const bough_scene_motion *motion) {
     for (int i = 0; i < motion->n_time; i++) b->event[b->n_event++] = motion->times[i];
 }
 
+// The last of the loads; its two rows are set sample by sample.
+static void add_generator(builder *b) {
+    static const double times[2] = {0, 1}, values[2] = {0, 0};
+    b->load[b->n_load++] = (bough_joint_load_def){
+        .body = b->scene->turbine.rotor, .n = 2, .times = times, .values = values};
+}
+
 static void set_loads(builder *b) {
     for (int k = 0; k < b->scene->n_body; k++) add_motion(b, &b->scene->body[k].joint.motion);
     for (int k = 0; k < b->scene->n_load; k++) {
@@ -295,6 +303,7 @@ static void set_loads(builder *b) {
         for (int i = 0; i < load->n_time; i++) b->event[b->n_event++] = load->times[i];
     }
     if (b->scene->aero.node != NULL) add_ramp(b, b->scene->aero.ramp);
+    if (b->scene->control.node != NULL) add_generator(b);
 }
 
 static size_t count_corners(const bough_scene *scene) {
@@ -482,7 +491,7 @@ static bough_status build_master(builder *b) {
     bough_simulation *s = b->s;
     const bough_scene_simulation *sim = &b->scene->simulation;
     bough_master_def def = bough_master_def_default();
-    bough_sampled_load load;
+    bough_sampled_load load[2];
     def.assembly = (bough_assembly_def){s->n_rod + 1, b->member, b->n_connection,
                                         b->connection};
     def.scheme = scheme_options(b->scene);
@@ -492,10 +501,10 @@ static bough_status build_master(builder *b) {
     def.n_event = b->n_event;
     def.threads = sim->threads;
     if (s->aero != NULL) {
-        load = bough_aero_link_load(s->aero);
-        def.load = &load;
-        def.n_load = 1;
+        load[def.n_load++] = bough_aero_link_load(s->aero);
     }
+    if (s->control != NULL) load[def.n_load++] = bough_control_link_load(s->control);
+    def.load = load;
     if (sim->initial == BOUGH_SCENE_IN_EQUILIBRIUM) {
         bough_status status = settle(&def.assembly, s);
         if (!bough_is_ok(&status)) return status;
@@ -514,7 +523,7 @@ static bool take_arrays(builder *b) {
     b->marker = bough_arena_take(b->arena, (bodies + 2 * springs + markers) * sizeof *b->marker);
     b->spring = bough_arena_take(b->arena, (springs + 1) * sizeof *b->spring);
     b->port = bough_arena_take(b->arena, bodies * sizeof *b->port);
-    b->load = bough_arena_take(b->arena, (loads + 1) * sizeof *b->load);
+    b->load = bough_arena_take(b->arena, (loads + 2) * sizeof *b->load);
     b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);
     b->connection = bough_arena_take(b->arena, 4 * bodies * sizeof *b->connection);
     b->event = bough_arena_doubles(b->arena, count_corners(b->scene));
@@ -538,6 +547,9 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
     if (bough_is_ok(&status)) status = bough_load_link_build(arena, b.s);
     if (bough_is_ok(&status) && scene->aero.node != NULL) {
         status = bough_aero_link_build(arena, b.s, &b.s->aero);
+    }
+    if (bough_is_ok(&status) && scene->control.node != NULL) {
+        status = bough_control_link_build(arena, b.s, b.n_load - 1, &b.s->control);
     }
     if (bough_is_ok(&status)) status = build_master(&b);
     if (bough_is_ok(&status) && bough_arena_exhausted(arena)) status = out_of_memory();
@@ -563,6 +575,22 @@ bough_beam *bough_simulation_beam(const bough_simulation *s, int body) {
         if (s->beam[k].body == &s->scene->body[body]) return &s->beam[k];
     }
     return NULL;
+}
+
+double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam) {
+    const bough_scene_joint *joint = &beam->body->joint;
+    if (joint->kind != BOUGH_SCENE_REVOLUTE || joint->axis != 2) return beam->body->pitch;
+    int coordinate, speed;
+    bough_tree_joint_rows(s->tree, (int)(beam->body - s->scene->body), &coordinate, &speed);
+    return beam->body->pitch - s->trunk.state[coordinate];
+}
+
+void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
+                           double root[BOUGH_ROD_MOST_OUTPUTS]) {
+    memset(root, 0, BOUGH_ROD_MOST_OUTPUTS * sizeof *root);
+    if (beam->rod == NULL) return;
+    const bough_subsystem *rod = &s->rod[beam->port];
+    rod->ops->output(rod->self, t, rod->state, bough_simulation_rod_input(s, beam), root);
 }
 
 // A vertex in the body's frame: of a rod from its state, else undeformed and carried along.

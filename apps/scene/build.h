@@ -10,6 +10,7 @@
 #include "flexbody/rod_subsystem.h"
 
 struct bough_aero_link;
+struct bough_control_link;
 
 // A flexible blade, cable or tower, or the same body integrated to a rigid one: where it is and, if
 // it is a rod, its sub-solver.
@@ -34,6 +35,7 @@ typedef struct bough_simulation {
     bough_subsystem *rod;  // (number of rods) their contracts, in port order
     int n_rod, n_end;
     struct bough_aero_link *aero; // NULL without an aero block
+    struct bough_control_link *control; // NULL without a control block
     bough_master *master;
     int n_motion_channel; // the first channels: they follow from the states
 } bough_simulation;
@@ -60,6 +62,13 @@ const double *bough_simulation_rod_input(const bough_simulation *s, const bough_
 // Position of a beam's last vertex in the body's frame, in which `rotation` is its section's.
 bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
                                      bough_quaternion *rotation);
+
+// The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
+double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);
+
+// The wrench of a rod on what carries it, in the body's axes [N, N m]; zero of a rigid one.
+void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
+                           double root[BOUGH_ROD_MOST_OUTPUTS]);
 
 // Motion of all vertices of a beam in ground axes, from `view` and the rod's state: position,
 // section axes, velocity and angular velocity, each (n_segment + 1).

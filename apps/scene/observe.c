@@ -2,6 +2,7 @@
 // where the quantity is the same.
 #include "apps/scene/aero_link.h"
 #include "apps/scene/build.h"
+#include "apps/scene/control_link.h"
 #include "core/dynamics.h"
 
 #include <stdio.h>
@@ -194,14 +195,6 @@ static void tip(const bough_simulation *s, const bough_beam *beam, bough_vec3 *d
     *rotation = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
 }
 
-// Of a rod on its carrier, in the body's axes [N, N m]; zero of a rigid body.
-static void root_wrench(const bough_simulation *s, const bough_beam *beam, double t, double *root) {
-    memset(root, 0, BOUGH_ROD_MOST_OUTPUTS * sizeof *root);
-    if (beam->rod == NULL) return;
-    const bough_subsystem *rod = &s->rod[beam->port];
-    rod->ops->output(rod->self, t, rod->state, bough_simulation_rod_input(s, beam), root);
-}
-
 enum { BLADE_CHANNELS = 12 };
 
 // The root wrench is the blade's on the hub, in blade-root axes; out of and in plane are the tip's
@@ -210,11 +203,11 @@ static void sample_blades(void *self, double t, double *value) {
     const bough_simulation *s = self;
     for (int b = 0; b < s->scene->turbine.n_blade; b++, value += BLADE_CHANNELS) {
         const bough_beam *beam = bough_simulation_beam(s, s->scene->turbine.blade[b]);
-        double c = cos(beam->body->pitch), sine = sin(beam->body->pitch);
+        double pitch = bough_simulation_pitch(s, beam), c = cos(pitch), sine = sin(pitch);
         double root[BOUGH_ROD_MOST_OUTPUTS];
         bough_vec3 d, turn;
         tip(s, beam, &d, &turn);
-        root_wrench(s, beam, t, root);
+        bough_simulation_root(s, beam, t, root);
         const double values[BLADE_CHANNELS] = {
             d.x * c + d.y * sine, d.y * c - d.x * sine, turn.z / DEGREE, d.x, d.y, d.z,
             root[0] / 1e3, root[1] / 1e3, root[2] / 1e3,
@@ -299,6 +292,32 @@ static bough_status add_aero(bough_simulation *s, bough_channels *list) {
     return status;
 }
 
+// -- control --------------------------------------------------------------------------------------
+
+static void sample_control(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    double speed, torque, power;
+    bough_control_link_generator(s->control, &speed, &torque, &power);
+    value[0] = speed / RPM;
+    value[1] = torque / 1e3;
+    value[2] = power / 1e3;
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) {
+        const bough_beam *blade = bough_simulation_beam(s, s->scene->turbine.blade[b]);
+        value[3 + b] = bough_simulation_pitch(s, blade) / DEGREE;
+    }
+}
+
+static bough_status add_control(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_control, s);
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "rpm", "GenSpeed");
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "kN-m", "GenTq");
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "kW", "GenPwr");
+    for (int b = 0; b < s->scene->turbine.n_blade && bough_is_ok(&status); b++)
+        status = bough_channels_add(list, "deg", "BldPitch%d", b + 1);
+    return status;
+}
+
 bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels) {
     bough_status status = bough_ok();
     if (s->scene->turbine.node != NULL) status = add_rotor(s, channels);
@@ -310,5 +329,6 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     if (bough_is_ok(&status)) status = add_tips(s, channels);
     s->n_motion_channel = channels->count;
     if (bough_is_ok(&status) && s->aero != NULL) status = add_aero(s, channels);
+    if (bough_is_ok(&status) && s->control != NULL) status = add_control(s, channels);
     return status;
 }

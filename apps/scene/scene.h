@@ -12,6 +12,7 @@
 #ifndef BOUGH_APPS_SCENE_SCENE_H
 #define BOUGH_APPS_SCENE_SCENE_H
 
+#include "aero/controller.h"
 #include "apps/scene/text.h"
 #include "core/arena.h"
 #include "core/status.h"
@@ -364,6 +365,22 @@ typedef struct bough_scene_aero {
     bool pitching_moment;
 } bough_scene_aero;
 
+typedef enum bough_scene_controller {
+    BOUGH_SCENE_VARIABLE_SPEED,
+    BOUGH_SCENE_BLADED,
+} bough_scene_controller;
+
+// Of generator torque, and of pitch where the blades hang on joints with a motion.
+typedef struct bough_scene_control {
+    const bough_node *node; // NULL: no controller
+    int kind;               // bough_scene_controller
+    double rate;            // samples per second [Hz]
+    double gear_ratio;      // generator speed over rotor speed
+    double efficiency;      // electrical over mechanical power
+    const char *library, *input; // BLADED: paths; no input: ""
+    bough_controller_def law;    // BLADED: only the pitch rate is used
+} bough_scene_control;
+
 // What `bough modes` finds; a run does not read it.
 typedef struct bough_scene_modes {
     const bough_node *node;
@@ -393,6 +410,7 @@ typedef struct bough_scene {
     bough_scene_marker *marker; // (n_marker)
     bough_scene_turbine turbine;
     bough_scene_aero aero; // needs the turbine
+    bough_scene_control control; // likewise
     bough_scene_modes modes;
 } bough_scene;
 

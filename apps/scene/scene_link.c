@@ -393,6 +393,33 @@ static void link_aero(bough_schema_reader *r, bough_scene *s) {
     link_polars(r, s);
 }
 
+// -- control
+// ----------------------------------------------------------------------------------------
+
+// A blade that is pitched turns about its own z by a joint that is told how.
+static bool has_pitch_joint(const bough_scene_body *b) {
+    return b->joint.kind == BOUGH_SCENE_REVOLUTE && b->joint.motion.node != NULL;
+}
+
+static void link_control(bough_schema_reader *r, bough_scene *s) {
+    if (s->control.node == NULL) return;
+    at(r, "control");
+    if (s->turbine.node == NULL) {
+        bough_schema_error(r, s->control.node, "", "needs 'turbine', which names rotor and blades");
+    }
+    for (int k = 0; k < s->turbine.n_blade && s->turbine.blade && s->turbine.blade[0] >= 0; k++) {
+        if (s->turbine.blade[k] < 0) return;
+        const bough_scene_body *first = &s->body[s->turbine.blade[0]];
+        const bough_scene_body *b = &s->body[s->turbine.blade[k]];
+        if (has_pitch_joint(b) != has_pitch_joint(first)) {
+            bough_schema_error(r, b->node, "", "blades '%s' and '%s': all or none are pitched by a "
+                               "joint with 'motion'", first->name, b->name);
+        } else if (has_pitch_joint(b) && b->joint.axis != 2) {
+            bough_schema_error(r, b->node, "", "the pitch joint of '%s' must turn about z", b->name);
+        }
+    }
+}
+
 // -- times
 // ------------------------------------------------------------------------------------------
 
@@ -419,6 +446,13 @@ static void check_times(bough_schema_reader *r, bough_scene *s) {
                            "%g s is not a multiple of the macro step, %g s",
                            simulation->output.interval, step);
     }
+    if (s->control.node != NULL && s->control.rate > 0 &&
+        !is_multiple(1 / s->control.rate, step)) {
+        at(r, "control");
+        bough_schema_error(r, value_of(s->control.node, "rate"), "rate",
+                           "its period %g s is not a multiple of the macro step, %g s",
+                           1 / s->control.rate, step);
+    }
     if (s->aero.node != NULL && s->aero.rate > 0 && !is_multiple(1 / s->aero.rate, step)) {
         at(r, "aero");
         bough_schema_error(r, value_of(s->aero.node, "rate"), "rate",
@@ -444,6 +478,7 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
     }
     link_turbine(r, scene);
     link_aero(r, scene);
+    link_control(r, scene);
     link_modes(r, scene);
     at(r, "%s", "");
 }

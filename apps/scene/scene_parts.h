@@ -20,6 +20,8 @@ void bough_scene_read_load_torque(bough_schema_reader *r, const bough_node *node
 void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
 
+extern const bough_schema bough_scene_control_schema;
+
 // Checks within one mapping or file; `item` is the struct that was read.
 void bough_scene_check_structure(bough_schema_reader *r, void *item);
 void bough_scene_check_rod(bough_schema_reader *r, void *item);

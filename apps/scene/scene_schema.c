@@ -599,6 +599,8 @@ static const bough_key scene_keys[] = {
      .help = "names what channels and aerodynamics need"},
     {.name = "aero", .kind = BOUGH_KEY_MAPPING, .of = &aero_schema, AT(aero),
      .help = "aerodynamics; needs the turbine; left out: none"},
+    {.name = "control", .kind = BOUGH_KEY_MAPPING, .of = &bough_scene_control_schema, AT(control),
+     .help = "controller of the turbine's generator and pitch; left out: none"},
     {.name = "modes", .kind = BOUGH_KEY_MAPPING, .of = &modes_schema, AT(modes),
      .help = "what 'bough modes' finds"},
 };

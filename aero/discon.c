@@ -1,0 +1,137 @@
+#include "aero/discon.h"
+
+#include "core/base.h"
+
+#include <dlfcn.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+// Room beyond the records of the interface for what controllers log there.
+enum { RECORDS = 8192, TEXT = 1024 };
+
+typedef void call(float *swap, int *fail, char *input, char *output, char *message);
+
+struct bough_discon {
+    call *function;
+    const char *library;
+    float record[RECORDS + 1]; // [1] is the first
+    char input[TEXT], output[TEXT], message[TEXT];
+    bool started;
+};
+
+// Record numbers.
+enum {
+    STATUS = 1, TIME, STEP, PITCH,
+    SHAFT_POWER = 14, ELECTRICAL_POWER,
+    GENERATOR_SPEED = 20, ROTOR_SPEED,
+    TORQUE = 23,
+    WIND = 27,
+    PITCH_CONTROL, // 0 collective, 1 individual
+    ROOT_MOMENT = 30,
+    PITCH_2 = 33, PITCH_3,
+    CONTACTOR = 35, // of the generator: 1 main
+    DEMANDED_PITCH = 42,
+    COLLECTIVE_PITCH = 45,
+    DEMANDED_TORQUE = 47,
+    MESSAGE_SIZE = 49, INPUT_SIZE, OUTPUT_SIZE,
+    AZIMUTH = 60, BLADES,
+    LOG_FIRST = 63, LOG_SIZE,
+};
+
+static bough_status find_function(const char *library, call **function) {
+    void *handle = dlopen(library, RTLD_NOW | RTLD_LOCAL);
+    if (!handle) {
+        return bough_fail(BOUGH_INVALID, "the controller cannot be loaded: %.200s", dlerror());
+    }
+    void *symbol = dlsym(handle, "DISCON");
+    if (!symbol) {
+        dlclose(handle);
+        return bough_fail(BOUGH_INVALID, "the controller %s has no function DISCON", library);
+    }
+    memcpy(function, &symbol, sizeof symbol); // of an object pointer: as POSIX has it
+    return bough_ok();
+}
+
+bough_status bough_discon_open(bough_arena *arena, const char *library, const char *input,
+                               bough_discon **discon) {
+    bough_discon *d = bough_arena_take(arena, sizeof *d);
+    size_t size = strlen(library) + 3;
+    char *path = bough_arena_take(arena, size);
+    if (!d || !path) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the controller.");
+    // A name without a slash would be looked for in the system's folders.
+    snprintf(path, size, "%s%s", strchr(library, '/') ? "" : "./", library);
+    if (strlen(input) >= TEXT) {
+        return bough_fail(BOUGH_INVALID, "the controller's input file has too long a name");
+    }
+    snprintf(d->input, TEXT, "%s", input);
+    snprintf(d->output, TEXT, "discon");
+    d->library = path;
+    bough_status status = find_function(path, &d->function);
+    if (bough_is_ok(&status)) *discon = d;
+    return status;
+}
+
+static void tell(bough_discon *d, const bough_discon_sensed *s) {
+    float *r = d->record;
+    r[STATUS] = s->last ? -1 : d->started;
+    r[TIME] = (float)s->time;
+    r[STEP] = (float)s->step;
+    r[PITCH] = (float)s->pitch[0];
+    r[PITCH_2] = (float)s->pitch[1];
+    r[PITCH_3] = (float)s->pitch[2];
+    r[PITCH_CONTROL] = 0;
+    r[SHAFT_POWER] = (float)s->shaft_power;
+    r[ELECTRICAL_POWER] = (float)s->electrical_power;
+    r[GENERATOR_SPEED] = (float)s->generator_speed;
+    r[ROTOR_SPEED] = (float)s->rotor_speed;
+    r[TORQUE] = (float)s->torque;
+    r[WIND] = (float)s->wind;
+    for (int b = 0; b < BOUGH_DISCON_BLADES; b++)
+        r[ROOT_MOMENT + b] = (float)s->root_moment[b];
+    r[CONTACTOR] = 1;
+    r[MESSAGE_SIZE] = TEXT;
+    r[INPUT_SIZE] = (float)strlen(d->input);
+    r[OUTPUT_SIZE] = (float)strlen(d->output);
+    r[AZIMUTH] = (float)s->azimuth;
+    r[BLADES] = (float)s->n_blade;
+    r[LOG_FIRST] = RECORDS - 1000;
+    r[LOG_SIZE] = 1000;
+    d->message[0] = '\0';
+}
+
+// With collective control all blades follow one record, else each its own.
+static void hear(const bough_discon *d, bough_discon_demand *demand) {
+    const float *r = d->record;
+    bool individual = r[PITCH_CONTROL] == 1;
+    demand->torque = (double)r[DEMANDED_TORQUE];
+    for (int b = 0; b < BOUGH_DISCON_BLADES; b++)
+        demand->pitch[b] = (double)r[individual ? DEMANDED_PITCH + b : COLLECTIVE_PITCH];
+}
+
+static bool is_sound(const bough_discon_demand *d) {
+    bool sound = isfinite(d->torque) && fabs(d->torque) < 1e12;
+    for (int b = 0; b < BOUGH_DISCON_BLADES; b++)
+        sound = sound && isfinite(d->pitch[b]) && fabs(d->pitch[b]) < 100;
+    return sound;
+}
+
+bough_status bough_discon_call(bough_discon *d, const bough_discon_sensed *sensed,
+                               bough_discon_demand *demand) {
+    int fail = 0;
+    tell(d, sensed);
+    d->function(d->record + 1, &fail, d->input, d->output, d->message);
+    d->started = true;
+    d->message[TEXT - 1] = '\0';
+    hear(d, demand);
+    if (fail < 0) {
+        return bough_fail(BOUGH_FAILED, "the controller %.100s fails at %g s: %.200s", d->library,
+                          sensed->time, d->message[0] ? d->message : "without a message");
+    }
+    if (!is_sound(demand)) {
+        return bough_fail(BOUGH_FAILED,
+                          "the controller %.100s demands at %g s a torque of %g N m and a pitch of "
+                          "%g rad", d->library, sensed->time, demand->torque, demand->pitch[0]);
+    }
+    return bough_ok();
+}

@@ -1,0 +1,26 @@
+// A controller for the tests: torque proportional to the generator's speed, one pitch for all. Its
+// input file's name says what else it does.
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+void DISCON(float *swap, int *fail, char *input, char *output, char *message);
+
+void DISCON(float *swap, int *fail, char *input, char *output, char *message) {
+    int n = (int)swap[49];
+    (void)output;
+    *fail = 0;
+    swap[46] = 100 * swap[19];
+    swap[44] = 0.1f + 0.001f * swap[1];
+    for (int b = 0; b < 3; b++)
+        swap[41 + b] = 0.2f + 0.1f * (float)b;
+    if (n != (int)strlen(input)) *fail = -1;
+    if (strcmp(input, "individual") == 0) swap[27] = 1;
+    if (strcmp(input, "count") == 0) swap[46] = swap[0];
+    if (strcmp(input, "nan") == 0) swap[46] = NAN;
+    if (strcmp(input, "warn") == 0) *fail = 1;
+    if (strcmp(input, "fail") == 0 && swap[1] > 0.5f) {
+        *fail = -1;
+        snprintf(message, (size_t)swap[48], "too late");
+    }
+}

@@ -1,0 +1,107 @@
+#include "aero/controller.h"
+
+#include "core/base.h"
+#include "tests/check.h"
+
+static const double rpm = BOUGH_PI / 30, gear = 97, inertia = 43784725; // slow shaft [kg m²]
+
+// The report derives its gains from a damping ratio of 0.7 and 0.6 rad/s at rated, where a pitch of
+// 1 rad takes 25.52 MW: KP = 2 J Ω ζ ω/(N·25.52e6), KI = J Ω ω²/(N·25.52e6).
+static void gains_are_those_of_the_design(void **state) {
+    (void)state;
+    bough_controller_def d = bough_controller_def_default();
+    double speed = 12.1 * rpm, unit = inertia * speed / (gear * 25.52e6);
+    check_near(d.proportional, 2 * 0.7 * 0.6 * unit, 1e-3, 0);
+    check_near(d.integral, 0.36 * unit, 1e-3, 0);
+    check_near(d.reference_speed, gear * speed, 1e-4, 0);
+    check_near(d.most_torque, 1.1 * 43093.55, 1e-5, 0);
+    bough_status status = bough_controller_check(&d);
+    assert_int_equal(status.code, BOUGH_OK);
+}
+
+// Torque of the regions and where they meet: the report's figure 7-1.
+static void torque_follows_the_regions(void **state) {
+    (void)state;
+    bough_controller_def d = bough_controller_def_default();
+    static const double table[][3] = {
+        {500, 0, 0},        {669.9, 0, 0},           {871, 0, 19403.3},
+        {1000, 0, 25576.4}, {1161.963, 0, 43528.7},  {1173.7, 0, 43093.5},
+        {1300, 0, 38906.9}, {1100, 0.0175, 45980.8}, {1000, 0.2, 47402.9}};
+    for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
+        const double *t = table[i];
+        check_near(bough_controller_torque(&d, t[0] * rpm, t[1]), t[2], 2e-5, 0.5);
+    }
+    double before = 0;
+    for (double w = 60; w < d.rated_speed; w += 0.01) { // without a jump
+        double torque = bough_controller_torque(&d, w, 0);
+        assert_true(torque >= before && torque < before + 80);
+        before = torque;
+    }
+}
+
+static void limits_hold(void **state) {
+    (void)state;
+    bough_controller_def d = bough_controller_def_default();
+    bough_controller_state s = {0};
+    bough_controller_advance(&d, 90, 0.1, 0.02, &s);
+    check_near(s.pitch, 0.1, 0, 0);
+    for (int k = 0; k < 400; k++) {
+        bough_controller_state last = s;
+        bough_controller_advance(&d, k < 200 ? 200 : 10, s.pitch, 0.02, &s);
+        assert_true(fabs(s.pitch - last.pitch) <= d.pitch_rate * 0.02 * (1 + 1e-9));
+        assert_true(fabs(s.torque - last.torque) <= d.torque_rate * 0.02 * (1 + 1e-9));
+        assert_true(s.pitch >= d.least_pitch && s.pitch <= d.most_pitch);
+    }
+    // The integral does not run away while the pitch is at its least.
+    for (int k = 0; k < 50000; k++) bough_controller_advance(&d, 10, s.pitch, 0.02, &s);
+    check_near(s.pitch, 0, 0, 0);
+    check_near(s.integral, 0, 0, 0);
+}
+
+// A rotor of that inertia whose power falls with the pitch as the report says comes back to the
+// reference speed after a gust, from either side.
+static void speed_is_regulated(void **state) {
+    (void)state;
+    bough_controller_def d = bough_controller_def_default();
+    const double step = 0.0125, rated = 5296610;
+    for (int sign = -1; sign <= 1; sign += 2) {
+        bough_controller_state s = {0};
+        double speed = (12.1 + sign) * rpm, pitch = 0.2, largest = 0;
+        for (double t = 0; t < 120; t += step) {
+            bough_controller_advance(&d, gear * speed, pitch, step, &s);
+            pitch = s.pitch;
+            double lost = 25.52e6 * (pitch + pitch * pitch / (2 * d.halving_pitch));
+            double wind = 25.52e6 * (0.2 + 0.04 / (2 * d.halving_pitch));
+            double power = rated + wind - lost;
+            speed += step / inertia * (power / speed - gear * s.torque);
+            if (t > 60) largest = fmax(largest, fabs(speed / (12.1 * rpm) - 1));
+        }
+        assert_true(largest < 2e-3);
+        check_near(pitch, 0.2, 1e-2, 0);
+        check_near(gear * s.torque * speed, rated, 1e-3, 0);
+    }
+}
+
+static void senseless_constants_are_refused(void **state) {
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        bough_controller_def d = bough_controller_def_default();
+        if (i == 0) d.slip = 0;
+        if (i == 1) d.least_pitch = 2;
+        if (i == 2) d.cut_in = 100;
+        if (i == 3) d.optimal_gain = 40;
+        bough_status status = bough_controller_check(&d);
+        assert_int_equal(status.code, BOUGH_INVALID);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(gains_are_those_of_the_design),
+        cmocka_unit_test(torque_follows_the_regions),
+        cmocka_unit_test(limits_hold),
+        cmocka_unit_test(speed_is_regulated),
+        cmocka_unit_test(senseless_constants_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

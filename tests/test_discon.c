@@ -1,0 +1,90 @@
+#include "aero/discon.h"
+
+#include "tests/check.h"
+
+#include <string.h>
+
+typedef struct fixture {
+    bough_arena *arena;
+    bough_discon *discon;
+} fixture;
+
+static fixture open_controller(const char *input) {
+    fixture f = {.arena = bough_arena_create()};
+    bough_status status = bough_discon_open(f.arena, BOUGH_SAMPLE_DISCON, input, &f.discon);
+    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
+    assert_int_equal(status.code, BOUGH_OK);
+    return f;
+}
+
+static void demands_come_back(void **state) {
+    (void)state;
+    for (int individual = 0; individual < 2; individual++) {
+        fixture f = open_controller(individual ? "individual" : "");
+        bough_discon_sensed sensed = {.time = 2, .step = 0.01, .n_blade = 3,
+                                      .generator_speed = 120};
+        bough_discon_demand demand;
+        bough_status status = bough_discon_call(f.discon, &sensed, &demand);
+        assert_int_equal(status.code, BOUGH_OK);
+        check_near(demand.torque, 12000, 1e-6, 0);
+        for (int b = 0; b < 3; b++)
+            check_near(demand.pitch[b], individual ? 0.2 + 0.1 * b : 0.102, 1e-6, 0);
+        bough_arena_destroy(f.arena);
+    }
+}
+
+// 0 at first, then 1, and −1 at the last call.
+static void status_tells_first_and_last(void **state) {
+    (void)state;
+    fixture f = open_controller("count");
+    for (int k = 0; k < 4; k++) {
+        bough_discon_sensed sensed = {.time = k, .step = 1, .last = k == 3, .n_blade = 3};
+        bough_discon_demand demand;
+        bough_status status = bough_discon_call(f.discon, &sensed, &demand);
+        assert_int_equal(status.code, BOUGH_OK);
+        check_near(demand.torque, k == 3 ? -1 : k > 0, 0, 0);
+    }
+    bough_arena_destroy(f.arena);
+}
+
+static void failures_are_told(void **state) {
+    (void)state;
+    static const char *const told[][2] = {{"fail", "too late"}, {"nan", "nan"}, {"warn", NULL}};
+    for (int i = 0; i < 3; i++) {
+        fixture f = open_controller(told[i][0]);
+        bough_discon_sensed sensed = {.time = 1, .step = 1, .n_blade = 3, .generator_speed = 1};
+        bough_discon_demand demand;
+        bough_status status = bough_discon_call(f.discon, &sensed, &demand);
+        assert_int_equal(status.code, told[i][1] ? BOUGH_FAILED : BOUGH_OK);
+        if (told[i][1]) {
+            assert_non_null(strstr(status.message, told[i][1]));
+            assert_non_null(strstr(status.message, "1 s"));
+        }
+        bough_arena_destroy(f.arena);
+    }
+}
+
+static void what_is_no_controller_is_refused(void **state) {
+    (void)state;
+    static const char *const bad[][2] = {{"/nowhere/discon.so", "/nowhere/discon.so"},
+                                         {BOUGH_SOURCE_DIR "/README.md", "README.md"},
+                                         {BOUGH_OTHER_LIBRARY, "no function DISCON"}};
+    for (int i = 0; i < 3; i++) {
+        bough_arena *arena = bough_arena_create();
+        bough_discon *discon;
+        bough_status status = bough_discon_open(arena, bad[i][0], "", &discon);
+        assert_int_equal(status.code, BOUGH_INVALID);
+        assert_non_null(strstr(status.message, bad[i][1]));
+        bough_arena_destroy(arena);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(demands_come_back),
+        cmocka_unit_test(status_tells_first_and_last),
+        cmocka_unit_test(failures_are_told),
+        cmocka_unit_test(what_is_no_controller_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
