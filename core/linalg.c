@@ -21,6 +21,12 @@ extern void dgeev_(const char *left, const char *right, const int *n, double *a,
 extern void dsyev_(const char *vectors, const char *triangle, const int *n, double *a,
                    const int *lda, double *value, double *work, const int *lwork, int *info,
                    size_t vectors_length, size_t triangle_length);
+extern void dsyevr_(const char *job, const char *range, const char *uplo, const int *n, double *a,
+                    const int *lda, const double *low, const double *high, const int *first,
+                    const int *last, const double *tolerance, int *found, double *value,
+                    double *vector, const int *ldz, int *support, double *work, const int *lwork,
+                    int *iwork, const int *liwork, int *info, size_t job_length,
+                    size_t range_length, size_t uplo_length);
 // Only OpenBLAS has it; other libraries leave the symbol null.
 extern void openblas_set_num_threads(int n) __attribute__((weak));
 
@@ -91,6 +97,18 @@ bool bough_symmetric_eigen(int n, double *a, double *value, double *work) {
     int info = 0, n_work = 8 * n;
     dsyev_("V", "U", &n, a, &n, value, work, &n_work, &info, 1, 1);
     return info == 0;
+}
+
+bool bough_symmetric_smallest(int n, double *a, int count, double *value, double *vector,
+                              double *work, int *index) {
+    if (n == 0 || count == 0) return true;
+    prepare();
+    if (!finite_matrix(n, a)) return false;
+    int info = 0, one = 1, found = 0, n_work = 26 * n, n_index = 10 * n;
+    double none = 0;
+    dsyevr_("V", "I", "L", &n, a, &n, &none, &none, &one, &count, &none, &found, value, vector, &n,
+            index, work, &n_work, index + 2 * n, &n_index, &info, 1, 1, 1);
+    return info == 0 && found == count;
 }
 
 bool bough_cholesky_factor(int n, double *a) {

@@ -28,6 +28,12 @@ bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *
 // finite or the iteration does not converge.
 bool bough_symmetric_eigen(int n, double *a, double *value, double *work);
 
+// The `count` smallest eigenvalues of a symmetric matrix (n × n, its lower triangle by columns;
+// overwritten), ascending, in value (n, the rest is scratch), and their orthonormal eigenvectors in
+// vector (n × count, column-major). work (26 n), index (12 n). False as above.
+bool bough_symmetric_smallest(int n, double *a, int count, double *value, double *vector,
+                              double *work, int *index);
+
 // The Cholesky factor L of a symmetric matrix (n × n, row-major; its lower triangle) in place,
 // a = L Lᵀ. False unless it is positive definite, with every pivot above 1e-12 of its diagonal.
 bool bough_cholesky_factor(int n, double *a);

@@ -31,10 +31,14 @@ static inline sample_arrays sample_take(bough_arena *arena, int n) {
     return a;
 }
 
+static inline bough_rod_def sample_def(int n, sample_arrays a, bool carries) {
+    return (bough_rod_def){"sample",    n,         a.span,    a.position, a.rotation,
+                           a.stiffness, a.damping, a.inertia, carries};
+}
+
 static inline bough_rod_model *sample_build(bough_arena *arena, int n, sample_arrays a,
                                             bool carries) {
-    bough_rod_def def = {"sample",    n,         a.span,    a.position, a.rotation,
-                         a.stiffness, a.damping, a.inertia, carries};
+    bough_rod_def def = sample_def(n, a, carries);
     bough_rod_model *model = NULL;
     bough_status status = bough_rod_create(arena, &def, &model);
     if (!bough_is_ok(&status)) print_error("%s\n", status.message);
@@ -74,7 +78,7 @@ static inline bough_rod_model *sample_uniform(bough_arena *arena, int n, double 
 
 // A curved, twisted rod with full random stiffness, damping and inertia, of unit-like magnitude,
 // whose last vertex may belong to what it carries.
-static inline bough_rod_model *sample_general_as(bough_arena *arena, int n, bool carries) {
+static inline sample_arrays sample_general_arrays(bough_arena *arena, int n) {
     unsigned seed = 7;
     sample_arrays a = sample_take(arena, n);
     bough_quaternion p = bough_quaternion_exponential(bough_v3(0.1, -0.2, 0.3));
@@ -104,7 +108,11 @@ static inline bough_rod_model *sample_general_as(bough_arena *arena, int n, bool
             }
         }
     }
-    return sample_build(arena, n, a, carries);
+    return a;
+}
+
+static inline bough_rod_model *sample_general_as(bough_arena *arena, int n, bool carries) {
+    return sample_build(arena, n, sample_general_arrays(arena, n), carries);
 }
 
 static inline bough_rod_model *sample_general(bough_arena *arena, int n) {

@@ -102,6 +102,29 @@ static void eigenvalues_and_vectors(void **state) {
     assert_false(bough_dense_eigen(3, copy, value, v, work));
 }
 
+// The second difference matrix: 2 − 2 cos(kπ/(n + 1)), its vectors sines.
+static void smallest_eigenvalues_of_a_symmetric_matrix(void **state) {
+    (void)state;
+    enum { SIZE = 6, COUNT = 3 };
+    double a[SIZE * SIZE] = {0}, value[SIZE], vector[SIZE * COUNT], work[26 * SIZE];
+    int index[12 * SIZE];
+    for (int j = 0; j < SIZE; j++) {
+        a[SIZE * j + j] = 2;
+        if (j + 1 < SIZE) a[SIZE * j + j + 1] = -1;
+    }
+    assert_true(bough_symmetric_smallest(SIZE, a, COUNT, value, vector, work, index));
+    for (int k = 0; k < COUNT; k++) {
+        double angle = (k + 1) * acos(-1) / (SIZE + 1), norm = sqrt(2.0 / (SIZE + 1));
+        check_near(value[k], 2 - 2 * cos(angle), 1e-14, 0);
+        double sign = vector[SIZE * k] < 0 ? -1 : 1;
+        for (int i = 0; i < SIZE; i++) {
+            check_near(sign * vector[SIZE * k + i], norm * sin((i + 1) * angle), 0, 1e-14);
+        }
+    }
+    a[0] = NAN;
+    assert_false(bough_symmetric_smallest(SIZE, a, COUNT, value, vector, work, index));
+}
+
 // A = L Lᵀ with L known; only the lower triangle of A is given.
 static void cholesky_finds_the_factor(void **state) {
     (void)state;
@@ -145,6 +168,7 @@ int main(void) {
         cmocka_unit_test(complex_lu_solves),
         cmocka_unit_test(symmetric_eigenvectors_rebuild_the_matrix),
         cmocka_unit_test(eigenvalues_and_vectors),
+        cmocka_unit_test(smallest_eigenvalues_of_a_symmetric_matrix),
         cmocka_unit_test(cholesky_finds_the_factor),
         cmocka_unit_test(cholesky_refuses_indefinite_and_nearly_singular),
     };

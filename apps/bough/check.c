@@ -80,9 +80,9 @@ static void print_rod(const bough_simulation *s, const bough_beam *beam) {
 
 static void print_body(const bough_simulation *s, int body) {
     const bough_beam *beam = bough_simulation_beam(s, body);
-    bool flexible = beam && beam->rod;
+    bool flexible = beam && beam->port >= 0;
     printf("body %s: %s", s->scene->body[body].name,
-           flexible ? "rod"
+           flexible ? s->rod[beam->port].kind
            : beam   ? "rigid: no states of its own, integrated from its rod"
                     : "rigid");
     print_joint(s->scene, body);

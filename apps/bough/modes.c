@@ -138,7 +138,7 @@ bough_status bough_verb_modes(bough_arena *arena, const bough_options *options) 
     bough_simulation *s;
     bough_status status = bough_open(arena, options, &s);
     if (!bough_is_ok(&status)) return status;
-    if (s->n_rod == 0) {
+    if (bough_steady_rods(s) == 0) {
         return bough_fail(BOUGH_INVALID, "%.200s: no body has fidelity rod", s->scene->file);
     }
     const char *folder = bough_out_folder(arena, options);
@@ -147,7 +147,7 @@ bough_status bough_verb_modes(bough_arena *arena, const bough_options *options) 
     status = solve_all(arena, s, rods);
     if (bough_is_ok(&status)) status = bough_folder_make(folder);
     for (int k = 0; k <= (s->scene->modes.shapes ? 1 : 0) && bough_is_ok(&status); k++) {
-        status = write_table(&tables[k], folder, rods, s->n_rod);
+        status = write_table(&tables[k], folder, rods, bough_steady_rods(s));
     }
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;

@@ -180,8 +180,9 @@ bough_status bough_verb_static(bough_arena *arena, const bough_options *options)
     if (!steady || !folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     status = bough_settle_apart(s) ? find_apart(arena, s, steady) : find_whole(arena, s, steady);
     if (!bough_is_ok(&status)) return status;
-    for (int k = 0; k < s->n_rod; k++) print_rod(&steady[k]);
-    status = write_file(folder, steady, s->n_rod);
+    int n = bough_steady_rods(s);
+    for (int k = 0; k < n; k++) print_rod(&steady[k]);
+    status = write_file(folder, steady, n);
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }

@@ -46,7 +46,7 @@ static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
         bough_status status = same_mesh(l, blade->beam);
         if (!bough_is_ok(&status)) return status;
         l->n_vertex = blade->beam->def.n_segment + 1;
-        blade->n = blade->beam->rod == NULL ? 6 : 6 * l->n_vertex;
+        blade->n = blade->beam->port < 0 ? 6 : 6 * l->n_vertex;
         blade->sampled = bough_arena_doubles(arena, (size_t)blade->n);
         blade->reached = bough_arena_doubles(arena, (size_t)blade->n);
     }
@@ -242,12 +242,12 @@ static void blade_fresh(bough_aero_link *l, int b) {
     const bough_frame *frame = &l->simulation->tree->markers[beam->marker];
     bough_transform pose = bough_tree_frame_pose(l->simulation->view, frame);
     int n = l->n_vertex;
-    if (beam->rod == NULL) memset(l->fresh, 0, 6 * sizeof *l->fresh);
+    if (beam->port < 0) memset(l->fresh, 0, 6 * sizeof *l->fresh);
     for (int i = 0; i < n; i++) {
         size_t at = (size_t)b * n + i;
         bough_vec3 f = bough_scale(l->factor, bough_mat3_tmul(pose.rotation, l->data.force[at]));
         bough_vec3 m = bough_scale(l->factor, bough_mat3_tmul(pose.rotation, l->data.moment[at]));
-        if (beam->rod == NULL) {
+        if (beam->port < 0) {
             m = bough_add(m, bough_cross(beam->def.position[i], f));
             const double values[6] = {f.x, f.y, f.z, m.x, m.y, m.z};
             for (int c = 0; c < 6; c++) l->fresh[c] += values[c];
@@ -276,8 +276,8 @@ static void load_signal(const bough_aero_link *l, const blade_loads *blade, int 
 static void apply(bough_aero_link *l, int b, double t, double span) {
     blade_loads *blade = &l->blade[b];
     double wrench[6], wrench_rate[6];
-    bough_rod_loads *rod = blade->beam->rod == NULL ? NULL : bough_rod_body_loads(blade->beam->rod);
-    int stride = rod == NULL ? 0 : bough_rod_body_model(blade->beam->rod)->stride;
+    bough_rod_loads *rod = blade->beam->port < 0 ? NULL : bough_beam_loads(blade->beam);
+    int stride = rod == NULL ? 0 : bough_beam_mesh(blade->beam)->stride;
     for (int k = 0; k < blade->n; k++) {
         double value, rate;
         load_signal(l, blade, k, span, &value, &rate);

@@ -246,7 +246,7 @@ static bough_status add_beam(builder *b, int index) {
     if (!bough_is_ok(&status)) return status;
     b->marker[s->n_beam++] = (bough_marker_def){beam->body->name, index,
                                                 bough_transform_identity()};
-    if (beam->body->fidelity != BOUGH_SCENE_ROD) return bough_ok();
+    if (beam->body->fidelity == BOUGH_SCENE_RIGID) return bough_ok();
     beam->port = s->n_rod;
     b->port[s->n_rod++] = (bough_port_def){beam->body->name, beam->marker,
                                            root_inertia(&beam->def)};
@@ -391,15 +391,10 @@ static bough_status build_rods(builder *b) {
     for (int k = 0; k < s->n_beam; k++) {
         bough_beam *beam = &s->beam[k];
         if (beam->port < 0) continue;
-        bough_rod_model *model = NULL;
-        bough_status status = bough_rod_create(b->arena, &beam->def, &model);
-        if (bough_is_ok(&status)) {
-            status = bough_rod_body_create(b->arena, model, 0,
-                                           micro_options(b, beam->body),
-                                           motion + BOUGH_PORT_OUTPUTS * beam->port, &beam->rod);
-        }
+        bough_status status = bough_beam_build(b->arena, beam, micro_options(b, beam->body),
+                                               motion + BOUGH_PORT_OUTPUTS * beam->port,
+                                               &s->rod[beam->port]);
         if (!bough_is_ok(&status)) return status;
-        s->rod[beam->port] = bough_rod_body_subsystem(beam->rod);
     }
     return bough_ok();
 }
@@ -588,7 +583,7 @@ double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam)
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
                            double root[BOUGH_ROD_MOST_OUTPUTS]) {
     memset(root, 0, BOUGH_ROD_MOST_OUTPUTS * sizeof *root);
-    if (beam->rod == NULL) return;
+    if (beam->port < 0) return;
     const bough_subsystem *rod = &s->rod[beam->port];
     rod->ops->output(rod->self, t, rod->state, bough_simulation_rod_input(s, beam), root);
 }
@@ -605,9 +600,9 @@ static vertex rigid_vertex(const bough_beam *beam, int i, bough_twist twist) {
                     bough_rotation_matrix(beam->def.rotation[i])};
 }
 
-static vertex rod_vertex(const bough_simulation *s, const bough_beam *beam, int i) {
-    const double *y = s->rod[beam->port].state + i - 1;
-    int n = bough_rod_body_model(beam->rod)->n;
+static vertex rod_vertex(const bough_beam *beam, const double *state, int i) {
+    const double *y = state + i - 1;
+    int n = bough_beam_mesh(beam)->n;
     bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
     bough_mat3 r = bough_rotation_matrix(bough_quaternion_normalised(p));
     bough_vec3 w = {y[10 * n], y[11 * n], y[12 * n]};
@@ -626,11 +621,12 @@ static vertex end_vertex(const bough_simulation *s, const bough_beam *beam) {
     return (vertex){x, bough_mat3_mul(r, twist.linear), bough_mat3_mul(r, twist.angular), r};
 }
 
-static vertex vertex_of(const bough_simulation *s, const bough_beam *beam, int i,
-                        bough_twist twist) {
-    if (i == 0 || beam->rod == NULL) return rigid_vertex(beam, i, twist);
-    if (i > bough_rod_body_model(beam->rod)->n) return end_vertex(s, beam);
-    return rod_vertex(s, beam, i);
+// state: of the vertices, NULL of a rigid body.
+static vertex vertex_of(const bough_simulation *s, const bough_beam *beam, const double *state,
+                        int i, bough_twist twist) {
+    if (i == 0 || state == NULL) return rigid_vertex(beam, i, twist);
+    if (i > bough_beam_mesh(beam)->n) return end_vertex(s, beam);
+    return rod_vertex(beam, state, i);
 }
 
 bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
@@ -638,10 +634,10 @@ bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam
     int last = beam->def.n_segment, stride = 1;
     const double *x = NULL;
     *rotation = beam->def.rotation[last];
-    if (beam->rod == NULL) return beam->def.position[last];
+    if (beam->port < 0) return beam->def.position[last];
     if (beam->end < 0) {
         stride = last;
-        x = s->rod[beam->port].state + last - 1;
+        x = bough_beam_state(s, beam) + last - 1;
     } else {
         x = s->trunk.state + s->tree->links[s->tree->ends[beam->end].link].first_coordinate;
     }
@@ -661,8 +657,9 @@ void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *b
     const bough_frame *frame = &s->tree->markers[beam->marker];
     bough_transform pose = bough_tree_frame_pose(s->view, frame);
     bough_twist twist = bough_tree_frame_twist(s->view, frame);
+    const double *state = beam->port < 0 ? NULL : bough_beam_state(s, beam);
     for (int i = 0; i <= beam->def.n_segment; i++) {
-        vertex v = vertex_of(s, beam, i, twist);
+        vertex v = vertex_of(s, beam, state, i, twist);
         motion.position[i] = bough_add(pose.position, bough_mat3_mul(pose.rotation, v.position));
         motion.rotation[i] = bough_mat3_product(pose.rotation, v.rotation);
         motion.velocity[i] = bough_mat3_mul(pose.rotation, v.velocity);

@@ -7,6 +7,7 @@
 #include "apps/scene/scene.h"
 #include "core/tree.h"
 #include "cosim/master.h"
+#include "flexbody/modal_subsystem.h"
 #include "flexbody/rod_subsystem.h"
 
 struct bough_aero_link;
@@ -20,7 +21,8 @@ typedef struct bough_beam {
     int marker;           // of the tree, the body's frame
     int port;             // of the tree; −1 when rigid
     int end;              // of the tree, where bodies hang on the rod; −1 when it carries none
-    bough_rod_body *rod;  // NULL when rigid
+    bough_rod_body *rod;     // NULL unless a rod
+    bough_modal_body *modal; // NULL unless modal
 } bough_beam;
 
 typedef struct bough_simulation {
@@ -62,6 +64,20 @@ const double *bough_simulation_rod_input(const bough_simulation *s, const bough_
 // Position of a beam's last vertex in the body's frame, in which `rotation` is its section's.
 bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
                                      bough_quaternion *rotation);
+// Builds the flexible body of a beam, a rod or a modal body, in a frame that moves with `input` (9)
+// at the start.
+bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_micro_options micro,
+                              const double *input, bough_subsystem *subsystem);
+
+// Of a flexible beam: its mesh, its loads, and the state of its vertices at `view` as rod.h lays it
+// out, the latter valid until the next call for the same beam.
+const bough_rod_model *bough_beam_mesh(const bough_beam *beam);
+bough_rod_loads *bough_beam_loads(const bough_beam *beam);
+const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam);
+
+// Sets the velocities of a flexible beam's own state to rest relative to its frame, whose twist is
+// in `input`.
+void bough_beam_ride(const bough_beam *beam, const double *input, double *state);
 
 // The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);

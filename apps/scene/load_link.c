@@ -34,9 +34,9 @@ bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s) {
         const bough_scene_load *load = &s->scene->load[k];
         if (load->body_name == NULL) continue;
         const bough_beam *beam = bough_simulation_beam(s, load->body);
-        const bough_rod_model *m = bough_rod_body_model(beam->rod);
+        const bough_rod_model *m = bough_beam_mesh(beam);
         bool follower = load->frame == BOUGH_SCENE_LOAD_FOLLOWER;
-        double *value = bough_rod_loads_ramped(bough_rod_body_loads(beam->rod), arena, m, follower,
+        double *value = bough_rod_loads_ramped(bough_beam_loads(beam), arena, m, follower,
                                                load->ramp);
         if (value == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "loads: out of memory");
         double wrench[6];

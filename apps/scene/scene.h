@@ -175,7 +175,21 @@ typedef struct bough_scene_rod {
     double length, damping[6];
 } bough_scene_rod;
 
-typedef enum bough_scene_fidelity { BOUGH_SCENE_RIGID, BOUGH_SCENE_ROD } bough_scene_fidelity;
+// Linear reductions of a body's rod.
+typedef struct bough_scene_modal {
+    const bough_node *node; // NULL: all defaults
+    int modes;       // of each piece
+    bool statics;    // static answers to accelerations among the shapes
+    bool stiffening; // by axial forces
+    int pieces;      // of a segmented-modal body
+} bough_scene_modal;
+
+typedef enum bough_scene_fidelity {
+    BOUGH_SCENE_RIGID,
+    BOUGH_SCENE_ROD,
+    BOUGH_SCENE_MODAL,
+    BOUGH_SCENE_SEGMENTED_MODAL,
+} bough_scene_fidelity;
 
 typedef struct bough_scene_body {
     const bough_node *node;
@@ -189,7 +203,8 @@ typedef struct bough_scene_body {
     double inertia[6];        // Ixx Iyy Izz Ixy Ixz Iyz about the centre of mass [kg m²]: entries
                               // of the inertia matrix, Ixy = −∫xy
     bough_scene_solver micro; // of this body in place of the simulation's; node NULL: none
-    bough_scene_rod rod;      // fidelity rod, or rigid: integrated to a rigid body
+    bough_scene_rod rod;      // any fidelity but rigid, or rigid: integrated to a rigid body
+    bough_scene_modal modal;  // fidelity modal and segmented-modal
 } bough_scene_body;
 
 typedef enum bough_scene_load_frame {

@@ -85,8 +85,19 @@ static void check_rod_use(bough_schema_reader *r, const bough_scene_body *b) {
     if (!has_rod && pitch != NULL) {
         bough_schema_error(r, pitch, "pitch", "only used with a rod");
     }
-    if (b->fidelity == BOUGH_SCENE_ROD && !has_rod) {
-        bough_schema_error(r, b->node, "", "required key 'rod' is missing (with 'fidelity: rod')");
+    static const char *const flexible[] = {"", "rod", "modal", "segmented-modal"};
+    if (b->fidelity != BOUGH_SCENE_RIGID && !has_rod) {
+        bough_schema_error(r, b->node, "", "required key 'rod' is missing (with 'fidelity: %s')",
+                           flexible[b->fidelity]);
+    }
+    const bough_node *pieces = bough_node_find(b->modal.node, "pieces");
+    if (b->fidelity == BOUGH_SCENE_MODAL && pieces != NULL) {
+        bough_schema_error(r, pieces, "modal.pieces", "only used with 'fidelity: segmented-modal'");
+    }
+    if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL && has_rod &&
+        b->modal.pieces > b->rod.n_segment) {
+        bough_schema_error(r, b->node, "modal.pieces", "%d pieces of %d segments: give the rod more"
+                           " segments", b->modal.pieces, b->rod.n_segment);
     }
     static const char *const rigid[] = {"mass", "centre_of_mass", "inertia"};
     for (int k = 0; k < 3 && has_rod && b->fidelity == BOUGH_SCENE_RIGID; k++) {
@@ -106,6 +117,10 @@ static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
     }
     const bough_node *node = value_of(joint->node, "parent");
     joint->parent = resolve(r, s, node, "parent", joint->parent_name);
+    if (joint->parent >= 0 && s->body[joint->parent].fidelity > BOUGH_SCENE_ROD) {
+        bough_schema_error(r, node, "parent", "'%s' is a modal body, which carries none; make it a"
+                           " rod", joint->parent_name);
+    }
 }
 
 // The body at which a walk towards the ground comes back to itself, from any body above a loop.
@@ -234,7 +249,7 @@ static void link_spring(bough_schema_reader *r, const bough_scene *s, bough_scen
         if (name == NULL || strcmp(name, "ground") == 0) continue;
         const bough_node *node = value_of(spring->node, keys[end]);
         spring->body[end] = resolve(r, s, node, keys[end], name);
-        if (spring->body[end] < 0 || s->body[spring->body[end]].fidelity != BOUGH_SCENE_ROD) {
+        if (spring->body[end] < 0 || s->body[spring->body[end]].fidelity <= BOUGH_SCENE_RIGID) {
             continue;
         }
         bough_schema_error(r, node, keys[end], "'%s' is a rod; springs act on rigid bodies", name);

@@ -232,11 +232,16 @@ void bough_scene_check_rod_load(bough_schema_reader *r, const bough_scene *scene
                                 const bough_scene_load *load) {
     const bough_scene_body *body = &scene->body[load->body];
     const bough_node *name = bough_node_find(load->node, "body");
-    if (body->fidelity != BOUGH_SCENE_ROD) {
-        if (body->fidelity < 0) return;
+    if (body->fidelity < 0) return;
+    if (body->fidelity == BOUGH_SCENE_RIGID) {
         bough_schema_error(r, name, "body", "'%s' is rigid: loads act on joints and on rods",
                            load->body_name);
         return;
+    }
+    if (body->fidelity > BOUGH_SCENE_ROD && load->frame == BOUGH_SCENE_LOAD_FOLLOWER) {
+        bough_schema_error(r, bough_node_find(load->node, "frame"), "frame",
+                           "'%s' is a modal body, on which loads do not turn with its sections: make"
+                           " it a rod or give 'frame: body'", load->body_name);
     }
     if (body->rod.structure.n_station > 0) check_place(r, load, &body->rod);
     const char *how, *by = mover(scene, load->body, &how);

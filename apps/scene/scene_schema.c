@@ -192,6 +192,21 @@ static const bough_key joint_keys[] = {
 static const bough_schema joint_schema = {SCHEMA("a joint", bough_scene_joint, joint_keys),
                                           .check = bough_scene_check_joint};
 
+#define AT(member) .offset = offsetof(bough_scene_modal, member)
+static const bough_key modal_keys[] = {
+    {.name = "modes", .kind = BOUGH_KEY_INTEGER, .range = "[1, 300]", .fallback = "12", AT(modes),
+     .help = "clamped modes of each piece, from the lowest frequency, beside its rigid motions"},
+    {.name = "statics", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(statics),
+     .help = "add the static answers to accelerations of the frame"},
+    {.name = "stiffening", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(stiffening),
+     .help = "bending is stiffened by axial forces, centrifugal ones first of all"},
+    {.name = "pieces", .kind = BOUGH_KEY_INTEGER, .range = "[1, 300]", .fallback = "5", AT(pieces),
+     .help = "of segmented-modal: parts of the rod, each linear in its own frame"},
+};
+#undef AT
+static const bough_schema modal_schema = {
+    SCHEMA("a modal body", bough_scene_modal, modal_keys)};
+
 #define AT(member) .offset = offsetof(bough_scene_body, member)
 static const bough_key body_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
@@ -199,8 +214,10 @@ static const bough_key body_keys[] = {
     {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 100000]", .fallback = "1",
      AT(repeat), .help = "so many such bodies in a row, each hung on the one before by the same "
                          "joint; named with numbers from 1"},
-    {.name = "fidelity", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("rigid", "rod"),
-     .required = true, AT(fidelity), .help = "how the body is modelled"},
+    {.name = "fidelity", .kind = BOUGH_KEY_CHOICE, .required = true, AT(fidelity),
+     .choices = CHOICES("rigid", "rod", "modal", "segmented-modal"),
+     .help = "how the body is modelled: rigid, its rod, or the rod's linear modes in one frame or "
+             "in pieces"},
     {.name = "joint", .kind = BOUGH_KEY_MAPPING, .of = &joint_schema, .required = true, AT(joint),
      .help = "the joint that carries the body"},
     {.name = "pitch", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
@@ -216,9 +233,11 @@ static const bough_key body_keys[] = {
      .when_key = "fidelity", .when = "rigid", AT(inertia),
      .help = "entries of the inertia matrix about the centre of mass (Ixy = -integral of x y)"},
     {.name = "micro", .kind = BOUGH_KEY_MAPPING, .of = &micro_schema, .when_key = "fidelity",
-     .when = "rod", AT(micro), .help = "sub-solver of this body in place of simulation.micro"},
+     .when = "rod|modal|segmented-modal", AT(micro), .help = "sub-solver of this body in place of simulation.micro"},
     {.name = "rod", .kind = BOUGH_KEY_MAPPING, .of = &rod_schema, AT(rod),
      .help = "the rod; of a rigid body: integrated to a rigid body"},
+    {.name = "modal", .kind = BOUGH_KEY_MAPPING, .of = &modal_schema, .when_key = "fidelity",
+     .when = "modal|segmented-modal", AT(modal), .help = "how the rod is reduced to modes"},
 };
 #undef AT
 static const bough_schema body_schema = {SCHEMA("a body", bough_scene_body, body_keys)};

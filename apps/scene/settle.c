@@ -144,10 +144,10 @@ static void calm(void *self, double *state) {
     bough_arrow_inputs(x->arrow, x->time, state);
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
-        if (beam->rod == NULL) continue;
         int member = beam->port + 1;
-        bough_rod_ride(bough_rod_body_model(beam->rod), x->arrow->input + a->input_offset[member],
-                       state + a->state_offset[member]);
+        if (beam->port < 0) continue;
+        bough_beam_ride(beam, x->arrow->input + a->input_offset[member],
+                        state + a->state_offset[member]);
     }
 }
 

@@ -2,6 +2,12 @@
 
 #include <string.h>
 
+int bough_steady_rods(const bough_simulation *s) {
+    int n = 0;
+    for (int k = 0; k < s->n_beam; k++) n += s->beam[k].rod != NULL;
+    return n;
+}
+
 const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_beam *beam) {
     const bough_scene_body *body = beam->body;
     while (body->joint.kind == BOUGH_SCENE_FIXED) {

@@ -28,6 +28,9 @@ typedef struct bough_turning {
 bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *beam,
                                   bough_turning *turning);
 
+// How many bodies are rods.
+int bough_steady_rods(const bough_simulation *s);
+
 // The body whose joint moves the rod's root; NULL when its root is at rest.
 const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_beam *beam);
 

@@ -1,0 +1,104 @@
+// A body of linear modal pieces in a row, each in its own floating frame: the tip of a piece carries
+// the frame of the next, which moves as the tip does and puts its root wrench on it. No acceleration
+// crosses an interface, so rates go by two sweeps: motions outwards, wrenches inwards. One piece is
+// the classic modal body.
+//
+// State: per piece q (m), then η (m). Input and output as those of a rod (rod.h), so are the loads;
+// followers are none of them.
+#ifndef BOUGH_FLEXBODY_MODAL_CHAIN_H
+#define BOUGH_FLEXBODY_MODAL_CHAIN_H
+
+#include "flexbody/modal_piece.h"
+
+typedef struct bough_modal_model {
+    const char *name;
+    const bough_rod_model *rod; // the body's vertices and segments
+    int n_piece;
+    bough_modal_piece *piece;   // (n_piece) from the root
+    int *offset;                // of each piece in the state (n_piece)
+    int n_state;
+} bough_modal_model;
+
+// Work of evaluations, one after another.
+typedef struct bough_modal_chain {
+    bough_modal_point *point; // (n_piece)
+    double *load;             // on the body's vertices at the time of evaluation (6 × rod stride)
+    bough_modal_frame_change *change; // of each piece's frame and the last tip's (n_piece + 1)
+    double *zero;             // (n_state)
+} bough_modal_chain;
+
+// Cuts the rod into `pieces` of equally many segments, as far as they go. BOUGH_INVALID when there
+// are fewer segments than pieces.
+bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, int pieces,
+                                bough_modal_options options, bough_modal_model **model);
+
+bool bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena,
+                            const bough_modal_model *m);
+
+// The undeformed body moving rigidly with its frame: state (n_state), input (9).
+void bough_modal_rest_state(const bough_modal_model *m, const double *input, double *state);
+
+// Sets η to that of a body at rest relative to its frame in the shape of the state, q̇ = 0.
+void bough_modal_ride(const bough_modal_model *m, const double *input, bough_modal_chain *chain,
+                      double *state);
+
+// rate (n_state); false when a value is not finite. Loads are dead ones.
+bool bough_modal_derivative(const bough_modal_model *m, const bough_rod_loads *loads, double t,
+                            const double *state, const double *input, bough_modal_chain *chain,
+                            double *rate);
+
+// The root wrench (6).
+void bough_modal_root_wrench(const bough_modal_model *m, const bough_rod_loads *loads, double t,
+                             const double *state, const double *input, bough_modal_chain *chain,
+                             double *wrench);
+
+// Evaluates there for the two below.
+void bough_modal_chain_slopes(const bough_modal_model *m, const bough_rod_loads *loads, double t,
+                              const double *state, const double *input, bough_modal_chain *chain);
+
+// Derivative of the rates, to rate (n_state), and of the root wrench (6) along a variation of state
+// and input (9); either may be NULL for zero.
+void bough_modal_tangent(const bough_modal_model *m, bough_modal_chain *chain,
+                         const double *state_variation, const double *input_variation,
+                         double *rate, double *wrench);
+
+// The vertices' state as a rod's (13 n), absolute velocities for the frame's twist in `input`.
+void bough_modal_expand(const bough_modal_model *m, const double *state, const double *input,
+                        bough_modal_chain *chain, double *rod_state);
+
+// -- Newton's matrix: dense per piece, pieces eliminated from the tip to the root ------------------
+
+// Matrices by columns, x the piece's state (2 m), d the change of its frame (12), w the outer
+// wrench in the tip's axes (6).
+typedef struct bough_modal_newton_piece {
+    double *rate_x, *rate_d, *rate_w; // (2m × 2m), (2m × 12), (2m × 6)
+    double *root_x, *root_d, *root_w; // of the root wrench (6 × ·)
+    double *tip_x, *tip_d;            // of the tip's frame (12 × 2m), (12 × 12)
+    // computed by bough_modal_factor
+    double *matrix, *answer;   // I − γ(…) factored (2m × 2m); x per d (2m × 12)
+    int *pivot;                // (2m)
+    double *wrench_x, *wrench; // root wrench with the outer pieces' answer (6 × 2m); per d (6 × 12)
+    double *work;              // (2m + 12)
+} bough_modal_newton_piece;
+
+typedef struct bough_modal_newton {
+    bough_modal_chain chain;
+    bough_modal_newton_piece *piece; // (n_piece)
+    double gamma;
+    double *step; // (n_state) of bough_modal_steady
+} bough_modal_newton;
+
+bool bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena,
+                             const bough_modal_model *m);
+
+// Tangents there; false when they are not finite.
+bool bough_modal_linearise(const bough_modal_model *m, const bough_rod_loads *loads, double t,
+                           const double *state, const double *input, bough_modal_newton *newton);
+
+// Factors I − γ ∂f/∂y of the last tangents; false when singular.
+bool bough_modal_factor(const bough_modal_model *m, bough_modal_newton *newton, double gamma);
+
+// Solves with it in place: x (n_state).
+void bough_modal_solve(const bough_modal_model *m, bough_modal_newton *newton, double *x);
+
+#endif

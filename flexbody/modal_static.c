@@ -1,0 +1,89 @@
+#include "flexbody/modal_static.h"
+
+#include "core/linalg.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double long_time = 1e8; // γ at which I − γ ∂f/∂y is −γ ∂f/∂y [s]
+static const double tolerance = 1e-11; // of a step, in the shapes' scales
+static const double longest = 5;       // step, in those scales: half a radian
+
+enum { ITERATIONS = 100 };
+
+// The largest q of a change in the shapes' scales.
+static double size_of(const bough_modal_model *m, const double *change) {
+    double largest = 0;
+    for (int k = 0; k < m->n_piece; k++) {
+        for (int l = 0; l < m->piece[k].m; l++) {
+            double part = fabs(change[m->offset[k] + l]) / m->piece[k].scale[l];
+            largest = part > largest || isnan(part) ? part : largest;
+        }
+    }
+    return largest;
+}
+
+bough_status bough_modal_steady(const bough_modal_model *m, const bough_rod_loads *loads, double t,
+                                const double *input, bough_modal_newton *newton, double *state) {
+    double *step = newton->step, before = HUGE_VAL;
+    for (int iteration = 0; iteration < ITERATIONS; iteration++) {
+        bool ok = bough_modal_linearise(m, loads, t, state, input, newton) &&
+                  bough_modal_factor(m, newton, long_time) &&
+                  bough_modal_derivative(m, loads, t, state, input, &newton->chain, step);
+        if (!ok) break;
+        for (int k = 0; k < m->n_state; k++) step[k] *= long_time;
+        bough_modal_solve(m, newton, step);
+        double size = size_of(m, step);
+        if (!isfinite(size)) break;
+        double share = size > longest ? longest / size : 1;
+        for (int k = 0; k < m->n_state; k++) state[k] += share * step[k];
+        // at the end rounding keeps the steps from shrinking further
+        if (size < tolerance || (size < 1e3 * tolerance && size > 0.5 * before)) return bough_ok();
+        before = size;
+    }
+    return bough_fail(BOUGH_FAILED, "%s: no equilibrium found; the loads may be beyond what its"
+                      " linear pieces can bear", m->name);
+}
+
+static int ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// ∂f/∂y (n_state × n_state, by columns)
+static void set_jacobian(const bough_modal_model *m, bough_modal_chain *chain, double *unit,
+                         double *jacobian) {
+    double wrench[BOUGH_ROD_OUTPUTS];
+    for (int j = 0; j < m->n_state; j++) {
+        unit[j] = 1;
+        bough_modal_tangent(m, chain, unit, NULL, jacobian + (size_t)j * m->n_state, wrench);
+        unit[j] = 0;
+    }
+}
+
+bough_status bough_modal_frequencies(bough_arena *arena, const bough_modal_model *m,
+                                     const bough_rod_loads *loads, double t, const double *input,
+                                     const double *state, int wanted, double *frequency,
+                                     int *found) {
+    size_t n = (size_t)m->n_state;
+    bough_modal_chain chain;
+    double *jacobian = bough_arena_doubles(arena, n * n), *unit = bough_arena_doubles(arena, n);
+    double *vector = bough_arena_doubles(arena, n * n), *work = bough_arena_doubles(arena, 8 * n);
+    double *value = bough_arena_doubles(arena, 2 * n);
+    if (!bough_modal_chain_init(&chain, arena, m) || bough_arena_exhausted(arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", m->name);
+    }
+    bough_modal_chain_slopes(m, loads, t, state, input, &chain);
+    set_jacobian(m, &chain, unit, jacobian);
+    if (!bough_dense_eigen(m->n_state, jacobian, value, vector, work)) {
+        return bough_fail(BOUGH_FAILED, "%s: its eigenvalues cannot be found", m->name);
+    }
+    size_t count = 0;
+    for (size_t k = 0; k < n; k++) {
+        if (value[n + k] > 0) work[count++] = hypot(value[k], value[n + k]) / (2 * BOUGH_PI);
+    }
+    qsort(work, count, sizeof *work, ascending);
+    *found = (int)count < wanted ? (int)count : wanted;
+    memcpy(frequency, work, (size_t)*found * sizeof *work);
+    return bough_ok();
+}

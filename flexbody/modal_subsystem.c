@@ -1,0 +1,211 @@
+#include "flexbody/modal_subsystem.h"
+
+#include <string.h>
+
+struct bough_modal_body {
+    const bough_modal_model *model;
+    bough_rod_loads loads;
+    double time, *state; // (n_state)
+    double *scale;       // (n_state)
+    bool moved;          // the state was set from outside: the integrator starts anew
+    const bough_signal *input; // of the step in progress
+    double *vertices;    // (13 n) computed on request
+    double *work;        // rates of a tangent (n_state)
+    bough_modal_chain chain;
+    bough_modal_newton micro_newton; // of the sub-solver
+    bough_modal_newton newton;       // of newton_setup
+    bough_micro micro;
+};
+
+// -- the sub-solver's view --------------------------------------------------------------------------
+
+static bool micro_derivative(void *self, double t, const double *y, double *rate) {
+    bough_modal_body *b = self;
+    double input[BOUGH_ROD_INPUTS];
+    bough_signal_value(b->input, t, input);
+    return bough_modal_derivative(b->model, &b->loads, t, y, input, &b->chain, rate);
+}
+
+static bool micro_linearise(void *self, double t, const double *y) {
+    bough_modal_body *b = self;
+    double input[BOUGH_ROD_INPUTS];
+    bough_signal_value(b->input, t, input);
+    return bough_modal_linearise(b->model, &b->loads, t, y, input, &b->micro_newton);
+}
+
+static bool micro_factor(void *self, double gamma) {
+    bough_modal_body *b = self;
+    return bough_modal_factor(b->model, &b->micro_newton, gamma);
+}
+
+static void micro_solve(void *self, double *x) {
+    bough_modal_body *b = self;
+    bough_modal_solve(b->model, &b->micro_newton, x);
+}
+
+// -- the contract -----------------------------------------------------------------------------------
+
+static bool derivative(void *self, double t, const double *state, const double *input,
+                       double *rate) {
+    bough_modal_body *b = self;
+    return bough_modal_derivative(b->model, &b->loads, t, state, input, &b->chain, rate);
+}
+
+static void output(void *self, double t, const double *state, const double *input,
+                   double *wrench) {
+    bough_modal_body *b = self;
+    bough_modal_root_wrench(b->model, &b->loads, t, state, input, &b->chain, wrench);
+}
+
+static void output_tangent(void *self, double t, const double *state, const double *input,
+                           const double *state_rate, const double *input_rate, double *rate) {
+    bough_modal_body *b = self;
+    bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->chain);
+    bough_modal_tangent(b->model, &b->chain, state_rate, input_rate, b->work, rate);
+}
+
+static void input_columns(void *self, double t, const double *state, const double *input,
+                          double *column) {
+    bough_modal_body *b = self;
+    bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->chain);
+    for (int j = 0; j < BOUGH_ROD_INPUTS; j++) {
+        double unit[BOUGH_ROD_INPUTS] = {0}, wrench[BOUGH_ROD_OUTPUTS];
+        unit[j] = 1;
+        bough_modal_tangent(b->model, &b->chain, NULL, unit,
+                            column + (size_t)j * b->model->n_state, wrench);
+    }
+}
+
+static bool newton_setup(void *self, double t, const double *state, const double *input,
+                         double gamma) {
+    bough_modal_body *b = self;
+    return bough_modal_linearise(b->model, &b->loads, t, state, input, &b->newton) &&
+           bough_modal_factor(b->model, &b->newton, gamma);
+}
+
+static void newton_solve(void *self, double *x) {
+    bough_modal_body *b = self;
+    bough_modal_solve(b->model, &b->newton, x);
+}
+
+static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
+    bough_modal_body *b = self;
+    b->input = input;
+    bough_status status =
+        b->micro.advance(b->micro.self, b->time, t1, restart || b->moved, b->state);
+    b->moved = !bough_is_ok(&status);
+    b->time = t1;
+    return status;
+}
+
+static size_t state_bytes(const bough_modal_body *b) {
+    return (size_t)b->model->n_state * sizeof(double);
+}
+
+static size_t save_size(void *self) {
+    return sizeof(double) + state_bytes(self);
+}
+
+static void save(void *self, void *copy) {
+    const bough_modal_body *b = self;
+    memcpy(copy, &b->time, sizeof b->time);
+    memcpy((char *)copy + sizeof b->time, b->state, state_bytes(b));
+}
+
+static void restore(void *self, const void *copy) {
+    bough_modal_body *b = self;
+    memcpy(&b->time, copy, sizeof b->time);
+    memcpy(b->state, (const char *)copy + sizeof b->time, state_bytes(b));
+    b->moved = true;
+}
+
+static void set_state(void *self, double t, const double *state) {
+    bough_modal_body *b = self;
+    b->time = t;
+    b->moved = true;
+    if (state != b->state) memcpy(b->state, state, state_bytes(b));
+}
+
+static void statistics(void *self, bough_statistics *sum) {
+    const bough_modal_body *b = self;
+    b->micro.statistics(b->micro.self, sum);
+}
+
+// -- life -------------------------------------------------------------------------------------------
+
+static bool take_memory(bough_modal_body *b, bough_arena *arena) {
+    size_t states = (size_t)b->model->n_state;
+    b->state = bough_arena_doubles(arena, states);
+    b->scale = bough_arena_doubles(arena, states);
+    b->work = bough_arena_doubles(arena, states);
+    b->vertices = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * b->model->rod->n);
+    bool ok = bough_rod_loads_init(&b->loads, arena, b->model->rod);
+    ok = bough_modal_chain_init(&b->chain, arena, b->model) && ok;
+    ok = bough_modal_newton_init(&b->micro_newton, arena, b->model) && ok;
+    ok = bough_modal_newton_init(&b->newton, arena, b->model) && ok;
+    return ok && !bough_arena_exhausted(arena);
+}
+
+static void set_scale(bough_modal_body *b) {
+    for (int k = 0; k < b->model->n_piece; k++) {
+        const bough_modal_piece *p = &b->model->piece[k];
+        double *to = b->scale + b->model->offset[k];
+        memcpy(to, p->scale, (size_t)p->m * sizeof *to);
+        memcpy(to + p->m, p->scale, (size_t)p->m * sizeof *to);
+    }
+}
+
+bough_status bough_modal_body_create(bough_arena *arena, const bough_modal_model *model,
+                                     double start, bough_micro_options micro, const double *input,
+                                     bough_modal_body **body) {
+    bough_modal_body *b = bough_arena_take(arena, sizeof *b);
+    if (b == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", model->name);
+    b->model = model;
+    if (!take_memory(b, arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", model->name);
+    }
+    b->time = start;
+    b->moved = true;
+    bough_modal_rest_state(model, input, b->state);
+    set_scale(b);
+    bough_ode ode = {model->name,     model->n_state, b,          micro_derivative,
+                     micro_linearise, micro_factor,   micro_solve};
+    bough_status status = bough_micro_create(arena, &ode, b->scale, micro, &b->micro);
+    if (bough_is_ok(&status)) *body = b;
+    return status;
+}
+
+bough_subsystem bough_modal_body_subsystem(bough_modal_body *body) {
+    static const bough_subsystem_ops ops = {
+        derivative, output, output_tangent, input_columns, newton_setup, newton_solve, advance,
+        save_size,  save,   restore,        set_state,     statistics};
+    return (bough_subsystem){.name = body->model->name,
+                             .kind = "modal",
+                             .solver = body->micro.name,
+                             .n_state = body->model->n_state,
+                             .n_input = BOUGH_ROD_INPUTS,
+                             .n_output = BOUGH_ROD_OUTPUTS,
+                             .scale = body->scale,
+                             .time = &body->time,
+                             .state = body->state,
+                             .ops = &ops,
+                             .self = body};
+}
+
+bough_rod_loads *bough_modal_body_loads(bough_modal_body *body) {
+    return &body->loads;
+}
+
+void bough_modal_body_ride(bough_modal_body *body, const double *input, double *state) {
+    bough_modal_ride(body->model, input, &body->chain, state);
+}
+
+const bough_rod_model *bough_modal_body_rod(const bough_modal_body *body) {
+    return body->model->rod;
+}
+
+const double *bough_modal_body_vertices(bough_modal_body *body, const double *state,
+                                        const double *input) {
+    bough_modal_expand(body->model, state, input, &body->chain, body->vertices);
+    return body->vertices;
+}

@@ -1,0 +1,36 @@
+// A modal body, of one piece or several, behind the contract of core/subsystem.h: kind "modal".
+// Its ports are a rod's (rod_subsystem.h), so are its loads and its vertices' state.
+#ifndef BOUGH_FLEXBODY_MODAL_SUBSYSTEM_H
+#define BOUGH_FLEXBODY_MODAL_SUBSYSTEM_H
+
+#include "core/subsystem.h"
+#include "flexbody/micro.h"
+#include "flexbody/modal_chain.h"
+
+typedef struct bough_modal_body bough_modal_body;
+
+// Builds state, solvers and scratch in the arena. Starts at rest relative to its frame, which moves
+// with `input` (9) at time `start`; tolerances are those of a rod for the vertex that a shape moves
+// most.
+bough_status bough_modal_body_create(bough_arena *arena, const bough_modal_model *model,
+                                     double start, bough_micro_options micro, const double *input,
+                                     bough_modal_body **body);
+
+// The contract's view; valid as long as the arena.
+bough_subsystem bough_modal_body_subsystem(bough_modal_body *body);
+
+// The loads, to be changed between steps only; no followers.
+bough_rod_loads *bough_modal_body_loads(bough_modal_body *body);
+
+// bough_modal_ride with the body's scratch.
+void bough_modal_body_ride(bough_modal_body *body, const double *input, double *state);
+
+// The rod it stands for.
+const bough_rod_model *bough_modal_body_rod(const bough_modal_body *body);
+
+// The vertices' state in a state of the body, as rod.h lays out that of a rod (13 n); valid until the
+// next call.
+const double *bough_modal_body_vertices(bough_modal_body *body, const double *state,
+                                        const double *input);
+
+#endif

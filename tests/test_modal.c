@@ -1,0 +1,249 @@
+// Modal bodies against the rod they stand for, and against the laws of conservation.
+#include "tests/check.h"
+
+#include "flexbody/modal_static.h"
+#include "flexbody/modal_subsystem.h"
+#include "flexbody/rod_modes.h"
+#include "flexbody/rod_subsystem.h"
+#include "flexbody/section.h"
+#include "tests/contract.h"
+#include "tests/sample_rod.h"
+
+enum { N = 5 };
+
+static const double swaying[BOUGH_ROD_INPUTS] = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9};
+static const bough_modal_options everything = {6 * N, true, false};
+
+static bough_modal_model *general(bough_arena *arena, int n, int pieces,
+                                  bough_modal_options options) {
+    bough_rod_def def = sample_def(n, sample_general_arrays(arena, n), false);
+    bough_modal_model *m = NULL;
+    bough_status status = bough_modal_create(arena, &def, pieces, options, &m);
+    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
+    assert_int_equal(status.code, BOUGH_OK);
+    return m;
+}
+
+static bough_modal_body *body_of(bough_arena *arena, const bough_modal_model *m,
+                                 const double *input) {
+    bough_modal_body *body = NULL;
+    bough_status status = bough_modal_body_create(
+        arena, m, 0, (bough_micro_options){.rtol = 1e-8}, input, &body);
+    assert_int_equal(status.code, BOUGH_OK);
+    return body;
+}
+
+// -- the contract -----------------------------------------------------------------------------------
+
+static void check_contract(int pieces, bough_modal_options options) {
+    bough_arena *arena = bough_arena_create();
+    bough_modal_model *m = general(arena, 7, pieces, options);
+    bough_modal_body *body = body_of(arena, m, swaying);
+    bough_subsystem s = bough_modal_body_subsystem(body);
+    double *state = bough_arena_doubles(arena, (size_t)m->n_state);
+    unsigned seed = 3;
+    bough_modal_rest_state(m, swaying, state);
+    for (int k = 0; k < m->n_state; k++) state[k] += 0.1 * s.scale[k] * sample_random(&seed);
+    sample_loads(m->rod, bough_modal_body_loads(body));
+    contract_point at = {0.5, state, swaying, 1e-5};
+    contract_check(&s, at, 0.03, 0.01);
+    contract_set_state(&s, at, 1e-5);
+    bough_arena_destroy(arena);
+}
+
+static void operations_of_one_piece_agree(void **context) {
+    (void)context;
+    check_contract(1, (bough_modal_options){5, true, true});
+    check_contract(1, (bough_modal_options){3, false, false});
+}
+
+static void operations_of_a_chain_agree(void **context) {
+    (void)context;
+    check_contract(3, (bough_modal_options){4, true, true});
+    check_contract(7, (bough_modal_options){6, false, true});
+}
+
+// -- all shapes: the rod to first order -------------------------------------------------------------
+
+typedef struct pair {
+    bough_arena *arena;
+    bough_modal_model *modal;
+    bough_rod_model *rod;
+    bough_modal_chain chain;
+    bough_rod_scratch scratch;
+    bough_rod_loads loads;
+} pair;
+
+static pair make_pair(int pieces) {
+    pair p = {.arena = bough_arena_create()};
+    p.modal = general(p.arena, N, pieces, everything);
+    p.rod = sample_general(p.arena, N);
+    assert_true(bough_modal_chain_init(&p.chain, p.arena, p.modal));
+    assert_true(bough_rod_scratch_init(&p.scratch, p.arena, p.rod));
+    assert_true(bough_rod_loads_init(&p.loads, p.arena, p.rod));
+    return p;
+}
+
+// Differences of the vertices' rates and of the root wrench, rod less modal, with a motion relative
+// to the frame and loads of size `small`.
+static void compare(pair *p, double small, double *rates, double *wrenches) {
+    enum { STATES = BOUGH_ROD_STATES * N };
+    double y[200], ahead[200], rate[200], state[STATES], next[STATES], back[STATES];
+    double expected[STATES], wrench[6], other[6];
+    const double step = 1e-6;
+    int n = p->modal->n_state;
+    unsigned seed = 9;
+    assert_true(n <= 200);
+    sample_loads(p->rod, &p->loads);
+    for (int k = 0; k < 6 * p->rod->stride; k++) p->loads.value[k] *= small;
+    for (int k = 0; k < 6 * p->rod->stride; k++) p->loads.rate[k] *= small;
+    bough_modal_rest_state(p->modal, swaying, y);
+    for (int k = 0; k < n; k++) y[k] += small * sample_random(&seed);
+    bough_modal_derivative(p->modal, &p->loads, 0.5, y, swaying, &p->chain, rate);
+    bough_modal_root_wrench(p->modal, &p->loads, 0.5, y, swaying, &p->chain, wrench);
+    for (int k = 0; k < n; k++) ahead[k] = y[k] + step * rate[k];
+    bough_modal_expand(p->modal, ahead, swaying, &p->chain, next);
+    for (int k = 0; k < n; k++) ahead[k] = y[k] - step * rate[k];
+    bough_modal_expand(p->modal, ahead, swaying, &p->chain, back);
+    bough_modal_expand(p->modal, y, swaying, &p->chain, state);
+    bough_rod_derivative(p->rod, &p->loads, 0.5, state, swaying, &p->scratch, expected);
+    bough_rod_root_wrench(p->rod, &p->loads, 0.5, state, swaying, &p->scratch, other);
+    *rates = *wrenches = 0;
+    for (int k = 0; k < STATES; k++) {
+        *rates = fmax(*rates, fabs((next[k] - back[k]) / (2 * step) - expected[k]));
+    }
+    for (int k = 0; k < 6; k++) *wrenches = fmax(*wrenches, fabs(wrench[k] - other[k]));
+}
+
+static void check_second_order(int pieces) {
+    double rates[2], wrenches[2];
+    pair p = make_pair(pieces);
+    compare(&p, 2e-3, &rates[0], &wrenches[0]);
+    compare(&p, 1e-3, &rates[1], &wrenches[1]);
+    check_near(rates[0] / rates[1], 4, 0.1, 0);
+    check_near(wrenches[0] / wrenches[1], 4, 0.1, 0);
+    bough_arena_destroy(p.arena);
+}
+
+static void errors_with_all_shapes_are_of_second_order(void **context) {
+    (void)context;
+    check_second_order(1);
+    check_second_order(2);
+    check_second_order(N);
+}
+
+// -- frequencies and statics against the rod --------------------------------------------------------
+
+enum { SEGMENTS = 16, WANTED = 8 };
+
+// A blade-like bar along z, 60 m long: soft in x, stiffer in y, no damping.
+static bough_rod_def bar_def(bough_arena *arena) {
+    bough_section_station section = {.stiffness = {[0] = 1e9, [6] = 1e9, [11] = 8e9, [15] = 4e9,
+                                                   [18] = 1e9, [20] = 1e8},
+                                     .mass = 300,
+                                     .inertia = {400, 100, 0, 500}};
+    bough_section_table table = {
+        .name = "bar", .n_station = 1, .station = &section, .length = 60};
+    bough_rod_def def;
+    bough_status s = bough_section_discretise(arena, &table, SEGMENTS, &def);
+    assert_int_equal(s.code, BOUGH_OK);
+    return def;
+}
+
+typedef struct bar {
+    bough_arena *arena;
+    bough_rod_def def;
+    bough_rod_model *rod;
+    bough_modal_model *modal;
+    bough_modal_newton newton;
+    bough_rod_static work;
+    bough_rod_loads loads;
+    double *state, *vertices; // of the modal body, of the rod
+} bar;
+
+static bar make_bar(int pieces, bough_modal_options options) {
+    bar b = {.arena = bough_arena_create()};
+    b.def = bar_def(b.arena);
+    bough_status s = bough_rod_create(b.arena, &b.def, &b.rod);
+    if (bough_is_ok(&s)) s = bough_modal_create(b.arena, &b.def, pieces, options, &b.modal);
+    if (!bough_is_ok(&s)) print_error("%s\n", s.message);
+    assert_int_equal(s.code, BOUGH_OK);
+    assert_true(bough_modal_newton_init(&b.newton, b.arena, b.modal));
+    assert_true(bough_rod_static_init(&b.work, b.arena, b.rod));
+    assert_true(bough_rod_loads_init(&b.loads, b.arena, b.rod));
+    b.state = bough_arena_doubles(b.arena, (size_t)b.modal->n_state);
+    b.vertices = bough_arena_doubles(b.arena, (size_t)BOUGH_ROD_STATES * b.rod->n);
+    return b;
+}
+
+static void settle_rod(bar *b, const double *input) {
+    bough_rod_static_options options = bough_rod_static_options_default();
+    bough_rod_rest_state(b->rod, input, b->vertices);
+    bough_status s = bough_rod_steady(b->rod, &b->loads, input, &options, &b->work, b->vertices);
+    if (!bough_is_ok(&s)) print_error("%s\n", s.message);
+    assert_int_equal(s.code, BOUGH_OK);
+}
+
+static void settle_modal(bar *b, const double *input) {
+    bough_modal_rest_state(b->modal, input, b->state);
+    bough_status s = bough_modal_steady(b->modal, &b->loads, 0, input, &b->newton, b->state);
+    if (!bough_is_ok(&s)) print_error("%s\n", s.message);
+    assert_int_equal(s.code, BOUGH_OK);
+}
+
+static void frequencies(bar *b, const double *input, double *rod, double *modal) {
+    bough_rod_mode_list list = {.wanted = WANTED};
+    int found = 0;
+    settle_rod(b, input);
+    settle_modal(b, input);
+    bough_status s = bough_rod_modes(b->arena, b->rod, &b->work, input, b->vertices, &list);
+    assert_int_equal(s.code, BOUGH_OK);
+    s = bough_modal_frequencies(b->arena, b->modal, &b->loads, 0, input, b->state, WANTED, modal,
+                                &found);
+    assert_int_equal(s.code, BOUGH_OK);
+    assert_int_equal(list.found, WANTED);
+    assert_int_equal(found, WANTED);
+    for (int k = 0; k < WANTED; k++) rod[k] = list.mode[k].frequency;
+}
+
+static const double at_rest[BOUGH_ROD_INPUTS] = {0};
+
+// All shapes: those of the same mesh. Twelve: the clamped modes are among the shapes as they are.
+static void frequencies_at_rest_are_the_rods(void **context) {
+    (void)context;
+    static const bough_modal_options options[] = {{6 * SEGMENTS, false, true}, {12, true, true}};
+    for (int k = 0; k < 2; k++) {
+        double rod[WANTED], modal[WANTED];
+        bar b = make_bar(1, options[k]);
+        frequencies(&b, at_rest, rod, modal);
+        for (int i = 0; i < WANTED; i++) check_near(modal[i], rod[i], 1e-9, 0);
+        bough_arena_destroy(b.arena);
+    }
+}
+
+// About the axis x through a point 1.5 m below the root, as in a rotor; Southwell: stiffened.
+static void rotation_stiffens_as_it_does_the_rod(void **context) {
+    (void)context;
+    const double omega = 1.6, input[BOUGH_ROD_INPUTS] = {0, -1.5 * 1.6, 0, omega, 0, 0, 0, 0, 0};
+    double rest[WANTED], rod[WANTED], modal[WANTED], plain[WANTED], unused[WANTED];
+    bar b = make_bar(1, (bough_modal_options){12, true, true});
+    frequencies(&b, at_rest, rest, unused);
+    frequencies(&b, input, rod, modal);
+    bar c = make_bar(1, (bough_modal_options){12, true, false});
+    frequencies(&c, input, unused, plain);
+    for (int i = 0; i < WANTED; i++) check_near(modal[i], rod[i], 1e-3, 0);
+    assert_true(rod[0] > 1.1 * rest[0] && plain[0] < 1.001 * rest[0]);
+    bough_arena_destroy(b.arena);
+    bough_arena_destroy(c.arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(operations_of_one_piece_agree),
+        cmocka_unit_test(operations_of_a_chain_agree),
+        cmocka_unit_test(errors_with_all_shapes_are_of_second_order),
+        cmocka_unit_test(frequencies_at_rest_are_the_rods),
+        cmocka_unit_test(rotation_stiffens_as_it_does_the_rod),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
