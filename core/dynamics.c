@@ -2,6 +2,7 @@
 #include "core/dynamics.h"
 
 #include "core/base.h"
+#include "core/force.h"
 #include "core/linalg.h"
 #include "core/loop.h"
 
@@ -47,12 +48,10 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
         d->gravity[i] = bough_mat3_tmul(d->pose[i].rotation, tree->gravity);
     }
     joint_springs(tree, q, v, d);
-    for (int k = 0; k < tree->n_springs; k++) {
-        double tension;
-        bough_vec3 direction;
-        double stretch =
-            bough_tree_spring(tree, d, k, &tension, &direction) - tree->springs[k].length;
-        d->elastic += 0.5 * tree->springs[k].stiffness * stretch * stretch;
+    for (int k = 0; k < bough_tree_n_elements(tree); k++) {
+        double energy;
+        bough_element_force(tree, d, k, &energy);
+        d->elastic += energy;
     }
 }
 
@@ -70,17 +69,11 @@ static bough_wrench external_at(const bough_external *e, double t) {
                           bough_axpy(dt, e->rate.moment, e->value.moment)};
 }
 
-// The spring draws its first marker along its direction and the second against it.
-static void spring_wrenches(const bough_tree *tree, bough_tree_data *d, int spring) {
-    double tension;
-    bough_vec3 direction;
-    bough_tree_spring(tree, d, spring, &tension, &direction);
-    for (int end = 0; end < 2; end++) {
-        const bough_frame *marker = &tree->markers[tree->springs[spring].marker[end]];
-        bough_vec3 force = bough_scale(end == 0 ? tension : -tension, direction);
-        bough_mat3 r = bough_tree_frame_pose(d, marker).rotation;
-        subtract_at(d, marker, (bough_wrench){bough_mat3_tmul(r, force), {0, 0, 0}});
-    }
+static void element_wrenches(const bough_tree *tree, bough_tree_data *d, int element) {
+    double energy;
+    bough_force_pair pair = bough_element_force(tree, d, element, &energy);
+    for (int end = 0; end < 2; end++)
+        subtract_at(d, bough_element_frame(tree, element, end), pair.on[end]);
 }
 
 bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data *d, int end,
@@ -112,19 +105,13 @@ static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t,
         const bough_external *e = &tree->external[m];
         if (e->active) subtract_at(d, &tree->markers[m], external_at(e, t));
     }
-    for (int k = 0; k < tree->n_springs; k++)
-        spring_wrenches(tree, d, k);
+    for (int k = 0; k < bough_tree_n_elements(tree); k++)
+        element_wrenches(tree, d, k);
+    for (int k = 0; k < tree->n_applied; k++) {
+        const bough_frame *marker = &tree->markers[tree->applied[k].marker];
+        subtract_at(d, marker, bough_applied_force(tree, d, k, t));
+    }
     if (d->loops != NULL) bough_loops_subtract(tree, d);
-}
-
-static double table_value(const bough_joint_load_def *load, double t) {
-    int last = load->n - 1, i = 0;
-    if (t <= load->times[0]) return load->values[0];
-    if (t >= load->times[last]) return load->values[last];
-    while (t > load->times[i + 1])
-        i++;
-    double f = (t - load->times[i]) / (load->times[i + 1] - load->times[i]);
-    return (1 - f) * load->values[i] + f * load->values[i + 1];
 }
 
 // τ of the joints' springs and loads, into data->force
@@ -132,9 +119,9 @@ static void joint_loads(const bough_tree *tree, bough_tree_data *d, double t) {
     memcpy(d->force, d->passive, (size_t)tree->n_v * sizeof(double));
     for (int k = 0; k < tree->n_loads; k++) {
         const bough_joint_load_def *load = &tree->loads[k];
-        double span = load->end - load->start;
-        double factor = span <= 0 ? 1 : bough_clamp((t - load->start) / span, 0, 1);
-        double value = load->n > 0 ? table_value(load, t) : load->value;
+        double factor = bough_ramp_factor(load->start, load->end, t);
+        double value = load->n > 0 ? bough_table_value(load->n, load->times, load->values, t)
+                                   : load->value;
         d->force[tree->links[load->body].first_speed] += factor * value;
     }
 }

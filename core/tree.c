@@ -128,11 +128,35 @@ static int depth(const bough_tree_def *def, int body) {
     return steps;
 }
 
-static bool is_increasing(const bough_joint_load_def *load) {
-    for (int i = 1; i < load->n; i++) {
-        if (!(load->times[i] > load->times[i - 1])) return false;
+static bool is_increasing(int n, const double *times) {
+    for (int i = 1; i < n; i++) {
+        if (!(times[i] > times[i - 1])) return false;
     }
     return true;
+}
+
+static bool has_marker(const bough_tree_def *def, int marker) {
+    return marker >= 0 && marker < def->n_markers;
+}
+
+static bough_status check_forces(const bough_tree_def *def) {
+    for (int k = 0; k < def->n_springs; k++) {
+        const int *m = def->springs[k].marker;
+        if (has_marker(def, m[0]) && has_marker(def, m[1])) continue;
+        return bough_fail(BOUGH_INVALID, "spring %d: its marker does not exist", k);
+    }
+    for (int k = 0; k < def->n_bushings; k++) {
+        const int *m = def->bushings[k].marker;
+        if (has_marker(def, m[0]) && has_marker(def, m[1])) continue;
+        return bough_fail(BOUGH_INVALID, "bushing %d: its marker does not exist", k);
+    }
+    for (int k = 0; k < def->n_applied; k++) {
+        const bough_applied_def *a = &def->applied[k];
+        if (has_marker(def, a->marker) && is_increasing(a->n, a->times)) continue;
+        return bough_fail(BOUGH_INVALID, "applied wrench %d: it needs a marker, and times that "
+                                         "increase", k);
+    }
+    return bough_ok();
 }
 
 static bough_status check_attachments(const bough_tree_def *def) {
@@ -158,14 +182,8 @@ static bough_status check_attachments(const bough_tree_def *def) {
                               def->ends[e].name);
         }
     }
-    for (int k = 0; k < def->n_springs; k++) {
-        const int *m = def->springs[k].marker;
-        if (m[0] < 0 || m[0] >= def->n_markers || m[1] < 0 || m[1] >= def->n_markers) {
-            return bough_fail(BOUGH_INVALID, "spring %d: its marker does not exist", k);
-        }
-    }
     for (int k = 0; k < def->n_loads; k++) {
-        if (!is_increasing(&def->loads[k])) {
+        if (!is_increasing(def->loads[k].n, def->loads[k].times)) {
             return bough_fail(BOUGH_INVALID, "joint load %d: the times of its table must increase",
                               k);
         }
@@ -178,7 +196,7 @@ static bough_status check_attachments(const bough_tree_def *def) {
                               known ? def->bodies[body].name : "?");
         }
     }
-    return bough_ok();
+    return check_forces(def);
 }
 
 static bough_status check(const bough_tree_def *def) {
@@ -328,19 +346,30 @@ static void set_initial(bough_tree *tree, const bough_tree_def *def) {
     bough_tree_prescribe(tree, 0, tree->initial);
 }
 
-static bool take_tables(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
-    for (int k = 0; k < def->n_loads; k++) {
-        const bough_joint_load_def *from = &def->loads[k];
-        if (from->n == 0) continue;
-        size_t n = (size_t)from->n;
-        double *copy = bough_arena_doubles(arena, 2 * n);
-        if (copy == NULL) return false;
-        memcpy(copy, from->times, n * sizeof(double));
-        memcpy(copy + n, from->values, n * sizeof(double));
-        tree->loads[k].times = copy;
-        tree->loads[k].values = copy + n;
-    }
+// Copies a table's times and values (n each).
+static bool take_table(bough_arena *arena, int n, const double **times, const double **values) {
+    size_t size = (size_t)n * sizeof(double);
+    double *copy = n == 0 ? NULL : bough_arena_doubles(arena, 2 * (size_t)n);
+    if (n == 0 || copy == NULL) return n == 0;
+    memcpy(copy, *times, size);
+    memcpy(copy + n, *values, size);
+    *times = copy;
+    *values = copy + n;
     return true;
+}
+
+static bool take_tables(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+    bool taken = true;
+    for (int k = 0; k < def->n_loads; k++) {
+        bough_joint_load_def *load = &tree->loads[k];
+        taken = take_table(arena, load->n, &load->times, &load->values) && taken;
+    }
+    for (int k = 0; k < def->n_applied; k++) {
+        bough_applied_def *a = &tree->applied[k];
+        *a = def->applied[k];
+        taken = take_table(arena, a->n, &a->times, &a->values) && taken;
+    }
+    return taken;
 }
 
 static bool take_model(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
@@ -360,6 +389,10 @@ static bool take_model(bough_arena *arena, const bough_tree_def *def, bough_tree
     tree->ends = bough_arena_take(arena, (size_t)def->n_ends * sizeof(bough_frame));
     tree->n_springs = def->n_springs;
     tree->springs = bough_arena_take(arena, (size_t)def->n_springs * sizeof(bough_spring_def));
+    tree->n_bushings = def->n_bushings;
+    tree->bushings = bough_arena_take(arena, (size_t)def->n_bushings * sizeof(bough_bushing_def));
+    tree->n_applied = def->n_applied;
+    tree->applied = bough_arena_take(arena, (size_t)def->n_applied * sizeof(bough_applied_def));
     tree->initial = bough_arena_doubles(arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) *
                                                    (size_t)def->n_bodies);
     return !bough_arena_exhausted(arena);
@@ -412,8 +445,10 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     place_attachments(tree, def);
     for (int k = 0; k < def->n_springs; k++)
         tree->springs[k] = def->springs[k];
+    for (int k = 0; k < def->n_bushings; k++)
+        tree->bushings[k] = def->bushings[k];
     if (!take_tables(arena, def, tree)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tables of joint loads");
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tables of loads");
     }
     status = create_motions(arena, def, tree);
     if (!bough_is_ok(&status)) return status;
@@ -509,20 +544,6 @@ bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_f
     bough_mat3 r = bough_tree_frame_pose(data, frame).rotation;
     bough_twist own = bough_tree_frame_twist(data, frame);
     return (bough_twist){bough_mat3_mul(r, own.linear), bough_mat3_mul(r, own.angular)};
-}
-
-double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, int spring,
-                         double *tension, bough_vec3 *direction) {
-    const bough_spring_def *s = &tree->springs[spring];
-    const bough_frame *a = &tree->markers[s->marker[0]], *b = &tree->markers[s->marker[1]];
-    bough_vec3 way = bough_sub(bough_tree_frame_pose(data, b).position,
-                               bough_tree_frame_pose(data, a).position);
-    bough_vec3 rate = bough_sub(bough_tree_frame_velocity(data, b).linear,
-                                bough_tree_frame_velocity(data, a).linear);
-    double length = bough_norm(way);
-    *direction = length > 0 ? bough_scale(1 / length, way) : way;
-    *tension = s->stiffness * (length - s->length) + s->damping * bough_dot(*direction, rate);
-    return length;
 }
 
 bough_tree_sums bough_tree_sum(const bough_tree *tree, const bough_tree_data *data) {

@@ -96,6 +96,24 @@ typedef struct bough_closure_def {
     bough_vec3 axis, second_axis;
 } bough_closure_def;
 
+// A linear bushing: springs and dampers along and about the axes of its first marker, by the second
+// one's displacement and rotation vector (of less than π) against it.
+typedef struct bough_bushing_def {
+    int marker[2];                   // indices
+    double stiffness[6], damping[6]; // three along, three about [N/m, N m/rad; times s]
+} bough_bushing_def;
+
+// A wrench on a marker: value × factor, factor rising linearly from 0 at `start` to 1 at `end`
+// (end <= start: always 1), or from a table.
+typedef struct bough_applied_def {
+    int marker; // index
+    bough_wrench wrench; // [N, N m]
+    bool ground;         // in ground axes, else in the marker's
+    double start, end;   // [s]
+    int n;               // rows of a table in place of the ramp, 0: none
+    const double *times, *values; // (n) times increasing [s], factors; copied
+} bough_applied_def;
+
 typedef struct bough_tree_def {
     bough_vec3 gravity; // in ground axes [m/s²]
     int n_bodies, n_markers, n_ports, n_loads;
@@ -108,6 +126,9 @@ typedef struct bough_tree_def {
     int n_closures;
     const bough_closure_def *closures;
     double closure_time; // in which violations of closures decay; 0: 0.01 [s]
+    int n_bushings, n_applied;
+    const bough_bushing_def *bushings;
+    const bough_applied_def *applied;
     int n_ends;
     const bough_end_def *ends;
 } bough_tree_def;
@@ -164,6 +185,9 @@ typedef struct bough_tree {
     double closure_time;         // [s]
     int closure_rank;            // how many of the equations are independent at the start
     double closure_moved;        // how far assembly moved a coordinate [rad, m]
+    int n_bushings, n_applied;
+    bough_bushing_def *bushings; // (n_bushings), as in the def
+    bough_applied_def *applied;  // (n_applied), as in the def
     int n_ends;
     bough_frame *ends;           // (n_ends), as in the def, the body's frame
     bough_external *external;    // (n_markers), changed by bough_tree_set_wrench only
@@ -247,7 +271,7 @@ bough_twist bough_tree_frame_twist(const bough_tree_data *data, const bough_fram
 bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_frame *frame);
 
 // Length of a spring [m] and the force that draws its ends together [N]; `direction` is the unit
-// vector in the ground from its first marker to its second.
+// vector in the ground from its first marker to its second. Defined in force.c.
 double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, int spring,
                          double *tension, bough_vec3 *direction);
 
@@ -256,7 +280,7 @@ double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, in
 typedef struct bough_tree_sums {
     double mass;                 // [kg]
     double kinetic, potential;   // [J]
-    double elastic;              // of the springs [J]
+    double elastic;              // of springs and bushings [J]
     bough_vec3 linear_momentum;  // [kg m/s]
     bough_vec3 angular_momentum; // [kg m²/s]
     bough_vec3 mass_centre;      // in the ground [m]

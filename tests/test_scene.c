@@ -676,7 +676,9 @@ static void loads_fit_their_rods(void **state) {
                      "  - {body: b, at: 5, force: [1, 2, 3]}\n"
                      "  - {body: b, at: 2.1 m, force: [1, 2, 3]}\n"
                      "  - {body: b, along: [0, 3], force: [1, 2, 3]}\n"
-                     "  - {body: c, at: tip, force: [1, 2, 3]}\n",
+                     "  - {body: c, at: tip, force: [1, 2, 3]}\n"
+                     "  - {body: a, force: [1, 2, 3], frame: follower}\n"
+                     "  - {body: b, at: tip, force: [1, 2, 3], point: [1, 2, 3]}\n",
             "s.yaml:7:5: error: loads[0]: expected either 'joint' or 'body'\n"
             "s.yaml:8:5: error: loads[1]: expected either 'joint' or 'body', got both\n"
             "s.yaml:9:5: error: loads[2]: expected either 'at' or 'along'\n"
@@ -690,14 +692,16 @@ static void loads_fit_their_rods(void **state) {
             "s.yaml:14:32: error: loads[7].torque: only used with 'joint'\n"
             "s.yaml:15:38: error: loads[8].force[0]: expected a force per length (in N/m, or "
             "with a unit, as '2 kN/m'), got '1 N': the unit 'N' does not fit\n"
-            "s.yaml:16:12: error: loads[9].body: 'a' is rigid: loads act on joints and on "
-            "rods\n"
+            "s.yaml:16:19: error: loads[9].at: 'a' is rigid: give the 'point'\n"
             "s.yaml:17:12: error: loads[10].body: there is no body 'd' (did you mean 'a'?)\n"
             "s.yaml:18:19: error: loads[11].at: 'b' has the vertices 0 to 4, got 5\n"
             "s.yaml:19:19: error: loads[12].at: 'b' is 2 m long, got 2.1 m\n"
             "s.yaml:20:22: error: loads[13].along: 'b' is 2 m long, got 3 m\n"
             "s.yaml:21:12: error: loads[14].frame: 'c' moves with the joint of 'c'; loads in "
-            "ground axes are built for rods at rest: give 'frame: body' or 'frame: follower'\n");
+            "ground axes are built for rods at rest: give 'frame: body' or 'frame: follower'\n"
+            "s.yaml:22:40: error: loads[15].frame: 'a' is rigid: 'frame: body' turns with it\n"
+            "s.yaml:23:49: error: loads[16].point: only used with a rigid body\n");
+    accepts(TWO_RODS "  - {body: a, moment: [1, 2, 3], factor: {times: [0, 1], values: [0, 2]}}\n");
 }
 
 static void modes_name_their_axis(void **state) {

@@ -2,6 +2,7 @@
 
 #include "apps/scene/aero_link.h"
 #include "apps/scene/control_link.h"
+#include "apps/scene/force_link.h"
 #include "apps/scene/load_link.h"
 #include "apps/scene/settle.h"
 #include "core/tree_subsystem.h"
@@ -18,8 +19,7 @@ typedef struct builder {
     bough_body_def *body;          // (n_body + n_end): the tree's body i is the scene's body i; after
                                    // them what each carrying rod ends in
     bough_end_def *end;            // (n_end)
-    bough_marker_def *marker;      // (n_beam), then two per spring, then the scene's
-    bough_spring_def *spring;      // (n_spring)
+    bough_force_link force;        // markers, those of the beams first, and what acts on them
     bough_port_def *port;          // (n_rod)
     bough_joint_load_def *load;    // (n_load): those on joints
     int n_load;
@@ -244,8 +244,8 @@ static bough_status add_beam(builder *b, int index) {
     beam->port = beam->end = -1;
     bough_status status = discretise(b, beam);
     if (!bough_is_ok(&status)) return status;
-    b->marker[s->n_beam++] = (bough_marker_def){beam->body->name, index,
-                                                bough_transform_identity()};
+    b->force.marker[s->n_beam++] =
+        (bough_marker_def){beam->body->name, index, bough_transform_identity()};
     if (beam->body->fidelity == BOUGH_SCENE_RIGID) return bough_ok();
     beam->port = s->n_rod;
     b->port[s->n_rod++] = (bough_port_def){beam->body->name, beam->marker,
@@ -296,11 +296,11 @@ static void set_loads(builder *b) {
     for (int k = 0; k < b->scene->n_load; k++) {
         const bough_scene_load *load = &b->scene->load[k];
         add_ramp(b, load->ramp);
+        for (int i = 0; i < load->n_time; i++) b->event[b->n_event++] = load->times[i];
         if (load->body_name != NULL) continue;
         b->load[b->n_load++] = (bough_joint_load_def){
             load->joint, load->amount, load->ramp[0], load->ramp[1],
             load->n_time, load->times, load->values};
-        for (int i = 0; i < load->n_time; i++) b->event[b->n_event++] = load->times[i];
     }
     if (b->scene->aero.node != NULL) add_ramp(b, b->scene->aero.ramp);
     if (b->scene->control.node != NULL) add_generator(b);
@@ -315,57 +315,38 @@ static size_t count_corners(const bough_scene *scene) {
 
 // -- parts ----------------------------------------------------------------------------------------
 
-// A marker at either end, after those of the beams.
-static void set_springs(builder *b) {
-    int first = b->s->n_beam;
-    for (int k = 0; k < b->scene->n_spring; k++) {
-        const bough_scene_spring *from = &b->scene->spring[k];
-        for (int end = 0; end < 2; end++) {
-            const double *x = from->point[end];
-            bough_marker_def *marker = &b->marker[first + 2 * k + end];
-            marker->name = from->name;
-            marker->body = from->body[end];
-            marker->placement = bough_transform_identity();
-            marker->placement.position = bough_v3(x[0], x[1], x[2]);
-        }
-        b->spring[k] = (bough_spring_def){{first + 2 * k, first + 2 * k + 1},
-                                          from->stiffness, from->damping, from->length};
-    }
-}
-
-static void set_markers(builder *b) {
-    b->s->first_marker = b->s->n_beam + 2 * b->scene->n_spring;
-    for (int k = 0; k < b->scene->n_marker; k++) {
-        const bough_scene_marker *from = &b->scene->marker[k];
-        bough_marker_def *marker = &b->marker[b->s->first_marker + k];
-        *marker = (bough_marker_def){from->name, from->body, bough_transform_identity()};
-        marker->placement.position = bough_v3(from->point[0], from->point[1], from->point[2]);
-    }
-}
-
 static bough_status build_tree(builder *b) {
-    set_springs(b);
-    set_markers(b);
+    b->force.n_marker = b->s->n_beam;
+    bough_force_link_fill(b->scene, &b->force);
+    b->s->first_marker = b->force.first_own;
     const bough_scene *scene = b->scene;
     bough_simulation *s = b->s;
     bough_tree_def def = {.gravity = bough_v3(scene->gravity[0], scene->gravity[1],
                                               scene->gravity[2]),
                           .n_bodies = scene->n_body + s->n_end,
-                          .n_markers = s->first_marker + scene->n_marker,
+                          .n_markers = b->force.n_marker,
                           .n_ports = s->n_rod,
                           .n_loads = b->n_load,
                           .bodies = b->body,
-                          .markers = b->marker,
+                          .markers = b->force.marker,
                           .ports = b->port,
                           .loads = b->load,
                           .n_springs = scene->n_spring,
-                          .springs = b->spring,
+                          .springs = b->force.spring,
+                          .n_bushings = scene->n_bushing,
+                          .bushings = b->force.bushing,
+                          .n_applied = b->force.n_applied,
+                          .applied = b->force.applied,
                           .n_ends = s->n_end,
                           .ends = b->end};
     bough_status status = bough_tree_create(b->arena, &def, &s->tree);
     if (bough_is_ok(&status)) status = bough_tree_data_create(b->arena, s->tree, &s->view);
     if (bough_is_ok(&status)) s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);
     if (!bough_is_ok(&status)) return status;
+    if (scene->n_bushing > 0) {
+        bough_tree_kinematics(s->tree, s->tree->initial, s->view);
+        bough_force_link_rest(scene, s->view, s->tree);
+    }
     const bough_scene_solver *master = &scene->simulation.master;
     bough_tree_solver solver =
         master->solver == BOUGH_SCENE_RADAU ? BOUGH_TREE_RADAU : BOUGH_TREE_IDA;
@@ -514,9 +495,7 @@ static bool take_arrays(builder *b) {
     b->s = bough_arena_take(b->arena, sizeof *b->s);
     b->body = bough_arena_take(b->arena, 2 * bodies * sizeof *b->body);
     b->end = bough_arena_take(b->arena, bodies * sizeof *b->end);
-    size_t springs = (size_t)b->scene->n_spring, markers = (size_t)b->scene->n_marker;
-    b->marker = bough_arena_take(b->arena, (bodies + 2 * springs + markers) * sizeof *b->marker);
-    b->spring = bough_arena_take(b->arena, (springs + 1) * sizeof *b->spring);
+    bough_force_link_take(b->arena, b->scene, b->scene->n_body, &b->force);
     b->port = bough_arena_take(b->arena, bodies * sizeof *b->port);
     b->load = bough_arena_take(b->arena, (loads + 2) * sizeof *b->load);
     b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);

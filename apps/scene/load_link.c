@@ -33,6 +33,7 @@ bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s) {
     for (int k = 0; k < s->scene->n_load; k++) {
         const bough_scene_load *load = &s->scene->load[k];
         if (load->body_name == NULL) continue;
+        if (s->scene->body[load->body].fidelity == BOUGH_SCENE_RIGID) continue; // force_link.h
         const bough_beam *beam = bough_simulation_beam(s, load->body);
         const bough_rod_model *m = bough_beam_mesh(beam);
         bool follower = load->frame == BOUGH_SCENE_LOAD_FOLLOWER;

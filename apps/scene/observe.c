@@ -4,6 +4,7 @@
 #include "apps/scene/build.h"
 #include "apps/scene/control_link.h"
 #include "core/dynamics.h"
+#include "core/force.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -158,6 +159,36 @@ static bough_status add_springs(bough_simulation *s, bough_channels *list) {
         const char *name = s->scene->spring[k].name;
         status = bough_channels_add(list, "m", "%sLen", name);
         if (bough_is_ok(&status)) status = bough_channels_add(list, "N", "%sFrc", name);
+    }
+    return status;
+}
+
+static void sample_bushings(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    for (int k = 0; k < s->tree->n_bushings; k++, value += 6) {
+        double energy;
+        int element = s->tree->n_springs + k;
+        bough_force_pair pair = bough_element_force(s->tree, s->view, element, &energy);
+        bough_transform first =
+            bough_tree_frame_pose(s->view, bough_element_frame(s->tree, element, 0));
+        bough_transform second =
+            bough_tree_frame_pose(s->view, bough_element_frame(s->tree, element, 1));
+        bough_mat3 r = bough_mat3_product(bough_mat3_transpose(first.rotation), second.rotation);
+        bough_wrench w = {bough_mat3_mul(r, pair.on[1].force),
+                          bough_mat3_mul(r, pair.on[1].moment)};
+        bough_wrench_store(w, value);
+    }
+}
+
+static bough_status add_bushings(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_bushings, s);
+    for (int k = 0; k < s->scene->n_bushing; k++) {
+        for (int c = 0; c < 6 && bough_is_ok(&status); c++) {
+            status = bough_channels_add(list, c < 3 ? "N" : "N-m", "%s%s%c",
+                                        s->scene->bushing[k].name, c < 3 ? "Frc" : "Mom",
+                                        "XYZ"[c % 3]);
+        }
     }
     return status;
 }
@@ -324,6 +355,7 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     if (bough_is_ok(&status)) status = add_joints(s, channels);
     if (bough_is_ok(&status) && has_motion(s->scene)) status = add_drives(s, channels);
     if (bough_is_ok(&status) && s->scene->n_spring > 0) status = add_springs(s, channels);
+    if (bough_is_ok(&status) && s->scene->n_bushing > 0) status = add_bushings(s, channels);
     if (bough_is_ok(&status) && s->scene->n_marker > 0) status = add_markers(s, channels);
     if (bough_is_ok(&status) && s->scene->turbine.node != NULL) status = add_blades(s, channels);
     if (bough_is_ok(&status)) status = add_tips(s, channels);

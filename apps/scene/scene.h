@@ -221,17 +221,17 @@ typedef enum bough_scene_load_place {
     BOUGH_SCENE_ALONG, // distributed
 } bough_scene_load_place;
 
-// On a joint, or on a rod. Factor in time: 0 before ramp[0], 1 after ramp[1], linear between; {0, 0}:
-// always 1.
+// On a joint, a rod or a rigid body. Factor in time: 0 before ramp[0], 1 after ramp[1], linear
+// between; {0, 0}: always 1.
 typedef struct bough_scene_load {
     const bough_node *node;
-    const char *joint_name; // NULL: the load acts on a rod
+    const char *joint_name; // NULL: the load acts on a body
     int joint;              // index of the body that the joint carries
     double amount;          // torque [N m] of a revolute joint, force [N] of a prismatic one
     int n_time;             // rows of a table in place of the amount, 0: none
     double *times, *values; // (n_time) [s], [N m] or [N]; linear between, held before and after
     const char *body_name;  // NULL: the load acts on a joint
-    int body;               // index of a body with fidelity rod
+    int body;               // index of a body
     int place;              // bough_scene_load_place
     int vertex;             // AT_VERTEX: 0 is the root
     double span[2];         // AT_SPAN: the first; ALONG: from, to [m]
@@ -239,7 +239,20 @@ typedef struct bough_scene_load {
     double moment[3];       // [N m]; ALONG: [N m/m]
     int frame;              // bough_scene_load_frame
     double ramp[2];         // [s]
+    double point[3];        // on a rigid body: in its frame [m]; the values are then factors
 } bough_scene_load;
+
+// Springs and dampers along and about the axes of one body or the ground at a point of it, against
+// another as it stands at the start.
+typedef struct bough_scene_bushing {
+    const bough_node *node;
+    const char *name;
+    const char *body_name[2];
+    int body[2];     // indices, or BOUGH_SCENE_GROUND
+    double point[3]; // in the first one's frame [m]
+    double stiffness[3], damping[3];                       // [N/m], [N s/m]
+    double rotational_stiffness[3], rotational_damping[3]; // [N m/rad], [N m s/rad]
+} bough_scene_bushing;
 
 // A point of a rigid body or the ground that is recorded.
 typedef struct bough_scene_marker {
@@ -421,6 +434,8 @@ typedef struct bough_scene {
     bough_scene_load *load; // (n_load)
     int n_spring;
     bough_scene_spring *spring; // (n_spring)
+    int n_bushing;
+    bough_scene_bushing *bushing; // (n_bushing)
     int n_marker;
     bough_scene_marker *marker; // (n_marker)
     bough_scene_turbine turbine;

@@ -235,28 +235,27 @@ static void link_load(bough_schema_reader *r, const bough_scene *s, bough_scene_
     load->joint = load->body = UNRESOLVED;
     if (load->body_name != NULL) {
         load->body = resolve(r, s, value_of(load->node, "body"), "body", load->body_name);
-        if (load->body >= 0) bough_scene_check_rod_load(r, s, load);
+        if (load->body >= 0) bough_scene_check_body_load(r, s, load);
     } else {
         link_joint_load(r, s, load);
     }
 }
 
-static void link_spring(bough_schema_reader *r, const bough_scene *s, bough_scene_spring *spring) {
+// The two ends of a spring or a bushing, named by `from` and `to`.
+static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_node *item,
+                      const char *const name[2], int body[2]) {
     static const char *const keys[] = {"from", "to"};
     for (int end = 0; end < 2; end++) {
-        const char *name = spring->body_name[end];
-        spring->body[end] = BOUGH_SCENE_GROUND;
-        if (name == NULL || strcmp(name, "ground") == 0) continue;
-        const bough_node *node = value_of(spring->node, keys[end]);
-        spring->body[end] = resolve(r, s, node, keys[end], name);
-        if (spring->body[end] < 0 || s->body[spring->body[end]].fidelity <= BOUGH_SCENE_RIGID) {
-            continue;
-        }
-        bough_schema_error(r, node, keys[end], "'%s' is a rod; springs act on rigid bodies", name);
+        body[end] = BOUGH_SCENE_GROUND;
+        if (name[end] == NULL || strcmp(name[end], "ground") == 0) continue;
+        const bough_node *node = value_of(item, keys[end]);
+        body[end] = resolve(r, s, node, keys[end], name[end]);
+        if (body[end] < 0 || s->body[body[end]].fidelity <= BOUGH_SCENE_RIGID) continue;
+        bough_schema_error(r, node, keys[end], "'%s' is a rod; springs act on rigid bodies",
+                           name[end]);
     }
-    const char *const *names = spring->body_name;
-    if (names[0] != NULL && names[1] != NULL && strcmp(names[0], names[1]) == 0) {
-        bough_schema_error(r, value_of(spring->node, "to"), "to", "must be another body");
+    if (name[0] != NULL && name[1] != NULL && strcmp(name[0], name[1]) == 0) {
+        bough_schema_error(r, value_of(item, "to"), "to", "must be another body");
     }
 }
 
@@ -265,7 +264,7 @@ static void link_marker(bough_schema_reader *r, const bough_scene *s, bough_scen
     if (marker->body_name == NULL || strcmp(marker->body_name, "ground") == 0) return;
     const bough_node *node = value_of(marker->node, "body");
     marker->body = resolve(r, s, node, "body", marker->body_name);
-    if (marker->body < 0 || s->body[marker->body].fidelity != BOUGH_SCENE_ROD) return;
+    if (marker->body < 0 || s->body[marker->body].fidelity <= BOUGH_SCENE_RIGID) return;
     bough_schema_error(r, node, "body", "'%s' is a rod, whose tip is recorded", marker->body_name);
 }
 
@@ -487,9 +486,17 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
         at(r, "markers[%d]", i);
         if (scene->marker[i].node != NULL) link_marker(r, scene, &scene->marker[i]);
     }
+    for (int i = 0; i < scene->n_bushing; i++) {
+        at(r, "bushings[%d]", i);
+        bough_scene_bushing *bushing = &scene->bushing[i];
+        if (bushing->node == NULL) continue;
+        link_ends(r, scene, bushing->node, bushing->body_name, bushing->body);
+    }
     for (int i = 0; i < scene->n_spring; i++) {
         at(r, "springs[%d]", i);
-        if (scene->spring[i].node != NULL) link_spring(r, scene, &scene->spring[i]);
+        bough_scene_spring *spring = &scene->spring[i];
+        if (spring->node == NULL) continue;
+        link_ends(r, scene, spring->node, spring->body_name, spring->body);
     }
     link_turbine(r, scene);
     link_aero(r, scene);

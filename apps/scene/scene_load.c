@@ -1,4 +1,4 @@
-// Loads of a scene: on a joint's axis, or on a rod at a place or along a stretch.
+// Loads of a scene: on a joint's axis, on a rod at a place or along a stretch, on a rigid body.
 #include "apps/scene/scene_parts.h"
 
 #include "apps/scene/schema_parts.h"
@@ -70,12 +70,16 @@ typedef struct load_table {
      .count_offset = offsetof(load_table, n_value)}
 static const bough_key torque_keys[] = {TIMES, VALUES(BOUGH_MOMENT)};
 static const bough_key force_keys[] = {TIMES, VALUES(BOUGH_FORCE)};
+static const bough_key factor_keys[] = {TIMES, VALUES(BOUGH_PURE_NUMBER)};
 #undef TIMES
 #undef VALUES
 static const bough_schema torque_schema = {
     .name = "a table", .size = sizeof(load_table), .n_key = 2, .key = torque_keys};
 static const bough_schema force_schema = {
     .name = "a table", .size = sizeof(load_table), .n_key = 2, .key = force_keys};
+
+static const bough_schema factor_schema = {
+    .name = "a table", .size = sizeof(load_table), .n_key = 2, .key = factor_keys};
 
 static void read_table(bough_schema_reader *r, const bough_node *node, const bough_schema *schema,
                        bough_scene_load *load) {
@@ -120,6 +124,10 @@ void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node,
     }
 }
 
+void bough_scene_read_load_factor(bough_schema_reader *r, const bough_node *node, void *field) {
+    read_table(r, node, &factor_schema, field);
+}
+
 void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field) {
     bough_scene_load *load = field;
     read_three(r, node, is_spread(load) ? BOUGH_LINE_MOMENT : BOUGH_MOMENT, load->moment);
@@ -146,15 +154,19 @@ static void refuse_keys(bough_schema_reader *r, const bough_node *load, const ch
 }
 
 static void check_joint_keys(bough_schema_reader *r, const bough_node *load) {
-    static const char *const of_rods[] = {"at", "along", "moment", "frame", NULL};
+    static const char *const of_rods[] = {"at",     "along", "moment", "frame",
+                                           "factor", "point", NULL};
     check_either(r, load, "torque", "force");
     refuse_keys(r, load, of_rods, "body");
 }
 
-static void check_rod_keys(bough_schema_reader *r, bough_scene_load *load) {
+static void check_body_keys(bough_schema_reader *r, bough_scene_load *load) {
     static const char *const of_joints[] = {"torque", NULL};
     refuse_keys(r, load->node, of_joints, "joint");
-    if (!check_either(r, load->node, "at", "along")) return;
+    if (bough_node_find(load->node, "at") != NULL &&
+        !check_either(r, load->node, "at", "along")) {
+        return;
+    }
     if (bough_node_find(load->node, "force") == NULL &&
         bough_node_find(load->node, "moment") == NULL) {
         bough_schema_error(r, load->node, "", "expected a 'force' or a 'moment' or both");
@@ -172,12 +184,12 @@ void bough_scene_check_load(bough_schema_reader *r, void *item) {
     if (load->body_name == NULL) {
         check_joint_keys(r, load->node);
     } else {
-        check_rod_keys(r, load);
+        check_body_keys(r, load);
     }
     bough_scene_check_ramp(r, load->node, load->ramp);
 }
 
-// -- checks against the rod -----------------------------------------------------------------------
+// -- checks against the body ----------------------------------------------------------------------
 
 static double arc_length(const bough_scene_structure *s) {
     double sum = 0;
@@ -228,16 +240,40 @@ static const char *mover(const bough_scene *scene, int body, const char **how) {
     return NULL;
 }
 
-void bough_scene_check_rod_load(bough_schema_reader *r, const bough_scene *scene,
-                                const bough_scene_load *load) {
+static void check_rigid_load(bough_schema_reader *r, const bough_scene_load *load) {
+    static const char *const of_rods[] = {"at", "along"};
+    for (int k = 0; k < 2; k++) {
+        const bough_node *given = bough_node_find(load->node, of_rods[k]);
+        if (given == NULL) continue;
+        bough_schema_error(r, given, of_rods[k], "'%s' is rigid: give the 'point'",
+                           load->body_name);
+    }
+    const bough_node *ramp = bough_node_find(load->node, "ramp");
+    if (ramp != NULL && load->n_time > 0) {
+        bough_schema_error(r, ramp, "ramp", "only used without 'factor'");
+    }
+    if (load->frame != BOUGH_SCENE_LOAD_FOLLOWER) return;
+    bough_schema_error(r, bough_node_find(load->node, "frame"), "frame",
+                       "'%s' is rigid: 'frame: body' turns with it", load->body_name);
+}
+
+static void refuse_rigid_keys(bough_schema_reader *r, const bough_scene_load *load) {
+    static const char *const of_rigid[] = {"point", "factor"};
+    for (int k = 0; k < 2; k++) {
+        const bough_node *given = bough_node_find(load->node, of_rigid[k]);
+        if (given == NULL) continue;
+        bough_schema_error(r, given, of_rigid[k], "only used with a rigid body");
+    }
+}
+
+void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scene,
+                                 const bough_scene_load *load) {
     const bough_scene_body *body = &scene->body[load->body];
     const bough_node *name = bough_node_find(load->node, "body");
-    if (body->fidelity < 0) return;
-    if (body->fidelity == BOUGH_SCENE_RIGID) {
-        bough_schema_error(r, name, "body", "'%s' is rigid: loads act on joints and on rods",
-                           load->body_name);
-        return;
-    }
+    if (body->fidelity == BOUGH_SCENE_RIGID) check_rigid_load(r, load);
+    if (body->fidelity <= BOUGH_SCENE_RIGID) return;
+    refuse_rigid_keys(r, load);
+    if (!check_either(r, load->node, "at", "along")) return;
     if (body->fidelity > BOUGH_SCENE_ROD && load->frame == BOUGH_SCENE_LOAD_FOLLOWER) {
         bough_schema_error(r, bough_node_find(load->node, "frame"), "frame",
                            "'%s' is a modal body, on which loads do not turn with its sections: make"

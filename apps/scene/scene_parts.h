@@ -18,6 +18,7 @@ void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, vo
 void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_torque(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_factor(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
 
 extern const bough_schema bough_scene_control_schema;
@@ -36,9 +37,9 @@ void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *j
 void bough_scene_check_load(bough_schema_reader *r, void *item);
 void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]);
 
-// Checks a load against the rod, load->body, that it acts on.
-void bough_scene_check_rod_load(bough_schema_reader *r, const bough_scene *scene,
-                                const bough_scene_load *load);
+// Checks a load against the body, load->body, that it acts on.
+void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scene,
+                                 const bough_scene_load *load);
 
 // Makes single bodies of those in a row.
 void bough_scene_repeat(bough_arena *arena, bough_scene *scene);

@@ -319,7 +319,9 @@ static const bough_key load_keys[] = {
      .form = "number in N m, or {times: [...], values: [...]}", .offset = 0,
      .help = "about the axis of a revolute joint"},
     {.name = "body", .kind = BOUGH_KEY_TEXT, AT(body_name),
-     .help = "loads a rod: name of the body"},
+     .help = "loads a rod or a rigid body: its name"},
+    {.name = "point", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
+     .fallback = zero3, AT(point), .help = "of a rigid body, in its frame"},
     {.name = "at", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_place,
      .form = "tip, a vertex' number or a length as '30 m'", .offset = 0,
      .help = "where on the rod, counted from the root"},
@@ -327,13 +329,16 @@ static const bough_key load_keys[] = {
      .range = ">= 0", AT(span), .help = "in place of 'at': from where to where the load is spread"},
     {.name = "force", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_force,
      .form = "number in N, {times: [...], values: [...]}, or 3 numbers in N, in N/m with 'along'", .offset = 0,
-     .help = "along the axis of a prismatic joint, or on the rod"},
+     .help = "along the axis of a prismatic joint, or on the body"},
     {.name = "moment", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_moment,
-     .form = "3 numbers in N m, in N m/m with 'along'", .offset = 0, .help = "on the rod"},
+     .form = "3 numbers in N m, in N m/m with 'along'", .offset = 0, .help = "on the body"},
+    {.name = "factor", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_factor,
+     .form = "{times: [...], values: [...]}", .offset = 0,
+     .help = "on a rigid body, in place of a ramp: by what the load is multiplied"},
     {.name = "frame", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("ground", "body", "follower"),
      .fallback = "ground", AT(frame),
-     .help = "axes of a rod's load: ground (of rods whose root does not move), body, or follower: "
-             "section axes, with which it turns"},
+     .help = "axes of a body's load: ground (not of rods whose root moves), body, or follower: a "
+             "rod's section axes, with which it turns"},
     RAMP(bough_scene_load),
 };
 #undef AT
@@ -361,6 +366,29 @@ static const bough_key spring_keys[] = {
 };
 #undef AT
 static const bough_schema spring_schema = {SCHEMA("a spring", bough_scene_spring, spring_keys)};
+
+#define AT(member) .offset = offsetof(bough_scene_bushing, member)
+#define THREE(member, what)                                                                        \
+    {.name = #member, .kind = BOUGH_KEY_VECTOR, .count = 3, .range = ">= 0", .fallback = zero3,    \
+     AT(member), .help = what}
+static const bough_key bushing_keys[] = {
+    {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
+     .help = "of its channels: FrcX to MomZ, what it does to the second body, in the first's axes"},
+    {.name = "from", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name[0]),
+     .help = "name of a rigid body, or ground, with whose axes the bushing turns"},
+    {.name = "to", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name[1]),
+     .help = "name of another; without force as it stands at the start"},
+    {.name = "point", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
+     .fallback = zero3, AT(point), .help = "in the first body's frame"},
+    THREE(stiffness, "along x, y, z, in N/m"),
+    THREE(damping, "along x, y, z, in N s/m"),
+    THREE(rotational_stiffness, "about x, y, z, in N m/rad, by the rotation vector (below 180 deg)"),
+    THREE(rotational_damping, "about x, y, z, in N m s/rad"),
+};
+#undef THREE
+#undef AT
+static const bough_schema bushing_schema = {
+    SCHEMA("a bushing", bough_scene_bushing, bushing_keys)};
 
 #define AT(member) .offset = offsetof(bough_scene_marker, member)
 static const bough_key marker_keys[] = {
@@ -608,10 +636,13 @@ static const bough_key scene_keys[] = {
     {.name = "bodies", .kind = BOUGH_KEY_LIST, .of = &body_schema, .count = 1, .required = true,
      AT(body), .count_offset = offsetof(bough_scene, n_body), .help = "the tree of bodies"},
     {.name = "loads", .kind = BOUGH_KEY_LIST, .of = &load_schema, AT(load),
-     .count_offset = offsetof(bough_scene, n_load), .help = "loads on joints and rods"},
+     .count_offset = offsetof(bough_scene, n_load), .help = "loads on joints and bodies"},
     {.name = "springs", .kind = BOUGH_KEY_LIST, .of = &spring_schema, AT(spring),
      .count_offset = offsetof(bough_scene, n_spring),
      .help = "springs and dampers between points of rigid bodies"},
+    {.name = "bushings", .kind = BOUGH_KEY_LIST, .of = &bushing_schema, AT(bushing),
+     .count_offset = offsetof(bough_scene, n_bushing),
+     .help = "springs and dampers in six directions between rigid bodies"},
     {.name = "markers", .kind = BOUGH_KEY_LIST, .of = &marker_schema, AT(marker),
      .count_offset = offsetof(bough_scene, n_marker), .help = "points that are recorded"},
     {.name = "turbine", .kind = BOUGH_KEY_MAPPING, .of = &turbine_schema, AT(turbine),
