@@ -3,12 +3,10 @@
 // entries of a row are gathered in a tile, a vertex to each lane, and the tile is turned.
 #include "flexbody/rod_tangent.h"
 
-#include "core/base.h"
 #include "flexbody/rod_tangent_layout.h"
+#include "flexbody/rod_tile.h"
 
 #include <string.h>
-
-enum { LANES = BOUGH_LANES };
 
 bool bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m) {
     b->mass = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * BOUGH_BLOCK);
@@ -30,30 +28,11 @@ void bough_rod_assemble(const bough_rod_model *m, const bough_rod_tangent *k, bo
 }
 
 // A column of eight vertices' blocks: entry i of lane l at [LANES i + l]; two rows are padding.
-typedef struct tile {
-    _Alignas(64) double entry[W8 * LANES];
-} tile;
-
-// Row r + 4 between row r: three of these turn a tile, as each rotates the bits of the index.
-static inline void shuffle(const double *restrict from, double *restrict to) {
-    for (int r = 0; r < LANES / 2; r++) {
-        const double *restrict a = from + LANES * r, *restrict b = a + LANES * LANES / 2;
-        double *restrict pair = to + 2 * LANES * r;
-#pragma omp simd
-        for (int l = 0; l < LANES; l++) {
-            pair[2 * l] = a[l];
-            pair[2 * l + 1] = b[l];
-        }
-    }
-}
-
 static inline void store_tile(const tile *t, double *restrict column) {
-    tile once, twice;
-    shuffle(t->entry, once.entry);
-    shuffle(once.entry, twice.entry);
-    shuffle(twice.entry, once.entry);
+    tile turned;
+    turn_tile(t->entry, turned.entry);
     for (int lane = 0; lane < LANES; lane++) {
-        memcpy(column + BOUGH_BLOCK * lane, once.entry + W8 * lane, W8 * sizeof(double));
+        memcpy(column + BOUGH_BLOCK * lane, turned.entry + W8 * lane, W8 * sizeof(double));
     }
 }
 

@@ -3,6 +3,9 @@
 
 #include "flexbody/rod_lanes.h"
 #include "flexbody/rod_tangent_layout.h"
+#include "flexbody/rod_tile.h"
+
+#include <string.h>
 
 // (E + ξ(a))⁻¹ y = (y + a (a·y) − a×y)/(1 + |a|²)
 static inline bough_vec3 solve_cross(bough_vec3 a, bough_vec3 y) {
@@ -157,42 +160,71 @@ static void segment_residual(const bough_rod_model *m, const bough_rod_tangent *
     }
 }
 
-// M r_v + γ K A r_q of every vertex, packed for the block solver.
+// M r_v + γ K A r_q of every vertex; M as in the tangent, but from its few numbers.
 static void velocity_residual(const bough_rod_model *m, const bough_rod_tangent *k,
-                              const double *restrict x, const double *restrict work,
-                              double *restrict packed) {
+                              const double *restrict x, double *restrict work) {
     int n = m->n, s = m->stride;
-    const double *restrict mass = k->mass, *restrict own = k->local_position;
-    const double *restrict force = work + WORK_FORCE * s;
-    const double *restrict r = x + (size_t)BOUGH_ROD_U * n;
-    for (int i = 0; i < 6; i++) {
-        const double *restrict row = mass + (size_t)6 * i * s;
-        const double *restrict here = force + (size_t)i * s; // f, or the left moment
-        const double *restrict there = i < 3 ? here : here + (size_t)3 * s;
-        double sign = i < 3 ? -1 : 1, gamma = k->gamma;
+    const double *restrict kept = k->vertex, *restrict own = k->local_position;
+    const double *restrict mass = m->mass, *restrict first = m->moment;
+    const double *restrict inertia = m->inertia, *restrict force = work + WORK_FORCE * s;
+    double *restrict out = work + WORK_VELOCITY * s;
+    double gamma = k->gamma;
 #pragma omp simd
-        for (int v = 1; v <= n; v++) {
-            double sum = here[v] + sign * there[v - 1];
-            sum += gamma * (own[i * s + v] * work[3 * s + v] + own[(6 + i) * s + v] * work[4 * s + v] +
-                            own[(12 + i) * s + v] * work[5 * s + v]);
-            for (int j = 0; j < 6; j++) sum += row[j * s + v] * r[j * n + v - 1];
-            packed[W8 * (v - 1) + i] = sum;
+    for (int v = 1; v <= n; v++) {
+        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, v);
+        bough_vec3 ru = load3(x + 7 * n, n, v - 1), rw = load3(x + 10 * n, n, v - 1);
+        bough_vec3 offset = load3(first, s, v - 1), phi = load3(work + (WORK_Q + 3) * s, s, v);
+        phi = bough_scale(gamma, phi);
+        bough_vec3 f = bough_axpy(mass[v - 1], ru, bough_mat3_mul(r, bough_cross(rw, offset)));
+        bough_vec3 l = bough_add(bough_cross(offset, bough_mat3_tmul(r, ru)),
+                                 inertia_times(inertia, s, v - 1, rw));
+        bough_vec3 pull = bough_sub(load3(force, s, v), load3(force, s, v - 1));
+        bough_vec3 turn = bough_add(load3(force + 3 * s, s, v), load3(force + 6 * s, s, v - 1));
+        f = bough_add(f, bough_axpy(phi.x, load3(own, s, v), pull));
+        f = bough_axpy(phi.y, load3(own + 6 * s, s, v), f);
+        f = bough_axpy(phi.z, load3(own + 12 * s, s, v), f);
+        l = bough_add(l, bough_axpy(phi.x, load3(own + 3 * s, s, v), turn));
+        l = bough_axpy(phi.y, load3(own + 9 * s, s, v), l);
+        l = bough_axpy(phi.z, load3(own + 15 * s, s, v), l);
+        store3(out, s, v, f);
+        store3(out + 3 * s, s, v, l);
+    }
+}
+
+// The block solver's rows, one per vertex, from eight arrays over the vertices, and back.
+static void pack(int n, int s, const double *velocity, double *packed) {
+    for (int v = 1; v <= n; v += LANES) {
+        tile t;
+        for (int i = 0; i < W8; i++) {
+            memcpy(t.entry + LANES * i, velocity + i * s + v, LANES * sizeof(double));
+        }
+        turn_tile(t.entry, packed + W8 * (v - 1));
+    }
+}
+
+static void unpack(int n, int s, const double *packed, double *velocity) {
+    for (int v = 1; v <= n; v += LANES) {
+        tile t;
+        turn_tile(packed + W8 * (v - 1), t.entry);
+        for (int i = 0; i < 6; i++) {
+            memcpy(velocity + i * s + v, t.entry + LANES * i, LANES * sizeof(double));
         }
     }
 }
 
 // Velocities and the configuration that belongs to them back into the state's layout.
 static void recover(const bough_rod_model *m, const bough_rod_tangent *k,
-                    const double *restrict q, const double *restrict packed, double *restrict x) {
+                    const double *restrict q, double *restrict x) {
     int n = m->n, s = m->stride;
+    const double *restrict velocity = q + WORK_VELOCITY * s;
     const double *restrict kept = k->vertex, *restrict turn = kept + KEPT_TURN * s;
     bough_vec3 g = bough_scale(k->gamma, k->omega);
     double gamma = k->gamma, gg = 1 / (1 + bough_dot(g, g));
 #pragma omp simd
     for (int i = 0; i < n; i++) {
         int v = i + 1;
-        const double *restrict dv = packed + W8 * i;
-        bough_vec3 du = {dv[0], dv[1], dv[2]}, dw = {gamma * dv[3], gamma * dv[4], gamma * dv[5]};
+        bough_vec3 du = load3(velocity, s, v), rate = load3(velocity + 3 * s, s, v);
+        bough_vec3 dw = bough_scale(gamma, rate);
         bough_vec3 gu = bough_scale(gamma, du);
         bough_vec3 shift = bough_axpy(bough_dot(g, gu), g, bough_sub(gu, bough_cross(g, gu)));
         store3(x, n, i, bough_axpy(gg, shift, load3(q, s, v)));
@@ -210,14 +242,17 @@ static void recover(const bough_rod_model *m, const bough_rod_tangent *k,
         bough_vec3 vector = bough_axpy(pw, half, bough_axpy(scalar, p, bough_cross(p, half)));
         store3(x + 4 * n, n, i, vector);
         store3(x + 7 * n, n, i, du);
-        store3(x + 10 * n, n, i, bough_v3(dv[3], dv[4], dv[5]));
+        store3(x + 10 * n, n, i, rate);
     }
 }
 
 void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
+    double *velocity = k->work + (size_t)WORK_VELOCITY * m->stride;
     eliminate_residual(m, k, x, k->work);
     segment_residual(m, k, k->work, k->work + (size_t)WORK_FORCE * m->stride);
-    velocity_residual(m, k, x, k->work, k->packed);
+    velocity_residual(m, k, x, k->work);
+    pack(m->n, m->stride, velocity, k->packed);
     bough_block_tridiagonal_solve(&k->matrix, k->packed);
-    recover(m, k, k->work, k->packed, x);
+    unpack(m->n, m->stride, k->packed, velocity);
+    recover(m, k, k->work, x);
 }

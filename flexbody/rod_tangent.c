@@ -15,7 +15,7 @@ bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
     k->vertex = bough_arena_doubles(arena, KEPT * s);
     k->work = bough_arena_doubles(arena, WORK * s);
     k->rate = bough_arena_doubles(arena, BOUGH_ROD_STATES * s);
-    k->packed = bough_arena_doubles(arena, (size_t)m->n * W8);
+    k->packed = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * W8);
     bool ok = bough_block_tridiagonal_init(&k->matrix, arena, m->n);
     ok = bough_rod_blocks_init(&k->blocks, arena, m) && ok;
     return ok && !bough_arena_exhausted(arena);

@@ -33,7 +33,7 @@ typedef struct bough_rod_tangent {
     double gamma;
     bough_block_tridiagonal matrix;
     double *work;           // of a solution
-    double *packed;         // (n × 8)
+    double *packed;         // (padded n × 8)
 } bough_rod_tangent;
 
 bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m);

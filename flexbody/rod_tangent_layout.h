@@ -25,7 +25,8 @@ enum {
     WORK_Q = 0,      // eliminated configuration residual A r_q
     WORK_SCALAR = 6, // of the quaternion residual
     WORK_FORCE = 7,  // γ K A r_q per segment
-    WORK = WORK_FORCE + FORCES,
+    WORK_VELOCITY = WORK_FORCE + FORCES, // residual, then increments of the velocities
+    WORK = WORK_VELOCITY + W8,
 };
 
 enum { DELTA = 0, LEFT = 3, RIGHT = 6, F = 0, LL = 3, LR = 6 }; // directions; forces
