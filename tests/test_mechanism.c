@@ -1,5 +1,7 @@
 // Mechanisms of rigid bodies as whole scenes: from the file to the channels.
 #include "apps/output/channels.h"
+#include "core/loop.h"
+#include "cosim/stability.h"
 #include "tests/built_scene.h"
 
 #include <string.h>
@@ -163,6 +165,88 @@ static void chain_passes_the_reference(void **context) {
     bough_arena_destroy(f.arena);
 }
 
+// Angles and the forces in the point where all meet, at 30 ms (Test Set for IVP Solvers).
+static void squeezer_passes_the_reference(void **context) {
+    (void)context;
+    static const char *const radau[] = {"simulation.master.solver=radau5", NULL};
+    static const char *const names[] = {"K1Pos", "K2Pos", "K3Pos", "K4Pos", "K5Pos", "K6Pos", "K7Pos"};
+    static const double angles[] = {15.81077119629904,  -15.75637105984298, .04082224013073101,
+                                    -.5347301163226948, .5244099658805304,  .5347301163226948,
+                                    1.048080741042263};
+    const double degree = acos(-1.0) / 180, turn = angles[2];
+    for (int k = 0; k < 2; k++) {
+        fixture f = start("apps/mechanisms/squeezer.yaml", k == 0 ? no_sets : radau);
+        assert_int_equal(f.s->tree->closure_rank, 6);
+        run(&f, 100);
+        for (int i = 0; i < 7; i++)
+            check_near(channel(&f, names[i]) * degree, angles[i], 0, 1e-6);
+        double x = 199.1753333731910, y = -29.75531228015052; // in ground axes
+        check_near(channel(&f, "E3Fx"), cos(turn) * x + sin(turn) * y, 0, 1e-3);
+        check_near(channel(&f, "E3Fy"), cos(turn) * y - sin(turn) * x, 0, 1e-3);
+        bough_arena_destroy(f.arena);
+    }
+}
+
+static void check_closed(fixture *f, double allowed) {
+    double value, rate;
+    bough_simulation_update(f->s);
+    bough_loops_residual(f->s->tree, f->s->view, 0, &value, &rate);
+    check_near(value, 0, 0, allowed);
+    check_near(rate, 0, 0, 10 * allowed);
+}
+
+// A rod on a closed loop under every scheme and either master, against the monolithic solution.
+static void closed_loops_run_under_every_scheme(void **context) {
+    (void)context;
+    static const struct {
+        const char *scheme;
+        double allowed; // of the crank's angle, in degrees
+    } schemes[] = {{"monolithic", 0}, {"gauss-seidel", 0.05}, {"extrapolated", 0.01},
+                   {"iterated", 0.01}, {"ramp", 0.01}};
+    double reference = 0;
+    for (int k = 0; k < 5; k++) {
+        for (int solver = 0; solver < 2; solver++) {
+            char scheme[64];
+            snprintf(scheme, sizeof scheme, "simulation.coupling.scheme=%s", schemes[k].scheme);
+            const char *sets[] = {scheme, "simulation.macro_step=1 ms",
+                                  solver == 0 ? "simulation.master.solver=ida"
+                                              : "simulation.master.solver=radau5",
+                                  NULL};
+            fixture f = start("tests/scenes/closed.yaml", sets);
+            check_near(channel(&f, "crankVel"), 2 * 180 / acos(-1.0), 1e-12, 0); // the others follow
+            check_closed(&f, 1e-9);
+            run(&f, 200);
+            check_closed(&f, 1e-6);
+            double angle = channel(&f, "crankPos");
+            if (k == 0) reference = angle;
+            check_near(angle, reference, 0, schemes[k].allowed);
+            bough_arena_destroy(f.arena);
+        }
+    }
+}
+
+// With a crank, coupler and rocker that weigh little against the rod the frozen coupling grows.
+static void stability_of_closed_loops_is_judged(void **context) {
+    (void)context;
+    static const char *const names[] = {"frozen", "ramp"};
+    const char *const light[] = {"bodies[0].mass=0.003", "bodies[0].inertia=[1e-4, 1e-4, 2e-5]",
+                                 "bodies[1].mass=0.002", "bodies[1].inertia=[2e-5, 2e-4, 2e-4]",
+                                 "bodies[2].mass=0.003", "bodies[2].inertia=[1e-4, 1e-4, 2e-5]",
+                                 NULL};
+    for (int k = 0; k < 2; k++) {
+        fixture f = start("tests/scenes/closed.yaml", light);
+        bough_scheme_options options = f.s->master->coupling->options;
+        bough_stability stability;
+        options.name = names[k];
+        bough_status status =
+            bough_stability_judge(f.s->master->assembly, &options, 5e-3, &stability);
+        assert_int_equal(status.code, BOUGH_OK);
+        print_message("%s: growth %.3g 1/s\n", names[k], stability.growth);
+        assert_true((stability.growth > 1) == (k == 0));
+        bough_arena_destroy(f.arena);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(joints_of_several_axes_start_and_are_recorded),
@@ -172,6 +256,9 @@ int main(void) {
         cmocka_unit_test(bodies_in_a_row_hang_on_each_other),
         cmocka_unit_test(elastic_pendulum_passes_the_reference),
         cmocka_unit_test(joint_loads_follow_their_table),
+        cmocka_unit_test(squeezer_passes_the_reference),
+        cmocka_unit_test(closed_loops_run_under_every_scheme),
+        cmocka_unit_test(stability_of_closed_loops_is_judged),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

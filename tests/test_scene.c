@@ -327,6 +327,21 @@ static void springs_join_two_rigid_bodies(void **state) {
             "s.yaml:7:21: error: springs[0].from: there is no body 'zzzzz'\n");
 }
 
+static void closures_join_two_rigid_bodies(void **state) {
+    (void)state;
+#define CLOSED(rest) ONE_BODY "closures:\n  - {name: c, from: ground, to: a, " rest "}\n"
+    accepts(CLOSED("kind: spherical"));
+    accepts(CLOSED("kind: revolute, axis: y, to_placement: [move x 1 m, rotate z 5 deg]"));
+    refuses(CLOSED("kind: revolute"),
+            "s.yaml:7:5: error: closures[0]: required key 'axis' is missing\n");
+    refuses(CLOSED("kind: spherical, from_placement: [move q 1 m]"),
+            "s.yaml:7:70: error: closures[0].from_placement[0]: expected 'move x|y|z LENGTH' or "
+            "'rotate x|y|z ANGLE', got 'move q 1 m'\n");
+    refuses(ONE_BODY "closures:\n  - {name: c, kind: fixed, from: a, to: a}\n",
+            "s.yaml:7:41: error: closures[0].to: must be another body\n");
+#undef CLOSED
+}
+
 static void rods_may_be_curved(void **state) {
     (void)state;
     write_file("blade.yaml", "damping: [1 ms, 0, 0, 0, 0, 0]\n"
@@ -993,6 +1008,7 @@ int main(void) {
         cmocka_unit_test(stops_need_a_stiffness_and_an_order),
         cmocka_unit_test(tables_of_joint_loads_are_checked),
         cmocka_unit_test(springs_join_two_rigid_bodies),
+        cmocka_unit_test(closures_join_two_rigid_bodies),
         cmocka_unit_test(rods_may_be_curved),
         cmocka_unit_test(all_errors_are_shown_in_order),
         cmocka_unit_test(missing_parts_are_named),

@@ -92,6 +92,25 @@ static void print_body(const bough_simulation *s, int body) {
     putchar('\n');
 }
 
+static void print_closures(const bough_tree *tree) {
+    int redundant = tree->n_rows - tree->closure_rank;
+    printf("closures: %d, %d equation%s, %d independent", tree->n_closures, tree->n_rows,
+           plural(tree->n_rows), tree->closure_rank);
+    if (redundant > 0) {
+        printf("; %d forbid%s what is forbidden already: of the forces that could do it the least "
+               "are found",
+               redundant, redundant == 1 ? "s" : "");
+    }
+    int freedoms = tree->n_v - tree->closure_rank;
+    for (int i = 0; i < tree->n_links; i++)
+        freedoms -= tree->links[i].motion != NULL;
+    printf("\ndegrees of freedom: %d\n", freedoms);
+    if (tree->closure_moved > 1e-9) {
+        printf("closures: assembled, moving joints by up to %.3g (rad or m)\n",
+               tree->closure_moved);
+    }
+}
+
 static void print_bodies(const bough_simulation *s) {
     const bough_tree *tree = s->tree;
     int n = s->scene->n_body;
@@ -106,6 +125,7 @@ static void print_bodies(const bough_simulation *s) {
     printf("states: %d\n", s->master->assembly->n_state);
     printf("loads: %d\n", s->scene->n_load);
     if (s->scene->n_spring > 0) printf("springs: %d\n", s->scene->n_spring);
+    if (tree->n_closures > 0) print_closures(tree);
 }
 
 // -- coupling -------------------------------------------------------------------------------------

@@ -4,6 +4,7 @@
 #include "apps/scene/control_link.h"
 #include "apps/scene/force_link.h"
 #include "apps/scene/load_link.h"
+#include "apps/scene/placement.h"
 #include "apps/scene/settle.h"
 #include "core/tree_subsystem.h"
 #include "flexbody/section.h"
@@ -34,30 +35,14 @@ static bough_status out_of_memory(void) {
     return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory while building the scene");
 }
 
-static bough_vec3 unit_axis(int axis) {
-    return bough_v3(axis == BOUGH_SCENE_X, axis == BOUGH_SCENE_Y, axis == BOUGH_SCENE_Z);
-}
-
-static bough_mat3 turn_about(int axis, double angle) {
-    return bough_rotation_matrix(bough_quaternion_exponential(bough_scale(angle, unit_axis(axis))));
-}
-
 // The joint frame in the frame of the tree's body it hangs on: from where bodies hang on the parent
 // the steps in order, then the pitch.
 static bough_transform placement(const bough_scene_body *body, bough_transform x) {
-    for (int k = 0; k < body->joint.n_placement; k++) {
-        const bough_scene_step *step = &body->joint.placement[k];
-        bough_transform move = bough_transform_identity();
-        if (step->rotate) {
-            move.rotation = turn_about(step->axis, step->amount);
-        } else {
-            move.position = bough_scale(step->amount, unit_axis(step->axis));
-        }
-        x = bough_transform_compose(x, move);
-    }
+    x = bough_transform_compose(
+        x, bough_placement(body->joint.n_placement, body->joint.placement));
     if (body->pitch != 0) {
         bough_transform pitch = bough_transform_identity();
-        pitch.rotation = turn_about(BOUGH_SCENE_Z, -body->pitch);
+        pitch.rotation = bough_placement_turn(BOUGH_SCENE_Z, -body->pitch);
         x = bough_transform_compose(x, pitch);
     }
     return x;
@@ -124,21 +109,12 @@ static void set_parent(const builder *b, const bough_scene_body *from, bough_bod
 }
 
 static void set_joint(const builder *b, const bough_scene_body *from, bough_body_def *to) {
-    static const bough_joint_kind kinds[] = {
-        [BOUGH_SCENE_FIXED] = BOUGH_JOINT_FIXED,
-        [BOUGH_SCENE_REVOLUTE] = BOUGH_JOINT_REVOLUTE,
-        [BOUGH_SCENE_PRISMATIC] = BOUGH_JOINT_PRISMATIC,
-        [BOUGH_SCENE_SPHERICAL] = BOUGH_JOINT_SPHERICAL,
-        [BOUGH_SCENE_FREE] = BOUGH_JOINT_FREE,
-        [BOUGH_SCENE_CYLINDRICAL] = BOUGH_JOINT_CYLINDRICAL,
-        [BOUGH_SCENE_UNIVERSAL] = BOUGH_JOINT_UNIVERSAL,
-        [BOUGH_SCENE_PLANAR] = BOUGH_JOINT_PLANAR};
     const bough_scene_joint *joint = &from->joint;
-    to->kind = kinds[joint->kind];
+    to->kind = bough_placement_joint(joint->kind);
     set_parent(b, from, to);
     bool universal = to->kind == BOUGH_JOINT_UNIVERSAL;
-    to->axis = unit_axis(joint->axis);
-    to->second_axis = unit_axis(universal ? joint->second_axis : (joint->axis + 1) % 3);
+    to->axis = bough_placement_axis(joint->axis);
+    to->second_axis = bough_placement_axis(universal ? joint->second_axis : (joint->axis + 1) % 3);
     if (bough_joint_n_axes(to->kind) > 0) {
         set_coordinates(joint, to);
         return;
@@ -338,7 +314,10 @@ static bough_status build_tree(builder *b) {
                           .n_applied = b->force.n_applied,
                           .applied = b->force.applied,
                           .n_ends = s->n_end,
-                          .ends = b->end};
+                          .ends = b->end,
+                          .n_closures = scene->n_closure,
+                          .closures = b->force.closure,
+                          .closure_time = scene->simulation.macro_step};
     bough_status status = bough_tree_create(b->arena, &def, &s->tree);
     if (bough_is_ok(&status)) status = bough_tree_data_create(b->arena, s->tree, &s->view);
     if (bough_is_ok(&status)) s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);

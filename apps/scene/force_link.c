@@ -1,15 +1,19 @@
 #include "apps/scene/force_link.h"
 
+#include "apps/scene/placement.h"
+
 #include <string.h>
 
 bool bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_beam,
                            bough_force_link *link) {
     size_t springs = (size_t)scene->n_spring, bushings = (size_t)scene->n_bushing;
-    size_t loads = (size_t)scene->n_load;
-    size_t markers = (size_t)n_beam + 2 * (springs + bushings) + loads + (size_t)scene->n_marker;
+    size_t closures = (size_t)scene->n_closure, loads = (size_t)scene->n_load;
+    size_t markers = (size_t)n_beam + 2 * (springs + bushings + closures) + loads +
+                     (size_t)scene->n_marker;
     link->marker = bough_arena_take(arena, markers * sizeof *link->marker);
     link->spring = bough_arena_take(arena, springs * sizeof *link->spring);
     link->bushing = bough_arena_take(arena, bushings * sizeof *link->bushing);
+    link->closure = bough_arena_take(arena, closures * sizeof *link->closure);
     link->applied = bough_arena_take(arena, loads * sizeof *link->applied);
     return !bough_arena_exhausted(arena);
 }
@@ -47,6 +51,23 @@ static void add_bushings(const bough_scene *scene, bough_force_link *link) {
     }
 }
 
+static void add_closures(const bough_scene *scene, bough_force_link *link) {
+    static const double origin[3];
+    for (int k = 0; k < scene->n_closure; k++) {
+        const bough_scene_closure *from = &scene->closure[k];
+        bough_closure_def *to = &link->closure[k];
+        to->name = from->name;
+        to->kind = bough_placement_joint(from->kind);
+        to->axis = bough_placement_axis(from->axis);
+        to->second_axis = bough_placement_axis(from->second_axis);
+        for (int end = 0; end < 2; end++) {
+            const bough_scene_placement *steps = &from->placement[end];
+            to->marker[end] = add_marker(link, from->name, from->body[end], origin);
+            link->marker[to->marker[end]].placement = bough_placement(steps->n, steps->step);
+        }
+    }
+}
+
 static void add_wrenches(const bough_scene *scene, bough_force_link *link) {
     for (int k = 0; k < scene->n_load; k++) {
         const bough_scene_load *load = &scene->load[k];
@@ -68,6 +89,7 @@ static void add_wrenches(const bough_scene *scene, bough_force_link *link) {
 void bough_force_link_fill(const bough_scene *scene, bough_force_link *link) {
     add_springs(scene, link);
     add_bushings(scene, link);
+    add_closures(scene, link);
     add_wrenches(scene, link);
     link->first_own = link->n_marker;
     for (int k = 0; k < scene->n_marker; k++) {

@@ -1,4 +1,4 @@
-// Springs, bushings, applied wrenches and recorded points of a scene as parts of the tree.
+// Springs, bushings, closures, applied wrenches and recorded points of a scene as parts of the tree.
 #ifndef BOUGH_APPS_SCENE_FORCE_LINK_H
 #define BOUGH_APPS_SCENE_FORCE_LINK_H
 
@@ -12,6 +12,7 @@ typedef struct bough_force_link {
     bough_marker_def *marker;
     bough_spring_def *spring;
     bough_bushing_def *bushing;
+    bough_closure_def *closure;
     int n_applied;
     bough_applied_def *applied;
 } bough_force_link;

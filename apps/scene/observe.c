@@ -5,6 +5,7 @@
 #include "apps/scene/control_link.h"
 #include "core/dynamics.h"
 #include "core/force.h"
+#include "core/loop.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -193,6 +194,25 @@ static bough_status add_bushings(bough_simulation *s, bough_channels *list) {
     return status;
 }
 
+// What closures carry, under the rods' present forces.
+static void sample_closures(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
+    for (int k = 0; k < s->tree->n_closures; k++, value += 6)
+        bough_wrench_store(bough_loops_wrench(s->tree, s->view, k), value);
+}
+
+static bough_status add_closures(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_closures, s);
+    for (int k = 0; k < s->scene->n_closure; k++) {
+        for (int c = 0; c < 6 && bough_is_ok(&status); c++) {
+            status = bough_channels_add(list, c < 3 ? "N" : "N-m", "%s%c%c",
+                                        s->scene->closure[k].name, c < 3 ? 'F' : 'M', "xyz"[c % 3]);
+        }
+    }
+    return status;
+}
+
 static void sample_markers(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
@@ -356,6 +376,7 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     if (bough_is_ok(&status) && has_motion(s->scene)) status = add_drives(s, channels);
     if (bough_is_ok(&status) && s->scene->n_spring > 0) status = add_springs(s, channels);
     if (bough_is_ok(&status) && s->scene->n_bushing > 0) status = add_bushings(s, channels);
+    if (bough_is_ok(&status) && s->scene->n_closure > 0) status = add_closures(s, channels);
     if (bough_is_ok(&status) && s->scene->n_marker > 0) status = add_markers(s, channels);
     if (bough_is_ok(&status) && s->scene->turbine.node != NULL) status = add_blades(s, channels);
     if (bough_is_ok(&status)) status = add_tips(s, channels);

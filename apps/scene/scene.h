@@ -272,6 +272,22 @@ typedef struct bough_scene_spring {
     double stiffness, damping, length; // [N/m], [N s/m], without force [m]
 } bough_scene_spring;
 
+typedef struct bough_scene_placement {
+    int n;
+    bough_scene_step *step; // (n)
+} bough_scene_placement;
+
+// A joint that closes a loop between two rigid bodies or the ground.
+typedef struct bough_scene_closure {
+    const bough_node *node;
+    const char *name;
+    int kind; // bough_scene_joint_kind but free
+    const char *body_name[2];
+    int body[2];                        // indices, or BOUGH_SCENE_GROUND
+    bough_scene_placement placement[2]; // of the joint's frame in either body's
+    int axis, second_axis;              // bough_scene_axis as of a joint, universal: of `to`
+} bough_scene_closure;
+
 typedef struct bough_scene_turbine {
     const bough_node *node; // NULL: no turbine
     const char *rotor_name;
@@ -436,6 +452,8 @@ typedef struct bough_scene {
     bough_scene_spring *spring; // (n_spring)
     int n_bushing;
     bough_scene_bushing *bushing; // (n_bushing)
+    int n_closure;
+    bough_scene_closure *closure; // (n_closure)
     int n_marker;
     bough_scene_marker *marker; // (n_marker)
     bough_scene_turbine turbine;

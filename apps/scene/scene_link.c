@@ -241,7 +241,7 @@ static void link_load(bough_schema_reader *r, const bough_scene *s, bough_scene_
     }
 }
 
-// The two ends of a spring or a bushing, named by `from` and `to`.
+// The two ends of a spring, a bushing or a closure, named by `from` and `to`.
 static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_node *item,
                       const char *const name[2], int body[2]) {
     static const char *const keys[] = {"from", "to"};
@@ -251,12 +251,18 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
         const bough_node *node = value_of(item, keys[end]);
         body[end] = resolve(r, s, node, keys[end], name[end]);
         if (body[end] < 0 || s->body[body[end]].fidelity <= BOUGH_SCENE_RIGID) continue;
-        bough_schema_error(r, node, keys[end], "'%s' is a rod; springs act on rigid bodies",
+        bough_schema_error(r, node, keys[end], "'%s' is a rod; it must be a rigid body",
                            name[end]);
     }
     if (name[0] != NULL && name[1] != NULL && strcmp(name[0], name[1]) == 0) {
         bough_schema_error(r, value_of(item, "to"), "to", "must be another body");
     }
+}
+
+// The kinds are a joint's but free.
+static void link_closure(bough_schema_reader *r, const bough_scene *s, bough_scene_closure *c) {
+    link_ends(r, s, c->node, c->body_name, c->body);
+    if (c->kind >= BOUGH_SCENE_FREE) c->kind++;
 }
 
 static void link_marker(bough_schema_reader *r, const bough_scene *s, bough_scene_marker *marker) {
@@ -497,6 +503,10 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
         bough_scene_spring *spring = &scene->spring[i];
         if (spring->node == NULL) continue;
         link_ends(r, scene, spring->node, spring->body_name, spring->body);
+    }
+    for (int i = 0; i < scene->n_closure; i++) {
+        at(r, "closures[%d]", i);
+        if (scene->closure[i].node != NULL) link_closure(r, scene, &scene->closure[i]);
     }
     link_turbine(r, scene);
     link_aero(r, scene);

@@ -12,6 +12,7 @@ static const char zero3[] = "[0, 0, 0]";
 static const char zero6[] = "[0, 0, 0, 0, 0, 0]";
 static const char stiffness_form[] =
     "6 numbers, the diagonal, or 21, the upper triangle row by row";
+static const char placement_form[] = "list of 'move x|y|z LENGTH' and 'rotate x|y|z ANGLE'";
 static const char mass_form[] = "[m, cx, cy, Ixx, Iyy, Ixy] or with Izz";
 static const char mass_help[] =
     "mass per length [kg/m], its centre [m], inertia matrix per length about the reference axis "
@@ -118,7 +119,7 @@ static const bough_key joint_keys[] = {
     {.name = "parent", .kind = BOUGH_KEY_TEXT, .required = true, AT(parent_name),
      .help = "name of a body, or ground"},
     {.name = "placement", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_placement,
-     .form = "list of 'move x|y|z LENGTH' and 'rotate x|y|z ANGLE'", .offset = 0,
+     .form = placement_form, .offset = 0,
      .help = "from the parent's frame to the joint's, each step in the frame reached so far"},
     {.name = "axis", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("x", "y", "z"), .required = true,
      .when_key = "kind", .when = "revolute|prismatic|cylindrical|universal|planar", AT(axis),
@@ -390,6 +391,34 @@ static const bough_key bushing_keys[] = {
 static const bough_schema bushing_schema = {
     SCHEMA("a bushing", bough_scene_bushing, bushing_keys)};
 
+#define AT(member) .offset = offsetof(bough_scene_closure, member)
+static const bough_key closure_keys[] = {
+    {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
+     .help = "of its channels: force Fx Fy Fz and moment Mx My Mz on 'to', in its frame there"},
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .required = true, AT(kind),
+     .choices = CHOICES("fixed", "revolute", "prismatic", "spherical", "cylindrical", "universal",
+                        "planar"),
+     .help = "the joint whose motion remains; what it forbids may be forbidden already"},
+    {.name = "from", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name[0]),
+     .help = "name of a rigid body, or ground"},
+    {.name = "from_placement", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_steps,
+     .form = placement_form, AT(placement[0]), .help = "of the joint's frame in that body's"},
+    {.name = "to", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name[1]),
+     .help = "name of another rigid body, or ground"},
+    {.name = "to_placement", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_steps,
+     .form = placement_form, AT(placement[1]),
+     .help = "of the joint's frame in that body's; the two must almost meet at the start: the "
+             "rest is closed by moving all joints a little, and joints without a speed follow"},
+    {.name = "axis", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("x", "y", "z"), .required = true,
+     .when_key = "kind", .when = "revolute|prismatic|cylindrical|universal|planar", AT(axis),
+     .help = "of the motion, as of a joint; of a universal joint in the frame of 'from'"},
+    {.name = "second_axis", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("x", "y", "z"),
+     .required = true, .when_key = "kind", .when = "universal", AT(second_axis),
+     .help = "normal to the axis, in the frame of 'to'"},
+};
+#undef AT
+static const bough_schema closure_schema = {SCHEMA("a closure", bough_scene_closure, closure_keys)};
+
 #define AT(member) .offset = offsetof(bough_scene_marker, member)
 static const bough_key marker_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
@@ -643,6 +672,9 @@ static const bough_key scene_keys[] = {
     {.name = "bushings", .kind = BOUGH_KEY_LIST, .of = &bushing_schema, AT(bushing),
      .count_offset = offsetof(bough_scene, n_bushing),
      .help = "springs and dampers in six directions between rigid bodies"},
+    {.name = "closures", .kind = BOUGH_KEY_LIST, .of = &closure_schema, AT(closure),
+     .count_offset = offsetof(bough_scene, n_closure),
+     .help = "joints that close loops between rigid bodies"},
     {.name = "markers", .kind = BOUGH_KEY_LIST, .of = &marker_schema, AT(marker),
      .count_offset = offsetof(bough_scene, n_marker), .help = "points that are recorded"},
     {.name = "turbine", .kind = BOUGH_KEY_MAPPING, .of = &turbine_schema, AT(turbine),

@@ -38,23 +38,32 @@ static size_t push_index(bough_schema_reader *r, int index) {
     return length;
 }
 
-// field: the joint
-void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field) {
-    bough_scene_joint *joint = field;
+// field: bough_scene_placement
+void bough_scene_read_steps(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_placement *placement = field;
     char shown[64];
     if (node->kind != BOUGH_SEQUENCE) {
         bough_schema_error(r, node, "", "expected a list of steps, got %s",
                            bough_node_shown(node, shown));
         return;
     }
-    joint->placement = bough_arena_take(r->arena, (size_t)node->n * sizeof *joint->placement);
-    if (joint->placement == NULL) return;
-    joint->n_placement = node->n;
+    placement->step = bough_arena_take(r->arena, (size_t)node->n * sizeof *placement->step);
+    if (placement->step == NULL) return;
+    placement->n = node->n;
     for (int i = 0; i < node->n; i++) {
         size_t length = push_index(r, i);
-        parse_step(r, node->value[i], &joint->placement[i]);
+        parse_step(r, node->value[i], &placement->step[i]);
         r->path[length] = '\0';
     }
+}
+
+// field: the joint
+void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_joint *joint = field;
+    bough_scene_placement placement = {0};
+    bough_scene_read_steps(r, node, &placement);
+    joint->n_placement = placement.n;
+    joint->placement = placement.step;
 }
 
 void bough_scene_check_joint(bough_schema_reader *r, void *item) {
