@@ -52,9 +52,8 @@ typedef struct station_state {
 } station_state;
 
 struct bough_rotor_scratch {
-    bough_quaternion *attitude; // (n_vertex) of one blade
-    station_state *state;       // (n_blade × n_station)
-    bough_vec3 *line;           // (2 × n_station) force and moment per length of one blade
+    station_state *state;        // (n_blade × n_station)
+    bough_vec3 *force, *moment;  // (n_blade × n_station) per length
 };
 
 // What the whole rotor tells each station.
@@ -300,15 +299,15 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
                                     bough_rotor_data *data) {
     size_t n_blade = (size_t)rotor->n_blade, n_station = (size_t)rotor->n_station;
     size_t n_vertex = (size_t)rotor->n_vertex;
-    *data = (bough_rotor_data){0};
+    *data = (bough_rotor_data){.threads = 1};
     data->force = bough_arena_take(arena, n_blade * n_vertex * sizeof *data->force);
     data->moment = bough_arena_take(arena, n_blade * n_vertex * sizeof *data->moment);
     data->station = bough_arena_take(arena, n_blade * n_station * sizeof *data->station);
     struct bough_rotor_scratch *s = bough_arena_take(arena, sizeof *s);
     if (s) {
-        s->attitude = bough_arena_take(arena, n_vertex * sizeof *s->attitude);
         s->state = bough_arena_take(arena, n_blade * n_station * sizeof *s->state);
-        s->line = bough_arena_take(arena, 2 * n_station * sizeof *s->line);
+        s->force = bough_arena_take(arena, n_blade * n_station * sizeof *s->force);
+        s->moment = bough_arena_take(arena, n_blade * n_station * sizeof *s->moment);
     }
     data->scratch = s;
     take_memory(arena, rotor, &data->memory);
@@ -338,39 +337,31 @@ static double orient(bough_vec3 shaft, bough_vec3 arm, const bough_mat3 *section
     return radius;
 }
 
-// Where the stations of a blade are, how they move, and the wind they meet.
-static void move_blade(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
-                       bough_rotor_data *data) {
-    int base = blade * rotor->n_vertex;
-    bough_quaternion *attitude = data->scratch->attitude;
-    for (int i = 0; i < rotor->n_vertex; i++) {
-        attitude[i] = bough_quaternion_of_matrix(motion->rotation[base + i]);
-    }
-    for (int j = 0; j < rotor->n_station; j++) {
-        const station_model *m = rotor->station + j;
-        station_state *state = data->scratch->state + blade * rotor->n_station + j;
-        bough_station *out = data->station + blade * rotor->n_station + j;
-        int a = base + m->vertex, b = a + 1;
-        bough_mat3 structure =
-            rotation_between(attitude[m->vertex], attitude[m->vertex + 1], m->weight);
-        bough_mat3 section = bough_mat3_product(structure, m->section);
-        state->arm = bough_mat3_mul(structure, m->centre);
-        bough_vec3 centre =
-            bough_add(between(motion->position[a], motion->position[b], m->weight), state->arm);
-        out->radius = orient(motion->shaft, bough_sub(centre, motion->hub), &section, state);
-        bough_vec3 spin =
-            between(motion->angular_velocity[a], motion->angular_velocity[b], m->weight);
-        bough_vec3 velocity =
-            bough_add(between(motion->velocity[a], motion->velocity[b], m->weight),
-                      bough_cross(spin, state->arm));
-        state->wind = bough_tower_disturbed(&rotor->tower, centre,
-                                            bough_wind_at(&rotor->wind, centre, motion->time));
-        bough_vec3 inflow = bough_sub(state->wind, velocity);
-        out->inflow_x = bough_dot(inflow, state->x);
-        out->inflow_y = bough_dot(inflow, state->y);
-        out->twist = state->twist;
-        if (rotor->airfoil) state->nose_up = bough_dot(spin, state->z);
-    }
+// Where station k of all is, how it moves, and the wind it meets.
+static void move_station(const bough_rotor *rotor, const bough_rotor_motion *motion, int k,
+                         bough_rotor_data *data) {
+    const station_model *m = rotor->station + k % rotor->n_station;
+    station_state *state = data->scratch->state + k;
+    bough_station *out = data->station + k;
+    int a = k / rotor->n_station * rotor->n_vertex + m->vertex, b = a + 1;
+    bough_mat3 structure =
+        rotation_between(bough_quaternion_of_matrix(motion->rotation[a]),
+                         bough_quaternion_of_matrix(motion->rotation[b]), m->weight);
+    bough_mat3 section = bough_mat3_product(structure, m->section);
+    state->arm = bough_mat3_mul(structure, m->centre);
+    bough_vec3 centre =
+        bough_add(between(motion->position[a], motion->position[b], m->weight), state->arm);
+    out->radius = orient(motion->shaft, bough_sub(centre, motion->hub), &section, state);
+    bough_vec3 spin = between(motion->angular_velocity[a], motion->angular_velocity[b], m->weight);
+    bough_vec3 velocity = bough_add(between(motion->velocity[a], motion->velocity[b], m->weight),
+                                    bough_cross(spin, state->arm));
+    state->wind = bough_tower_disturbed(&rotor->tower, centre,
+                                        bough_wind_at(&rotor->wind, centre, motion->time));
+    bough_vec3 inflow = bough_sub(state->wind, velocity);
+    out->inflow_x = bough_dot(inflow, state->x);
+    out->inflow_y = bough_dot(inflow, state->y);
+    out->twist = state->twist;
+    if (rotor->airfoil) state->nose_up = bough_dot(spin, state->z);
 }
 
 // Below this tip-speed ratio the wake is too disturbed for momentum theory: no induction; from
@@ -465,16 +456,21 @@ static void load(const bough_rotor *rotor, const station_model *m, const station
     }
 }
 
-static void load_blade(const bough_rotor *rotor, const disk *d, int blade, bough_rotor_data *data) {
-    const station_state *state = data->scratch->state + blade * rotor->n_station;
-    bough_station *out = data->station + blade * rotor->n_station;
-    bough_vec3 *force = data->scratch->line, *moment = force + rotor->n_station;
-    double tip_radius = fmax(out[rotor->n_station - 1].radius, 1e-3);
-    for (int j = 0; j < rotor->n_station; j++) {
-        induce(rotor, d, rotor->station + j, state + j, tip_radius, out + j);
-        bough_coefficients k = coefficients(rotor, d, j, state + j, out + j);
-        load(rotor, rotor->station + j, state + j, k, out + j, force + j, moment + j);
-    }
+static void load_station(const bough_rotor *rotor, const disk *d, int k, bough_rotor_data *data) {
+    int n = rotor->n_station, j = k % n;
+    const station_state *state = data->scratch->state + k;
+    bough_station *out = data->station + k;
+    double tip_radius = fmax(data->station[k - j + n - 1].radius, 1e-3);
+    induce(rotor, d, rotor->station + j, state, tip_radius, out);
+    bough_coefficients c = coefficients(rotor, d, j, state, out);
+    load(rotor, rotor->station + j, state, c, out, data->scratch->force + k,
+         data->scratch->moment + k);
+}
+
+// The line loads of a blade on its vertices.
+static void spread(const bough_rotor *rotor, int blade, bough_rotor_data *data) {
+    const bough_vec3 *force = data->scratch->force + blade * rotor->n_station;
+    const bough_vec3 *moment = data->scratch->moment + blade * rotor->n_station;
     for (int i = 0; i < rotor->n_vertex; i++) {
         vertex_row row = rotor->row[i];
         bough_vec3 f = {0}, m = {0};
@@ -498,18 +494,31 @@ static void sum_rotor(const bough_rotor *rotor, const bough_rotor_motion *motion
     }
 }
 
+static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *motion,
+                          bough_rotor_data *data) {
+    int n = rotor->n_blade * rotor->n_station;
+#pragma omp parallel for schedule(static) num_threads(data->threads) if (data->threads > 1)
+    for (int k = 0; k < n; k++) move_station(rotor, motion, k, data);
+}
+
+static void load_stations(const bough_rotor *rotor, const disk *d, bough_rotor_data *data) {
+    int n = rotor->n_blade * rotor->n_station;
+#pragma omp parallel for schedule(static) num_threads(data->threads) if (data->threads > 1)
+    for (int k = 0; k < n; k++) load_station(rotor, d, k, data);
+}
+
 void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
                         bough_rotor_data *data) {
-    for (int b = 0; b < rotor->n_blade; b++)
-        move_blade(rotor, motion, b, data);
+    move_stations(rotor, motion, data);
     disk d = survey_disk(rotor, motion, data);
     if (data->memory.clock) bough_rotor_resume(motion, data);
     d.memory = data->memory.station;
     d.stall = data->memory.stall;
     if (data->memory.clock) d.step = data->memory.clock->step;
     d.first = data->station;
+    load_stations(rotor, &d, data);
     for (int b = 0; b < rotor->n_blade; b++)
-        load_blade(rotor, &d, b, data);
+        spread(rotor, b, data);
     sum_rotor(rotor, motion, data);
     if (data->memory.clock) bough_rotor_remember(rotor, motion, data);
 }
