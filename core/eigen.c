@@ -16,10 +16,9 @@ enum {
 static const double accuracy = 1e-9;
 static const double dependent = 1e-13; // share of a vector that counts as none
 
-// Vectors are (q, λq), 16 n long.
 typedef struct arnoldi {
-    const bough_eigen_problem *problem;
-    int n, length;   // blocks; doubles of a vector
+    const bough_eigen_operator *op;
+    int length;      // of a vector
     int capacity;    // most vectors
     int count, done; // vectors in the basis; those to which the operator was applied
     double *basis;   // (capacity × length)
@@ -44,22 +43,8 @@ static double product(const arnoldi *a, const double *x, const double *y) {
     return sum;
 }
 
-// y −= M x
-static void subtract_mass(const arnoldi *a, const double *x, double *y) {
-    for (int i = 0; i < a->n; i++) {
-        bough_block_subtract(a->problem->mass + (size_t)i * BOUGH_BLOCK, x + (size_t)W8 * i,
-                             y + (size_t)W8 * i);
-    }
-}
-
-// (q, v) → (−K⁻¹(C q + M v), q): its eigenvalues are 1/λ.
 static void apply(const arnoldi *a, const double *z, double *image) {
-    size_t half = (size_t)a->length / 2;
-    memset(image, 0, half * sizeof *image);
-    bough_block_tridiagonal_subtract(a->problem->damping, z, image);
-    subtract_mass(a, z + half, image);
-    bough_block_tridiagonal_solve(a->problem->stiffness, image);
-    memcpy(image + half, z, half * sizeof *image);
+    a->op->apply(a->op->self, z, image);
 }
 
 // Makes x orthogonal to the basis, coefficients added to `column` unless NULL, and appends it of
@@ -80,32 +65,31 @@ static void append(arnoldi *a, double *x, double *column) {
     for (int i = 0; i < a->length; i++) v[i] = x[i] / norm;
 }
 
-// Random vectors smoothed by the operator. The first also sets the weights: displacements count
-// like velocities at the frequency that it shows.
-static void start(arnoldi *a) {
-    unsigned seed = 1;
+// Displacements count like velocities at the frequency that a smoothed vector shows.
+static void balance(arnoldi *a, const double *smooth) {
     int half = a->length / 2;
     double speed = 0, displacement = 0;
     for (int i = 0; i < half; i++) {
-        int block = i / W8, c = i % W8;
-        const double *mass = a->problem->mass + (size_t)block * BOUGH_BLOCK;
-        a->weight[i] = a->weight[half + i] = c < 6 ? fabs(mass[W8 * c + c]) : 0;
+        displacement += a->weight[i] * smooth[i] * smooth[i];
+        speed += a->weight[i] * smooth[half + i] * smooth[half + i];
     }
+    for (int i = 0; i < half; i++) a->weight[i] *= speed / displacement;
+}
+
+// Random vectors smoothed by the operator.
+static void start(arnoldi *a) {
+    unsigned seed = 1;
     for (int k = 0; k < BLOCK_SIZE; k++) {
         double *random = vector_at(a, a->capacity - 1);
         for (int i = 0; i < a->length; i++) {
             seed = seed * 1664525u + 1013904223u;
-            random[i] = i % W8 < 6 ? (double)(seed >> 8) / 8388608.0 - 1 : 0;
+            random[i] = a->weight[i] > 0 ? (double)(seed >> 8) / 8388608.0 - 1 : 0;
         }
         for (int twice = 0; twice < 2; twice++) {
             apply(a, random, a->image);
             memcpy(random, a->image, (size_t)a->length * sizeof *random);
         }
-        for (int i = 0; k == 0 && i < half; i++) {
-            displacement += a->weight[i] * random[i] * random[i];
-            speed += a->weight[i] * random[half + i] * random[half + i];
-        }
-        for (int i = 0; k == 0 && i < half; i++) a->weight[i] *= speed / displacement;
+        if (k == 0 && a->op->balance) balance(a, random);
         append(a, a->image, NULL);
     }
 }
@@ -168,9 +152,18 @@ static double residual(const arnoldi *a, const ritz *r, int k) {
     return sqrt(sum);
 }
 
+// λ of a Ritz value μ: 1/μ, or (1 − 1/μ)/γ.
+static void eigenvalue(const arnoldi *a, const ritz *r, int k, double *real, double *imaginary) {
+    double x = r->value[k], y = r->value[a->done + k], square = x * x + y * y;
+    double gamma = a->op->gamma;
+    *real = gamma > 0 ? (1 - x / square) / gamma : x / square;
+    *imaginary = y / square / (gamma > 0 ? gamma : 1); // of μ or of its partner
+}
+
 // Whether a Ritz value belongs to what is listed: the first of a pair, or growing.
-static bool is_listed(const ritz *r, int m, int k) {
-    double real = r->value[k], imaginary = r->value[m + k];
+static bool is_listed(const arnoldi *a, const ritz *r, int k) {
+    double real, imaginary;
+    eigenvalue(a, r, k, &real, &imaginary);
     return imaginary > 0 || (imaginary == 0 && real > 0);
 }
 
@@ -181,7 +174,7 @@ static int select(const arnoldi *a, const ritz *r, int wanted, int *chosen, doub
     *sum = 0;
     for (int i = 0; i < m && found < wanted; i++) {
         int k = r->order[i];
-        if (!is_listed(r, m, k) || residual(a, r, k) > accuracy * modulus(r, m, k)) continue;
+        if (!is_listed(a, r, k) || residual(a, r, k) > accuracy * modulus(r, m, k)) continue;
         *sum += modulus(r, m, k);
         chosen[found++] = k;
     }
@@ -206,24 +199,20 @@ static bool iterate(arnoldi *a, ritz *r, int wanted, int *chosen, int *found) {
 
 // q = Σ yₖ qₖ
 static void combine(const arnoldi *a, const double *y, double *shape) {
-    int half = a->length / 2;
     for (int k = 0; k < a->done; k++) {
         const double *v = vector_at(a, k);
-        for (int i = 0; i < half; i++) shape[i] += y[k] * v[i];
+        for (int i = 0; i < a->op->n_shape; i++) shape[i] += y[k] * v[i];
     }
 }
 
-// λ = 1/μ; μ's conjugate partner is the one of the positive imaginary part.
+// Of 1/μ it is μ's conjugate partner that has the positive imaginary part.
 static void fill_pair(const arnoldi *a, const ritz *r, int k, bough_eigen_pair *pair) {
-    int m = a->done;
-    const double *imaginary, *real = parts_of(r, m, k, &imaginary);
-    double x = r->value[k], y = r->value[m + k], square = x * x + y * y;
-    pair->real = x / square;
-    pair->imaginary = y / square;
+    const double *imaginary, *real = parts_of(r, a->done, k, &imaginary);
+    eigenvalue(a, r, k, &pair->real, &pair->imaginary);
     combine(a, real, pair->shape_real);
     if (imaginary == NULL) return;
     combine(a, imaginary, pair->shape_imag);
-    for (int i = 0; i < a->length / 2; i++) pair->shape_imag[i] *= -1;
+    for (int i = 0; i < a->op->n_shape && a->op->gamma == 0; i++) pair->shape_imag[i] *= -1;
 }
 
 // -- whole ----------------------------------------------------------------------------------------
@@ -232,7 +221,6 @@ static bool take(bough_arena *arena, int wanted, arnoldi *a, ritz *r) {
     size_t length = (size_t)a->length, m = (size_t)a->capacity;
     a->basis = bough_arena_doubles(arena, m * length);
     a->h = bough_arena_doubles(arena, m * m);
-    a->weight = bough_arena_doubles(arena, length);
     a->image = bough_arena_doubles(arena, length);
     r->matrix = bough_arena_doubles(arena, m * m);
     r->vector = bough_arena_doubles(arena, m * m);
@@ -244,32 +232,73 @@ static bool take(bough_arena *arena, int wanted, arnoldi *a, ritz *r) {
 
 static bool take_shapes(bough_arena *arena, const arnoldi *a, bough_eigen_pair *pair, int count) {
     for (int i = 0; i < count; i++) {
-        pair[i].shape_real = bough_arena_doubles(arena, (size_t)a->length / 2);
-        pair[i].shape_imag = bough_arena_doubles(arena, (size_t)a->length / 2);
+        pair[i].shape_real = bough_arena_doubles(arena, (size_t)a->op->n_shape);
+        pair[i].shape_imag = bough_arena_doubles(arena, (size_t)a->op->n_shape);
     }
     return !bough_arena_exhausted(arena);
 }
 
-bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem *problem,
-                                  int wanted, bough_eigen_pair *pair, int *found) {
-    int n = problem->stiffness->n, first = 4 * wanted + SPARE;
-    int most = first + first * LOOKS / 2;
-    arnoldi a = {.problem = problem, .n = n, .length = 2 * W8 * n, .capacity = most + BLOCK_SIZE};
+bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator *op, int wanted,
+                                 bough_eigen_pair *pair, int *found) {
+    int first = 4 * wanted + SPARE, most = first + first * LOOKS / 2;
+    arnoldi a = {
+        .op = op, .length = op->length, .capacity = most + BLOCK_SIZE, .weight = op->weight};
     ritz r;
     if (!take(arena, wanted, &a, &r)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    if (!bough_block_tridiagonal_factor(problem->stiffness)) {
-        return bough_fail(BOUGH_FAILED, "%s: the stiffness about the equilibrium is singular: it"
-                          " stands at a buckling load; change the load", problem->name);
-    }
     int *chosen = r.order + a.capacity;
     start(&a);
     if (!iterate(&a, &r, wanted, chosen, found)) {
         return bough_fail(BOUGH_FAILED, "%s: the %d lowest eigenvalues were not found to %g; ask"
-                          " for fewer", problem->name, wanted, accuracy);
+                          " for fewer", op->name, wanted, accuracy);
     }
     if (!take_shapes(arena, &a, pair, *found)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     }
     for (int i = 0; i < *found; i++) fill_pair(&a, &r, chosen[i], &pair[i]);
     return bough_ok();
+}
+
+// -- second order ---------------------------------------------------------------------------------
+
+// y −= M x
+static void subtract_mass(const bough_eigen_problem *problem, const double *x, double *y) {
+    for (int i = 0; i < problem->stiffness->n; i++) {
+        bough_block_subtract(problem->mass + (size_t)i * BOUGH_BLOCK, x + (size_t)W8 * i,
+                             y + (size_t)W8 * i);
+    }
+}
+
+// Vectors are (q, λq), 16 n long: (q, v) → (−K⁻¹(C q + M v), q), its eigenvalues are 1/λ.
+static void apply_inverse(void *self, const double *z, double *image) {
+    const bough_eigen_problem *problem = self;
+    size_t half = (size_t)W8 * (size_t)problem->stiffness->n;
+    memset(image, 0, half * sizeof *image);
+    bough_block_tridiagonal_subtract(problem->damping, z, image);
+    subtract_mass(problem, z + half, image);
+    bough_block_tridiagonal_solve(problem->stiffness, image);
+    memcpy(image + half, z, half * sizeof *image);
+}
+
+bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem *problem,
+                                  int wanted, bough_eigen_pair *pair, int *found) {
+    int half = W8 * problem->stiffness->n;
+    bough_eigen_problem self = *problem;
+    bough_eigen_operator op = {.name = problem->name,
+                               .length = 2 * half,
+                               .n_shape = half,
+                               .weight = bough_arena_doubles(arena, 2 * (size_t)half),
+                               .balance = true,
+                               .self = &self,
+                               .apply = apply_inverse};
+    if (op.weight == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!bough_block_tridiagonal_factor(problem->stiffness)) {
+        return bough_fail(BOUGH_FAILED, "%s: the stiffness about the equilibrium is singular: it"
+                          " stands at a buckling load; change the load", problem->name);
+    }
+    for (int i = 0; i < half; i++) {
+        int c = i % W8;
+        const double *mass = problem->mass + (size_t)(i / W8) * BOUGH_BLOCK;
+        op.weight[i] = op.weight[half + i] = c < 6 ? fabs(mass[W8 * c + c]) : 0;
+    }
+    return bough_eigen_nearest(arena, &op, wanted, pair, found);
 }

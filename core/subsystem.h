@@ -88,6 +88,10 @@ typedef struct bough_subsystem_ops {
     void (*set_state)(void *self, double t, const double *state);
 
     void (*statistics)(void *self, bough_statistics *sum);
+
+    // Takes out of a tangent x (n_state) at `state` what is no motion: changes of a quaternion's
+    // length. NULL: there is nothing such.
+    void (*project)(void *self, const double *state, double *x);
 } bough_subsystem_ops;
 
 typedef struct bough_subsystem {

@@ -374,6 +374,18 @@ static void statistics(void *self, bough_statistics *sum) {
     sum->factorisations += s->newton_setups;
 }
 
+// δq ← N N⁺ δq
+static void project(void *self, const double *state, double *x) {
+    tree_subsystem *s = self;
+    for (int i = 0; i < s->tree->n_links; i++) {
+        const bough_link *link = &s->tree->links[i];
+        const double *q = state + link->first_coordinate;
+        double *change = x + link->first_coordinate, speed[BOUGH_JOINT_SPEEDS];
+        bough_joint_speed(&link->joint, q, change, speed);
+        bough_joint_rate(&link->joint, q, speed, change);
+    }
+}
+
 static const bough_subsystem_ops operations = {
     .derivative = derivative,
     .output = output,
@@ -387,6 +399,7 @@ static const bough_subsystem_ops operations = {
     .restore = restore,
     .set_state = set_state,
     .statistics = statistics,
+    .project = project,
 };
 
 // -- construction ----------------------------------------------------------------------------

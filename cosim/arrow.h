@@ -1,6 +1,6 @@
-// All members of an assembly as one system ẏ = F(t, y), the inputs found from the outputs: its rate,
-// and solutions of (I − γ ∂F/∂y) x = r. That matrix is an arrow, solved by static condensation onto
-// the inputs,
+// All members of an assembly as one system ẏ = F(t, y), the inputs found from the outputs: its
+// rate, and solutions of (I − γ ∂F/∂y) x = r. That matrix is an arrow, solved by static
+// condensation onto the inputs,
 //     (I − γJ_i) x_i = r_i + γ B_i δu_i,   δo_i = C_i x_i + D_i δu_i,   δu = P δo,
 // so each member is factored by itself and the interface system has the size of all inputs.
 #ifndef BOUGH_COSIM_ARROW_H

@@ -82,10 +82,9 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_arrow *arrow,
         double contraction = step(&s, state, report);
         bool last = s.gamma >= BOUGH_EQUILIBRIUM_LONGEST;
         report->steps++;
-        if (last && (report->change < def->tolerance ||
-                     (report->change < rounding && contraction > contracting))) {
-            return bough_ok();
-        }
+        if (report->change < def->tolerance) contraction = 0; // but for rounding
+        if (last && report->change < rounding && !(contraction < contracting)) return bough_ok();
+        if (last && report->change < def->tolerance) return bough_ok();
         if (!(contraction < contracting)) {
             s.gamma *= shrink;
             continue;

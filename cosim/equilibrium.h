@@ -1,8 +1,8 @@
 // Equilibrium of the coupled system, F(t, y) = 0 at a fixed time, but for the states that the arrow
-// holds: an angle that goes on turning and its speed, say, whose rates need not vanish. Method: implicit
-// Euler steps with one linearisation each and growing length γ, which follow the damped motion from
-// the initial state until, at the longest, they are Newton's method. An equilibrium near the initial
-// state may be found though it is unstable.
+// holds: an angle that goes on turning and its speed, say, whose rates need not vanish. Method:
+// implicit Euler steps with one linearisation each and growing length γ, which follow the damped
+// motion from the initial state until, at the longest, they are Newton's method. An equilibrium
+// near the initial state may be found though it is unstable.
 #ifndef BOUGH_COSIM_EQUILIBRIUM_H
 #define BOUGH_COSIM_EQUILIBRIUM_H
 
@@ -14,7 +14,8 @@ typedef struct bough_equilibrium_def {
     double tolerance; // of the last step, in units of the members' scales
     int steps;        // most, refused ones among them
     void *self;
-    // Takes the motion that is not part of the equilibrium out of a state, after each step; NULL: none.
+    // Takes the motion that is not part of the equilibrium out of a state, after each step; NULL:
+    // none.
     void (*calm)(void *self, double *state);
 } bough_equilibrium_def;
 
@@ -30,8 +31,8 @@ typedef struct bough_equilibrium_report {
     double rate;   // its rate of change [units per s]
 } bough_equilibrium_report;
 
-// Brings `state` (n_state) to equilibrium. BOUGH_FAILED when it is not found: the report tells where
-// it did not settle, the state is the last one reached.
+// Brings `state` (n_state) to equilibrium. BOUGH_FAILED when it is not found: the report tells
+// where it did not settle, the state is the last one reached.
 bough_status bough_equilibrium_find(bough_arena *arena, bough_arrow *arrow,
                                     const bough_equilibrium_def *def, double *state,
                                     bough_equilibrium_report *report);

@@ -1,5 +1,5 @@
-// Monolithic reference: the states of all members in one implicit system ẏ − F(t, y) = 0, integrated
-// by the master integrator across macro steps; Newton's matrix is the arrow of arrow.h.
+// Monolithic reference: the states of all members in one implicit system ẏ − F(t, y) = 0,
+// integrated by the master integrator across macro steps; Newton's matrix is the arrow of arrow.h.
 // No coupling error: every error figure is measured against it.
 #include "core/integrator_ida.h"
 #include "cosim/arrow.h"

@@ -147,6 +147,22 @@ static void statistics(void *self, bough_statistics *sum) {
     b->micro.statistics(b->micro.self, sum);
 }
 
+// δp ← δp − p (p·δp)/|p|²
+static void project(void *self, const double *state, double *x) {
+    const bough_rod_body *b = self;
+    int n = b->model->n;
+    const double *p = state + (size_t)BOUGH_ROD_P * n;
+    double *change = x + (size_t)BOUGH_ROD_P * n;
+    for (int i = 0; i < n; i++) {
+        double along = 0, square = 0;
+        for (int c = 0; c < 4; c++) {
+            along += p[c * n + i] * change[c * n + i];
+            square += p[c * n + i] * p[c * n + i];
+        }
+        for (int c = 0; c < 4; c++) change[c * n + i] -= p[c * n + i] * along / square;
+    }
+}
+
 // -- life -------------------------------------------------------------------------------------------
 
 static bool take_memory(bough_rod_body *b, bough_arena *arena) {
@@ -187,7 +203,7 @@ bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *mo
 bough_subsystem bough_rod_body_subsystem(bough_rod_body *body) {
     static const bough_subsystem_ops ops = {
         derivative, output, output_tangent, input_columns, newton_setup, newton_solve, advance,
-        save_size,  save,   restore,        set_state,     statistics};
+        save_size,  save,   restore,        set_state,     statistics, project};
     return (bough_subsystem){.name = body->model->name,
                              .kind = "rod",
                              .solver = body->micro.name,

@@ -335,12 +335,19 @@ modes() {
     has ../stdout '^rod blade3: .* turning at 12.1 rpm about (0.996195, 0, -0.0871557)'
     near ../stdout '^ *1 ' 2 0.7349 0.001
     missing turning/shapes.csv
+    expect 0 modes "$turbine" --set 'modes={count: 3, at: undeformed}' --out whole
+    has ../stdout '^whole scene: .*, rotor at 4.77465 rpm, seen by an observer at rest; the air'
+    has ../stdout '^ *1 .* blades .* flap .* backward '
+    has whole/modes.csv '^mode,frequency (Hz),.*,pattern,collective (-),forward (-),backward (-),tower'
+    rm -r whole
     expect 0 modes "$beam" --set 'loads=[{body: beam, at: tip, force: [0, 0, -3 kN], frame: follower}]'
     has ../stdout '^unstable beam: mode [23] grows at '
     rm -r out turning
     refused 'no revolute joint carries it' modes "$blade" --set 'modes.speed=1'
     refused "modes.about: the joint of 'nacelle' must be revolute" modes "$turbine" \
         --set 'modes.about=nacelle'
+    refused "modes.speed: only used with 'of: rods'" modes "$turbine" \
+        --set 'modes={of: scene, speed: 12.1 rpm}'
     refused "modes.axis: only used without 'about'" modes "$turbine" \
         --set 'modes={about: hub, axis: [1, 0, 0]}'
 }

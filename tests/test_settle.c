@@ -84,19 +84,26 @@ static void rod_alone_settles_where_its_own_statics_says(void **context) {
 // Nothing moves in a run that starts from the equilibrium of the parked turbine in its wind.
 static void parked_turbine_stays_at_rest(void **context) {
     (void)context;
-    const char *sets[] = {"simulation.initial=equilibrium", "loads=[]",
+    const char *sets[] = {"simulation.initial=equilibrium",
+                          "simulation.threads=1",
+                          "loads=[]",
                           "bodies[2].joint={kind: revolute, parent: nacelle, axis: x, placement: "
                           "[move z 89.6 m, move x -5 m], motion: {angle: 0}}",
-                          "aero.ramp=[0, 0]", "bodies[3].rod.segments=24",
-                          "bodies[4].rod.segments=24", "bodies[5].rod.segments=24", NULL};
+                          "aero.ramp=[0, 0]",
+                          "bodies[3].rod.segments=24",
+                          "bodies[4].rod.segments=24",
+                          "bodies[5].rod.segments=24",
+                          NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, runup, sets);
     size_t bytes = (size_t)s->rod[0].n_state * sizeof(double);
     double *before = bough_arena_take(arena, 3 * bytes);
-    for (int k = 0; k < 3; k++) memcpy(before + k * s->rod[0].n_state, s->rod[k].state, bytes);
+    for (int k = 0; k < 3; k++)
+        memcpy(before + k * s->rod[0].n_state, s->rod[k].state, bytes);
     int n = s->rod[0].n_state / BOUGH_ROD_STATES;
     assert_true(fabs(before[n - 1]) > 0.5); // bent
-    for (int step = 0; step < 50; step++) scene_step(s);
+    for (int step = 0; step < 50; step++)
+        scene_step(s);
     for (int k = 0; k < 3; k++) {
         for (int i = 0; i < 3 * n; i++) {
             check_near(s->rod[k].state[i], before[k * s->rod[0].n_state + i], 0, 1e-6);
@@ -108,10 +115,16 @@ static void parked_turbine_stays_at_rest(void **context) {
 // At the speed where load and air balance, only the tower excites.
 static void turning_rotor_starts_smoothly(void **context) {
     (void)context;
-    const char *sets[] = {"simulation.initial=equilibrium", "bodies[2].joint.speed=1.49", "loads[0].ramp=[0, 0]",
-                          "aero.ramp=[0, 0]", "gravity=[0, 0, 0]", NULL};
-    const char *undeformed[] = {"bodies[2].joint.speed=1.49", "loads[0].ramp=[0, 0]", "aero.ramp=[0, 0]",
-                                "gravity=[0, 0, 0]", NULL};
+    const char *sets[] = {"simulation.initial=equilibrium",
+                          "simulation.threads=1",
+                          "bodies[2].joint.speed=1.49",
+                          "loads[0].ramp=[0, 0]",
+                          "aero.ramp=[0, 0]",
+                          "gravity=[0, 0, 0]",
+                          NULL};
+    const char *undeformed[] = {"simulation.threads=1", "bodies[2].joint.speed=1.49",
+                                "loads[0].ramp=[0, 0]", "aero.ramp=[0, 0]",
+                                "gravity=[0, 0, 0]",    NULL};
     double moved[2] = {0, 0};
     for (int k = 0; k < 2; k++) {
         bough_arena *arena = bough_arena_create();

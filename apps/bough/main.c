@@ -23,7 +23,7 @@ const bough_verb bough_verbs[] = {
      bough_verb_static},
     {"modes",
      {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET | BOUGH_OPTION_OUT},
-     "finds frequencies, damping and shapes of each rod, at rest or in steady rotation",
+     "finds frequencies, damping and shapes of the whole, or of each rod, at rest or turning",
      bough_verb_modes},
     {"study",
      {BOUGH_OPERAND_REQUIRED, "STUDY",

@@ -1,9 +1,11 @@
-// bough modes: frequencies, damping and shapes of each rod, clamped at its root, about its
-// equilibrium at rest or in steady rotation.
+// bough modes: frequencies, damping and shapes of the whole scene (modes_whole.c), or of each rod,
+// clamped at its root, about equilibrium at rest or in steady rotation.
+#include "apps/bough/modes_whole.h"
 #include "apps/bough/open.h"
 #include "apps/bough/verb.h"
 #include "apps/output/folder.h"
 #include "apps/scene/steady.h"
+#include "apps/scene/vibration.h"
 #include "flexbody/rod_modes.h"
 
 // One rod and what was found.
@@ -138,6 +140,7 @@ bough_status bough_verb_modes(bough_arena *arena, const bough_options *options) 
     bough_simulation *s;
     bough_status status = bough_open(arena, options, &s);
     if (!bough_is_ok(&status)) return status;
+    if (bough_vibration_wanted(s)) return bough_modes_whole(arena, options, s);
     if (bough_steady_rods(s) == 0) {
         return bough_fail(BOUGH_INVALID, "%.200s: no body has fidelity rod", s->scene->file);
     }

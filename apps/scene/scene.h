@@ -425,10 +425,18 @@ typedef struct bough_scene_control {
     bough_controller_def law;    // BLADED: only the pitch rate is used
 } bough_scene_control;
 
+typedef enum bough_scene_modes_of {
+    BOUGH_SCENE_MODES_AUTO, // of the rods where they are apart or `speed` or `axis` is given
+    BOUGH_SCENE_MODES_RODS,
+    BOUGH_SCENE_MODES_SCENE,
+} bough_scene_modes_of;
+
 // What `bough modes` finds; a run does not read it.
 typedef struct bough_scene_modes {
     const bough_node *node;
-    int count;              // modes of each rod
+    int of;                 // bough_scene_modes_of
+    int at;                 // bough_scene_initial: of the whole scene, the state they are about
+    int count;              // modes of each rod, or of the scene
     double speed;           // of a steady rotation [rad/s]; 0: at rest
     const char *about_name; // NULL: the nearest revolute joint that carries the rod
     int about;              // index of the body on the revolute joint, when named

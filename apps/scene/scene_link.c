@@ -333,6 +333,10 @@ static void link_modes(bough_schema_reader *r, bough_scene *s) {
     at(r, "modes");
     const bough_node *axis = bough_node_find(m->node, "axis");
     const bough_node *centre = bough_node_find(m->node, "centre");
+    const bough_node *speed = bough_node_find(m->node, "speed");
+    if (speed != NULL && m->of == BOUGH_SCENE_MODES_SCENE) {
+        bough_schema_error(r, speed, "speed", "only used with 'of: rods'");
+    }
     if (m->about_name != NULL) {
         const bough_node *about = value_of(m->node, "about");
         m->about = resolve(r, s, about, "about", m->about_name);

@@ -637,9 +637,17 @@ static const bough_schema aero_schema = {SCHEMA("the aerodynamics", bough_scene_
 #define AT(member) .offset = offsetof(bough_scene_modes, member)
 static const bough_key modes_keys[] = {
     {.name = "count", .kind = BOUGH_KEY_INTEGER, .range = "[1, 60]", .fallback = "12", AT(count),
-     .help = "of each rod, from the lowest frequency"},
+     .help = "of each rod or of the scene, from the lowest frequency"},
+    {.name = "of", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("auto", "rods", "scene"),
+     .fallback = "auto", AT(of),
+     .help = "each rod with its root held, or the whole scene; auto: the rods where no joint moves "
+             "or speed or axis is given"},
+    {.name = "at", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("undeformed", "equilibrium"),
+     .fallback = "equilibrium", AT(at),
+     .help = "of the whole scene: about its initial state or its equilibrium, in which a joint with "
+             "a speed keeps it"},
     {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGULAR_SPEED, .fallback = "0",
-     AT(speed), .help = "of a steady rotation of the rods' roots"},
+     AT(speed), .help = "of a steady rotation of the rods' roots; the whole scene turns as its joints do"},
     {.name = "about", .kind = BOUGH_KEY_TEXT, AT(about_name),
      .help = "body on the revolute joint about whose axis they turn; default the nearest that "
              "carries the rod"},

@@ -71,8 +71,8 @@ static bough_status explain(const bough_simulation *s, const bough_assembly *ass
                             const bough_equilibrium_report *report) {
     return bough_fail(BOUGH_FAILED,
                       "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale in"
-                      " a step, at a rate of %.3g; a free joint needs a spring, a speed or a motion,"
-                      " a load may be too large (try a part of it), a mesh too coarse",
+                      " a step, at a rate of %.3g; a free joint needs a spring, a speed or a"
+                      " motion, a load may be too large (try a part of it), a mesh too coarse",
                       body_of(s, assembly, report->row), report->steps, report->change,
                       report->rate);
 }
@@ -129,8 +129,8 @@ typedef struct settler {
     double time;
 } settler;
 
-// Joints rest but for those held, and the rods ride on them: without the vibration that the search's
-// steps would follow.
+// Joints rest but for those held, and the rods ride on them: without the vibration that the
+// search's steps would follow.
 static void calm(void *self, double *state) {
     const settler *x = self;
     const bough_simulation *s = x->simulation;
@@ -159,8 +159,7 @@ static bough_status settle_members(bough_arena *arena, bough_simulation *s,
     double *state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
     int *row = bough_arena_take(arena, ((size_t)s->trunk.n_state + 1) * sizeof *row);
     if (!state || !row) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_status status =
-        bough_arrow_create(arena, assembly, s->scene->simulation.threads, &arrow);
+    bough_status status = bough_arrow_create(arena, assembly, 1, &arrow);
     if (!bough_is_ok(&status)) return status;
     def.time = time;
     status = bough_arrow_hold(arena, arrow, bough_settle_held(s->tree, true, row), row);

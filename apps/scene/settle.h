@@ -1,9 +1,9 @@
-// Static equilibrium of the whole scene: tree, rods and springs together, under gravity, the loads at
-// one time and the air's forces, which are sampled anew where the bodies come to rest.
+// Static equilibrium of the whole scene: tree, rods and springs together, under gravity, the loads
+// at one time and the air's forces, which are sampled anew where the bodies come to rest.
 //
 // A joint of prescribed motion is where it is then; one with an initial speed keeps coordinate and
-// speed. What they carry turns steadily, at the azimuth where it is (frozen azimuth: gravity does not
-// go round). All other joints come to rest.
+// speed. What they carry turns steadily, at the azimuth where it is (frozen azimuth: gravity does
+// not go round). All other joints come to rest.
 #ifndef BOUGH_APPS_SCENE_SETTLE_H
 #define BOUGH_APPS_SCENE_SETTLE_H
 

@@ -1,0 +1,102 @@
+#include "apps/bough/modes_whole.h"
+
+#include "apps/bough/open.h"
+#include "apps/output/folder.h"
+#include "apps/scene/vibration.h"
+
+static const double unstable = 1e-6; // growth relative to |λ| above it is no rounding
+
+// -- words ----------------------------------------------------------------------------------------
+
+// Rods that are no blades bend along their axes.
+static const char *shape_of(const bough_simulation *s, const bough_scene_mode *mode) {
+    static const char *const blade[] = {"flap", "edge", "axial", "torsion"};
+    static const char *const rod[] = {"x", "y", "z", "torsion"};
+    if (mode->direction < 0) return "";
+    bool is_blade = mode->blades;
+    for (int k = 0; s->scene->turbine.node && k < s->scene->turbine.n_blade; k++) {
+        is_blade = is_blade || s->scene->turbine.blade[k] == mode->body;
+    }
+    return (is_blade ? blade : rod)[mode->direction];
+}
+
+static const char *body_of(const bough_simulation *s, const bough_scene_mode *mode) {
+    return mode->blades ? "blades" : s->scene->body[mode->body].name;
+}
+
+// -- table ----------------------------------------------------------------------------------------
+
+static void print_head(const bough_simulation *s, const bough_vibration *v) {
+    printf("whole scene: %d states, about %s", s->master->assembly->n_state,
+           s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM ? "equilibrium" : "its initial state");
+    if (v->spin != 0) printf(", rotor at %.6g rpm", v->spin * 30 / BOUGH_PI);
+    if (v->frozen) printf(", azimuth frozen");
+    if (v->spin != 0 && v->n_blade > 0) printf(", seen by an observer at rest");
+    if (s->aero) printf("; the air's forces do not follow");
+    printf("\n%4s %12s %12s %11s  %-12s %-8s %-12s %8s %8s %8s\n", "mode", "frequency", "damped",
+           "damping", "body", "shape", "pattern", "collect.", "forward", "backward");
+    printf("%4s %12s %12s %11s\n", "", "(Hz)", "(Hz)", "(%)");
+}
+
+static void print_modes(const bough_simulation *s, const bough_vibration *v) {
+    print_head(s, v);
+    for (int k = 0; k < v->found; k++) {
+        const bough_scene_mode *m = &v->mode[k];
+        printf("%4d %12.6g %12.6g %11.5f  %-12s %-8s %-12s", k + 1, m->frequency,
+               m->damped_frequency, 100 * m->damping, body_of(s, m), shape_of(s, m),
+               bough_pattern_names[m->pattern]);
+        for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
+        putchar('\n');
+    }
+    for (int k = 0; k < v->found; k++) {
+        const bough_scene_mode *m = &v->mode[k];
+        if (m->growth <= unstable * 2 * BOUGH_PI * m->frequency) continue;
+        printf("unstable: mode %d grows at %.6g /s\n", k + 1, m->growth);
+    }
+}
+
+// -- files ----------------------------------------------------------------------------------------
+
+static void write_modes(FILE *file, const bough_simulation *s, const bough_vibration *v) {
+    int n_body = s->scene->n_body;
+    fputs("mode,frequency (Hz),damped frequency (Hz),damping ratio (-),body,shape,pattern,"
+          "collective (-),forward (-),backward (-)", file);
+    for (int i = 0; i < n_body; i++) fprintf(file, ",%s (-)", s->scene->body[i].name);
+    fputc('\n', file);
+    for (int k = 0; k < v->found; k++) {
+        const bough_scene_mode *m = &v->mode[k];
+        fprintf(file, "%d,%.10g,%.10g,%.10g,%s,%s,%s", k + 1, m->frequency, m->damped_frequency,
+                m->damping, body_of(s, m), shape_of(s, m), bough_pattern_names[m->pattern]);
+        for (int c = 0; c < 3; c++) fprintf(file, ",%.6g", m->whirl[c]);
+        for (int i = 0; i < n_body; i++) fprintf(file, ",%.6g", m->share[i]);
+        fputc('\n', file);
+    }
+}
+
+static bough_status write_file(const char *folder, const bough_simulation *s,
+                               const bough_vibration *v) {
+    char path[BOUGH_PATH_MAX];
+    FILE *file = NULL;
+    bough_status status = bough_folder_make(folder);
+    if (bough_is_ok(&status)) status = bough_folder_path(folder, "modes.csv", path);
+    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    if (!bough_is_ok(&status)) return status;
+    write_modes(file, s, v);
+    return bough_folder_commit(path, file);
+}
+
+bough_status bough_modes_whole(bough_arena *arena, const bough_options *options,
+                               bough_simulation *s) {
+    bough_vibration v;
+    const char *folder = bough_out_folder(arena, options);
+    if (!folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (s->master->assembly->n_state == 0) {
+        return bough_fail(BOUGH_INVALID, "%.200s: nothing in it moves or bends", s->scene->file);
+    }
+    bough_status status = bough_vibration_find(arena, s, s->scene->modes.count, &v);
+    if (!bough_is_ok(&status)) return status;
+    print_modes(s, &v);
+    status = write_file(folder, s, &v);
+    if (bough_is_ok(&status)) printf("out: %s\n", folder);
+    return status;
+}

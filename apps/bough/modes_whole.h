@@ -1,0 +1,12 @@
+// The part of `bough modes` for whole scenes.
+#ifndef BOUGH_APPS_BOUGH_MODES_WHOLE_H
+#define BOUGH_APPS_BOUGH_MODES_WHOLE_H
+
+#include "apps/bough/options.h"
+#include "apps/scene/build.h"
+
+// Finds, prints and writes them.
+bough_status bough_modes_whole(bough_arena *arena, const bough_options *options,
+                               bough_simulation *s);
+
+#endif
