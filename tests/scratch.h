@@ -13,7 +13,7 @@
 
 enum { SCRATCH_TEXT = 1 << 20 };
 
-// cmocka set-up and tear-down: *state is the folder's path. It holds files only, no folders.
+// cmocka set-up and tear-down: *state is the folder's path. It may hold folders of files.
 static inline int scratch_make(void **state) {
     char *path = malloc(64);
     if (!path) return -1;
@@ -22,15 +22,19 @@ static inline int scratch_make(void **state) {
     return mkdtemp(path) ? 0 : -1;
 }
 
-static inline int scratch_remove(void **state) {
+static inline int scratch_empty(const char *path) {
     char name[512];
-    DIR *folder = opendir(*state);
+    DIR *folder = opendir(path);
     for (struct dirent *entry; folder && (entry = readdir(folder));) {
-        snprintf(name, sizeof name, "%s/%s", (char *)*state, entry->d_name);
-        if (entry->d_name[0] != '.') remove(name);
+        snprintf(name, sizeof name, "%s/%s", path, entry->d_name);
+        if (entry->d_name[0] != '.' && remove(name) != 0) scratch_empty(name);
     }
     if (folder) closedir(folder);
-    int result = rmdir(*state);
+    return rmdir(path);
+}
+
+static inline int scratch_remove(void **state) {
+    int result = scratch_empty(*state);
     free(*state);
     return result;
 }

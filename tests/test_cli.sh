@@ -368,6 +368,20 @@ threads() {
     rm -r out1 out2 out3
 }
 
+# Frames at the times asked for, the rod's axis in each, and a page of all.
+shown() {
+    expect 0 run "$bar" --set 'simulation.duration=20 ms' --set 'simulation.output.frames=5 ms' --out out
+    [ "$(grep -c '<DataSet ' out/frames.pvd)" -eq 5 ] || fail "$said: five frames"
+    has out/frames.pvd 'timestep="0.02" file="frames/000004.vtp"'
+    [ "$(grep -c '^[-0-9.e]* [-0-9.e]* [-0-9.e]*$' out/frames/000004.vtp)" -ge 40 ] ||
+        fail "$said: the points of the rod"
+    expect 0 report out
+    has ../stdout '^report: out/report.html$'
+    has out/report.html '"status": "complete"'
+    rm -r out
+    refused 'holds no results' report .
+}
+
 usage
 help
 bad_scenes
@@ -379,5 +393,6 @@ modes "$@"
 interrupted_run
 bad_output
 threads
+shown
 [ $failures -eq 0 ] && echo "all checks passed"
 [ $failures -eq 0 ]

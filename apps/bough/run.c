@@ -40,6 +40,19 @@ static bool row_is_due(const bough_run *run) {
     return now >= (double)run->next_row * interval - resolution(run);
 }
 
+// A frame is stored at the first synchronisation point at or after its time.
+static bough_status record_frame(bough_run *run) {
+    double interval = run->simulation->scene->simulation.output.frames;
+    double now = run->simulation->master->time;
+    if (!run->frames || now < (double)run->next_frame * interval - resolution(run)) {
+        return bough_ok();
+    }
+    while ((double)run->next_frame * interval <= now + resolution(run))
+        run->next_frame++;
+    bough_simulation_update(run->simulation);
+    return bough_frames_sample(run->frames, now);
+}
+
 // -- stepping -------------------------------------------------------------------------------------
 
 static bough_status step(bough_run *run) {
@@ -53,7 +66,7 @@ static bough_status step(bough_run *run) {
     bough_status status = bough_step(m);
     bough_error_probe_update(&run->probe);
     if (bough_is_ok(&status) && row_is_due(run)) status = record(run);
-    return status;
+    return bough_is_ok(&status) ? record_frame(run) : status;
 }
 
 // After a numerical failure the state means nothing: only a run that could go on gets a last row.
@@ -70,6 +83,7 @@ static bough_status step_all(bough_run *run) {
     bough_progress progress = bough_progress_start(m->time, m->duration, run->options->quiet);
     double wall = bough_wall_clock(), cpu = cpu_clock();
     bough_status status = record(run);
+    if (bough_is_ok(&status)) status = record_frame(run);
     while (bough_is_ok(&status) && !bough_master_done(m)) {
         status = step(run);
         bough_progress_show(&progress, m->time);
@@ -91,6 +105,18 @@ static bough_status remove_summary(const char *folder) {
     return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", path, strerror(errno));
 }
 
+static bough_status open_frames(bough_run *run) {
+    if (!(run->simulation->scene->simulation.output.frames > 0)) return bough_ok();
+    bough_status status = bough_shape_create(run->arena, run->simulation, &run->shape);
+    if (!bough_is_ok(&status)) return status;
+    bough_frames_def def = {.folder = run->folder,
+                            .n_line = run->shape.n_line,
+                            .line = run->shape.line,
+                            .points = bough_shape_points,
+                            .self = &run->shape};
+    return bough_frames_open(run->arena, &def, &run->frames);
+}
+
 static bough_status open_results(bough_run *run) {
     run->folder = bough_out_folder(run->arena, run->options);
     if (!run->folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
@@ -101,7 +127,8 @@ static bough_status open_results(bough_run *run) {
     bough_recorder_def def = {.folder = run->folder,
                               .title = scene->title ? scene->title : scene->file,
                               .channels = &run->channels};
-    return bough_recorder_open(run->arena, &def, &run->recorder);
+    status = bough_recorder_open(run->arena, &def, &run->recorder);
+    return bough_is_ok(&status) ? open_frames(run) : status;
 }
 
 static bough_status build(bough_run *run) {
@@ -120,6 +147,7 @@ static bough_status build(bough_run *run) {
 // Ends both files; the first thing that went wrong is the outcome that they tell.
 static bough_status close_results(bough_run *run) {
     bough_status status = bough_recorder_finish(run->recorder, &run->outcome);
+    if (bough_is_ok(&status) && run->frames) status = bough_frames_finish(run->frames);
     if (bough_is_ok(&run->outcome)) run->outcome = status;
     status = bough_run_summarise(run);
     return bough_is_ok(&run->outcome) ? status : run->outcome;

@@ -6,6 +6,7 @@
 #include "apps/output/channels.h"
 #include "apps/output/recorder.h"
 #include "apps/scene/error_probe.h"
+#include "apps/scene/shape.h"
 
 typedef struct bough_run {
     const bough_options *options;
@@ -14,6 +15,9 @@ typedef struct bough_run {
     bough_channels channels;
     bough_error_probe probe;
     bough_recorder *recorder;
+    bough_shape shape;
+    bough_frames *frames; // NULL: none are stored
+    long next_frame;      // multiple of the frames' interval that is due next
     const char *folder;
     long next_row;   // multiple of the output interval that is due next
     double recorded; // time of the last row [s]

@@ -74,3 +74,10 @@ bough_status bough_folder_commit(const char *path, FILE *file) {
     if (rename(partial, path) == 0) return status;
     return bough_fail(BOUGH_IO, "cannot rename '%.200s': %s", partial, strerror(errno));
 }
+
+void bough_folder_discard(const char *path, FILE *file) {
+    char partial[BOUGH_PATH_MAX];
+    bough_status status = partial_path(path, partial);
+    fclose(file);
+    if (bough_is_ok(&status)) unlink(partial);
+}

@@ -23,4 +23,7 @@ bough_status bough_folder_open_partial(const char *path, FILE **file);
 // only now is reported, and the partial file is then left as it is.
 bough_status bough_folder_commit(const char *path, FILE *file);
 
+// Closes the file and removes path.partial.
+void bough_folder_discard(const char *path, FILE *file);
+
 #endif

@@ -71,6 +71,7 @@ typedef struct bough_scene_solver {
 typedef struct bough_scene_output {
     const bough_node *node;
     double interval; // [s], a multiple of the macro step
+    double frames;   // between stored shapes [s]; 0: none
 } bough_scene_output;
 
 typedef enum bough_scene_initial {

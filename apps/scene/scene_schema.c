@@ -277,6 +277,9 @@ static const bough_key output_keys[] = {
     {.name = "interval", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .offset = offsetof(bough_scene_output, interval),
      .help = "between recorded values, a multiple of the macro step; default the macro step"},
+    {.name = "frames", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
+     .offset = offsetof(bough_scene_output, frames),
+     .help = "between shapes stored for ParaView and `bough report`; default none"},
 };
 static const bough_schema output_schema = {SCHEMA("the output", bough_scene_output, output_keys)};
 

@@ -1,0 +1,103 @@
+#include "apps/output/frames.h"
+
+#include "apps/output/folder.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+struct bough_frames {
+    bough_frames_def def;
+    FILE *list;     // frames.pvd.partial; NULL once finished
+    double *point;  // (n_point × 3)
+    int n_point, n_frame;
+    char list_path[BOUGH_PATH_MAX];
+};
+
+static void release(void *self) {
+    bough_frames *f = self;
+    if (f->list) fclose(f->list);
+    f->list = NULL;
+}
+
+bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def,
+                               bough_frames **frames) {
+    bough_frames *f = bough_arena_take(arena, sizeof *f);
+    if (!f) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for frames");
+    f->def = *def;
+    for (int k = 0; k < def->n_line; k++) f->n_point += def->line[k].n_point;
+    f->point = bough_arena_doubles(arena, 3 * (size_t)f->n_point);
+    if (!f->point) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for frames");
+    char folder[BOUGH_PATH_MAX];
+    bough_status status = bough_folder_path(def->folder, "frames", folder);
+    if (bough_is_ok(&status)) status = bough_folder_make(folder);
+    if (bough_is_ok(&status)) status = bough_folder_path(def->folder, "frames.pvd", f->list_path);
+    if (!bough_is_ok(&status)) return status;
+    if (unlink(f->list_path) != 0 && errno != ENOENT) {
+        return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", f->list_path, strerror(errno));
+    }
+    status = bough_folder_open_partial(f->list_path, &f->list);
+    if (!bough_is_ok(&status)) return status;
+    bough_arena_on_destroy(arena, release, f);
+    fprintf(f->list, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
+                     "<Collection>\n");
+    *frames = f;
+    return status;
+}
+
+static void write_points(const bough_frames *f, FILE *file) {
+    fprintf(file, "<Points>\n<DataArray type=\"Float32\" NumberOfComponents=\"3\" "
+                  "format=\"ascii\">\n");
+    for (int i = 0; i < f->n_point; i++) {
+        const double *x = f->point + 3 * (size_t)i;
+        fprintf(file, "%.6g %.6g %.6g\n", x[0], x[1], x[2]);
+    }
+    fprintf(file, "</DataArray>\n</Points>\n");
+}
+
+static void write_lines(const bough_frames *f, FILE *file) {
+    fprintf(file, "<Lines>\n<DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">\n");
+    for (int i = 0; i < f->n_point; i++) fprintf(file, "%d\n", i);
+    fprintf(file, "</DataArray>\n<DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">\n");
+    int end = 0;
+    for (int k = 0; k < f->def.n_line; k++) fprintf(file, "%d\n", end += f->def.line[k].n_point);
+    fprintf(file, "</DataArray>\n</Lines>\n");
+}
+
+// Which body a line belongs to, by number, with the names beside it.
+static void write_bodies(const bough_frames *f, FILE *file) {
+    fprintf(file, "<CellData>\n<DataArray type=\"Int32\" Name=\"body\" format=\"ascii\">\n");
+    for (int k = 0; k < f->def.n_line; k++) fprintf(file, "%d\n", k);
+    fprintf(file, "</DataArray>\n</CellData>\n<!--");
+    for (int k = 0; k < f->def.n_line; k++) fprintf(file, " %s", f->def.line[k].name);
+    fprintf(file, " -->\n");
+}
+
+bough_status bough_frames_sample(bough_frames *f, double t) {
+    char path[BOUGH_PATH_MAX], name[32];
+    FILE *file;
+    snprintf(name, sizeof name, "frames/%06d.vtp", f->n_frame);
+    bough_status status = bough_folder_path(f->def.folder, name, path);
+    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    if (!bough_is_ok(&status)) return status;
+    f->def.points(f->def.self, f->point);
+    fprintf(file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\">\n"
+                  "<PolyData>\n<Piece NumberOfPoints=\"%d\" NumberOfLines=\"%d\">\n",
+            f->n_point, f->def.n_line);
+    write_points(f, file);
+    write_lines(f, file);
+    write_bodies(f, file);
+    fprintf(file, "</Piece>\n</PolyData>\n</VTKFile>\n");
+    status = bough_folder_commit(path, file);
+    if (!bough_is_ok(&status)) return status;
+    fprintf(f->list, "<DataSet timestep=\"%.9g\" file=\"%s\"/>\n", t, name);
+    f->n_frame++;
+    return status;
+}
+
+bough_status bough_frames_finish(bough_frames *f) {
+    fprintf(f->list, "</Collection>\n</VTKFile>\n");
+    FILE *list = f->list;
+    f->list = NULL;
+    return bough_folder_commit(f->list_path, list);
+}

@@ -1,0 +1,35 @@
+// Shapes over time for ParaView: frames/NNNNNN.vtp, one file of polylines for each frame (VTK XML
+// PolyData, ASCII), and frames.pvd, which gives them their times and appears when the run ends.
+#ifndef BOUGH_OUTPUT_FRAMES_H
+#define BOUGH_OUTPUT_FRAMES_H
+
+#include "core/arena.h"
+#include "core/status.h"
+
+typedef struct bough_frames bough_frames;
+
+typedef struct bough_polyline {
+    const char *name; // of the body
+    int n_point;
+} bough_polyline;
+
+typedef struct bough_frames_def {
+    const char *folder; // an existing folder
+    int n_line;
+    const bough_polyline *line; // (n_line), outlives the frames
+    // Fills the points of all lines, in order (Σ n_point × 3), in ground axes [m].
+    void (*points)(void *self, double *point);
+    void *self;
+} bough_frames_def;
+
+// Makes the folder for the frames and removes an older frames.pvd. All memory is taken here.
+bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def,
+                               bough_frames **frames);
+
+// Writes the frame of time t [s].
+bough_status bough_frames_sample(bough_frames *frames, double t);
+
+// Writes frames.pvd. Frames of an earlier run that this one has not replaced are not listed.
+bough_status bough_frames_finish(bough_frames *frames);
+
+#endif

@@ -1,0 +1,105 @@
+#include "apps/report/report.h"
+
+#include "apps/output/folder.h"
+
+#include <errno.h>
+#include <string.h>
+
+bough_status bough_report_open(const char *folder, const char *name, FILE **file) {
+    char path[BOUGH_PATH_MAX];
+    *file = NULL;
+    bough_status status = bough_folder_path(folder, name, path);
+    if (!bough_is_ok(&status)) return status;
+    *file = fopen(path, "rb");
+    if (*file || errno == ENOENT || errno == ENOTDIR) return bough_ok();
+    return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, strerror(errno));
+}
+
+// A '<' could begin an end tag.
+static void put(int byte, FILE *out) {
+    if (byte == '<') {
+        fputs("\\u003c", out);
+    } else {
+        fputc(byte, out);
+    }
+}
+
+void bough_report_copy(FILE *in, FILE *out) {
+    for (int byte; (byte = fgetc(in)) != EOF;) put(byte, out);
+}
+
+void bough_report_quote(FILE *in, FILE *out) {
+    fputc('"', out);
+    for (int byte; (byte = fgetc(in)) != EOF;) {
+        if (byte == '"' || byte == '\\') fputc('\\', out);
+        if (byte == '\n') {
+            fputs("\\n", out);
+        } else if (byte >= 0x20) {
+            put(byte, out);
+        }
+    }
+    fputc('"', out);
+}
+
+// A file as a field of the data, in quotes or as it is.
+static bough_status add_file(const char *folder, const char *name, const char *field,
+                             void (*copy)(FILE *, FILE *), FILE *out, bool *any) {
+    FILE *file;
+    bough_status status = bough_report_open(folder, name, &file);
+    if (!bough_is_ok(&status) || !file) return status;
+    fprintf(out, "data.%s = ", field);
+    copy(file, out);
+    fputs(";\n", out);
+    fclose(file);
+    *any = true;
+    return status;
+}
+
+static bough_status add_part(const char *folder, const char *field,
+                             bough_status (*part)(const char *, FILE *, bool *), FILE *out,
+                             bool *any) {
+    bool found = false;
+    fprintf(out, "data.%s = ", field);
+    bough_status status = part(folder, out, &found);
+    fputs(found ? ";\n" : "null;\n", out);
+    *any = *any || found;
+    return status;
+}
+
+static bough_status add_data(const char *folder, FILE *out) {
+    bool any = false;
+    fputs("const data = {};\n", out);
+    bough_status status = add_file(folder, "summary.json", "summary", bough_report_copy, out, &any);
+    if (bough_is_ok(&status)) {
+        status = add_file(folder, "table.txt", "table", bough_report_quote, out, &any);
+    }
+    if (bough_is_ok(&status)) {
+        status = add_file(folder, "plot.svg", "plot", bough_report_quote, out, &any);
+    }
+    if (bough_is_ok(&status)) {
+        status = add_part(folder, "channels", bough_report_channels, out, &any);
+    }
+    if (bough_is_ok(&status)) status = add_part(folder, "shape", bough_report_frames, out, &any);
+    if (!bough_is_ok(&status) || any) return status;
+    return bough_fail(BOUGH_INVALID, "'%.200s' holds no results: a run leaves summary.json and "
+                      "channels.out, a study table.txt", folder);
+}
+
+bough_status bough_report_write(const char *folder) {
+    static const char mark[] = "@DATA@";
+    const char *page = (const char *)bough_report_page, *data = strstr(page, mark);
+    char path[BOUGH_PATH_MAX];
+    FILE *out;
+    bough_status status = bough_folder_path(folder, "report.html", path);
+    if (!bough_is_ok(&status)) return status;
+    status = bough_folder_open_partial(path, &out);
+    if (!bough_is_ok(&status)) return status;
+    fwrite(page, 1, (size_t)(data - page), out);
+    status = add_data(folder, out);
+    if (!bough_is_ok(&status)) {
+        bough_folder_discard(path, out);
+        return status;
+    }
+    fputs(data + sizeof mark - 1, out);
+    return bough_folder_commit(path, out);
+}

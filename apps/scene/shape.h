@@ -1,0 +1,21 @@
+// The shape of a simulation as polylines in the ground: the axis of each rod; of a rigid body the
+// line from where it hangs on its parent over its origin to its mass centre.
+#ifndef BOUGH_APPS_SCENE_SHAPE_H
+#define BOUGH_APPS_SCENE_SHAPE_H
+
+#include "apps/output/frames.h"
+#include "apps/scene/build.h"
+
+typedef struct bough_shape {
+    bough_simulation *simulation;
+    int n_line;
+    bough_polyline *line;     // (n_line) one for each body of the scene, in its order
+    bough_beam_motion motion; // scratch of the longest beam
+} bough_shape;
+
+bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape);
+
+// The points of all lines (Σ n_point × 3) [m], from the simulation's `view`. `self`: the shape.
+void bough_shape_points(void *self, double *point);
+
+#endif

@@ -1,0 +1,30 @@
+#!/bin/sh
+# bough report's pages open in a browser: their program runs to its end without an error.
+# test_browser.sh BOUGH SOURCE BROWSER
+set -eu
+bough=$1 source=$2 browser=$3
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+opens() {
+    "$bough" report "$1"
+    "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" \
+        --virtual-time-budget=3000 --dump-dom "file://$1/report.html" >"$folder/dom" 2>/dev/null
+    grep -q '<body data-ready="yes"' "$folder/dom" || {
+        grep -o '<body[^>]*>' "$folder/dom"
+        exit 1
+    }
+}
+
+"$bough" run "$source/apps/mechanisms/pendulum.yaml" --out "$folder/run" --quiet \
+    --set 'simulation.output.frames=0.1 s' >/dev/null
+opens "$folder/run"
+grep -q "\[deg\]" "$folder/dom" # its channels can be picked
+grep -q '<section id="motion">' "$folder/dom"
+
+mkdir "$folder/study"
+echo 'a table' >"$folder/study/table.txt"
+echo '<svg><rect/></svg>' >"$folder/study/plot.svg"
+opens "$folder/study"
+grep -q '<rect' "$folder/dom"
+echo "all pages opened"
