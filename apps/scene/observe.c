@@ -283,6 +283,45 @@ static bough_status add_blades(bough_simulation *s, bough_channels *list) {
     return status;
 }
 
+// The rod that carries the rotor; NULL when there is none.
+static const bough_beam *tower_of(const bough_simulation *s) {
+    const bough_scene *scene = s->scene;
+    if (scene->turbine.node == NULL) return NULL;
+    for (int i = scene->turbine.rotor; i >= 0; i = scene->body[i].joint.parent) {
+        const bough_beam *beam = bough_simulation_beam(s, i);
+        if (beam != NULL && beam->end >= 0) return beam;
+    }
+    return NULL;
+}
+
+enum { TOWER_CHANNELS = 12 };
+
+// Displacement and rotation of the top and the wrench on the foundation, all in the tower's axes.
+static void sample_tower(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    const bough_beam *beam = tower_of(s);
+    double root[BOUGH_ROD_MOST_OUTPUTS];
+    bough_vec3 d, turn;
+    tip(s, beam, &d, &turn);
+    bough_simulation_root(s, beam, t, root);
+    const double values[6] = {d.x,           d.y,           d.z,
+                              turn.x / DEGREE, turn.y / DEGREE, turn.z / DEGREE};
+    memcpy(value, values, sizeof values);
+    for (int k = 0; k < 6; k++) value[6 + k] = root[k] / 1e3;
+}
+
+static bough_status add_tower(bough_simulation *s, bough_channels *list) {
+    static const char *const name[TOWER_CHANNELS] = {
+        "TTDspFA",  "TTDspSS",  "TTDspAx",  "TTDspRoll", "TTDspPtch", "TTDspTwst",
+        "TwrBsFxt", "TwrBsFyt", "TwrBsFzt", "TwrBsMxt",  "TwrBsMyt",  "TwrBsMzt"};
+    static const char *const unit[] = {"m", "deg", "kN", "kN-m"};
+    bough_status status = bough_channels_group(list, sample_tower, s);
+    for (int k = 0; k < TOWER_CHANNELS && bough_is_ok(&status); k++) {
+        status = bough_channels_add(list, unit[k / 3], "%s", name[k]);
+    }
+    return status;
+}
+
 static bool is_blade(const bough_scene *scene, const bough_scene_body *body) {
     for (int b = 0; scene->turbine.node != NULL && b < scene->turbine.n_blade; b++) {
         if (&scene->body[scene->turbine.blade[b]] == body) return true;
@@ -379,6 +418,7 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     if (bough_is_ok(&status) && s->scene->n_closure > 0) status = add_closures(s, channels);
     if (bough_is_ok(&status) && s->scene->n_marker > 0) status = add_markers(s, channels);
     if (bough_is_ok(&status) && s->scene->turbine.node != NULL) status = add_blades(s, channels);
+    if (bough_is_ok(&status) && tower_of(s) != NULL) status = add_tower(s, channels);
     if (bough_is_ok(&status)) status = add_tips(s, channels);
     s->n_motion_channel = channels->count;
     if (bough_is_ok(&status) && s->aero != NULL) status = add_aero(s, channels);

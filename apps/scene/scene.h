@@ -119,7 +119,8 @@ typedef struct bough_scene_motion {
 } bough_scene_motion;
 
 // The joint that carries a body: placement from the parent's frame to the joint's frame, which is
-// the body's frame at zero joint displacement.
+// the body's frame at zero joint displacement. On a body with a rod it begins at the rod's end, in the
+// axes of the rod's body, which turn with the last section.
 typedef struct bough_scene_joint {
     const bough_node *node;
     int kind;                // bough_scene_joint_kind

@@ -117,7 +117,7 @@ static const bough_key joint_keys[] = {
                         "universal", "planar"),
      .help = "what the joint lets move"},
     {.name = "parent", .kind = BOUGH_KEY_TEXT, .required = true, AT(parent_name),
-     .help = "name of a body, or ground"},
+     .help = "name of a body, or ground; on a body with a rod this one hangs at the rod's end"},
     {.name = "placement", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_placement,
      .form = placement_form, .offset = 0,
      .help = "from the parent's frame to the joint's, each step in the frame reached so far"},
