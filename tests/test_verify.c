@@ -120,6 +120,25 @@ static void free_flight_keeps_energy_and_momenta(void **state) {
 }
 
 // A run that stops on its way has not kept anything.
+// A rotor at a given speed, whose blade is pitched back and forth once per turn of 4 s: mean and
+// first harmonic of the pitch, and of a speed that does not change.
+static void means_and_amplitudes_of_a_rotor(void **state) {
+    char table[4096];
+    static const char text[] =
+        HEAD "  - name: rotor\n    scene: " BOUGH_SOURCE_DIR "/apps/turbine/rotor.yaml\n"
+             "    do: run\n    set:\n      simulation.duration: 12 s\n"
+             "      bodies[2].joint.motion: {speed: 15 rpm}\n"
+             "      bodies[3].joint.motion: {angle: {times: [0 s, 2 s, 4 s, 6 s, 8 s, 10 s, 12 s, "
+             "14 s, 16 s], values: [0 deg, 4 deg, -2 deg, 4 deg, -2 deg, 4 deg, -2 deg, 4 deg, 0 deg]}}\n    expect:\n"
+             "      - {quantity: mean RotSpeed from 4 s, value: 15, absolute: 1e-9}\n"
+             "      - {quantity: amplitude RotSpeed from 4 s, value: 0, absolute: 1e-9}\n"
+             "      - {quantity: mean blade1Pos from 4 s, value: 1, absolute: 0.1}\n"
+             "      - {quantity: amplitude blade1Pos from 4 s, value: 3, absolute: 0.1}\n";
+    bough_status status = perform(*state, text, table);
+    if (!bough_is_ok(&status)) print_error("%s\n", table);
+    assert_int_equal(status.code, BOUGH_OK);
+}
+
 static void a_run_that_fails_has_not_shown_its_values(void **state) {
     char table[4096];
     bough_status status =
@@ -173,6 +192,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(a_diagnosis_is_expected_or_missed, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(free_flight_keeps_energy_and_momenta, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(means_and_amplitudes_of_a_rotor, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(a_run_that_fails_has_not_shown_its_values, scratch_make,
                                         scratch_remove),

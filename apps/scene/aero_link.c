@@ -159,6 +159,9 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     def.induction.tip_loss = aero->induction.tip_loss;
     def.induction.hub_loss = aero->induction.hub_loss;
     def.induction.tangential = aero->induction.tangential;
+    if (aero->induction.high_thrust == BOUGH_SCENE_BUHL) {
+        def.induction.high_thrust = BOUGH_HIGH_THRUST_BUHL;
+    }
     def.induction.axial_drag = def.induction.tangential_drag = aero->induction.drag;
     if (aero->induction.inflow == BOUGH_SCENE_OYE) {
         def.inflow = (bough_inflow_def){BOUGH_INFLOW_OYE, aero->induction.inflow_time};

@@ -374,11 +374,46 @@ static void sample_aero(void *self, double t, double *value) {
     value[2] = factor * data->torque * speed;
 }
 
+enum { NODE_CHANNELS = 10 };
+
+static void sample_nodes(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    const bough_scene_aero *aero = &s->scene->aero;
+    double factor;
+    const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
+    for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++, value += NODE_CHANNELS) {
+        int node = (int)aero->nodes[k % aero->n_node] - 1;
+        const bough_station *x = data->station + k / aero->n_node * aero->blade.n_station + node;
+        const double values[NODE_CHANNELS] = {
+            x->speed, x->alpha / DEGREE, x->phi / DEGREE, x->axial, x->tangential,
+            x->coefficients.lift, x->coefficients.drag, x->coefficients.moment,
+            factor * x->force_x, factor * x->force_y};
+        memcpy(value, values, sizeof values);
+    }
+}
+
+static bough_status add_nodes(bough_simulation *s, bough_channels *list) {
+    static const char *const channels[NODE_CHANNELS][2] = {
+        {"VRel", "m/s"}, {"Alpha", "deg"}, {"Phi", "deg"}, {"AxInd", "-"}, {"TnInd", "-"},
+        {"Cl", "-"},     {"Cd", "-"},      {"Cm", "-"},    {"Fx", "N/m"},  {"Fy", "N/m"}};
+    const bough_scene_aero *aero = &s->scene->aero;
+    bough_status status = bough_channels_group(list, sample_nodes, s);
+    for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++) {
+        int blade = k / aero->n_node + 1, node = (int)aero->nodes[k % aero->n_node];
+        for (int c = 0; c < NODE_CHANNELS && bough_is_ok(&status); c++)
+            status = bough_channels_add(list, channels[c][1], "AB%dN%03d%s", blade, node,
+                                        channels[c][0]);
+    }
+    return status;
+}
+
 static bough_status add_aero(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_aero, s);
     if (bough_is_ok(&status)) status = bough_channels_add(list, "N", "RtAeroFxh");
     if (bough_is_ok(&status)) status = bough_channels_add(list, "N-m", "RtAeroMxh");
     if (bough_is_ok(&status)) status = bough_channels_add(list, "W", "RtAeroPwr");
+    if (bough_is_ok(&status) && s->scene->aero.n_node > 0) status = add_nodes(s, list);
     return status;
 }
 

@@ -336,6 +336,10 @@ typedef struct bough_scene_polars {
     bough_scene_polar *polar; // (n_polar), at least two rows each
 } bough_scene_polars;
 
+typedef enum bough_scene_high_thrust {
+    BOUGH_SCENE_SMOOTH,
+    BOUGH_SCENE_BUHL,
+} bough_scene_high_thrust;
 typedef enum bough_scene_hold { BOUGH_SCENE_LINEAR, BOUGH_SCENE_CONSTANT } bough_scene_hold;
 typedef enum bough_scene_skew { BOUGH_SCENE_SKEW_NONE, BOUGH_SCENE_PITT_PETERS } bough_scene_skew;
 typedef enum bough_scene_inflow { BOUGH_SCENE_EQUILIBRIUM, BOUGH_SCENE_OYE } bough_scene_inflow;
@@ -378,6 +382,7 @@ typedef struct bough_scene_wind {
 typedef struct bough_scene_induction {
     const bough_node *node;
     bool tip_loss, hub_loss, tangential, drag;
+    int high_thrust;    // bough_scene_high_thrust
     int skew;           // bough_scene_skew
     int inflow;         // bough_scene_inflow
     double inflow_time; // slow time constant of oye [s]; 0: from induction and wind ("auto")
@@ -408,6 +413,8 @@ typedef struct bough_scene_aero {
     bough_scene_tower tower;
     double hub_radius; // [m]
     int dynamic_stall; // bough_scene_stall
+    int n_node;        // blade elements whose channels are recorded, of every blade
+    double *nodes;     // (n_node) numbers from 1
     bool pitching_moment;
 } bough_scene_aero;
 

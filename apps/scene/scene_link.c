@@ -413,6 +413,12 @@ static void link_aero(bough_schema_reader *r, bough_scene *s) {
         bough_schema_error(r, s->aero.node, "", "needs 'turbine', which names rotor and blades");
     }
     bough_scene_check_ramp(r, s->aero.node, s->aero.ramp);
+    for (int k = 0; k < s->aero.n_node; k++) {
+        double node = s->aero.nodes[k];
+        if (node == floor(node) && node <= s->aero.blade.n_station) continue;
+        bough_schema_error(r, value_of(s->aero.node, "nodes"), "nodes",
+                           "expected numbers from 1 to %d, got %g", s->aero.blade.n_station, node);
+    }
     check_blade_lengths(r, s);
     link_polars(r, s);
 }

@@ -568,6 +568,10 @@ static const bough_key induction_keys[] = {
     SWITCH(hub_loss, "Prandtl's loss factor at the hub"),
     SWITCH(tangential, "tangential induction"),
     SWITCH(drag, "drag counts in the induction"),
+    {.name = "high_thrust", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("smooth", "buhl"),
+     .fallback = "smooth", .offset = offsetof(bough_scene_induction, high_thrust),
+     .help = "how thrust grows beyond momentum theory: as AeroDyn's newer formulation or by Buhl's "
+             "parabola"},
     {.name = "skew", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "pitt-peters"),
      .fallback = "pitt-peters", .offset = offsetof(bough_scene_induction, skew),
      .help = "correction for oblique inflow"},
@@ -631,6 +635,9 @@ static const bough_key aero_keys[] = {
              "Hansen, Gaunaa and Madsen"},
     {.name = "pitching_moment", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(pitching_moment),
      .help = "the sections' moment coefficients count"},
+    {.name = "nodes", .kind = BOUGH_KEY_NUMBERS, .range = ">= 1", .count = 1, AT(nodes),
+     .count_offset = offsetof(bough_scene_aero, n_node),
+     .help = "numbers of blade elements, from 1 at the root, whose flow is recorded"},
 };
 #undef AT
 static const bough_schema aero_schema = {SCHEMA("the aerodynamics", bough_scene_aero, aero_keys)};

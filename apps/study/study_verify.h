@@ -3,6 +3,7 @@
 #ifndef BOUGH_APPS_STUDY_STUDY_VERIFY_H
 #define BOUGH_APPS_STUDY_STUDY_VERIFY_H
 
+#include "apps/scene/scene.h"
 #include "apps/study/study_perform.h"
 
 enum { BOUGH_VERIFY_MESHES = 5 };
@@ -11,6 +12,7 @@ typedef enum bough_verify_action {
     BOUGH_VERIFY_STATIC, // equilibrium of the first rod
     BOUGH_VERIFY_MODES,  // natural modes of the first rod, as the scene's modes block says
     BOUGH_VERIFY_RUN,    // the scene through its duration
+    BOUGH_VERIFY_INFLOW, // the scene's polars in random inflow
 } bough_verify_action;
 
 typedef enum bough_verify_what {
@@ -23,6 +25,9 @@ typedef enum bough_verify_what {
     BOUGH_VERIFY_SMALLEST,  // "smallest CHANNEL"
     BOUGH_VERIFY_DRIFT,     // "drift of energy from 2 s", the largest, as a share of the
                             // largest value, of the energy without gravity's
+    BOUGH_VERIFY_MEAN,      // "mean CHANNEL from 2 s"
+    BOUGH_VERIFY_AMPLITUDE, // "amplitude CHANNEL from 2 s", once per turn of the rotor
+    BOUGH_VERIFY_INFLOW_QUANTITY, // "inflow states", "inflow failures", "inflow spread"
 } bough_verify_what;
 
 // What the bodies have together; conserved in free flight.
@@ -36,7 +41,8 @@ typedef enum bough_verify_invariant {
 
 typedef struct bough_verify_quantity {
     bough_verify_what what;
-    int index;           // of the tip's component, of the mode, or bough_verify_invariant
+    int index;           // of the tip's component, of the mode, of the inflow's quantity, or
+                         // bough_verify_invariant
     const char *channel; // NULL: no channel
     double time;         // [s]
 } bough_verify_quantity;
@@ -90,6 +96,12 @@ void bough_verify_mesh(const bough_verify_case *x, int k, char line[160]);
 // replacements; adds what is wrong to `errors`.
 bough_verify *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root,
                                 bough_errors *errors);
+
+// Solves the induction in 1e6 random inflow states with the scene's polars, from calm to storm, at
+// any angle, twist and loss, by either high-thrust law: how many states, in how many the answer was
+// not finite or out of range, and by how much it differs after another state was solved.
+bough_status bough_verify_inflow(bough_arena *arena, const bough_verify_case *x,
+                                 const bough_scene *scene, double *value);
 
 // Does what a case says on mesh `k` (0 without meshes); `stop` as in the options. Failures are in
 // the result.

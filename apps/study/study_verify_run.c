@@ -212,6 +212,12 @@ static void follow_drift(drift *d, bough_verify_invariant which, const invariant
 
 // -- run ------------------------------------------------------------------------------------------
 
+// Sums over the synchronisation points: of a channel, and of its first harmonic in the azimuth.
+typedef struct wave {
+    int n;
+    double sum, cosine, sine;
+} wave;
+
 typedef struct run {
     const bough_verify_case *x;
     bough_simulation *simulation;
@@ -219,6 +225,8 @@ typedef struct run {
     double *sample; // (channels.count)
     int *column;    // (n_expect); −1: no channel
     drift *drift;   // (n_expect)
+    wave *wave;     // (n_expect)
+    int azimuth;    // its column; −1: no rotor
     gauge gauge;
     bool conserves; // some quantity is a drift
     double *value;  // (n_expect)
@@ -232,6 +240,8 @@ static bough_status prepare(bough_arena *arena, run *r) {
     r->sample = bough_arena_doubles(arena, (size_t)r->channels.count + 1);
     r->column = bough_arena_take(arena, n * sizeof *r->column);
     r->drift = bough_arena_take(arena, n * sizeof *r->drift);
+    r->wave = bough_arena_take(arena, n * sizeof *r->wave);
+    r->azimuth = bough_channels_find(&r->channels, "Azimuth");
     if (!gauge_init(&r->gauge, arena, r->simulation)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     }
@@ -242,8 +252,20 @@ static bough_status prepare(bough_arena *arena, run *r) {
         if (q->channel && r->column[i] < 0) {
             return bough_fail(BOUGH_INVALID, "the scene has no channel '%.60s'", q->channel);
         }
+        if (q->what == BOUGH_VERIFY_AMPLITUDE && r->azimuth < 0) {
+            return bough_fail(BOUGH_INVALID, "the scene has no rotor for an amplitude per turn");
+        }
     }
     return status;
+}
+
+static double follow_wave(wave *w, bool amplitude, double sample, double azimuth) {
+    double angle = azimuth * (BOUGH_PI / 180);
+    w->n++;
+    w->sum += sample;
+    w->cosine += sample * cos(angle);
+    w->sine += sample * sin(angle);
+    return amplitude ? 2 * hypot(w->cosine, w->sine) / w->n : w->sum / w->n;
 }
 
 static void look_at(run *r, int i, double t, const invariants *now) {
@@ -254,6 +276,11 @@ static void look_at(run *r, int i, double t, const invariants *now) {
     if (q->what == BOUGH_VERIFY_AT && fabs(t - q->time) < close) *value = sample;
     if (q->what == BOUGH_VERIFY_LARGEST && (first || sample > *value)) *value = sample;
     if (q->what == BOUGH_VERIFY_SMALLEST && (first || sample < *value)) *value = sample;
+    bool amplitude = q->what == BOUGH_VERIFY_AMPLITUDE;
+    if ((amplitude || q->what == BOUGH_VERIFY_MEAN) && t > q->time + close) {
+        double azimuth = r->azimuth < 0 ? 0 : r->sample[r->azimuth];
+        *value = follow_wave(&r->wave[i], amplitude, sample, azimuth);
+    }
     if (q->what == BOUGH_VERIFY_DRIFT && t > q->time - close) {
         drift *d = &r->drift[i];
         follow_drift(d, (bough_verify_invariant)q->index, now);
@@ -298,7 +325,9 @@ void bough_verify_run(bough_arena *arena, const bough_verify_case *x, int k, boo
     for (int i = 0; i < x->n_expect; i++)
         result->value[i] = NAN;
     result->outcome = open_scene(own, x, k, &s);
-    if (bough_is_ok(&result->outcome)) {
+    if (bough_is_ok(&result->outcome) && x->action == BOUGH_VERIFY_INFLOW) {
+        result->outcome = bough_verify_inflow(own, x, s->scene, result->value);
+    } else if (bough_is_ok(&result->outcome)) {
         result->outcome = x->action == BOUGH_VERIFY_STATIC ? do_static(own, x, s, result->value)
                           : x->action == BOUGH_VERIFY_MODES
                               ? do_modes(own, x, s, result->value)
