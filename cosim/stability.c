@@ -24,7 +24,7 @@ typedef struct map {
     bough_assembly assembly;    // of the shadows
     bough_subsystem *shadow;    // (n_member)
     bough_coupling *coupling;
-    double macro_step;
+    double macro_step, sub_step;
     int repeat;
     int n;          // n_state + 3 n_input
     double *weight; // (n) makes the components comparable
@@ -45,10 +45,9 @@ static bough_status build_shadows(map *m, const bough_assembly *a, const double 
     m->shadow = bough_arena_take(m->arena, (size_t)a->n_member * sizeof *m->shadow);
     m->assembly.member = bough_arena_take(m->arena, (size_t)a->n_member * sizeof(void *));
     if (bough_arena_exhausted(m->arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    double longest = fmin(m->macro_step / 4, sub_step);
     for (int i = 0; i < a->n_member; i++) {
         bough_status status = bough_shadow_create(m->arena, a->member[i],
-                                                  input + a->input_offset[i], longest,
+                                                  input + a->input_offset[i], m->sub_step,
                                                   &m->shadow[i]);
         if (!bough_is_ok(&status)) return status;
         m->assembly.member[i] = &m->shadow[i];
@@ -382,10 +381,17 @@ static bough_status judge(map *m, const bough_assembly *a, const bough_scheme_op
 
 bough_status bough_stability_judge(const bough_assembly *a, const bough_scheme_options *options,
                                    double macro_step, bough_stability *result) {
+    return bough_stability_judge_by(a, options, macro_step, fmin(macro_step / 4, sub_step), result);
+}
+
+bough_status bough_stability_judge_by(const bough_assembly *a, const bough_scheme_options *options,
+                                      double macro_step, double longest, bough_stability *result) {
     if (strcmp(options->name, bough_scheme_monolithic.name) == 0) {
         return bough_fail(BOUGH_INVALID, "the monolithic scheme has no coupling to judge");
     }
-    map m = {.arena = bough_arena_create(), .macro_step = macro_step};
+    map m = {.arena = bough_arena_create(),
+             .macro_step = macro_step,
+             .sub_step = fmin(macro_step, longest)};
     if (!m.arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = judge(&m, a, options, result);
     bough_arena_destroy(m.arena);

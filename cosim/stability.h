@@ -25,6 +25,10 @@ typedef struct bough_stability {
 bough_status bough_stability_judge(const bough_assembly *a, const bough_scheme_options *options,
                                    double macro_step, bough_stability *result);
 
+// The same with shadows that step by at most `sub_step` [s]: what they do not resolve, they damp.
+bough_status bough_stability_judge_by(const bough_assembly *a, const bough_scheme_options *options,
+                                      double macro_step, double sub_step, bough_stability *result);
+
 // Whether it grows by more than rounding and drift.
 bool bough_stability_grows(const bough_stability *s);
 

@@ -3,11 +3,11 @@
 
 enum { N = 4 };
 
-static void build(two_mass *m, bough_arrow **arrow, int threads) {
-    *m = two_mass_default();
+static void build(bough_two_mass *m, bough_arrow **arrow, int threads) {
+    *m = bough_two_mass_default();
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = .1;
-    bough_status status = two_mass_build(m, def);
+    bough_status status = bough_two_mass_build(m, def);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
     status = bough_arrow_create(m->arena, m->master->assembly, threads, arrow);
     assert_true(bough_is_ok(&status));
@@ -17,7 +17,7 @@ static void build(two_mass *m, bough_arrow **arrow, int threads) {
 static void solves_the_coupled_system(void **state) {
     (void)state;
     bough_arrow *arrow;
-    two_mass m;
+    bough_two_mass m;
     build(&m, &arrow, 1);
     const double y[N] = {.1, -.2, .5, .3}, r[N] = {1, 2, -3, .5}, gammas[] = {1e-3, .1, 1e4};
     for (size_t g = 0; g < sizeof gammas / sizeof *gammas; g++) {
@@ -35,14 +35,14 @@ static void solves_the_coupled_system(void **state) {
             check_near(x[k] - gamma * (after[k] - before[k]), r[k], 1e-9, 1e-12 * gamma);
         }
     }
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 // F of two masses on springs, by hand.
 static void rates_are_those_of_the_coupled_masses(void **state) {
     (void)state;
     bough_arrow *arrow;
-    two_mass m;
+    bough_two_mass m;
     build(&m, &arrow, 2);
     const double y[N] = {.1, -.2, .5, .3};
     double rate[N], force = m.k * (y[2] - y[0]) + m.c * (y[3] - y[1]);
@@ -52,7 +52,7 @@ static void rates_are_those_of_the_coupled_masses(void **state) {
     check_near(rate[1], -10 * y[0] - .2 * y[1] + force, 1e-14, 0);
     check_near(rate[2], y[3], 0, 0);
     check_near(rate[3], -20 * y[2] - .3 * y[3] - force, 1e-14, 0);
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 int main(void) {

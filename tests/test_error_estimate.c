@@ -7,9 +7,9 @@ typedef struct errors {
     double exact, estimate;
 } errors;
 
-static errors errors_of(two_mass m, bough_master_def def) {
+static errors errors_of(bough_two_mass m, bough_master_def def) {
     errors e = {0};
-    bough_status status = two_mass_build(&m, def);
+    bough_status status = bough_two_mass_build(&m, def);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
     long batches = 0;
     while (!bough_master_done(m.master)) {
@@ -19,12 +19,12 @@ static errors errors_of(two_mass m, bough_master_def def) {
         batches = bough_error_estimate_batches(m.master->estimate);
         const double *error = bough_error_estimate_states(m.master->estimate);
         double y[4];
-        two_mass_at(&m, m.master->time, y);
+        bough_two_mass_at(&m, m.master->time, y);
         e.exact = fmax(e.exact, fabs(m.mass[0].y[0] - y[0]));
         e.exact = fmax(e.exact, fabs(m.mass[1].y[0] - y[2]));
         e.estimate = fmax(e.estimate, fmax(fabs(error[0]), fabs(error[2])));
     }
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
     return e;
 }
 
@@ -40,7 +40,7 @@ static bough_master_def definition(const char *scheme, int order, double macro_s
 
 // ε of a linear system is its error to the order of the defects' own reconstruction.
 static void check_ratio(bough_master_def def, double h, bool kinematic) {
-    two_mass m = two_mass_default();
+    bough_two_mass m = bough_two_mass_default();
     m.kinematic = kinematic;
     def.macro_step = h;
     errors e = errors_of(m, def);
@@ -73,30 +73,30 @@ static void every_scheme_tells_its_error(void **state) {
 static void growth_is_told(void **state) {
     (void)state;
     bough_master_def def = definition("gauss-seidel", 0, .1);
-    errors e = errors_of(two_mass_default(), def);
+    errors e = errors_of(bough_two_mass_default(), def);
     assert_true(e.exact > .1 && e.estimate > .8 * e.exact && e.estimate < 3 * e.exact);
 }
 
 static void forces_are_told_too(void **state) {
     (void)state;
-    two_mass m = two_mass_default();
-    bough_status status = two_mass_build(&m, definition("gauss-seidel", 0, .01));
+    bough_two_mass m = bough_two_mass_default();
+    bough_status status = bough_two_mass_build(&m, definition("gauss-seidel", 0, .01));
     double exact = 0, y[4];
     while (bough_is_ok(&status) && !bough_master_done(m.master)) {
         status = bough_step(m.master);
-        two_mass_at(&m, m.master->time, y);
+        bough_two_mass_at(&m, m.master->time, y);
         double force = m.k * (y[2] - y[0]) + m.c * (y[3] - y[1]);
         exact = fmax(exact, fabs(m.master->coupling->input[0] - force));
     }
     assert_true(bough_is_ok(&status));
     check_near(bough_error_estimate_input(m.master->estimate, 0) / BOUGH_ERROR_SAFETY, exact, .05, 0);
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 // A force that its receiver knows before it changes: no defect, no error.
 static void no_defect_no_error(void **state) {
     (void)state;
-    two_mass m = two_mass_default();
+    bough_two_mass m = bough_two_mass_default();
     m.k = m.c = 0;
     errors e = errors_of(m, definition("frozen", 0, .02));
     check_near(e.estimate, 0, 0, 1e-15);
@@ -105,10 +105,10 @@ static void no_defect_no_error(void **state) {
 
 static void monolithic_has_none(void **state) {
     (void)state;
-    two_mass m = two_mass_default();
-    two_mass_build(&m, definition("monolithic", 0, .02));
+    bough_two_mass m = bough_two_mass_default();
+    bough_two_mass_build(&m, definition("monolithic", 0, .02));
     assert_null(m.master->estimate);
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 int main(void) {

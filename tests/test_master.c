@@ -20,8 +20,8 @@ static void steps_end_on_events_and_on_the_duration(void **state) {
     bough_master_def def = definition(.1, .55);
     def.event = event;
     def.n_event = 4;
-    two_mass m = two_mass_default();
-    bough_status status = two_mass_build(&m, def);
+    bough_two_mass m = bough_two_mass_default();
+    bough_status status = bough_two_mass_build(&m, def);
     for (int k = 0; k < 7; k++) {
         assert_false(bough_master_done(m.master));
         status = bough_step(m.master);
@@ -30,7 +30,7 @@ static void steps_end_on_events_and_on_the_duration(void **state) {
         assert_int_equal(m.master->at_event, k == 2 || k == 4);
     }
     assert_true(bough_master_done(m.master));
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 typedef struct samples {
@@ -55,8 +55,8 @@ static void loads_are_sampled_at_their_period(void **state) {
     def.load = &load;
     def.event = &event;
     def.n_load = def.n_event = 1;
-    two_mass m = two_mass_default();
-    two_mass_build(&m, def);
+    bough_two_mass m = bough_two_mass_default();
+    bough_two_mass_build(&m, def);
     bough_status status = run(m.master);
     assert_true(bough_is_ok(&status));
     assert_int_equal(taken.count, 4);
@@ -64,15 +64,15 @@ static void loads_are_sampled_at_their_period(void **state) {
         check_near(taken.time[k], .2 * k, 0, 1e-15);
         check_near(taken.next[k], .2 * (k + 1), 0, 1e-15);
     }
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 static void check_refused(bough_master_def def, const char *part) {
-    two_mass m = two_mass_default();
-    bough_status status = two_mass_build(&m, def);
+    bough_two_mass m = bough_two_mass_default();
+    bough_status status = bough_two_mass_build(&m, def);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_non_null(strstr(status.message, part));
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 static void invalid_definitions_are_refused(void **state) {
@@ -96,7 +96,7 @@ static void invalid_definitions_are_refused(void **state) {
 enum { N_FOLLOWER = 3 };
 
 typedef struct star {
-    oscillator mass[1 + N_FOLLOWER];
+    bough_oscillator mass[1 + N_FOLLOWER];
     bough_subsystem subsystem[1 + N_FOLLOWER];
     bough_arena *arena;
     bough_master *master;
@@ -106,15 +106,16 @@ static bough_status star_build(star *s, bough_master_def def) {
     bough_member member[1 + N_FOLLOWER];
     bough_connection connection[2 * N_FOLLOWER];
     for (int i = 0; i < N_FOLLOWER; i++) {
-        oscillator *follower = &s->mass[1 + i];
-        *follower = oscillator_told_motion((spring){1 + i, 20, .3}, 10, .5, .5 - .2 * i);
-        s->mass[0] = oscillator_told_force((spring){1, 10, .2}, 0);
+        bough_oscillator *follower = &s->mass[1 + i];
+        *follower =
+            bough_oscillator_told_motion((bough_spring_mass){1 + i, 20, .3}, 10, .5, .5 - .2 * i);
+        s->mass[0] = bough_oscillator_told_force((bough_spring_mass){1, 10, .2}, 1, 0);
         oscillator_widen(&s->mass[0], follower);
         connection[2 * i] = (bough_connection){.to = 1 + i, .count = 3, .kinematic = true};
         connection[2 * i + 1] = (bough_connection){.from = 1 + i, .to_offset = i, .count = 1};
     }
     for (int i = 0; i <= N_FOLLOWER; i++) {
-        s->subsystem[i] = oscillator_subsystem(&s->mass[i], i ? "follower" : "leader");
+        s->subsystem[i] = bough_oscillator_subsystem(&s->mass[i], i ? "follower" : "leader");
         member[i] = (bough_member){&s->subsystem[i], i > 0};
     }
     def.assembly = (bough_assembly_def){.n_member = 1 + N_FOLLOWER,
@@ -175,14 +176,14 @@ static void schemes_converge_to_the_monolithic_run(void **state) {
 
 static void algebraic_loops_are_refused(void **state) {
     (void)state;
-    oscillator mass[2];
+    bough_oscillator mass[2];
     bough_subsystem subsystem[2];
     bough_member member[2];
     bough_connection connection[2];
     for (int i = 0; i < 2; i++) {
-        mass[i] = oscillator_told_motion((spring){1, 20, .3}, 10, .5, 0);
+        mass[i] = bough_oscillator_told_motion((bough_spring_mass){1, 20, .3}, 10, .5, 0);
         mass[i].n_output = 2;
-        subsystem[i] = oscillator_subsystem(&mass[i], "mass");
+        subsystem[i] = bough_oscillator_subsystem(&mass[i], "mass");
         member[i] = (bough_member){&subsystem[i], i};
         connection[i] = (bough_connection){.from = i, .to = 1 - i, .count = 2};
     }

@@ -2,24 +2,24 @@
 // damped one: slow growth is diagnosed, stable runs never are.
 #include "tests/two_mass.h"
 
-static bough_status run(two_mass m, const char *scheme, double macro_step, double duration,
+static bough_status run(bough_two_mass m, const char *scheme, double macro_step, double duration,
                         double *stopped) {
     bough_master_def def = bough_master_def_default();
     def.scheme.name = scheme;
     def.macro_step = macro_step;
     def.duration = duration;
-    bough_status status = two_mass_build(&m, def);
+    bough_status status = bough_two_mass_build(&m, def);
     while (bough_is_ok(&status) && !bough_master_done(m.master)) status = bough_step(m.master);
     *stopped = m.master->time;
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
     return status;
 }
 
 // Like a rotor on its shaft: the leader heavier, damping of 0.1 %.
-static two_mass lightly_damped(void) {
-    two_mass m = two_mass_default();
-    m.s1 = (spring){2, 4, .004};
-    m.s2 = (spring){1, 1, .002};
+static bough_two_mass lightly_damped(void) {
+    bough_two_mass m = bough_two_mass_default();
+    m.s1 = (bough_spring_mass){2, 4, .004};
+    m.s2 = (bough_spring_mass){1, 1, .002};
     m.k = 30;
     m.c = .03;
     return m;
@@ -44,7 +44,7 @@ static void stable_runs_raise_no_alarm(void **state) {
     for (const char *const *name = bough_scheme_names(); *name; name++) {
         for (double h = .005; h < .077; h *= 1.2) {
             double stopped;
-            bough_status status = run(two_mass_default(), *name, h, 200, &stopped);
+            bough_status status = run(bough_two_mass_default(), *name, h, 200, &stopped);
             if (!bough_is_ok(&status)) fail_msg("%s", status.message);
         }
     }

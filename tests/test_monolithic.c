@@ -1,18 +1,18 @@
 #include "tests/two_mass.h"
 
 static double error_at(double rtol) {
-    two_mass m = two_mass_default();
+    bough_two_mass m = bough_two_mass_default();
     bough_master_def def = bough_master_def_default();
     def.scheme.name = "monolithic";
     def.scheme.rtol = rtol;
     def.macro_step = .1;
     def.duration = 10;
-    bough_status status = two_mass_build(&m, def);
+    bough_status status = bough_two_mass_build(&m, def);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
     double error = two_mass_error(&m);
     bough_coupling_report report = bough_monitor_report(m.master->monitor, m.master->coupling);
     check_near(report.defect_max, 0, 0, 1e-12);
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
     return error;
 }
 

@@ -4,23 +4,23 @@
 #include "tests/contract.h"
 #include "tests/two_mass.h"
 
-static void build(two_mass *m, const char *scheme, double macro_step) {
+static void build(bough_two_mass *m, const char *scheme, double macro_step) {
     bough_master_def def = bough_master_def_default();
     def.scheme.name = scheme;
     def.macro_step = macro_step;
     def.duration = 10;
-    bough_status status = two_mass_build(m, def);
+    bough_status status = bough_two_mass_build(m, def);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
 }
 
-static bough_stability judge(const two_mass *m, const bough_scheme_options *options, double h) {
+static bough_stability judge(const bough_two_mass *m, const bough_scheme_options *options, double h) {
     bough_stability result;
     bough_status status = bough_stability_judge(m->master->assembly, options, h, &result);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
     return result;
 }
 
-static void check_limit(const two_mass *m, const bough_scheme_options *options, double limit) {
+static void check_limit(const bough_two_mass *m, const bough_scheme_options *options, double limit) {
     assert_true(judge(m, options, .98 * limit).growth < 0);
     assert_true(judge(m, options, 1.02 * limit).growth > 0);
 }
@@ -30,7 +30,7 @@ static void limits_come_out_of_the_eigenvalues(void **state) {
     static const double parallel[3] = {.2254, .2277, .2501}, first[3] = {.0777, .3175, .2839},
                         last[3] = {.0777, .3069, .2831};
     bough_scheme_options options = bough_scheme_options_default();
-    two_mass m = two_mass_default();
+    bough_two_mass m = bough_two_mass_default();
     build(&m, "ramp", .01);
     options.name = "frozen";
     check_limit(&m, &options, parallel[0]);
@@ -45,33 +45,33 @@ static void limits_come_out_of_the_eigenvalues(void **state) {
         check_limit(&m, &options, last[options.order]);
         options.reversed = false;
     }
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 // A small macro step shows the slowest mode of the two masses themselves.
 static void growth_and_frequency_are_those_of_the_slowest_mode(void **state) {
     (void)state;
     bough_scheme_options options = bough_scheme_options_default();
-    two_mass m = two_mass_default();
+    bough_two_mass m = bough_two_mass_default();
     build(&m, "ramp", .01);
     bough_stability slowest = judge(&m, &options, .005);
     check_near(slowest.growth, -.1406, .01, 0);
     check_near(slowest.frequency, .5916, .01, 0);
     assert_false(bough_stability_grows(&slowest));
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 // Mass 1 without a spring of its own and 1e-4 of mass 2.
-static two_mass light_case(void) {
-    two_mass m = two_mass_default();
-    m.s1 = (spring){1e-4, 0, 0};
+static bough_two_mass light_case(void) {
+    bough_two_mass m = bough_two_mass_default();
+    m.s1 = (bough_spring_mass){1e-4, 0, 0};
     return m;
 }
 
 static void ramp_holds_on_a_light_interface_body(void **state) {
     (void)state;
     bough_scheme_options options = bough_scheme_options_default();
-    two_mass m = light_case();
+    bough_two_mass m = light_case();
     build(&m, "ramp", .02);
     for (int k = 1; k <= 16; k *= 2) assert_true(judge(&m, &options, .005 * k).growth < 0);
     options.name = "gauss-seidel";
@@ -80,7 +80,7 @@ static void ramp_holds_on_a_light_interface_body(void **state) {
     bough_stability result;
     bough_status status = bough_stability_judge(m.master->assembly, &options, .02, &result);
     assert_int_equal(status.code, BOUGH_INVALID);
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 // What the iterated scheme converges to is judged, not what its tolerance leaves; growth as runs of
@@ -88,7 +88,7 @@ static void ramp_holds_on_a_light_interface_body(void **state) {
 static void iterated_is_judged_as_if_converged(void **state) {
     (void)state;
     bough_scheme_options options = bough_scheme_options_default();
-    two_mass m = light_case();
+    bough_two_mass m = light_case();
     build(&m, "ramp", .02);
     options.name = "iterated";
     options.accelerator = BOUGH_ACCELERATE_NONE;
@@ -97,40 +97,40 @@ static void iterated_is_judged_as_if_converged(void **state) {
     assert_true(judge(&m, &options, .01).growth < 0);
     options.order = 0;
     for (int k = 1; k <= 8; k *= 2) assert_true(judge(&m, &options, .005 * k).growth < 0);
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 static void the_master_warns_of_an_unstable_coupling(void **state) {
     (void)state;
-    two_mass m = two_mass_default();
+    bough_two_mass m = bough_two_mass_default();
     build(&m, "gauss-seidel", .25); // the motion interpolated by cubics: holds to .205
     assert_non_null(strstr(m.master->verdict, "gauss-seidel"));
     assert_non_null(strstr(m.master->verdict, "macro_step: 0.125 s holds"));
     assert_non_null(strstr(m.master->verdict, "scheme: ramp holds"));
-    two_mass_destroy(&m);
-    m = two_mass_default();
+    bough_two_mass_destroy(&m);
+    m = bough_two_mass_default();
     build(&m, "gauss-seidel", .19);
     assert_string_equal(m.master->verdict, "");
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 // A mass pushed away by its wall oscillates with no other: what grows is not the coupling's doing.
 static void growth_of_the_mechanics_is_no_verdict(void **state) {
     (void)state;
-    two_mass m = two_mass_default();
+    bough_two_mass m = bough_two_mass_default();
     m.s1.c = m.s2.c = -.2;
     m.c = 0;
     build(&m, "extrapolated", .01);
     bough_stability now = judge(&m, &m.master->coupling->options, .01);
     check_near(now.growth, .1, .02, 0);
     assert_string_equal(m.master->verdict, "");
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 static void judging_changes_nothing(void **state) {
     (void)state;
     bough_scheme_options options = bough_scheme_options_default();
-    two_mass m = two_mass_default(), n = two_mass_default();
+    bough_two_mass m = bough_two_mass_default(), n = bough_two_mass_default();
     build(&m, "ramp", .02);
     build(&n, "ramp", .02);
     for (int k = 0; k < 100; k++) {
@@ -140,14 +140,14 @@ static void judging_changes_nothing(void **state) {
     }
     assert_memory_equal(m.mass[0].y, n.mass[0].y, sizeof m.mass[0].y);
     assert_memory_equal(m.mass[1].y, n.mass[1].y, sizeof m.mass[1].y);
-    two_mass_destroy(&m);
-    two_mass_destroy(&n);
+    bough_two_mass_destroy(&m);
+    bough_two_mass_destroy(&n);
 }
 
 static void shadows_fulfil_the_contract(void **state) {
     (void)state;
     const double y[2] = {.3, -.7}, u[2] = {.4, .2};
-    two_mass m = two_mass_default();
+    bough_two_mass m = bough_two_mass_default();
     build(&m, "ramp", .02);
     for (int i = 0; i < 2; i++) {
         bough_subsystem shadow;
@@ -157,7 +157,7 @@ static void shadows_fulfil_the_contract(void **state) {
         contract_check(&shadow, at, .05, .1);
         contract_set_state(&shadow, at, 1e-4);
     }
-    two_mass_destroy(&m);
+    bough_two_mass_destroy(&m);
 }
 
 int main(void) {

@@ -3,6 +3,8 @@
 
 #include "apps/scene/schema.h"
 #include "apps/study/study_parts.h"
+#include "apps/study/study_added_mass.h"
+#include "apps/study/study_two_mass.h"
 #include "apps/study/study_verify.h"
 
 #include <errno.h>
@@ -190,10 +192,11 @@ static const bough_key study_keys[] = {
     {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line: what is asked"},
     {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
      .help = "file of the scene, relative to the study"},
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("work-precision", "verify"),
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("work-precision", "verify", "two-mass", "added-mass"),
      .required = true, AT(kind),
      .help = "work-precision: time and difference to the reference of every cell of the grid; "
-             "verify: cases against what they should give"},
+             "verify: cases against what they should give; two-mass, added-mass: coupling schemes on "
+             "masses and springs"},
     {.name = "reference", .kind = BOUGH_KEY_CUSTOM, .read = read_settings, .required = true,
      .form = "{KEY: VALUE, ...}", AT(reference), .help = "replacements that make the reference"},
     {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = read_grid, .required = true,
@@ -255,9 +258,27 @@ static bough_status finish(const char *path, bough_arena *arena, bough_errors *e
     return bough_fail(BOUGH_INVALID, "%s: %d error%s in the study", path, n, n == 1 ? "" : "s");
 }
 
-static bool is_verify(const bough_node *root) {
+static bool is_kind(const bough_node *root, const char *name) {
     const bough_node *kind = bough_node_find(root, "kind");
-    return kind && kind->kind == BOUGH_SCALAR && strcmp(kind->text, "verify") == 0;
+    return kind && kind->kind == BOUGH_SCALAR && strcmp(kind->text, name) == 0;
+}
+
+// The kinds without a grid have their own keys. False: it is none of them.
+static bool read_own_kind(bough_arena *arena, const char *path, const bough_node *root,
+                          bough_errors *errors, bough_study *s) {
+    if (is_kind(root, "verify")) {
+        s->kind = BOUGH_STUDY_VERIFY;
+        s->verify = bough_verify_read(arena, path, root, errors);
+    } else if (is_kind(root, "two-mass")) {
+        s->kind = BOUGH_STUDY_TWO_MASS;
+        s->two_mass = bough_two_mass_read(arena, root, errors);
+    } else if (is_kind(root, "added-mass")) {
+        s->kind = BOUGH_STUDY_ADDED_MASS;
+        s->added_mass = bough_added_mass_read(arena, root, errors);
+    } else {
+        return false;
+    }
+    return true;
 }
 
 bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
@@ -268,9 +289,7 @@ bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
     if (!s || !root) return finish(path, arena, errors);
     s->file = bough_arena_string(arena, path);
     s->threads = threads;
-    if (is_verify(root)) {
-        s->kind = BOUGH_STUDY_VERIFY;
-        s->verify = bough_verify_read(arena, path, root, errors);
+    if (read_own_kind(arena, path, root, errors, s)) {
         *study = errors->n + errors->dropped == 0 ? s : NULL;
         return finish(path, arena, errors);
     }

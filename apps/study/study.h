@@ -14,7 +14,12 @@
 
 enum { BOUGH_STUDY_AXES = 6, BOUGH_STUDY_MEASURES = 8, BOUGH_STUDY_CELLS = 10000 };
 
-typedef enum bough_study_kind { BOUGH_STUDY_WORK_PRECISION, BOUGH_STUDY_VERIFY } bough_study_kind;
+typedef enum bough_study_kind {
+    BOUGH_STUDY_WORK_PRECISION,
+    BOUGH_STUDY_VERIFY,
+    BOUGH_STUDY_TWO_MASS,
+    BOUGH_STUDY_ADDED_MASS,
+} bough_study_kind;
 
 // A replacement in the scene.
 typedef struct bough_study_setting {
@@ -87,7 +92,10 @@ typedef struct bough_study {
     bough_study_measure *measure; // (n_measure)
     int repeat;                   // runs of each cell; times are their medians
     int threads;                  // 0: as the scene says
-    struct bough_verify *verify;  // of kind verify: all there is of it; else NULL
+    // all there is of the kinds without a grid, else NULL
+    struct bough_verify *verify;
+    struct bough_two_mass_study *two_mass;
+    struct bough_added_mass_study *added_mass;
 
     // by bough_study_expand
     bough_study_cell *reference_cell;

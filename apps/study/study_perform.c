@@ -2,7 +2,9 @@
 
 #include "apps/output/folder.h"
 #include "apps/study/study_plot.h"
+#include "apps/study/study_added_mass.h"
 #include "apps/study/study_store.h"
+#include "apps/study/study_two_mass.h"
 #include "apps/study/study_verify.h"
 
 #include <errno.h>
@@ -120,7 +122,9 @@ typedef bough_status perform_function(bough_arena *arena, const bough_study *stu
                                       const bough_study_options *options);
 
 static perform_function *const kinds[] = {[BOUGH_STUDY_WORK_PRECISION] = work_precision,
-                                          [BOUGH_STUDY_VERIFY] = bough_verify_perform};
+                                          [BOUGH_STUDY_VERIFY] = bough_verify_perform,
+                                          [BOUGH_STUDY_TWO_MASS] = bough_two_mass_perform,
+                                          [BOUGH_STUDY_ADDED_MASS] = bough_added_mass_perform};
 
 bough_status bough_study_perform(bough_arena *arena, const bough_study *study,
                                  const bough_study_options *options) {

@@ -1,0 +1,201 @@
+#include "apps/study/oscillator.h"
+
+#include <math.h>
+#include <string.h>
+
+static bool derivative(void *self, double t, const double *y, const double *u,
+                                         double *rate) {
+    const bough_oscillator *o = self;
+    (void)t;
+    for (int i = 0; i < o->n_state; i++) {
+        rate[i] = o->a[i][0] * y[0] + o->a[i][1] * y[1];
+        for (int j = 0; j < o->n_input; j++) rate[i] += o->b[i][j] * u[j];
+    }
+    return o->n_state == 0 || (isfinite(rate[0]) && isfinite(rate[1]));
+}
+
+static void output_tangent(void *self, double t, const double *y, const double *u,
+                                             const double *dy, const double *du, double *out) {
+    const bough_oscillator *o = self;
+    (void)t, (void)y, (void)u;
+    for (int i = 0; i < o->n_output; i++) {
+        out[i] = dy && o->n_state > 0 ? o->c[i][0] * dy[0] + o->c[i][1] * dy[1] : 0;
+        for (int j = 0; du && j < o->n_input; j++) out[i] += o->d[i][j] * du[j];
+    }
+}
+
+static void output(void *self, double t, const double *y, const double *u,
+                                     double *out) {
+    output_tangent(self, t, y, u, y, u, out);
+}
+
+static void input_columns(void *self, double t, const double *y, const double *u,
+                                            double *column) {
+    const bough_oscillator *o = self;
+    (void)t, (void)y, (void)u;
+    for (int j = 0; j < o->n_input && o->n_state > 0; j++) {
+        column[2 * j] = o->b[0][j];
+        column[2 * j + 1] = o->b[1][j];
+    }
+}
+
+static bool newton_setup(void *self, double t, const double *y, const double *u,
+                                           double gamma) {
+    bough_oscillator *o = self;
+    (void)t, (void)y, (void)u;
+    double m00 = 1 - gamma * o->a[0][0], m01 = -gamma * o->a[0][1];
+    double m10 = -gamma * o->a[1][0], m11 = 1 - gamma * o->a[1][1];
+    double determinant = m00 * m11 - m01 * m10;
+    o->inverse[0][0] = m11 / determinant;
+    o->inverse[0][1] = -m01 / determinant;
+    o->inverse[1][0] = -m10 / determinant;
+    o->inverse[1][1] = m00 / determinant;
+    return determinant != 0;
+}
+
+static void newton_solve(void *self, double *x) {
+    const bough_oscillator *o = self;
+    if (o->n_state == 0) return;
+    double x0 = x[0];
+    x[0] = o->inverse[0][0] * x0 + o->inverse[0][1] * x[1];
+    x[1] = o->inverse[1][0] * x0 + o->inverse[1][1] * x[1];
+}
+
+// Taylor coefficients of the input about t, in (time)ᵏ.
+static void input_series(const bough_signal *s, double t, double (*series)[4]) {
+    double length = s->t1 - s->t0, tau = (t - s->t0) / length;
+    for (int j = 0; j < s->n; j++) {
+        const double *c = s->coefficient + j;
+        double c1 = c[s->n], c2 = c[2 * s->n], c3 = c[3 * s->n];
+        series[j][0] = c[0] + tau * (c1 + tau * (c2 + tau * c3));
+        series[j][1] = (c1 + tau * (2 * c2 + 3 * tau * c3)) / length;
+        series[j][2] = (c2 + 3 * tau * c3) / (length * length);
+        series[j][3] = c3 / (length * length * length);
+    }
+}
+
+static void step(bough_oscillator *o, const bough_signal *input, double t, double h) {
+    double series[BOUGH_OSCILLATOR_PORT][4], term[2] = {o->y[0], o->y[1]}, power = 1;
+    input_series(input, t, series);
+    for (int k = 0; k < 24; k++) {
+        double next[2];
+        for (int i = 0; i < 2; i++) {
+            next[i] = o->a[i][0] * term[0] + o->a[i][1] * term[1];
+            for (int j = 0; k < 4 && j < o->n_input; j++) next[i] += o->b[i][j] * series[j][k];
+        }
+        power *= h;
+        for (int i = 0; i < 2; i++) {
+            term[i] = next[i] / (k + 1);
+            o->y[i] += power * term[i];
+        }
+    }
+}
+
+static bough_status advance(void *self, double t1, const bough_signal *input,
+                                              bool restart) {
+    bough_oscillator *o = self;
+    double rate = sqrt(fabs(o->a[1][0])) + fabs(o->a[1][1]) + 1, t0 = o->time;
+    int n = (int)ceil((t1 - t0) * rate);
+    for (int k = 0; k < n; k++) {
+        step(o, input, t0 + (t1 - t0) * k / n, (t1 - t0) / n);
+    }
+    o->time = t1;
+    o->advances++;
+    o->restarts += restart;
+    return bough_ok();
+}
+
+static size_t save_size(void *self) {
+    (void)self;
+    return sizeof(bough_oscillator);
+}
+
+static void save(void *self, void *copy) {
+    memcpy(copy, self, sizeof(bough_oscillator));
+}
+
+static void restore(void *self, const void *copy) {
+    memcpy(self, copy, sizeof(bough_oscillator));
+}
+
+static void set_state(void *self, double t, const double *y) {
+    bough_oscillator *o = self;
+    o->time = t;
+    if (o->n_state == 0) return;
+    o->y[0] = y[0];
+    o->y[1] = y[1];
+}
+
+static void statistics(void *self, bough_statistics *sum) {
+    const bough_oscillator *o = self;
+    sum->steps += o->advances;
+    sum->restarts += o->restarts;
+}
+
+static const bough_subsystem_ops operations = {
+    .derivative = derivative,
+    .output = output,
+    .output_tangent = output_tangent,
+    .input_columns = input_columns,
+    .newton_setup = newton_setup,
+    .newton_solve = newton_solve,
+    .advance = advance,
+    .save_size = save_size,
+    .save = save,
+    .restore = restore,
+    .set_state = set_state,
+    .statistics = statistics,
+};
+
+bough_subsystem bough_oscillator_subsystem(bough_oscillator *o, const char *name) {
+    o->scale[0] = o->scale[1] = 1;
+    return (bough_subsystem){.name = name,
+                             .kind = "oscillator",
+                             .solver = "Taylor series",
+                             .n_state = o->n_state,
+                             .n_input = o->n_input,
+                             .n_output = o->n_output,
+                             .scale = o->scale,
+                             .time = &o->time,
+                             .state = o->y,
+                             .ops = &operations,
+                             .self = o};
+}
+
+// -- kinds ----------------------------------------------------------------------------------------
+
+bough_oscillator bough_oscillator_told_force(bough_spring_mass s, double sign, double x) {
+    return (bough_oscillator){.a = {{0, 1}, {-s.k / s.m, -s.c / s.m}},
+                              .b = {{0}, {sign / s.m}},
+                              .c = {{0, 1}, {1, 0}},
+                              .n_state = 2,
+                              .n_input = 1,
+                              .n_output = 2,
+                              .y = {x, 0}};
+}
+
+bough_oscillator bough_oscillator_told_motion(bough_spring_mass s, double k, double c, double x) {
+    return (bough_oscillator){.a = {{0, 1}, {-(s.k + k) / s.m, -(s.c + c) / s.m}},
+                              .b = {{0}, {c / s.m, k / s.m}},
+                              .c = {{k, c}},
+                              .d = {{-c, -k}},
+                              .n_state = 2,
+                              .n_input = 2,
+                              .n_output = 1,
+                              .y = {x, 0}};
+}
+
+bough_oscillator bough_oscillator_telling_motion(bough_spring_mass s, double k, double c,
+                                                 double x) {
+    return (bough_oscillator){.a = {{0, 1}, {-(s.k + k) / s.m, -(s.c + c) / s.m}},
+                              .b = {{0}, {c / s.m, k / s.m}},
+                              .c = {{0, 1}, {1, 0}},
+                              .n_state = 2,
+                              .n_input = 2,
+                              .n_output = 2,
+                              .y = {x, 0}};
+}
+
+bough_oscillator bough_oscillator_link(double k, double c) {
+    return (bough_oscillator){.d = {{-c, -k, c, k}}, .n_input = 4, .n_output = 1};
+}

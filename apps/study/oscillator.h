@@ -1,0 +1,43 @@
+// Masses with springs as subsystems: linear, of two states or none, integrated exactly to rounding
+// (Taylor series of the state under the cubic input). What the studies of coupling schemes and their
+// tests are made of.
+#ifndef BOUGH_APPS_STUDY_OSCILLATOR_H
+#define BOUGH_APPS_STUDY_OSCILLATOR_H
+
+#include "core/subsystem.h"
+
+enum { BOUGH_OSCILLATOR_PORT = 4 };
+
+// ẏ = A y + B u, o = C y + D u; y = (x, v)
+typedef struct bough_oscillator {
+    double a[2][2], b[2][BOUGH_OSCILLATOR_PORT], c[BOUGH_OSCILLATOR_PORT][2];
+    double d[BOUGH_OSCILLATOR_PORT][BOUGH_OSCILLATOR_PORT];
+    int n_state; // 2, or 0: only D counts
+    int n_input, n_output;
+    double time, y[2], scale[2];
+    double inverse[2][2]; // (I − γA)⁻¹
+    long advances, restarts;
+} bough_oscillator;
+
+// A mass on a spring to the wall.
+typedef struct bough_spring_mass {
+    double m, k, c; // mass [kg], stiffness [N/m] and damping [N s/m] to the wall
+} bough_spring_mass;
+
+// Told the force on it, times `sign`; tells (v, x). At x, at rest.
+bough_oscillator bough_oscillator_told_force(bough_spring_mass s, double sign, double x);
+
+// Told the other's (v, x), holds the coupling spring (k, c); tells the force on the other.
+bough_oscillator bough_oscillator_told_motion(bough_spring_mass s, double k, double c, double x);
+
+// The same, but tells its own (v, x).
+bough_oscillator bough_oscillator_telling_motion(bough_spring_mass s, double k, double c, double x);
+
+// The coupling spring alone: told (v, x) of the first mass and of the second, tells the force on the
+// first.
+bough_oscillator bough_oscillator_link(double k, double c);
+
+// Its contract; the oscillator stays where it is.
+bough_subsystem bough_oscillator_subsystem(bough_oscillator *o, const char *name);
+
+#endif

@@ -1,0 +1,193 @@
+#include "apps/study/two_mass.h"
+
+#include "core/linalg.h"
+
+#include <math.h>
+#include <string.h>
+
+bough_two_mass bough_two_mass_default(void) {
+    return (bough_two_mass){
+        .s1 = {1, 10, .2}, .s2 = {1, 20, .3}, .k = 10, .c = .5, .y0 = {0, 0, .5, 0}};
+}
+
+// -- exact solution -------------------------------------------------------------------------------
+
+// Taylor series over short steps.
+void bough_two_mass_exact(const bough_two_mass *m, double duration, double y[4]) {
+    bough_spring_mass s1 = m->s1, s2 = m->s2;
+    double rate = sqrt((s1.k + m->k) / s1.m + (s2.k + m->k) / s2.m) + (s1.c + m->c) / s1.m +
+                  (s2.c + m->c) / s2.m + 1;
+    int n = (int)ceil(fabs(duration) * rate);
+    double h = duration / n;
+    for (int step = 0; step < n; step++) {
+        double z[4] = {y[0], y[1], y[2], y[3]};
+        for (int p = 1; p < 24; p++) {
+            double force = m->k * (z[2] - z[0]) + m->c * (z[3] - z[1]);
+            double next[4] = {z[1], (force - s1.k * z[0] - s1.c * z[1]) / s1.m, z[3],
+                              (-force - s2.k * z[2] - s2.c * z[3]) / s2.m};
+            for (int i = 0; i < 4; i++) {
+                z[i] = next[i] * h / p;
+                y[i] += z[i];
+            }
+        }
+    }
+}
+
+void bough_two_mass_at(const bough_two_mass *m, double t, double y[4]) {
+    memcpy(y, m->y0, sizeof m->y0);
+    bough_two_mass_exact(m, t, y);
+}
+
+// -- building -------------------------------------------------------------------------------------
+
+static void make_masses(bough_two_mass *m) {
+    const double *y = m->y0;
+    if (m->cut == BOUGH_CUT_DISPLACEMENT_DISPLACEMENT) {
+        m->mass[0] = bough_oscillator_telling_motion(m->s1, m->k, m->c, y[0]);
+        m->mass[1] = bough_oscillator_telling_motion(m->s2, m->k, m->c, y[2]);
+    } else {
+        m->mass[0] = bough_oscillator_told_force(m->s1, 1, y[0]);
+        m->mass[1] = m->cut == BOUGH_CUT_FORCE_FORCE
+                         ? bough_oscillator_told_force(m->s2, -1, y[2])
+                         : bough_oscillator_told_motion(m->s2, m->k, m->c, y[2]);
+    }
+    m->mass[2] = bough_oscillator_link(m->k, m->c);
+    m->mass[0].y[1] = y[1];
+    m->mass[1].y[1] = y[3];
+    static const char *const names[3] = {"mass1", "mass2", "spring"};
+    for (int i = 0; i < 3; i++) {
+        m->subsystem[i] = bough_oscillator_subsystem(&m->mass[i], names[i]);
+    }
+}
+
+bough_status bough_two_mass_build(bough_two_mass *m, bough_master_def def) {
+    bool kin = m->kinematic;
+    make_masses(m);
+    bough_member member[3] = {{&m->subsystem[0], 0}, {&m->subsystem[1], 1}, {&m->subsystem[2], 0}};
+    bough_connection connection[3][4] = {
+        [BOUGH_CUT_FORCE_DISPLACEMENT] = {{.from = 0, .to = 1, .count = 2, .kinematic = kin},
+                                          {.from = 1, .to = 0, .count = 1}},
+        [BOUGH_CUT_DISPLACEMENT_DISPLACEMENT] = {{.from = 0, .to = 1, .count = 2, .kinematic = kin},
+                                                 {.from = 1, .to = 0, .count = 2, .kinematic = kin}},
+        [BOUGH_CUT_FORCE_FORCE] = {{.from = 0, .to = 2, .count = 2, .kinematic = kin},
+                                   {.from = 1, .to = 2, .to_offset = 2, .count = 2, .kinematic = kin},
+                                   {.from = 2, .to = 0, .count = 1},
+                                   {.from = 2, .to = 1, .count = 1}},
+    };
+    bool three = m->cut == BOUGH_CUT_FORCE_FORCE;
+    def.assembly = (bough_assembly_def){.n_member = three ? 3 : 2,
+                                        .member = member,
+                                        .n_connection = three ? 4 : 2,
+                                        .connection = connection[m->cut]};
+    m->arena = bough_arena_create();
+    if (!m->arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    return bough_master_build(m->arena, &def, &m->master);
+}
+
+void bough_two_mass_destroy(bough_two_mass *m) {
+    bough_arena_destroy(m->arena);
+    m->arena = NULL;
+}
+
+// -- running --------------------------------------------------------------------------------------
+
+static void exact_inputs(const bough_two_mass *m, double t, double *input) {
+    double y[4];
+    bough_two_mass_at(m, t, y);
+    double force = m->k * (y[2] - y[0]) + m->c * (y[3] - y[1]);
+    const double inputs[3][6] = {
+        [BOUGH_CUT_FORCE_DISPLACEMENT] = {force, y[1], y[0]},
+        [BOUGH_CUT_DISPLACEMENT_DISPLACEMENT] = {y[3], y[2], y[1], y[0]},
+        [BOUGH_CUT_FORCE_FORCE] = {force, force, y[1], y[0], y[3], y[2]},
+    };
+    memcpy(input, inputs[m->cut], (size_t)m->master->assembly->n_input * sizeof(double));
+}
+
+void bough_two_mass_history(bough_two_mass *m) {
+    bough_coupling *c = m->master->coupling;
+    c->n_past = BOUGH_HISTORY;
+    for (int p = 0; p < BOUGH_HISTORY; p++) {
+        c->past_time[p] = -p * m->master->macro_step;
+        exact_inputs(m, c->past_time[p], c->past[p]);
+    }
+}
+
+static double told_error(const bough_two_mass *m) {
+    const bough_error_estimate *e = m->master->estimate;
+    const double *error = e ? bough_error_estimate_states(e) : NULL;
+    return error ? BOUGH_ERROR_SAFETY * fmax(fabs(error[0]), fabs(error[2])) : (double)NAN;
+}
+
+bough_status bough_two_mass_error(bough_two_mass *m, double *worst, double *told) {
+    double y[4];
+    memcpy(y, m->y0, sizeof y);
+    *worst = 0;
+    if (told) *told = told_error(m);
+    while (!bough_master_done(m->master)) {
+        double t = m->master->time;
+        bough_status status = bough_step(m->master);
+        if (!bough_is_ok(&status)) return status;
+        bough_two_mass_exact(m, m->master->time - t, y);
+        *worst = fmax(*worst, fmax(fabs(m->mass[0].y[0] - y[0]), fabs(m->mass[1].y[0] - y[2])));
+        if (told) *told = fmax(*told, told_error(m));
+    }
+    return bough_ok();
+}
+
+// -- the macro step as a map ----------------------------------------------------------------------
+
+enum { STATES = 4, INPUTS = 6, MOST = STATES + 4 * INPUTS };
+
+static int parts(const bough_two_mass *m) { return m->master->coupling->owed ? 4 : 3; }
+
+// What a macro step depends on, from z or into it: the states, inputs one and two steps ago, the
+// inputs used last, and what the ramp owes.
+static void exchange_memory(bough_two_mass *m, double *z, bool load) {
+    bough_coupling *c = m->master->coupling;
+    size_t size = (size_t)m->master->assembly->n_input * sizeof(double);
+    double *const part[4] = {c->past[1], c->past[2], c->used, c->owed};
+    for (int i = 0; i < 2; i++) {
+        if (load) m->subsystem[i].ops->set_state(&m->mass[i], 0, z + 2 * i);
+        if (!load) memcpy(z + 2 * i, m->mass[i].y, sizeof m->mass[i].y);
+    }
+    for (int p = 0; p < parts(m); p++) {
+        double *at = z + STATES + p * m->master->assembly->n_input;
+        memcpy(load ? part[p] : at, load ? at : part[p], size);
+    }
+}
+
+static bough_status map_step(bough_two_mass *m, double h, const double *z, double *image) {
+    bough_coupling *c = m->master->coupling;
+    double from[MOST];
+    memcpy(from, z, sizeof from);
+    for (int p = 0; p < BOUGH_HISTORY; p++) c->past_time[p] = -p * h;
+    exchange_memory(m, from, true);
+    bough_assembly_outputs(m->master->assembly, 0, c->output, c->input);
+    memcpy(c->past[0], c->input, (size_t)m->master->assembly->n_input * sizeof(double));
+    c->n_past = BOUGH_HISTORY;
+    c->t0 = 0;
+    c->t1 = h;
+    bough_status status = m->master->scheme->step(c);
+    bough_coupling_exchange(c);
+    exchange_memory(m, image, false);
+    return status;
+}
+
+bough_status bough_two_mass_radius(bough_two_mass *m, double macro_step, double *radius) {
+    int n = STATES + parts(m) * m->master->assembly->n_input;
+    double matrix[MOST * MOST] = {0}, column[MOST], unit[MOST];
+    double value[2 * MOST], vector[MOST * MOST], work[8 * MOST];
+    for (int k = 0; k < n; k++) {
+        memset(unit, 0, sizeof unit);
+        unit[k] = 1;
+        bough_status status = map_step(m, macro_step, unit, column);
+        if (!bough_is_ok(&status)) return status;
+        memcpy(matrix + k * n, column, (size_t)n * sizeof(double));
+    }
+    if (!bough_dense_eigen(n, matrix, value, vector, work)) {
+        return bough_fail(BOUGH_FAILED, "the eigenvalues of a macro step were not found");
+    }
+    *radius = 0;
+    for (int k = 0; k < n; k++) *radius = fmax(*radius, hypot(value[k], value[n + k]));
+    return bough_ok();
+}
