@@ -414,7 +414,7 @@ static const double heavy_interface = 0.25;
 // Weights to choose from. Slightly above 1/2 the ramp damps what rings and loses little: measured on
 // masses of 3 to 1700 times the one that carries them (10 ms, stiff spring) 0.6 is stable throughout,
 // 1/2 grows by up to 18 per second between 30 and 500, and 1, held, at a low frequency everywhere.
-static const double weights[] = {0.5, 0.55, 0.6, 0.7, 0.8, 1};
+static const double weights[] = {0.5, 0.55, 0.6, 0.65, 0.7, 0.8, 1};
 enum { WEIGHTS = sizeof weights / sizeof *weights };
 static const double ringing = 0.05; // growth that does not count [1/s]
 
