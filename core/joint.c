@@ -175,6 +175,56 @@ void bough_joint_speed(const bough_joint *joint, const double *q, const double *
     }
 }
 
+// δp∘(c − ½Ω) = r + ½ p∘δΩ
+static void quaternion_change(const double *p, const double *omega, double c, const double *r,
+                              const double *omega_change, double *change) {
+    double rate[4], square = 0;
+    quaternion_rate(p, omega_change, rate);
+    for (int k = 0; k < 3; k++)
+        square += omega[k] * omega[k];
+    double f = 1 / (c * c + 0.25 * square);
+    bough_quaternion side = {r[0] + rate[0], r[1] + rate[1], r[2] + rate[2], r[3] + rate[3]};
+    bough_quaternion inverse = {f * c, 0.5 * f * omega[0], 0.5 * f * omega[1], 0.5 * f * omega[2]};
+    bough_quaternion d = bough_quaternion_product(side, inverse);
+    change[0] = d.w, change[1] = d.x, change[2] = d.y, change[3] = d.z;
+}
+
+// c δx − δ(R v) = r with δ(R v) = R (δv + δη × v)
+static void free_change(const double *q, const double *v, double c, const double *r,
+                        const double *speed_change, double *change) {
+    double eta[3];
+    quaternion_change(q + 3, v + 3, c, r + 3, speed_change + 3, change + 3);
+    quaternion_speed(q + 3, change + 3, eta);
+    bough_vec3 own = bough_add(load3(speed_change), bough_cross(load3(eta), load3(v)));
+    bough_vec3 sum = bough_add(load3(r), bough_mat3_mul(rotation_at(q + 3), own));
+    store3(bough_scale(1 / c, sum), change);
+}
+
+// The same in the plane, where δη × v is the angle's change times v turned by a right angle.
+static void planar_change(const double *q, const double *v, double c, const double *r,
+                          const double *speed_change, double *change) {
+    double angle = (r[2] + speed_change[2]) / c;
+    const double own[3] = {speed_change[0] - angle * v[1], speed_change[1] + angle * v[0], 0};
+    turn_plane(q[2], own, change);
+    for (int k = 0; k < 2; k++)
+        change[k] = (r[k] + change[k]) / c;
+    change[2] = angle;
+}
+
+void bough_joint_change(const bough_joint *joint, const double *q, const double *v, double c,
+                        const double *r, const double *speed_change, double *change) {
+    switch (joint->kind) {
+    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
+    case BOUGH_JOINT_FIXED: break;
+    case BOUGH_JOINT_CYLINDRICAL: change[1] = (r[1] + speed_change[1]) / c; // fall through
+    case BOUGH_JOINT_REVOLUTE:
+    case BOUGH_JOINT_PRISMATIC: change[0] = (r[0] + speed_change[0]) / c; break;
+    case BOUGH_JOINT_SPHERICAL: quaternion_change(q, v, c, r, speed_change, change); break;
+    case BOUGH_JOINT_FREE: free_change(q, v, c, r, speed_change, change); break;
+    case BOUGH_JOINT_PLANAR: planar_change(q, v, c, r, speed_change, change); break;
+    }
+}
+
 void bough_joint_normalise(const bough_joint *joint, double *q) {
     int row = quaternion_row(joint);
     // A length that is one to rounding stays: normalising twice gives the same bits as once.
@@ -211,4 +261,15 @@ double bough_joint_spring_force(const bough_joint_spring *spring, double q, doub
     double width = 0.01 * (spring->high - spring->low);
     force += stop_force(k, width, spring->low - q, energy);
     return force - stop_force(k, width, q - spring->high, energy);
+}
+
+static double stop_slope(double k, double w, double p) {
+    return p <= 0 ? 0 : p < w ? k * p / w : k;
+}
+
+double bough_joint_spring_stiffness(const bough_joint_spring *spring, double q) {
+    double k = spring->stop_stiffness, width = 0.01 * (spring->high - spring->low);
+    if (k == 0) return spring->stiffness;
+    return spring->stiffness + stop_slope(k, width, spring->low - q) +
+           stop_slope(k, width, q - spring->high);
 }

@@ -55,6 +55,9 @@ typedef struct bough_joint_spring {
 double bough_joint_spring_force(const bough_joint_spring *spring, double q, double v,
                                 double *energy);
 
+// −∂force/∂q
+double bough_joint_spring_stiffness(const bough_joint_spring *spring, double q);
+
 // The kind's name in scenes ("revolute"), its numbers of coordinates and of speeds, and of the
 // axes that define it: the axis, the second axis.
 const char *bough_joint_name(bough_joint_kind kind);
@@ -77,6 +80,11 @@ void bough_joint_rate(const bough_joint *joint, const double *q, const double *v
 // N⁺(q) δq: the speeds (n_speeds) that belong to a change of the coordinates; a quaternion's change
 // along itself is no motion.
 void bough_joint_speed(const bough_joint *joint, const double *q, const double *change, double *v);
+
+// The change δq of the coordinates that solves c δq − δ(N(q) v) = r, where q and v change: r
+// (n_coordinates), the change of v (n_speeds).
+void bough_joint_change(const bough_joint *joint, const double *q, const double *v, double c,
+                        const double *r, const double *speed_change, double *change);
 
 // Scales the quaternion, if there is one, to |p| = 1 within 1e-15. Doing it again changes no bit.
 void bough_joint_normalise(const bough_joint *joint, double *q);

@@ -7,6 +7,7 @@
 #include "core/integrator_radau.h"
 #include "core/linalg.h"
 #include "core/loop.h"
+#include "core/tree_newton.h"
 
 #include <string.h>
 
@@ -31,8 +32,10 @@ typedef struct tree_subsystem {
     bough_radau *radau;
     double *own_state, *own_rate;        // (n) of IDA: quaternions not normalised; of Radau
                                          // own_rate is scratch
-    double *ida_matrix, *newton_matrix;  // (n × n, column-major)
-    int *ida_pivot, *newton_pivot;       // (n)
+    bough_tree_newton *ida_newton, *newton; // of a tree without closures; with them dense:
+    double *ida_matrix, *newton_matrix;     // (n × n, column-major)
+    int *ida_pivot, *newton_pivot;          // (n)
+    double gamma;                           // of the last newton_setup
     double *y, *r, *base, *plus, *minus; // (n) scratch
     long newton_setups, derivatives;
 } tree_subsystem;
@@ -148,11 +151,9 @@ static void input_columns(void *self, double t, const double *state, const doubl
 static double increment_at(double y, double relative) { return relative * fmax(1, fabs(y)); }
 
 // f is defined for quaternions of any length, so its derivative by components is consistent.
-static bool newton_setup(void *self, double t, const double *state, const double *input,
-                         double gamma) {
-    tree_subsystem *s = self;
+static bool dense_setup(tree_subsystem *s, double t, const double *state, const double *input,
+                        double gamma) {
     int n = s->n;
-    s->newton_setups++;
     memcpy(s->y, state, (size_t)n * sizeof(double));
     for (int j = 0; j < n; j++) {
         // Coordinates enter by sines and cosines: their increment does not grow with them.
@@ -172,9 +173,41 @@ static bool newton_setup(void *self, double t, const double *state, const double
     return bough_dense_factor(n, s->newton_matrix, s->newton_pivot);
 }
 
+static bool newton_setup(void *self, double t, const double *state, const double *input,
+                         double gamma) {
+    tree_subsystem *s = self;
+    s->newton_setups++;
+    s->gamma = gamma;
+    if (s->newton == NULL) return dense_setup(s, t, state, input, gamma);
+    return derivative(s, t, state, input, s->plus) &&
+           bough_tree_newton_setup(s->newton, s->data, t, input, state, s->plus + s->tree->n_q,
+                                   1 / gamma);
+}
+
+// x = b + γ δf, in the form of tree_newton.h: c δq − δ(N v) = c b_q and c δv − c b_v = δv̇.
 static void newton_solve(void *self, double *x) {
     tree_subsystem *s = self;
-    bough_dense_solve(s->n, 1, s->newton_matrix, s->newton_pivot, x);
+    if (s->newton == NULL) {
+        bough_dense_solve(s->n, 1, s->newton_matrix, s->newton_pivot, x);
+        return;
+    }
+    const bough_tree *tree = s->tree;
+    double c = 1 / s->gamma;
+    for (int i = 0; i < tree->n_v; i++) {
+        s->r[i] = -c * x[tree->n_q + i];
+        s->plus[i] = x[tree->n_q + i];
+        x[tree->n_q + i] = 0;
+    }
+    for (int i = 0; i < tree->n_q; i++)
+        x[i] *= c;
+    for (int i = 0; i < tree->n_links; i++) { // δq̇ = δv, δv̇ = 0
+        const bough_link *link = &tree->links[i];
+        if (link->motion == NULL) continue;
+        double *q = x + link->first_coordinate, *v = x + tree->n_q + link->first_speed;
+        v[0] = s->plus[link->first_speed];
+        q[0] = s->gamma * (q[0] + v[0]);
+    }
+    bough_tree_newton_solve(s->newton, s->r, x);
 }
 
 // -- own steps by IDA ------------------------------------------------------------------------
@@ -220,6 +253,11 @@ static bool residual(void *self, double t, const double *y, const double *rate, 
 static bool residual_setup(void *self, double t, const double *y, const double *rate, double cj) {
     tree_subsystem *s = self;
     int n = s->n;
+    if (s->ida_newton != NULL) {
+        evaluate_input(s, t);
+        return bough_tree_newton_setup(s->ida_newton, s->data, t, s->input, y,
+                                       rate + s->tree->n_q, cj);
+    }
     residual(s, t, y, rate, s->base);
     memcpy(s->y, y, (size_t)n * sizeof(double));
     memcpy(s->r, rate, (size_t)n * sizeof(double));
@@ -239,7 +277,11 @@ static bool residual_setup(void *self, double t, const double *y, const double *
 
 static void residual_solve(void *self, double *x) {
     tree_subsystem *s = self;
-    bough_dense_solve(s->n, 1, s->ida_matrix, s->ida_pivot, x);
+    if (s->ida_newton != NULL) {
+        bough_tree_newton_solve(s->ida_newton, NULL, x);
+    } else {
+        bough_dense_solve(s->n, 1, s->ida_matrix, s->ida_pivot, x);
+    }
 }
 
 static void normalise(tree_subsystem *s) {
@@ -412,11 +454,25 @@ static bool take(bough_arena *arena, tree_subsystem *s) {
         *vectors[i] = bough_arena_doubles(arena, n);
     }
     s->input = bough_arena_doubles(arena, (size_t)bough_tree_n_inputs(s->tree));
-    s->ida_matrix = bough_arena_doubles(arena, n * n);
-    s->newton_matrix = bough_arena_doubles(arena, n * n);
-    s->ida_pivot = bough_arena_take(arena, n * sizeof(int));
-    s->newton_pivot = bough_arena_take(arena, n * sizeof(int));
     return !bough_arena_exhausted(arena);
+}
+
+static bough_status take_newton(bough_arena *arena, tree_subsystem *s, bool ida) {
+    size_t n = (size_t)s->n;
+    bough_status status = bough_ok();
+    if (s->tree->n_closures == 0) {
+        status = bough_tree_newton_create(arena, s->tree, &s->newton);
+        if (ida && bough_is_ok(&status)) {
+            status = bough_tree_newton_create(arena, s->tree, &s->ida_newton);
+        }
+        return status;
+    }
+    s->newton_matrix = bough_arena_doubles(arena, n * n);
+    s->newton_pivot = bough_arena_take(arena, n * sizeof(int));
+    if (ida) s->ida_matrix = bough_arena_doubles(arena, n * n);
+    if (ida) s->ida_pivot = bough_arena_take(arena, n * sizeof(int));
+    if (!bough_arena_exhausted(arena)) return status;
+    return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's Newton matrices");
 }
 
 static bough_status create_integrator(bough_arena *arena, tree_subsystem *s,
@@ -467,7 +523,8 @@ bough_status bough_tree_subsystem_create(bough_arena *arena, bough_tree *tree, c
     for (int i = 0; i < s->n; i++)
         s->scale[i] = 1;
     set_state(s, start_time, tree->initial);
-    status = create_integrator(arena, s, solver, rtol);
+    status = take_newton(arena, s, solver == BOUGH_TREE_IDA);
+    if (bough_is_ok(&status)) status = create_integrator(arena, s, solver, rtol);
     if (bough_is_ok(&status)) describe(s, subsystem);
     return status;
 }

@@ -3,7 +3,8 @@
 //     q̇ − N(q) v = 0,   M(q) v̇ + h(q, v) − τ(t, q, u) = 0,
 // the second row evaluated by the recursive inverse dynamics, or, by Radau IIA, ẏ = f with the
 // recursive forward dynamics; both in O(n). For prescribed joints both rows are algebraic under IDA,
-// q = q(t) and v = v(t), so that nothing drifts.
+// q = q(t) and v = v(t), so that nothing drifts. Newton's systems are solved in O(n) by
+// tree_newton.h; with closures, and under Radau, by dense matrices from differences.
 #ifndef BOUGH_CORE_TREE_SUBSYSTEM_H
 #define BOUGH_CORE_TREE_SUBSYSTEM_H
 

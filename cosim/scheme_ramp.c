@@ -216,6 +216,7 @@ static void predict_leader(bough_coupling *c, int member) {
     const bough_subsystem *s = c->assembly->member[member];
     const ramp *r = c->scheme_data;
     const answer *w = &r->of[member];
+    if (s->n_input == 0 && s->n_output == 0) return; // nobody asks
     if (!linearise(c, member)) {
         c->status[member] = bough_coupling_not_finite(c, member);
         return;
