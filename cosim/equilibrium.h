@@ -22,7 +22,7 @@ typedef struct bough_equilibrium_def {
 // Time 0, 0.1 s, 1e-10, 300 steps.
 bough_equilibrium_def bough_equilibrium_def_default(void);
 
-enum { BOUGH_EQUILIBRIUM_LONGEST = 1000 }; // γ of the last steps [s]
+enum { BOUGH_EQUILIBRIUM_LONGEST = 30 }; // γ of the last steps [s]; beyond, rounding grows
 
 typedef struct bough_equilibrium_report {
     int steps;     // taken and refused

@@ -8,11 +8,13 @@ static const double unstable = 1e-6; // growth relative to |λ| above it is no r
 
 // -- words ----------------------------------------------------------------------------------------
 
-// Rods that are no blades bend along their axes.
+// Rods that are no blades bend along their axes, rigid bodies move along the ground's.
 static const char *shape_of(const bough_simulation *s, const bough_scene_mode *mode) {
     static const char *const blade[] = {"flap", "edge", "axial", "torsion"};
     static const char *const rod[] = {"x", "y", "z", "torsion"};
-    if (mode->direction < 0) return "";
+    static const char *const rigid[] = {"x", "y", "z", "turn"};
+    const bough_beam *beam = bough_simulation_beam(s, mode->body);
+    if (beam == NULL || beam->port < 0) return rigid[mode->direction];
     bool is_blade = mode->blades;
     for (int k = 0; s->scene->turbine.node && k < s->scene->turbine.n_blade; k++) {
         is_blade = is_blade || s->scene->turbine.blade[k] == mode->body;

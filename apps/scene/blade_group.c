@@ -28,6 +28,14 @@ static double azimuth_of(const bough_simulation *s, const bough_beam *blade) {
     return angle < -even ? angle + 2 * BOUGH_PI : angle;
 }
 
+// The rotor's angular velocity along its shaft: of all joints that turn it.
+static double spin_of(const bough_simulation *s) {
+    int rotor = s->scene->turbine.rotor;
+    bough_vec3 w = bough_tree_frame_twist(s->view, &s->tree->bodies[rotor]).angular;
+    const double along[3] = {w.x, w.y, w.z};
+    return along[s->scene->body[rotor].joint.axis];
+}
+
 // Inserts a blade by azimuth.
 static void insert(const bough_simulation *s, const bough_beam *blade, bough_blade_group *group) {
     int k = group->n++;
@@ -46,14 +54,12 @@ static bool is_alike(const bough_simulation *s, const bough_blade_group *group, 
 }
 
 bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *s,
-                                    const bough_assembly *assembly, const double *state,
-                                    bough_blade_group *group) {
+                                    const bough_assembly *assembly, bough_blade_group *group) {
     const bough_scene_turbine *turbine = &s->scene->turbine;
-    int n = turbine->node == NULL ? 0 : turbine->n_blade, coordinate, speed;
+    int n = turbine->node == NULL ? 0 : turbine->n_blade;
     *group = (bough_blade_group){0};
     if (n == 0) return bough_ok();
-    bough_tree_joint_rows(s->tree, turbine->rotor, &coordinate, &speed);
-    group->speed = state[speed];
+    group->speed = spin_of(s);
     group->blade = bough_arena_take(arena, (size_t)n * sizeof *group->blade);
     group->first = bough_arena_take(arena, (size_t)n * sizeof *group->first);
     if (!group->blade || !group->first) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");

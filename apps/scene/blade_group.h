@@ -13,10 +13,9 @@ typedef struct bough_blade_group {
     int n_row, *row;          // (n × n_row) all rows of their states
 } bough_blade_group;
 
-// The blades in the simulation's present pose; `state` (n_state) is the assembly's.
+// The blades in the simulation's present pose and motion.
 bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *s,
-                                    const bough_assembly *assembly, const double *state,
-                                    bough_blade_group *group);
+                                    const bough_assembly *assembly, bough_blade_group *group);
 
 // Gives every blade the mean of the blades' states.
 void bough_blade_group_average(const bough_blade_group *group, double *state);

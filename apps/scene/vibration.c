@@ -4,6 +4,7 @@
 #include "core/dynamics.h"
 #include "cosim/modes.h"
 
+#include <float.h>
 #include <string.h>
 
 const char *const bough_pattern_names[BOUGH_PATTERNS] = {
@@ -140,12 +141,31 @@ static void add_direction(const shape *x, const bough_beam *beam, double *sum) {
     }
 }
 
+// Of a rigid body: energy of its mass centre's motion along the ground's axes, and of its turn.
+static void add_motion(const shape *x, int body, int part, double *sum) {
+    const bough_simulation *s = x->simulation;
+    int link = s->tree->bodies[body].link;
+    if (link < 0) return;
+    const bough_inertia *inertia = &s->tree->links[link].inertia;
+    bough_tree_tangent(s->tree, x->state, part_of(x, part), s->view);
+    bough_twist twist = s->view->acceleration[link];
+    bough_wrench momentum = bough_inertia_mul(inertia, twist);
+    bough_vec3 p = bough_mat3_mul(s->view->pose[link].rotation, momentum.force);
+    const double along[3] = {p.x, p.y, p.z};
+    sum[3] += bough_power(twist, momentum);
+    for (int c = 0; c < 3; c++) {
+        double energy = along[c] * along[c] / fmax(inertia->mass, DBL_MIN);
+        sum[c] += energy;
+        sum[3] -= energy;
+    }
+}
+
 static void set_direction(const shape *x, bough_scene_mode *mode) {
     const bough_beam *beam = bough_simulation_beam(x->simulation, mode->body);
     double sum[BOUGH_ROD_DIRECTIONS] = {0};
-    mode->direction = -1;
-    if (!mode->blades && (beam == NULL || beam->rod == NULL)) return;
-    if (!mode->blades) add_direction(x, beam, sum);
+    bool rigid = !mode->blades && (beam == NULL || beam->rod == NULL);
+    for (int part = 0; rigid && part < 2; part++) add_motion(x, mode->body, part, sum);
+    if (!mode->blades && !rigid) add_direction(x, beam, sum);
     for (int k = 0; mode->blades && k < x->group->n; k++) add_direction(x, x->group->blade[k], sum);
     mode->direction = 0;
     for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) {
@@ -227,15 +247,20 @@ static void set_value(const bough_eigen_pair *pair, bough_scene_mode *mode) {
     mode->damping = fabs(ratio) > rounding ? ratio : 0;
 }
 
-// Whether something but the rotor turns, or the rotor with blades that do not allow the transform.
-static bool is_frozen(const bough_simulation *s, const bough_blade_group *group,
-                      const double *state) {
-    for (int k = s->tree->n_q; k < s->tree->n_q + s->tree->n_v; k++) {
-        int coordinate, speed = -1;
-        if (group->n > 0) {
-            bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &coordinate, &speed);
-        }
-        if (state[k] != 0 && k != speed) return true;
+static const double at_rest = 1e-9; // [rad/s]
+
+// Whether something turns otherwise than a rotor whose blades allow the transform.
+static bool is_frozen(const bough_simulation *s, const bough_blade_group *group) {
+    bough_vec3 spin = {0, 0, 0};
+    if (group->n > 0) {
+        const bough_frame *rotor = &s->tree->bodies[s->scene->turbine.rotor];
+        spin = bough_tree_frame_velocity(s->view, rotor).angular;
+    }
+    for (int i = 0; i < s->tree->n_links; i++) {
+        bough_transform pose = s->view->pose[i];
+        bough_vec3 w = bough_mat3_mul(pose.rotation, s->view->twist[i].angular);
+        double other = bough_norm(bough_sub(w, spin));
+        if (fmin(bough_norm(w), other) > at_rest) return true;
     }
     return false;
 }
@@ -260,7 +285,7 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, solution *x
     int n_held = bough_settle_held(s->tree, false, x->held);
     status = bough_arrow_hold(arena, x->arrow, n_held, x->held);
     if (!bough_is_ok(&status)) return status;
-    return bough_blade_group_find(arena, s, a, x->state, &x->group);
+    return bough_blade_group_find(arena, s, a, &x->group);
 }
 
 // Inputs of the equilibrium as it is, so that the rotor's whole weight and thrust are on the tree;
@@ -317,7 +342,7 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, double time, 
     define(time, &x);
     v->n_blade = x.group.n;
     v->spin = x.group.speed;
-    v->frozen = is_frozen(s, &x.group, x.state);
+    v->frozen = is_frozen(s, &x.group);
     status = bough_modes_find(arena, x.arrow, &x.def, wanted, v->pair, &v->found);
     drop_free_motions(x.def.point, count, v);
     return bough_is_ok(&status) ? describe(arena, s, &x, v) : status;

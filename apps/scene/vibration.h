@@ -31,7 +31,8 @@ typedef struct bough_scene_mode {
     double *share;           // of the kinetic energy per body of the scene, sum 1
     int body;                // the body of the largest, or a blade when all blades' together is
     bool blades;             // it is
-    int direction;           // bough_rod_direction of the largest share in these rods; −1: no rod
+    int direction;           // of the largest share: bough_rod_direction in these rods; of a rigid
+                             // body 0..2 along the ground's axes, 3 turning
     bough_pattern pattern;   // of the blades
     double whirl[3];         // shares of the blades' motion: collective, forward, backward
 } bough_scene_mode;

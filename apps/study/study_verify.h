@@ -10,7 +10,7 @@ enum { BOUGH_VERIFY_MESHES = 5 };
 
 typedef enum bough_verify_action {
     BOUGH_VERIFY_STATIC, // equilibrium of the first rod
-    BOUGH_VERIFY_MODES,  // natural modes of the first rod, as the scene's modes block says
+    BOUGH_VERIFY_MODES,  // modes of the first rod or of the scene, as its modes block says
     BOUGH_VERIFY_RUN,    // the scene through its duration
     BOUGH_VERIFY_INFLOW, // the scene's polars in random inflow
 } bough_verify_action;

@@ -1,7 +1,9 @@
 // One case of a study of kind verify on one mesh: its quantities.
 #include "apps/study/study_verify.h"
 
+#include "apps/scene/settle.h"
 #include "apps/scene/steady.h"
+#include "apps/scene/vibration.h"
 #include "flexbody/rod_modes.h"
 
 #include <assert.h>
@@ -41,24 +43,31 @@ static const bough_beam *first_rod(const bough_simulation *s) {
 static double tip_component(const bough_steady *x, int component) {
     bough_vec3 shift, turn;
     const bough_rod_model *m = x->model;
-    bough_steady_displacement(x, m->n, &shift, &turn);
-    bough_vec3 position = bough_add(m->position0[m->n], shift);
+    bough_steady_displacement(x, m->n_segment, &shift, &turn);
+    bough_vec3 position = bough_add(m->position0[m->n_segment], shift);
     const double values[9] = {position.x, position.y, position.z, shift.x, shift.y,
                               shift.z,    turn.x,     turn.y,     turn.z};
     return values[component];
 }
 
-static bough_status steady(bough_arena *arena, const bough_simulation *s, bough_steady *found) {
+// Of the first rod, with the scene settled as a whole where its modes are those of the whole.
+static bough_status steady(bough_arena *arena, bough_simulation *s, bough_steady *found) {
     const bough_beam *rod = first_rod(s);
     bough_turning turning;
+    bough_settling settling;
+    double time = bough_settle_loaded(s);
     if (!rod) return bough_fail(BOUGH_INVALID, "the scene has no rod");
+    if (bough_vibration_wanted(s)) {
+        bough_status status = bough_settle(s, s->master->assembly, time, &settling);
+        return bough_is_ok(&status) ? bough_steady_settled(arena, s, rod, time, found) : status;
+    }
     bough_status status = bough_steady_turning(s, rod, &turning);
     if (!bough_is_ok(&status)) return status;
     return bough_steady_find(arena, s, rod, &turning, found);
 }
 
-static bough_status do_static(bough_arena *arena, const bough_verify_case *x,
-                              const bough_simulation *s, double *value) {
+static bough_status do_static(bough_arena *arena, const bough_verify_case *x, bough_simulation *s,
+                              double *value) {
     bough_steady found;
     bough_status status = steady(arena, s, &found);
     for (int i = 0; i < x->n_expect && bough_is_ok(&status); i++) {
@@ -84,12 +93,29 @@ static double largest_growth(const bough_rod_mode_list *list) {
     return largest;
 }
 
-static bough_status do_modes(bough_arena *arena, const bough_verify_case *x,
-                             const bough_simulation *s, double *value) {
+static bough_status do_whole_modes(bough_arena *arena, const bough_verify_case *x, int wanted,
+                                   bough_simulation *s, double *value) {
+    bough_vibration v;
+    bough_status status = bough_vibration_find(arena, s, wanted, &v);
+    for (int i = 0; i < x->n_expect && bough_is_ok(&status); i++) {
+        const bough_verify_quantity *q = &x->expect[i].quantity;
+        if (x->expect[i].diagnosis || q->index >= v.found) continue;
+        const bough_scene_mode *mode = &v.mode[q->index];
+        value[i] = q->what == BOUGH_VERIFY_DAMPING ? mode->damping : mode->frequency;
+        for (int k = 0; k < v.found && q->what == BOUGH_VERIFY_GROWTH; k++) {
+            value[i] = k == 0 ? fmax(0, v.mode[k].growth) : fmax(value[i], v.mode[k].growth);
+        }
+    }
+    return status;
+}
+
+static bough_status do_modes(bough_arena *arena, const bough_verify_case *x, bough_simulation *s,
+                             double *value) {
     int wanted = 4; // 4: among which the largest growth is looked for
     for (int i = 0; i < x->n_expect; i++) {
         if (x->expect[i].quantity.index >= wanted) wanted = x->expect[i].quantity.index + 1;
     }
+    if (bough_vibration_wanted(s)) return do_whole_modes(arena, x, wanted, s, value);
     bough_steady at;
     bough_rod_mode_list list = {.wanted = wanted};
     bough_status status = steady(arena, s, &at);
