@@ -2,7 +2,8 @@
 // axes of a floating frame that is welded to its first vertex. docs/theory.md derives the equations.
 //
 // The shapes are the lowest modes of the clamped piece, the six rigid motions of its vertices
-// against the frame, and by choice the static answers to accelerations of the frame. The rigid
+// against the frame, by choice the static answers to accelerations of the frame, and if another piece
+// follows those to its wrench. The rigid
 // motions put the piece's whole momentum in the span, so that as for a rod (rod.h) absolute
 // velocities, here their modal coordinates η, take no acceleration of the frame as input and the
 // carrier has the inertia of the first vertex only:
@@ -25,12 +26,14 @@ typedef struct bough_modal_options {
     bool stiffening; // by the axial force of centrifugal force, weight and the following pieces
 } bough_modal_options;
 
-// Matrices are (m × stride), row-major; shapes are orthonormal in the mass and in the stiffness.
+// Matrices are (m × stride) by columns, row arrays (rows × stride); shapes are orthonormal in the mass
+// and diagonal in the stiffness.
 typedef struct bough_modal_piece {
     const bough_rod_model *rod; // the vertices and segments it stands for
     int first;                  // its first vertex among the body's
     int n;                      // moving vertices
     int m, stride;              // shapes; padded
+    bool inner;                 // another piece hangs on its last vertex
     double mass;                // of the moving vertices [kg]
     double *square;      // Λ: squared angular frequencies (stride) [1/s²]
     double *damping;     // D

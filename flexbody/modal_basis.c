@@ -193,7 +193,7 @@ static bool solve(basis *b, double *work, double *x) {
     return true;
 }
 
-static bool add_others(basis *b, bool statics) {
+static bool add_others(basis *b, bool statics, bool inner) {
     double *x = bough_arena_doubles(b->arena, (size_t)b->size);
     double *y = bough_arena_doubles(b->arena, (size_t)b->size);
     double *work = bough_arena_doubles(b->arena, (size_t)W8 * b->rod->n);
@@ -205,6 +205,12 @@ static bool add_others(basis *b, bool statics) {
     for (int k = 0; k < RIGID && statics; k++) {
         rigid_motion(b->rod, k, x);
         mass_times(b, x, y);
+        if (!solve(b, work, y)) return false;
+        add_vector(b, y);
+    }
+    for (int k = 0; k < RIGID && inner; k++) { // to a wrench at the last vertex
+        memset(y, 0, (size_t)b->size * sizeof *y);
+        y[b->size - RIGID + k] = 1;
         if (!solve(b, work, y)) return false;
         add_vector(b, y);
     }
@@ -242,7 +248,7 @@ static void store(const basis *b, const double *value, const double *damping,
     for (int k = 0; k < m; k++) {
         double largest = 0;
         piece->square[k] = value[k];
-        for (int l = 0; l < m; l++) piece->damping[l * stride + k] = damping[k * m + l];
+        for (int l = 0; l < m; l++) piece->damping[k * stride + l] = damping[k * m + l];
         for (int i = 0; i < piece->n; i++) {
             const double *x = b->vector + (size_t)k * b->size + 6 * i;
             bough_mat3 r = bough_rotation_matrix(b->rod->rotation0[i + 1]);
@@ -268,12 +274,12 @@ static bool take_memory(bough_arena *arena, int m, bough_modal_piece *piece) {
     return !bough_arena_exhausted(arena);
 }
 
-static bool find_shapes(basis *b, bough_modal_options options) {
-    size_t most = (size_t)options.modes + 2 * RIGID + 1; // one more than can be kept, as work
+static bool find_shapes(basis *b, bough_modal_options options, bool inner) {
+    size_t most = (size_t)options.modes + 3 * RIGID + 1; // one more than can be kept, as work
     b->vector = bough_arena_doubles(b->arena, most * (size_t)b->size);
     b->product = bough_arena_doubles(b->arena, most * (size_t)b->size);
     return !bough_arena_exhausted(b->arena) && linearise(b) && add_modes(b, options.modes) &&
-           add_others(b, options.statics);
+           add_others(b, options.statics, inner);
 }
 
 // Diagonalises the stiffness; value (count), damping (count × count).
@@ -302,7 +308,7 @@ bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options,
     if (options.modes > b.size) options.modes = b.size;
     bough_status status = bough_fail(BOUGH_FAILED, "%s: its modes cannot be found",
                                      piece->rod->name);
-    if (b.arena != NULL && find_shapes(&b, options)) {
+    if (b.arena != NULL && find_shapes(&b, options, piece->inner)) {
         double *value = bough_arena_doubles(b.arena, (size_t)b.count);
         double *damping = bough_arena_doubles(b.arena, (size_t)b.count * (size_t)b.count);
         bool ok = value != NULL && damping != NULL && take_memory(arena, b.count, piece);

@@ -33,9 +33,11 @@ bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, in
 
 bool bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena,
                             const bough_modal_model *m) {
+    *chain = (bough_modal_chain){0};
     chain->point = bough_arena_take(arena, (size_t)m->n_piece * sizeof *chain->point);
     chain->load = bough_arena_doubles(arena, 6 * (size_t)m->rod->stride);
-    chain->zero = bough_arena_doubles(arena, (size_t)m->n_state);
+    chain->place = bough_arena_doubles(arena, (size_t)m->n_state + BOUGH_ROD_INPUTS);
+    chain->place_load = bough_arena_doubles(arena, 6 * (size_t)m->rod->stride);
     chain->change = bough_arena_take(arena, ((size_t)m->n_piece + 1) * sizeof *chain->change);
     bool ok = !bough_arena_exhausted(arena);
     for (int k = 0; k < m->n_piece && ok; k++) {
@@ -79,6 +81,7 @@ static void evaluate(const bough_modal_model *m, const bough_rod_loads *loads, d
                      const double *state, const double *input, bough_modal_chain *chain,
                      bool root) {
     bough_wrench outer = {{0, 0, 0}, {0, 0, 0}};
+    chain->placed = false;
     set_loads(m, loads, t, chain->load);
     forward(m, state, input, chain);
     for (int k = m->n_piece - 1; k >= 0; k--) {
@@ -130,6 +133,7 @@ void bough_modal_rest_state(const bough_modal_model *m, const double *input, dou
 void bough_modal_ride(const bough_modal_model *m, const double *input, bough_modal_chain *chain,
                       double *state) {
     bough_modal_frame frame = body_frame(input);
+    chain->placed = false;
     for (int k = 0; k < m->n_piece; k++) {
         bough_modal_point *at = &chain->point[k];
         double *q = state + m->offset[k], *eta = q + m->piece[k].m;
@@ -163,6 +167,7 @@ static void expand_vertex(const bough_modal_point *at, int i, int v, int n, doub
 
 void bough_modal_expand(const bough_modal_model *m, const double *state, const double *input,
                         bough_modal_chain *chain, double *rod_state) {
+    chain->placed = false;
     forward(m, state, input, chain);
     for (int k = 0; k < m->n_piece; k++) {
         const bough_modal_piece *p = &m->piece[k];
@@ -174,9 +179,26 @@ void bough_modal_expand(const bough_modal_model *m, const double *state, const d
 
 // -- tangents ---------------------------------------------------------------------------------------
 
+// Sets the loads; whether they, the state and the input are those of the last slopes.
+static bool same_place(const bough_modal_model *m, const bough_rod_loads *loads, double t,
+                       const double *state, const double *input, bough_modal_chain *chain) {
+    size_t size = (size_t)m->n_state * sizeof *state;
+    set_loads(m, loads, t, chain->load);
+    return chain->placed && memcmp(chain->place, state, size) == 0 &&
+           memcmp(chain->place + m->n_state, input, BOUGH_ROD_INPUTS * sizeof *input) == 0 &&
+           memcmp(chain->place_load, chain->load,
+                  6 * (size_t)m->rod->stride * sizeof *chain->load) == 0;
+}
+
 void bough_modal_chain_slopes(const bough_modal_model *m, const bough_rod_loads *loads, double t,
                               const double *state, const double *input, bough_modal_chain *chain) {
-    evaluate(m, loads, t, state, input, chain, true);
+    if (same_place(m, loads, t, state, input, chain)) return;
+    double *y = chain->place;
+    memcpy(y, state, (size_t)m->n_state * sizeof *y);
+    memcpy(y + m->n_state, input, BOUGH_ROD_INPUTS * sizeof *y);
+    memcpy(chain->place_load, chain->load, 6 * (size_t)m->rod->stride * sizeof *y);
+    evaluate(m, loads, t, y, y + m->n_state, chain, true);
+    chain->placed = true;
     for (int k = 0; k < m->n_piece; k++) {
         bough_modal_slopes(&chain->point[k], chain->load, m->rod->stride);
     }
@@ -185,7 +207,7 @@ void bough_modal_chain_slopes(const bough_modal_model *m, const bough_rod_loads 
 void bough_modal_tangent(const bough_modal_model *m, bough_modal_chain *chain,
                          const double *state_variation, const double *input_variation,
                          double *rate, double *wrench) {
-    const double *y = state_variation != NULL ? state_variation : chain->zero;
+    const double *y = state_variation;
     bough_modal_frame_change *frame = chain->change;
     bough_wrench outer = {{0, 0, 0}, {0, 0, 0}};
     frame[0] = (bough_modal_frame_change){0};
@@ -195,15 +217,17 @@ void bough_modal_tangent(const bough_modal_model *m, bough_modal_chain *chain,
             {d[0], d[1], d[2]}, {d[3], d[4], d[5]}, {d[6], d[7], d[8]}, {0, 0, 0}};
     }
     for (int k = 0; k < m->n_piece; k++) {
-        const double *dq = y + m->offset[k];
-        bough_modal_forward_tangent(&chain->point[k], dq, dq + m->piece[k].m, &frame[k],
-                                    rate + m->offset[k], &frame[k + 1]);
+        const double *dq = y == NULL ? NULL : y + m->offset[k];
+        const double *deta = y == NULL ? NULL : dq + m->piece[k].m;
+        bough_modal_forward_tangent(&chain->point[k], dq, deta, &frame[k], rate + m->offset[k],
+                                    &frame[k + 1]);
     }
     for (int k = m->n_piece - 1; k >= 0; k--) {
-        const double *dq = y + m->offset[k];
+        const double *dq = y == NULL ? NULL : y + m->offset[k];
+        const double *deta = y == NULL ? NULL : dq + m->piece[k].m;
         double *to = rate + m->offset[k];
-        outer = bough_modal_backward_tangent(&chain->point[k], dq, dq + m->piece[k].m, to,
-                                             &frame[k], outer, to + m->piece[k].m);
+        outer = bough_modal_backward_tangent(&chain->point[k], dq, deta, to, &frame[k], outer,
+                                             to + m->piece[k].m);
     }
     bough_wrench_store(outer, wrench);
 }

@@ -23,8 +23,10 @@ typedef struct bough_modal_model {
 typedef struct bough_modal_chain {
     bough_modal_point *point; // (n_piece)
     double *load;             // on the body's vertices at the time of evaluation (6 × rod stride)
+    double *place;            // state and input of the last slopes (n_state + 9)
+    double *place_load;       // and its loads (6 × rod stride)
+    bool placed;              // they are those of an evaluation
     bough_modal_frame_change *change; // of each piece's frame and the last tip's (n_piece + 1)
-    double *zero;             // (n_state)
 } bough_modal_chain;
 
 // Cuts the rod into `pieces` of equally many segments, as far as they go. BOUGH_INVALID when there
@@ -52,7 +54,7 @@ void bough_modal_root_wrench(const bough_modal_model *m, const bough_rod_loads *
                              const double *state, const double *input, bough_modal_chain *chain,
                              double *wrench);
 
-// Evaluates there for the two below.
+// Evaluates there for the two below; nothing is done where it was done last.
 void bough_modal_chain_slopes(const bough_modal_model *m, const bough_rod_loads *loads, double t,
                               const double *state, const double *input, bough_modal_chain *chain);
 
@@ -68,17 +70,22 @@ void bough_modal_expand(const bough_modal_model *m, const double *state, const d
 
 // -- Newton's matrix: dense per piece, pieces eliminated from the tip to the root ------------------
 
-// Matrices by columns, x the piece's state (2 m), d the change of its frame (12), w the outer
-// wrench in the tip's axes (6).
+// Matrices by columns. A piece's state has q and η; d is the change of its frame (12), w that of the
+// outer wrench in the tip's axes (6). Only pieces that have an inner one carry what is by d, only
+// inner ones what is by w and of the tip.
 typedef struct bough_modal_newton_piece {
-    double *rate_x, *rate_d, *rate_w; // (2m × 2m), (2m × 12), (2m × 6)
-    double *root_x, *root_d, *root_w; // of the root wrench (6 × ·)
+    double *by_q, *by_eta;  // of η̇ (m × stride each)
+    double *rate_d;         // of q̇ and η̇ (2m × 12)
+    double *rate_w;         // of η̇ (m × 6)
+    double *root_x, *root_d, *root_w; // of the root wrench (6 × 2m), (6 × 12), (6 × 6)
     double *tip_x, *tip_d;            // of the tip's frame (12 × 2m), (12 × 12)
-    // computed by bough_modal_factor
-    double *matrix, *answer;   // I − γ(…) factored (2m × 2m); x per d (2m × 12)
-    int *pivot;                // (2m)
-    double *wrench_x, *wrench; // root wrench with the outer pieces' answer (6 × 2m); per d (6 × 12)
-    double *work;              // (2m + 12)
+    // computed by bough_modal_factor, by_q and so on with the outer pieces' answer
+    double *closed_q, *closed_eta; // (m × stride each)
+    double *matrix;                // of q alone, factored (m × m)
+    int *pivot;                    // (m)
+    double *answer;                // q and η by d (2m × 12)
+    double *wrench_x, *wrench;     // root wrench by q and η (6 × 2m), by d (6 × 12)
+    double *work;                  // (m)
 } bough_modal_newton_piece;
 
 typedef struct bough_modal_newton {

@@ -73,7 +73,7 @@ static void add_projection(const fields *f, const double *field, double sign, do
     for (int row = 0; row < 6 * f->piece->n; row++) {
         const double *left = f->shape + (size_t)row * s, *right = field + (size_t)row * s;
         for (int k = 0; k < m; k++) {
-            for (int l = 0; l < m; l++) to[k * s + l] += sign * left[k] * right[l];
+            for (int l = 0; l < m; l++) to[l * s + k] += sign * left[k] * right[l];
         }
     }
 }
@@ -108,7 +108,7 @@ static void set_turning(const fields *f, int a) {
     for (int row = 0; row < 6 * p->n; row++) {
         for (int k = 0; k < p->m; k++) {
             double share = f->shape[(size_t)row * s + k];
-            for (int l = 0; l < p->m; l++) rest[(size_t)row * s + l] -= share * turn[k * s + l];
+            for (int l = 0; l < p->m; l++) rest[(size_t)row * s + l] -= share * turn[l * s + k];
         }
     }
 }
@@ -276,7 +276,8 @@ bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *d
     part.damping += 21 * first;
     part.inertia += first;
     bough_status status = bough_rod_create(arena, &part, &rod);
-    *piece = (bough_modal_piece){.rod = rod, .first = first, .n = last - first};
+    *piece = (bough_modal_piece){
+        .rod = rod, .first = first, .n = last - first, .inner = last < def->n_segment};
     if (bough_is_ok(&status)) status = bough_modal_basis(arena, options, piece);
     if (bough_is_ok(&status)) status = bough_modal_matrices(arena, options, piece);
     return status;

@@ -32,15 +32,18 @@ typedef struct bough_modal_point {
     // computed by bough_modal_backward
     bough_wrench outer;       // on the tip, in the tip's axes
     double *force;            // Φᵀf of vertex loads and outer wrench (stride)
-    double *lever;            // their moment about the frame's axes per unit of q (3 × stride)
     double *coefficient;      // of the fields (12)
     double *rate_eta;         // η̇ (stride)
     double *turn_rate;        // G_a q̇ (3 × stride)
+    double *rest;             // C_tᵀg − η̇ (stride)
     bough_wrench root;        // on the carrier, in frame axes
     // computed by bough_modal_slopes
+    double *lever;            // moment of the forces about the frame's axes per unit of q
+                              // (3 × stride)
     double *turn, *gyroscopic, *field; // combined (m × stride each)
     double *field_q, *gyroscopic_eta;  // of each field (12 × stride), of each axis (3 × stride)
     double *eta_turn, *rest_turn;      // ηᵀG_a and (C_tᵀg − η̇)ᵀG_a (3 × stride)
+    double *tip_turn;                  // of η̇ per unit turn of the tip (3 × stride)
     double *force_turn;                // of force per unit turn of the frame (3 × stride)
     bough_vec3 moment_turn[3];         // of the loads' moment likewise
 } bough_modal_point;
@@ -60,7 +63,7 @@ void bough_modal_backward(bough_modal_point *point, const double *load, int load
 // What the tangents need, after both (with the root).
 void bough_modal_slopes(bough_modal_point *point, const double *load, int load_stride);
 
-// Derivatives along dq, deta (m) and a change of the frame: of q̇ to rate (m), and the tip's change.
+// Derivatives along dq, deta (m; both NULL for none) and a change of the frame: of q̇ to rate (m), and the tip's change.
 void bough_modal_forward_tangent(const bough_modal_point *point, const double *dq,
                                  const double *deta, const bough_modal_frame_change *frame,
                                  double *rate, bough_modal_frame_change *tip);
@@ -71,6 +74,11 @@ bough_wrench bough_modal_backward_tangent(const bough_modal_point *point, const 
                                           const double *deta, const double *drate_q,
                                           const bough_modal_frame_change *frame,
                                           bough_wrench outer, double *rate);
+
+// All derivatives by the piece's own state, by columns: of η̇ by q and by η (m × stride each), of the
+// root wrench by q, then η (6 × 2m) and of the tip's frame (12 × 2m) unless it is NULL.
+void bough_modal_state_tangents(const bough_modal_point *point, double *by_q, double *by_eta,
+                                double *root, double *tip);
 
 // Displacement and rotation vector of moving vertex i = 1..n for modal coordinates, or their rates
 // for rates, in frame axes.

@@ -60,18 +60,18 @@ static void output(void *self, double t, const double *state, const double *inpu
 static void output_tangent(void *self, double t, const double *state, const double *input,
                            const double *state_rate, const double *input_rate, double *rate) {
     bough_modal_body *b = self;
-    bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->chain);
-    bough_modal_tangent(b->model, &b->chain, state_rate, input_rate, b->work, rate);
+    bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->newton.chain);
+    bough_modal_tangent(b->model, &b->newton.chain, state_rate, input_rate, b->work, rate);
 }
 
 static void input_columns(void *self, double t, const double *state, const double *input,
                           double *column) {
     bough_modal_body *b = self;
-    bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->chain);
+    bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->newton.chain);
     for (int j = 0; j < BOUGH_ROD_INPUTS; j++) {
         double unit[BOUGH_ROD_INPUTS] = {0}, wrench[BOUGH_ROD_OUTPUTS];
         unit[j] = 1;
-        bough_modal_tangent(b->model, &b->chain, NULL, unit,
+        bough_modal_tangent(b->model, &b->newton.chain, NULL, unit,
                             column + (size_t)j * b->model->n_state, wrench);
     }
 }

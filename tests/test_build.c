@@ -104,6 +104,33 @@ static void rigid_blades_leave_the_tree_alone(void **context) {
     bough_arena_destroy(arena);
 }
 
+// Half a second of the run-up: the rotor turns as with rods, the tips bend as theirs.
+static void modal_blades_move_as_rods(void **context) {
+    (void)context;
+    static const char *const sets[3][4] = {
+        {"bodies[3].fidelity=rod", "bodies[4].fidelity=rod", "bodies[5].fidelity=rod", NULL},
+        {"bodies[3].fidelity=modal", "bodies[4].fidelity=modal", "bodies[5].fidelity=modal", NULL},
+        {"bodies[3].fidelity=segmented-modal", "bodies[4].fidelity=segmented-modal",
+         "bodies[5].fidelity=segmented-modal", NULL}};
+    double speed[3], tip[3];
+    for (int k = 0; k < 3; k++) {
+        bough_arena *arena = bough_arena_create();
+        bough_quaternion turn;
+        bough_simulation *s = scene_build(arena, runup, sets[k]);
+        assert_int_equal(s->n_rod, 3);
+        assert_true((s->beam[0].rod != NULL) == (k == 0));
+        for (int i = 0; i < 50; i++) scene_step(s);
+        bough_simulation_update(s);
+        speed[k] = s->trunk.state[1];
+        tip[k] = bough_simulation_beam_tip(s, &s->beam[0], &turn).x - s->beam[0].def.position[48].x;
+        bough_arena_destroy(arena);
+    }
+    for (int k = 1; k < 3; k++) {
+        check_near(speed[k], speed[0], 2e-3, 0);
+        check_near(tip[k], tip[0], 0.02, 0);
+    }
+}
+
 // -- placement and initial motion -----------------------------------------------------------------
 
 static bough_transform pose_of(const bough_simulation *s, const char *body) {
@@ -428,6 +455,7 @@ int main(void) {
         cmocka_unit_test(rods_take_ports_in_the_order_of_the_scene),
         cmocka_unit_test(rods_are_connected_to_their_roots),
         cmocka_unit_test(rigid_blades_leave_the_tree_alone),
+        cmocka_unit_test(modal_blades_move_as_rods),
         cmocka_unit_test(bodies_hang_on_the_end_of_a_rod_bent_or_rigid),
         cmocka_unit_test(end_of_a_rod_is_connected_to_its_body),
         cmocka_unit_test(bodies_start_where_the_scene_puts_them),

@@ -237,6 +237,123 @@ static void rotation_stiffens_as_it_does_the_rod(void **context) {
     bough_arena_destroy(c.arena);
 }
 
+// -- statics ----------------------------------------------------------------------------------------
+
+// The tip's flapwise displacement under a line load: modal less rod.
+static double deflection_error(int pieces, double load, double *rod) {
+    enum { STATES = BOUGH_ROD_STATES * SEGMENTS };
+    double vertices[STATES];
+    bar b = make_bar(pieces, (bough_modal_options){6, true, true});
+    for (int i = 1; i <= SEGMENTS; i++) b.loads.value[i] = i < SEGMENTS ? load : load / 2;
+    settle_rod(&b, at_rest);
+    settle_modal(&b, at_rest);
+    bough_modal_expand(b.modal, b.state, at_rest, &b.newton.chain, vertices);
+    *rod = b.vertices[SEGMENTS - 1];
+    double error = vertices[SEGMENTS - 1] - *rod;
+    bough_arena_destroy(b.arena);
+    return error;
+}
+
+static void linear_statics_err_by_the_cube_of_the_load(void **context) {
+    (void)context;
+    double rod[2], large = deflection_error(1, 8e3, &rod[0]), half = deflection_error(1, 4e3, &rod[1]);
+    assert_true(large < 0.01 * rod[0] && large > 1e-4 * rod[0]);
+    check_near(large / half, 8, 0.05, 0);
+}
+
+// Deflected by 7 % of the length; second order in the length of the pieces.
+static void pieces_converge_to_the_bent_rod(void **context) {
+    (void)context;
+    double rod, error[3];
+    for (int k = 0; k < 3; k++) error[k] = deflection_error(2 << k, 1e4, &rod);
+    assert_true(rod > 0.07 * 60);
+    for (int k = 0; k < 2; k++) check_near(log2(error[k] / error[k + 1]), 2.15, 0.15, 0);
+    assert_true(fabs(error[2]) < 1e-4 * rod);
+}
+
+// -- conservation -----------------------------------------------------------------------------------
+
+// Momentum of the moving vertices, mass centres at the vertices, about the frame's origin.
+static void momentum(const bough_rod_model *rod, const double *state, double *to) {
+    bough_vec3 p = {0, 0, 0}, l = {0, 0, 0};
+    int n = rod->n;
+    for (int i = 0; i < n; i++) {
+        const double *y = state + i, *j = rod->vertex[i + 1].inertia;
+        bough_vec3 x = {y[0], y[n], y[2 * n]};
+        bough_vec3 mu = bough_scale(rod->vertex[i + 1].mass,
+                                    bough_v3(y[7 * n], y[8 * n], y[9 * n]));
+        bough_vec3 w = {y[10 * n], y[11 * n], y[12 * n]};
+        bough_quaternion q = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
+        bough_vec3 h = {j[0] * w.x + j[3] * w.y + j[4] * w.z, j[3] * w.x + j[1] * w.y + j[5] * w.z,
+                        j[4] * w.x + j[5] * w.y + j[2] * w.z};
+        h = bough_mat3_mul(bough_rotation_matrix(bough_quaternion_normalised(q)), h);
+        p = bough_add(p, mu);
+        l = bough_add(l, bough_add(bough_cross(x, mu), h));
+    }
+    bough_wrench_store((bough_wrench){p, l}, to);
+}
+
+// Loads on a body of few shapes in free motion less the rate of its momentum and its root wrench:
+// what is lost of force and of moment. Little rotary inertia: of it the linear shapes lose ½ψ×ψ̈.
+static void lost(double small, double *force, double *moment) {
+    enum { STATES = BOUGH_ROD_STATES * N };
+    bough_arena *arena = bough_arena_create();
+    sample_arrays arrays = sample_general_arrays(arena, N);
+    for (int i = 0; i <= N; i++) {
+        arrays.inertia[i].moment = bough_v3(0, 0, 0);
+        for (int c = 0; c < 6; c++) arrays.inertia[i].inertia[c] *= 1e-5;
+    }
+    bough_rod_def def = sample_def(N, arrays, false);
+    bough_modal_model *m = NULL;
+    bough_status status = bough_modal_create(arena, &def, 1, (bough_modal_options){4, false, true},
+                                             &m);
+    assert_int_equal(status.code, BOUGH_OK);
+    bough_modal_chain chain;
+    bough_rod_loads none;
+    assert_true(bough_modal_chain_init(&chain, arena, m));
+    assert_true(bough_rod_loads_init(&none, arena, m->rod));
+    double y[60], rate[60], moved[60], vertices[STATES], p[3][6], root[6];
+    const double step = 1e-6;
+    unsigned seed = 2;
+    assert_true(m->n_state <= 60);
+    bough_modal_rest_state(m, swaying, y);
+    for (int k = 0; k < m->n_state; k++) y[k] += small * sample_random(&seed);
+    bough_modal_derivative(m, &none, 0, y, swaying, &chain, rate);
+    bough_modal_root_wrench(m, &none, 0, y, swaying, &chain, root);
+    for (int side = -1; side <= 1; side++) {
+        for (int k = 0; k < m->n_state; k++) moved[k] = y[k] + side * step * rate[k];
+        bough_modal_expand(m, moved, swaying, &chain, vertices);
+        momentum(m->rod, vertices, p[side + 1]);
+    }
+    bough_wrench held = bough_wrench_cross(bough_twist_load(swaying), bough_wrench_load(p[1]));
+    bough_wrench left = bough_wrench_add(bough_wrench_load(root), held);
+    bough_vec3 g = {swaying[6], swaying[7], swaying[8]};
+    bough_modal_expand(m, y, swaying, &chain, vertices);
+    for (int i = 0; i < N; i++) {
+        bough_vec3 w = bough_scale(m->rod->vertex[i + 1].mass, g);
+        bough_vec3 x = {vertices[i], vertices[N + i], vertices[2 * N + i]};
+        left = bough_wrench_sub(left, (bough_wrench){w, bough_cross(x, w)});
+    }
+    double rest[6];
+    bough_wrench_store(left, rest);
+    *force = *moment = 0;
+    for (int c = 0; c < 6; c++) {
+        double *to = c < 3 ? force : moment;
+        *to = fmax(*to, fabs(rest[c] + (p[2][c] - p[0][c]) / (2 * step)));
+    }
+    bough_arena_destroy(arena);
+}
+
+// Of force nothing, of moment what is of second order in q, whatever the number of shapes.
+static void few_shapes_keep_momentum(void **context) {
+    (void)context;
+    double force[2], moment[2];
+    lost(1e-2, &force[0], &moment[0]);
+    lost(5e-3, &force[1], &moment[1]);
+    assert_true(force[0] < 1e-7 && moment[1] < 1e-3);
+    check_near(moment[0] / moment[1], 4, 0.1, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(operations_of_one_piece_agree),
@@ -244,6 +361,9 @@ int main(void) {
         cmocka_unit_test(errors_with_all_shapes_are_of_second_order),
         cmocka_unit_test(frequencies_at_rest_are_the_rods),
         cmocka_unit_test(rotation_stiffens_as_it_does_the_rod),
+        cmocka_unit_test(linear_statics_err_by_the_cube_of_the_load),
+        cmocka_unit_test(pieces_converge_to_the_bent_rod),
+        cmocka_unit_test(few_shapes_keep_momentum),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

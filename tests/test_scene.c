@@ -649,6 +649,30 @@ static void loads_fit_their_joints(void **state) {
         "  - {name: c, fidelity: rod, joint: {kind: revolute, parent: ground, axis: x}, "           \
         SMALL_ROD "}\nloads:\n"
 
+#define MODAL(fidelity) SIMULATION "bodies:\n  - name: a\n    fidelity: " fidelity "\n" JOINT "    "   \
+    SMALL_ROD "\n"
+
+static void modal_bodies_are_rods_reduced(void **state) {
+    (void)state;
+    accepts(MODAL("modal"));
+    accepts(MODAL("segmented-modal") "    modal: {modes: 3, statics: false, pieces: 4}\n");
+    refuses(MODAL("modal") "    modal: {pieces: 4}\n",
+            "s.yaml:7:21: error: bodies[0].modal.pieces: only used with 'fidelity: "
+            "segmented-modal'\n");
+    refuses(MODAL("segmented-modal"),
+            "s.yaml:3:5: error: bodies[0].modal.pieces: 5 pieces of 4 segments: give the rod more "
+            "segments\n");
+    refuses(MODAL("rod") "    modal: {modes: 3}\n",
+            "s.yaml:7:5: error: bodies[0].modal: only used with 'fidelity: "
+            "modal/segmented-modal'\n");
+    refuses(MODAL("modal") "  - {name: b, fidelity: rigid, joint: {kind: fixed, parent: a}}\n",
+            "s.yaml:7:61: error: bodies[1].joint.parent: 'a' is a modal body, which carries none; "
+            "make it a rod\n");
+    refuses(MODAL("modal") "loads:\n  - {body: a, at: tip, force: [1, 0, 0], frame: follower}\n",
+            "s.yaml:8:49: error: loads[0].frame: 'a' is a modal body, on which loads do not turn "
+            "with its sections: make it a rod or give 'frame: body'\n");
+}
+
 static void loads_act_on_rods(void **state) {
     (void)state;
     write_file("s.yaml", TWO_RODS "  - {body: b, at: tip, force: [1 kN, 0, 2]}\n"
@@ -1024,6 +1048,7 @@ int main(void) {
         cmocka_unit_test(errors_of_a_table_are_shown_once),
         cmocka_unit_test(times_fit_the_macro_step),
         cmocka_unit_test(loads_fit_their_joints),
+        cmocka_unit_test(modal_bodies_are_rods_reduced),
         cmocka_unit_test(loads_act_on_rods),
         cmocka_unit_test(loads_fit_their_rods),
         cmocka_unit_test(modes_name_their_axis),
