@@ -1,14 +1,15 @@
 // A rod, or a piece of one, reduced to shapes about its undeformed form: x̂ᵢ = x̂⁰ᵢ + Φᵢ q in the
-// axes of a floating frame that is welded to its first vertex. docs/theory.md derives the equations.
+// axes of a floating frame that is welded to its first vertex. docs/theory.md derives the
+// equations.
 //
 // The shapes are the lowest modes of the clamped piece, the six rigid motions of its vertices
-// against the frame, by choice the static answers to accelerations of the frame, and if another piece
-// follows those to its wrench. The rigid
-// motions put the piece's whole momentum in the span, so that as for a rod (rod.h) absolute
-// velocities, here their modal coordinates η, take no acceleration of the frame as input and the
-// carrier has the inertia of the first vertex only:
+// against the frame, by choice the static answers to accelerations of the frame, and if another
+// piece follows those to its wrench. The rigid motions put the piece's whole momentum in the span,
+// so that as for a rod (rod.h) absolute velocities, here their modal coordinates η, take no
+// acceleration of the frame as input and the carrier has the inertia of the first vertex only:
 //     q̇ = η − Cᵀv − ω_a G_a q,      v = (u₀, ω) twist of the frame in its axes
-//     η̇ = −Λ q − D q̇ − ω_a B_a η + (ω_a ω_b N_ab + a_k T_k + f_k F_k) q + ω_a ω_b r_ab + C_tᵀ g + Φᵀf
+//     η̇ = −Λ q − D q̇ − ω_a B_a η + (ω_a ω_b N_ab + a_k T_k + f_k F_k) q
+//         + ω_a ω_b r_ab + C_tᵀ g + Φᵀf
 // to first order in q; a = ω×u₀ − g the apparent acceleration, f_k a force at the last vertex.
 #ifndef BOUGH_FLEXBODY_MODAL_H
 #define BOUGH_FLEXBODY_MODAL_H
@@ -26,8 +27,8 @@ typedef struct bough_modal_options {
     bool stiffening; // by the axial force of centrifugal force, weight and the following pieces
 } bough_modal_options;
 
-// Matrices are (m × stride) by columns, row arrays (rows × stride); shapes are orthonormal in the mass
-// and diagonal in the stiffness.
+// Matrices are (m × stride) by columns, row arrays (rows × stride); shapes are orthonormal in the
+// mass and diagonal in the stiffness.
 typedef struct bough_modal_piece {
     const bough_rod_model *rod; // the vertices and segments it stands for
     int first;                  // its first vertex among the body's
@@ -52,7 +53,7 @@ bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *d
                                       int last, bough_modal_options options,
                                       bough_modal_piece *piece);
 
-// -- parts of the creation, each in a file of its own ----------------------------------------------
+// -- parts of the creation, each in a file of its own ---------------------------------------------
 
 // Λ, D and the shapes, which go to piece->shape with rotations in frame axes.
 bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options,

@@ -136,7 +136,7 @@ static inline bough_wrench momentum_of(const bough_modal_point *at) {
     return (bough_wrench){dot3(at->piece, at->piece->rigid, at->eta), arms_times(at, at->eta)};
 }
 
-// -- rotation vectors: J(ψ) v = v + b ψ×v + c ψ×(ψ×v) ------------------------------------------------
+// -- rotation vectors: J(ψ) v = v + b ψ×v + c ψ×(ψ×v) ---------------------------------------------
 
 typedef struct turning {
     double b, c, db, dc; // and their derivatives by |ψ|²

@@ -97,7 +97,7 @@ static void add_vector(basis *b, double *x) {
     b->count++;
 }
 
-// -- clamped modes ----------------------------------------------------------------------------------
+// -- clamped modes --------------------------------------------------------------------------------
 
 // L⁻¹ x in place, and L⁻ᵀ x
 static void forward(const double *l, double *x) {
@@ -165,7 +165,7 @@ static bool add_modes(basis *b, int wanted) {
     return true;
 }
 
-// -- rigid motions and static answers ---------------------------------------------------------------
+// -- rigid motions and static answers -------------------------------------------------------------
 
 static void rigid_motion(const bough_rod_model *rod, int k, double *x) {
     const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -217,7 +217,7 @@ static bool add_others(basis *b, bool statics, bool inner) {
     return true;
 }
 
-// -- Rayleigh and Ritz ------------------------------------------------------------------------------
+// -- Rayleigh and Ritz ----------------------------------------------------------------------------
 
 // Xᵀ A X (count × count) of a tridiagonal A with its sign turned if `negative`.
 static void project(const basis *b, const bough_block_tridiagonal *a, double sign, double *work,

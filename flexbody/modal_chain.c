@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-// -- build ------------------------------------------------------------------------------------------
+// -- build ----------------------------------------------------------------------------------------
 
 bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, int pieces,
                                 bough_modal_options options, bough_modal_model **model) {
@@ -46,7 +46,7 @@ bool bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena,
     return ok;
 }
 
-// -- sweeps -----------------------------------------------------------------------------------------
+// -- sweeps ---------------------------------------------------------------------------------------
 
 static bough_modal_frame body_frame(const double *input) {
     return (bough_modal_frame){{input[0], input[1], input[2]},
@@ -114,7 +114,7 @@ void bough_modal_root_wrench(const bough_modal_model *m, const bough_rod_loads *
     for (int c = 0; c < 6; c++) wrench[c] += chain->load[c * m->rod->stride];
 }
 
-// -- states -----------------------------------------------------------------------------------------
+// -- states ---------------------------------------------------------------------------------------
 
 void bough_modal_rest_state(const bough_modal_model *m, const double *input, double *state) {
     bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
@@ -148,7 +148,8 @@ void bough_modal_ride(const bough_modal_model *m, const double *input, bough_mod
 // Vertex i of a piece into entry v of the rod's state (13 × n).
 static void expand_vertex(const bough_modal_point *at, int i, int v, int n, double *to) {
     const bough_modal_piece *p = at->piece;
-    bough_twist shift = bough_modal_vertex(p, i, at->q), rate = bough_modal_vertex(p, i, at->rate_q);
+    bough_twist shift = bough_modal_vertex(p, i, at->q);
+    bough_twist rate = bough_modal_vertex(p, i, at->rate_q);
     bough_vec3 x = bough_add(p->rod->position0[i], shift.linear);
     bough_vec3 u = bough_add(bough_add(at->frame.velocity, rate.linear),
                              bough_cross(at->frame.spin, x));
@@ -177,7 +178,7 @@ void bough_modal_expand(const bough_modal_model *m, const double *state, const d
     }
 }
 
-// -- tangents ---------------------------------------------------------------------------------------
+// -- tangents -------------------------------------------------------------------------------------
 
 // Sets the loads; whether they, the state and the input are those of the last slopes.
 static bool same_place(const bough_modal_model *m, const bough_rod_loads *loads, double t,

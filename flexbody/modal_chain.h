@@ -1,7 +1,7 @@
-// A body of linear modal pieces in a row, each in its own floating frame: the tip of a piece carries
-// the frame of the next, which moves as the tip does and puts its root wrench on it. No acceleration
-// crosses an interface, so rates go by two sweeps: motions outwards, wrenches inwards. One piece is
-// the classic modal body.
+// A body of linear modal pieces in a row, each in its own floating frame: the tip of a piece
+// carries the frame of the next, which moves as the tip does and puts its root wrench on it. No
+// acceleration crosses an interface, so rates go by two sweeps: motions outwards, wrenches
+// inwards. One piece is the classic modal body.
 //
 // State: per piece q (m), then η (m). Input and output as those of a rod (rod.h), so are the loads;
 // followers are none of them.
@@ -68,11 +68,11 @@ void bough_modal_tangent(const bough_modal_model *m, bough_modal_chain *chain,
 void bough_modal_expand(const bough_modal_model *m, const double *state, const double *input,
                         bough_modal_chain *chain, double *rod_state);
 
-// -- Newton's matrix: dense per piece, pieces eliminated from the tip to the root ------------------
+// -- Newton's matrix: dense per piece, pieces eliminated from the tip to the root -----------------
 
-// Matrices by columns. A piece's state has q and η; d is the change of its frame (12), w that of the
-// outer wrench in the tip's axes (6). Only pieces that have an inner one carry what is by d, only
-// inner ones what is by w and of the tip.
+// Matrices by columns. A piece's state has q and η; d is the change of its frame (12), w that of
+// the outer wrench in the tip's axes (6). Only pieces that have an inner one carry what is by d,
+// only inner ones what is by w and of the tip.
 typedef struct bough_modal_newton_piece {
     double *by_q, *by_eta;  // of η̇ (m × stride each)
     double *rate_d;         // of q̇ and η̇ (2m × 12)

@@ -24,7 +24,7 @@ typedef struct fields {
 
 static const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
-// -- fields -----------------------------------------------------------------------------------------
+// -- fields ---------------------------------------------------------------------------------------
 
 static bough_twist load(const fields *f, const double *field, int i, int k) {
     const double *x = field + (size_t)6 * i * f->piece->stride + k;
@@ -78,7 +78,7 @@ static void add_projection(const fields *f, const double *field, double sign, do
     }
 }
 
-// -- matrices ---------------------------------------------------------------------------------------
+// -- matrices -------------------------------------------------------------------------------------
 
 static void set_rigid(const fields *f) {
     bough_modal_piece *p = f->piece;
@@ -147,7 +147,7 @@ static void set_centrifugal(const fields *f, int j) {
     }
 }
 
-// -- stiffening -------------------------------------------------------------------------------------
+// -- stiffening -----------------------------------------------------------------------------------
 
 // The force on vertex i (from 0, of the moving ones) that belongs to field j, per unit of it.
 static bough_vec3 field_force(const fields *f, int j, int i) {
@@ -195,7 +195,7 @@ static void set_stiffening(const fields *f, int j) {
     }
 }
 
-// -- whole ------------------------------------------------------------------------------------------
+// -- whole ----------------------------------------------------------------------------------------
 
 static vertex_mass mass_of(const bough_rod_model *rod, int i) {
     const bough_vertex_inertia *v = &rod->vertex[i];
@@ -254,7 +254,7 @@ bough_status bough_modal_matrices(bough_arena *arena, bough_modal_options option
     return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", piece->rod->name);
 }
 
-// -- a piece ----------------------------------------------------------------------------------------
+// -- a piece --------------------------------------------------------------------------------------
 
 bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *def, int first,
                                       int last, bough_modal_options options,

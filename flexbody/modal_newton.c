@@ -1,8 +1,8 @@
-// Newton's matrix of a chain of modal pieces. With d the change of a piece's frame and w that of the
-// wrench on its tip, the pieces beyond answer w = Z d' + ζ to the change d' of the tip; so every
-// piece is a dense system of its own and the chain is solved from the tip to the root and back.
-// Within a piece δη = ((I + γG) δq − b_q)/γ leaves (I − γE)(I + γG) − γ²Q for δq, E and Q the
-// tangents of η̇ by η and q.
+// Newton's matrix of a chain of modal pieces. With d the change of a piece's frame and w that of
+// the wrench on its tip, the pieces beyond answer w = Z d' + ζ to the change d' of the tip; so
+// every piece is a dense system of its own and the chain is solved from the tip to the root and
+// back. Within a piece δη = ((I + γG) δq − b_q)/γ leaves (I − γE)(I + γG) − γ²Q for δq, E and Q
+// the tangents of η̇ by η and q.
 #include "core/linalg.h"
 #include "flexbody/modal_algebra.h"
 #include "flexbody/modal_chain.h"
@@ -57,7 +57,7 @@ static void add_matrices(int rows, int inner, int columns, double s, const doubl
     }
 }
 
-// -- tangents ---------------------------------------------------------------------------------------
+// -- tangents -------------------------------------------------------------------------------------
 
 static void set_frame_columns(const bough_modal_point *at, bough_modal_newton_piece *p) {
     int m = at->piece->m;
@@ -102,7 +102,7 @@ bool bough_modal_linearise(const bough_modal_model *m, const bough_rod_loads *lo
     return isfinite(sum);
 }
 
-// -- factors ----------------------------------------------------------------------------------------
+// -- factors --------------------------------------------------------------------------------------
 
 // Adds what the pieces beyond answer to q and η: w = Z tip_x.
 static void close_tip(const bough_modal_piece *of, bough_modal_newton_piece *p,

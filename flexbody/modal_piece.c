@@ -30,7 +30,7 @@ bough_vec3 bough_modal_spin(bough_vec3 psi, bough_vec3 rate) {
     return tangent_map(turning_of(psi), psi, rate);
 }
 
-// -- forward ----------------------------------------------------------------------------------------
+// -- forward --------------------------------------------------------------------------------------
 
 // The tip's frame: pose x̂⁰ + ξ, exp(ψ), and its twist.
 static void set_tip(bough_modal_point *at) {
@@ -64,7 +64,7 @@ void bough_modal_forward(bough_modal_point *at, const bough_modal_frame *frame, 
     if (p->inner) set_tip(at);
 }
 
-// -- backward ---------------------------------------------------------------------------------------
+// -- backward -------------------------------------------------------------------------------------
 
 // The outer wrench in frame axes, and its moment as it works on ψ̇.
 static bough_wrench outer_wrench(const bough_modal_point *at, bough_vec3 *working) {

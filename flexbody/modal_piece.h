@@ -1,5 +1,5 @@
-// One modal piece at an instant: its rates and the wrench at its root, given the motion of its frame
-// and the wrench that the next piece puts on its tip, and their tangents.
+// One modal piece at an instant: its rates and the wrench at its root, given the motion of its
+// frame and the wrench that the next piece puts on its tip, and their tangents.
 //
 // The root wrench is the balance of momentum, P = C_tη and L_a = (C_a + G_a q)ᵀη about the frame's
 // origin: external loads at the displaced vertices less the rate of P and L. So the piece neither
@@ -63,7 +63,8 @@ void bough_modal_backward(bough_modal_point *point, const double *load, int load
 // What the tangents need, after both (with the root).
 void bough_modal_slopes(bough_modal_point *point, const double *load, int load_stride);
 
-// Derivatives along dq, deta (m; both NULL for none) and a change of the frame: of q̇ to rate (m), and the tip's change.
+// Derivatives along dq, deta (m; both NULL for none) and a change of the frame: of q̇ to rate (m),
+// and the tip's change.
 void bough_modal_forward_tangent(const bough_modal_point *point, const double *dq,
                                  const double *deta, const bough_modal_frame_change *frame,
                                  double *rate, bough_modal_frame_change *tip);
@@ -75,8 +76,8 @@ bough_wrench bough_modal_backward_tangent(const bough_modal_point *point, const 
                                           const bough_modal_frame_change *frame,
                                           bough_wrench outer, double *rate);
 
-// All derivatives by the piece's own state, by columns: of η̇ by q and by η (m × stride each), of the
-// root wrench by q, then η (6 × 2m) and of the tip's frame (12 × 2m) unless it is NULL.
+// All derivatives by the piece's own state, by columns: of η̇ by q and by η (m × stride each), of
+// the root wrench by q, then η (6 × 2m) and of the tip's frame (12 × 2m) unless it is NULL.
 void bough_modal_state_tangents(const bough_modal_point *point, double *by_q, double *by_eta,
                                 double *root, double *tip);
 

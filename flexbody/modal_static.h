@@ -11,8 +11,9 @@
 bough_status bough_modal_steady(const bough_modal_model *m, const bough_rod_loads *loads, double t,
                                 const double *input, bough_modal_newton *newton, double *state);
 
-// Natural frequencies |λ|/2π [Hz] of the body about that state, of pairs with Im λ > 0 and ascending,
-// into frequency (wanted); *found may be less. BOUGH_FAILED when the eigenvalues cannot be found.
+// Natural frequencies |λ|/2π [Hz] of the body about that state, of pairs with Im λ > 0 and
+// ascending, into frequency (wanted); *found may be less. BOUGH_FAILED when the eigenvalues cannot
+// be found.
 bough_status bough_modal_frequencies(bough_arena *arena, const bough_modal_model *m,
                                      const bough_rod_loads *loads, double t, const double *input,
                                      const double *state, int wanted, double *frequency,

@@ -17,7 +17,7 @@ struct bough_modal_body {
     bough_micro micro;
 };
 
-// -- the sub-solver's view --------------------------------------------------------------------------
+// -- the sub-solver's view ------------------------------------------------------------------------
 
 static bool micro_derivative(void *self, double t, const double *y, double *rate) {
     bough_modal_body *b = self;
@@ -43,7 +43,7 @@ static void micro_solve(void *self, double *x) {
     bough_modal_solve(b->model, &b->micro_newton, x);
 }
 
-// -- the contract -----------------------------------------------------------------------------------
+// -- the contract ---------------------------------------------------------------------------------
 
 static bool derivative(void *self, double t, const double *state, const double *input,
                        double *rate) {
@@ -131,7 +131,7 @@ static void statistics(void *self, bough_statistics *sum) {
     b->micro.statistics(b->micro.self, sum);
 }
 
-// -- life -------------------------------------------------------------------------------------------
+// -- life -----------------------------------------------------------------------------------------
 
 static bool take_memory(bough_modal_body *b, bough_arena *arena) {
     size_t states = (size_t)b->model->n_state;

@@ -1,7 +1,7 @@
 // Tangents of a modal piece: along a direction, and by its own state as matrices.
 #include "flexbody/modal_algebra.h"
 
-// -- slopes -----------------------------------------------------------------------------------------
+// -- slopes ---------------------------------------------------------------------------------------
 
 // to = Σ c_j A_j
 static void combine(const bough_modal_piece *p, int count, const double *c, const double *list,
@@ -76,7 +76,7 @@ void bough_modal_slopes(bough_modal_point *at, const double *load, int load_stri
     if (p->first > 0) set_load_turns(at, load, load_stride);
 }
 
-// -- the tip ----------------------------------------------------------------------------------------
+// -- the tip --------------------------------------------------------------------------------------
 
 // The change of the tip's frame by those of its displacement and turn, of their rates, and of the
 // piece's frame.
@@ -127,7 +127,7 @@ static bough_wrench add_outer(const bough_modal_point *at, bough_wrench w, bough
     return (bough_wrench){w.force, bough_add(w.moment, bough_cross(x, w.force))};
 }
 
-// -- along a direction ------------------------------------------------------------------------------
+// -- along a direction ----------------------------------------------------------------------------
 
 void bough_modal_forward_tangent(const bough_modal_point *at, const double *dq, const double *deta,
                                  const bough_modal_frame_change *d, double *rate,
@@ -220,14 +220,14 @@ bough_wrench bough_modal_backward_tangent(const bough_modal_point *at, const dou
     return less_momentum(at, w, drate_q, rate, (bough_twist){d->velocity, d->spin});
 }
 
-// -- by the state -----------------------------------------------------------------------------------
+// -- by the state ---------------------------------------------------------------------------------
 
 static const bough_modal_frame_change held = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
 static const bough_wrench no_wrench = {{0, 0, 0}, {0, 0, 0}};
 static const bough_twist still = {{0, 0, 0}, {0, 0, 0}};
 
-// What a turn of the tip about each axis changes through the outer wrench: in η̇ (3 × stride) and in
-// the resultant.
+// What a turn of the tip about each axis changes through the outer wrench: in η̇ (3 × stride) and
+// in the resultant.
 static void tip_turns(const bough_modal_point *at, double *rate, bough_wrench resultant[3]) {
     clear(at->piece, 3, rate);
     for (int a = 0; a < 3; a++) {

@@ -33,7 +33,7 @@ static bough_modal_body *body_of(bough_arena *arena, const bough_modal_model *m,
     return body;
 }
 
-// -- the contract -----------------------------------------------------------------------------------
+// -- the contract ---------------------------------------------------------------------------------
 
 static void check_contract(int pieces, bough_modal_options options) {
     bough_arena *arena = bough_arena_create();
@@ -63,7 +63,7 @@ static void operations_of_a_chain_agree(void **context) {
     check_contract(7, (bough_modal_options){6, false, true});
 }
 
-// -- all shapes: the rod to first order -------------------------------------------------------------
+// -- all shapes: the rod to first order -----------------------------------------------------------
 
 typedef struct pair {
     bough_arena *arena;
@@ -132,7 +132,7 @@ static void errors_with_all_shapes_are_of_second_order(void **context) {
     check_second_order(N);
 }
 
-// -- frequencies and statics against the rod --------------------------------------------------------
+// -- frequencies and statics against the rod ------------------------------------------------------
 
 enum { SEGMENTS = 16, WANTED = 8 };
 
@@ -237,7 +237,7 @@ static void rotation_stiffens_as_it_does_the_rod(void **context) {
     bough_arena_destroy(c.arena);
 }
 
-// -- statics ----------------------------------------------------------------------------------------
+// -- statics --------------------------------------------------------------------------------------
 
 // The tip's flapwise displacement under a line load: modal less rod.
 static double deflection_error(int pieces, double load, double *rod) {
@@ -256,7 +256,8 @@ static double deflection_error(int pieces, double load, double *rod) {
 
 static void linear_statics_err_by_the_cube_of_the_load(void **context) {
     (void)context;
-    double rod[2], large = deflection_error(1, 8e3, &rod[0]), half = deflection_error(1, 4e3, &rod[1]);
+    double rod[2], large = deflection_error(1, 8e3, &rod[0]);
+    double half = deflection_error(1, 4e3, &rod[1]);
     assert_true(large < 0.01 * rod[0] && large > 1e-4 * rod[0]);
     check_near(large / half, 8, 0.05, 0);
 }
@@ -271,7 +272,7 @@ static void pieces_converge_to_the_bent_rod(void **context) {
     assert_true(fabs(error[2]) < 1e-4 * rod);
 }
 
-// -- conservation -----------------------------------------------------------------------------------
+// -- conservation ---------------------------------------------------------------------------------
 
 // Momentum of the moving vertices, mass centres at the vertices, about the frame's origin.
 static void momentum(const bough_rod_model *rod, const double *state, double *to) {
