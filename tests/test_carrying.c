@@ -1,4 +1,4 @@
-// Rods that carry bodies, as scenes: statics, frequencies and conservation against theory, and every
+// Rods that carry bodies, as scenes: statics, frequencies, conservation against theory, and every
 // coupling scheme against the monolithic one.
 #include "apps/scene/settle.h"
 #include "core/base.h"
@@ -106,6 +106,54 @@ static void rod_that_carries_nothing_heavy_moves_as_a_free_one(void **context) {
     run(b);
     check_near(bough_norm(bough_sub(tip_of(a), tip_of(b))), 0, 0, 1e-6);
     assert_true(fabs(tip_of(a).x) > 5e-3);
+    bough_arena_destroy(arena);
+}
+
+static bough_transform pose_of(const bough_simulation *s, int body) {
+    return bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
+}
+
+// Rods in a row, cut between stations, move what they carry as the whole rod on the same mesh does.
+static void rods_in_a_row_are_the_whole(void **context) {
+    (void)context;
+    static const char path[] = "tests/scenes/tower-in-parts.yaml";
+    static const char *const whole[] = {"bodies[0].rod.part=[0, 87.6]", "bodies[0].rod.segments=20",
+                                        "bodies[1].joint.parent=ground",
+                                        "bodies[2].joint.parent=lower", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *parts = scene_build(arena, path, no_sets);
+    bough_simulation *one = scene_build(arena, path, whole);
+    for (int i = 1; i < parts->beam[0].def.n_segment; i++) { // but where it is cut
+        check_near(parts->beam[0].def.inertia[i].mass, one->beam[0].def.inertia[i].mass, 1e-12, 0);
+    }
+    run(parts);
+    run(one);
+    bough_simulation_update(parts);
+    bough_simulation_update(one);
+    bough_transform a = pose_of(parts, 2), b = pose_of(one, 2);
+    check_near(bough_norm(bough_sub(a.position, b.position)), 0, 0, 1e-7);
+    check_near(bough_norm(bough_sub(a.rotation.c1, b.rotation.c1)), 0, 0, 1e-7);
+    assert_true(a.position.x > 0.02);
+    bough_arena_destroy(arena);
+}
+
+static void weight_at_an_inner_vertex_bends_the_beam_as_theory_says(void **context) {
+    (void)context;
+    const double from = 0.8, weight = 9.8 * mass, own = 9.8 * 1e-4;
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "tests/scenes/mid-weight.yaml", no_sets);
+    bough_settling settling;
+    bough_status status = bough_settle(s, s->master->assembly, 0, &settling);
+    assert_int_equal(status.code, BOUGH_OK);
+    double expected = weight * (pow(from, 3) / (3 * bending) + from / shear +
+                                (length - from) * from * from / (2 * bending)) +
+                      own * pow(length, 4) / (8 * bending);
+    // of the outer rod's end, from its own frame, which the inner one's end carries
+    bough_quaternion rotation;
+    bough_vec3 tip = bough_simulation_beam_tip(s, &s->beam[0], &rotation);
+    bough_transform frame = pose_of(s, 0);
+    tip = bough_add(frame.position, bough_mat3_mul(frame.rotation, tip));
+    check_near(-tip.z, expected, 1e-4, 0);
     bough_arena_destroy(arena);
 }
 
@@ -271,6 +319,8 @@ int main(void) {
         cmocka_unit_test(weight_bends_a_cantilever_as_beam_theory_says),
         cmocka_unit_test(weight_swings_on_a_cantilever_as_beam_theory_says),
         cmocka_unit_test(rod_that_carries_nothing_heavy_moves_as_a_free_one),
+        cmocka_unit_test(rods_in_a_row_are_the_whole),
+        cmocka_unit_test(weight_at_an_inner_vertex_bends_the_beam_as_theory_says),
         cmocka_unit_test(tumbling_rod_with_an_arm_conserves_momentum_and_energy),
         cmocka_unit_test(every_scheme_comes_to_the_monolithic_motion),
         cmocka_unit_test(ramp_is_of_second_order_on_a_mast),

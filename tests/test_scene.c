@@ -362,6 +362,35 @@ static void rods_may_be_curved(void **state) {
     stop(&f);
 }
 
+static void rods_may_be_parts_of_a_table(void **state) {
+    (void)state;
+    write_file("blade.yaml", "stations:\n"
+                             "  columns: [span, twist deg, axis, stiffness, mass]\n"
+                             "  rows:\n"
+                             "    - [0, 0, [0, 0], [1, 1, 1, 1, 1, 1], [1, 0, 0, 1, 1, 0]]\n"
+                             "    - [2, 30, [0, 0], [1, 1, 1, 1, 1, 1], [3, 0, 0, 1, 1, 0]]\n"
+                             "    - [3, 30, [0.4, 0], [1, 1, 9, 1, 1, 1], [7, 0, 0, 1, 1, 0]]\n");
+    write_file("s.yaml", ROD_BODY "    rod: {table: blade.yaml, part: [0.5, 2.5]}\n");
+    fixture f = read_scene("s.yaml", NULL, 0);
+    assert_string_equal(f.printed, "");
+    const bough_scene_structure *s = &f.scene->body[0].rod.structure;
+    static const double span[] = {0, 1.5, 2}, mass[] = {1.5, 3, 5}, shift[] = {0, 0, 0.2};
+    static const double twist[] = {7.5, 30, 30}, axial[] = {1, 1, 5};
+    check_near(s->length, 2, 0, 0);
+    assert_int_equal(s->n_station, 3);
+    for (int k = 0; k < 3; k++) {
+        check_near(s->station[k].position[2], span[k], 1e-15, 0);
+        check_near(s->station[k].position[0], shift[k], 1e-15, 0);
+        check_near(s->station[k].mass, mass[k], 1e-15, 0);
+        check_near(s->station[k].twist, twist[k] * degree, 1e-15, 0);
+        check_near(s->station[k].stiffness[14], axial[k], 1e-15, 0);
+    }
+    stop(&f);
+    refuses(ROD_BODY "    rod: {table: blade.yaml, part: [1, 4]}\n",
+            "s.yaml:6:36: error: bodies[0].rod.part: must be a stretch of the table, which is 3 m "
+            "long, got [1 m, 4 m]\n");
+}
+
 // -- bad scenes
 // ---------------------------------------------------------------------------------------
 
@@ -494,6 +523,9 @@ static void body_keys_fit_the_fidelity(void **state) {
                      "0]}\n",
             "s.yaml:6:11: error: bodies[0].mass: follows from the body's rod\n"
             "s.yaml:7:14: error: bodies[0].inertia: follows from the body's rod\n");
+    refuses(ROD_BODY "    rod: {part: [0, 1], length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, "
+                     "0, 0, 1, 1, 0]}\n",
+            "s.yaml:6:17: error: bodies[0].rod.part: only used with a table\n");
     refuses(ONE_BODY "    inertia: [1, 1, 1, 2, 0, 0]\n",
             "s.yaml:6:14: error: bodies[0].inertia: the inertia matrix must not be negative about "
             "any axis\n");
@@ -1034,6 +1066,7 @@ int main(void) {
         cmocka_unit_test(springs_join_two_rigid_bodies),
         cmocka_unit_test(closures_join_two_rigid_bodies),
         cmocka_unit_test(rods_may_be_curved),
+        cmocka_unit_test(rods_may_be_parts_of_a_table),
         cmocka_unit_test(all_errors_are_shown_in_order),
         cmocka_unit_test(missing_parts_are_named),
         cmocka_unit_test(joint_keys_fit_the_kind),

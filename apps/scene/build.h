@@ -39,6 +39,9 @@ typedef struct bough_simulation {
     struct bough_aero_link *aero; // NULL without an aero block
     struct bough_control_link *control; // NULL without a control block
     bough_master *master;
+    // the rods in a row that carry the rotor, NULL without; undeformed top in the frame of the foot
+    const bough_beam *tower_foot, *tower_top;
+    bough_transform tower_rest;
     int n_motion_channel; // the first channels: they follow from the states
 } bough_simulation;
 

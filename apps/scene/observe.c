@@ -283,15 +283,27 @@ static bough_status add_blades(bough_simulation *s, bough_channels *list) {
     return status;
 }
 
-// The rod that carries the rotor; NULL when there is none.
-static const bough_beam *tower_of(const bough_simulation *s) {
+// The rod nearest to the rotor that carries it, and the last of the rods that carry that one.
+static void find_tower(bough_simulation *s) {
     const bough_scene *scene = s->scene;
-    if (scene->turbine.node == NULL) return NULL;
+    if (scene->turbine.node == NULL) return;
     for (int i = scene->turbine.rotor; i >= 0; i = scene->body[i].joint.parent) {
         const bough_beam *beam = bough_simulation_beam(s, i);
-        if (beam != NULL && beam->end >= 0) return beam;
+        bool carries = beam != NULL && beam->end >= 0;
+        if (!carries && s->tower_top != NULL) break;
+        if (!carries) continue;
+        if (s->tower_top == NULL) s->tower_top = beam;
+        s->tower_foot = beam;
     }
-    return NULL;
+}
+
+// The section of the top in the frame of the foot, `tip` being that in its own body's.
+static bough_transform top_at_foot(const bough_simulation *s, bough_transform tip) {
+    const bough_frame *markers = s->tree->markers;
+    bough_transform foot = bough_tree_frame_pose(s->view, &markers[s->tower_foot->marker]);
+    bough_transform top = bough_tree_frame_pose(s->view, &markers[s->tower_top->marker]);
+    return bough_transform_compose(bough_transform_inverse(foot),
+                                   bough_transform_compose(top, tip));
 }
 
 enum { TOWER_CHANNELS = 12 };
@@ -299,14 +311,17 @@ enum { TOWER_CHANNELS = 12 };
 // Displacement and rotation of the top and the wrench on the foundation, all in the tower's axes.
 static void sample_tower(void *self, double t, double *value) {
     const bough_simulation *s = self;
-    const bough_beam *beam = tower_of(s);
     double root[BOUGH_ROD_MOST_OUTPUTS];
-    bough_vec3 d, turn;
-    tip(s, beam, &d, &turn);
-    bough_simulation_root(s, beam, t, root);
-    const double values[6] = {d.x,           d.y,           d.z,
-                              turn.x / DEGREE, turn.y / DEGREE, turn.z / DEGREE};
+    bough_quaternion p;
+    bough_vec3 x = bough_simulation_beam_tip(s, s->tower_top, &p);
+    bough_transform top = top_at_foot(s, (bough_transform){x, bough_rotation_matrix(p)});
+    bough_vec3 d = bough_sub(top.position, s->tower_rest.position);
+    bough_mat3 turned =
+        bough_mat3_product(top.rotation, bough_mat3_transpose(s->tower_rest.rotation));
+    bough_vec3 turn = bough_quaternion_logarithm(bough_quaternion_of_matrix(turned));
+    const double values[6] = {d.x, d.y, d.z, turn.x / DEGREE, turn.y / DEGREE, turn.z / DEGREE};
     memcpy(value, values, sizeof values);
+    bough_simulation_root(s, s->tower_foot, t, root);
     for (int k = 0; k < 6; k++) value[6 + k] = root[k] / 1e3;
 }
 
@@ -315,6 +330,12 @@ static bough_status add_tower(bough_simulation *s, bough_channels *list) {
         "TTDspFA",  "TTDspSS",  "TTDspAx",  "TTDspRoll", "TTDspPtch", "TTDspTwst",
         "TwrBsFxt", "TwrBsFyt", "TwrBsFzt", "TwrBsMxt",  "TwrBsMyt",  "TwrBsMzt"};
     static const char *const unit[] = {"m", "deg", "kN", "kN-m"};
+    const bough_rod_def *top = &s->tower_top->def;
+    int n = top->n_segment;
+    bough_tree_kinematics(s->tree, s->tree->initial, s->view); // where no rod is bent
+    s->tower_rest = top_at_foot(
+        s, (bough_transform){top->position[n], bough_rotation_matrix(top->rotation[n])});
+    bough_simulation_update(s);
     bough_status status = bough_channels_group(list, sample_tower, s);
     for (int k = 0; k < TOWER_CHANNELS && bough_is_ok(&status); k++) {
         status = bough_channels_add(list, unit[k / 3], "%s", name[k]);
@@ -453,7 +474,8 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     if (bough_is_ok(&status) && s->scene->n_closure > 0) status = add_closures(s, channels);
     if (bough_is_ok(&status) && s->scene->n_marker > 0) status = add_markers(s, channels);
     if (bough_is_ok(&status) && s->scene->turbine.node != NULL) status = add_blades(s, channels);
-    if (bough_is_ok(&status) && tower_of(s) != NULL) status = add_tower(s, channels);
+    find_tower(s);
+    if (bough_is_ok(&status) && s->tower_top != NULL) status = add_tower(s, channels);
     if (bough_is_ok(&status)) status = add_tips(s, channels);
     s->n_motion_channel = channels->count;
     if (bough_is_ok(&status) && s->aero != NULL) status = add_aero(s, channels);

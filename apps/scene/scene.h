@@ -119,8 +119,8 @@ typedef struct bough_scene_motion {
 } bough_scene_motion;
 
 // The joint that carries a body: placement from the parent's frame to the joint's frame, which is
-// the body's frame at zero joint displacement. On a body with a rod it begins at the rod's end, in the
-// axes of the rod's body, which turn with the last section.
+// the body's frame at zero joint displacement. On a body with a rod it begins at the rod's end, in
+// the axes of the rod's body, which turn with the last section.
 typedef struct bough_scene_joint {
     const bough_node *node;
     int kind;                // bough_scene_joint_kind
@@ -173,6 +173,7 @@ typedef struct bough_scene_rod {
     int n_segment;
     bough_scene_structure structure; // of the table, or of the one section given in the scene
     // As written in the scene; contained in `structure`:
+    double part[2]; // stretch of the table [m]
     bough_scene_station uniform;
     double length, damping[6];
 } bough_scene_rod;

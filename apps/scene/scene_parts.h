@@ -27,6 +27,11 @@ extern const bough_schema bough_scene_control_schema;
 // Checks within one mapping or file; `item` is the struct that was read.
 void bough_scene_check_structure(bough_schema_reader *r, void *item);
 void bough_scene_check_rod(bough_schema_reader *r, void *item);
+
+// Makes the stretch `part` of a structure of it; `given` is where it is written.
+void bough_scene_take_part(bough_schema_reader *r, const bough_node *given, const double part[2],
+                           bough_scene_structure *structure);
+
 void bough_scene_check_aero_blade(bough_schema_reader *r, void *item);
 void bough_scene_check_polar(bough_schema_reader *r, void *item);
 void bough_scene_check_polars(bough_schema_reader *r, void *item);

@@ -63,6 +63,10 @@ static const bough_key rod_keys[] = {
     {.name = "table", .kind = BOUGH_KEY_FILE, .of = &structure_schema, AT(structure),
      .help = "file with the structure, relative to the scene; without it give length, stiffness "
              "and mass of a uniform rod here"},
+    {.name = "part", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_LENGTH,
+     .range = ">= 0", AT(part),
+     .help = "stretch of the table [from, to] along z: rods in a row are the whole, and bodies "
+             "hang where two meet"},
     {.name = "segments", .kind = BOUGH_KEY_INTEGER, .range = "[1, 10000]", .fallback = "24",
      AT(n_segment), .help = "segments of equal length"},
     {.name = "damping", .kind = BOUGH_KEY_VECTOR, .count = 6, .dimension = BOUGH_TIME,

@@ -380,6 +380,8 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
 // A table, or a uniform section given here, never parts of both.
 static void check_rod_keys(bough_schema_reader *r, const bough_scene_rod *rod, bool table) {
     static const char *const uniform[] = {"length", "stiffness", "mass", "twist"};
+    const bough_node *part = bough_node_find(rod->node, "part");
+    if (!table && part != NULL) bough_schema_error(r, part, "part", "only used with a table");
     for (int i = 0; i < 4; i++) {
         const bough_node *given = bough_node_find(rod->node, uniform[i]);
         if (table && given != NULL) {
@@ -407,6 +409,8 @@ void bough_scene_check_rod(bough_schema_reader *r, void *item) {
     if (bough_node_find(rod->node, "damping") != NULL) {
         memcpy(rod->structure.damping, rod->damping, sizeof rod->damping);
     }
+    const bough_node *part = bough_node_find(rod->node, "part");
+    if (table && part != NULL) bough_scene_take_part(r, part, rod->part, &rod->structure);
 }
 
 void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]) {

@@ -1,0 +1,62 @@
+// A rod that is a stretch of its table: a new table that begins and ends between the old one's
+// stations, so that rods in a row are the whole and bodies may hang where two of them meet.
+#include "apps/scene/scene_parts.h"
+
+#include <math.h>
+#include <string.h>
+
+static double between(double f, double a, double b) { return (1 - f) * a + f * b; }
+
+static void blend(double f, const double *a, const double *b, int n, double *to) {
+    for (int k = 0; k < n; k++) to[k] = between(f, a[k], b[k]);
+}
+
+// The section at a span, linear between the stations.
+static bough_scene_station section_at(const bough_scene_structure *s, double span) {
+    int k = 0;
+    while (k < s->n_station - 2 && span > s->station[k + 1].position[2]) k++;
+    const bough_scene_station *a = &s->station[k], *b = a + 1;
+    bough_scene_station c = *a;
+    double f = (span - a->position[2]) / (b->position[2] - a->position[2]);
+    blend(f, a->position, b->position, 3, c.position);
+    blend(f, a->stiffness, b->stiffness, 36, c.stiffness);
+    blend(f, a->mass_centre, b->mass_centre, 2, c.mass_centre);
+    blend(f, a->inertia, b->inertia, 4, c.inertia);
+    c.twist = between(f, a->twist, b->twist);
+    c.mass = between(f, a->mass, b->mass);
+    return c;
+}
+
+// Stations from one span to another, positions from the first.
+static void cut(bough_scene_structure *s, const double part[2], bough_scene_station *to) {
+    int n = 0;
+    to[n++] = section_at(s, part[0]);
+    for (int k = 0; k < s->n_station; k++) {
+        double span = s->station[k].position[2];
+        if (span > part[0] && span < part[1]) to[n++] = s->station[k];
+    }
+    to[n++] = section_at(s, part[1]);
+    const double origin[3] = {to[0].position[0], to[0].position[1], to[0].position[2]};
+    for (int k = 0; k < n; k++) {
+        for (int c = 0; c < 3; c++) to[k].position[c] -= origin[c];
+    }
+    s->n_station = n;
+    s->station = to;
+}
+
+void bough_scene_take_part(bough_schema_reader *r, const bough_node *given, const double part[2],
+                           bough_scene_structure *s) {
+    bool good = part[0] >= 0 && part[0] < part[1] && part[1] <= s->length * (1 + 1e-9);
+    if (s->n_station < 1 || !isfinite(s->length)) return; // told already
+    if (!good) {
+        bough_schema_error(r, given, "part",
+                           "must be a stretch of the table, which is %g m long, got [%g m, %g m]",
+                           s->length, part[0], part[1]);
+        return;
+    }
+    s->length = part[1] - part[0];
+    if (s->n_station == 1) return; // uniform
+    bough_scene_station *to =
+        bough_arena_take(r->arena, ((size_t)s->n_station + 2) * sizeof *to);
+    if (to != NULL) cut(s, part, to);
+}
