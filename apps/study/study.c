@@ -192,11 +192,12 @@ static const bough_key study_keys[] = {
     {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line: what is asked"},
     {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
      .help = "file of the scene, relative to the study"},
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("work-precision", "verify", "two-mass", "added-mass"),
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE,
+     .choices = CHOICES("work-precision", "verify", "two-mass", "added-mass", "timing"),
      .required = true, AT(kind),
      .help = "work-precision: time and difference to the reference of every cell of the grid; "
              "verify: cases against what they should give; two-mass, added-mass: coupling schemes on "
-             "masses and springs"},
+             "masses and springs; timing: what the cells cost, in turns"},
     {.name = "reference", .kind = BOUGH_KEY_CUSTOM, .read = read_settings, .required = true,
      .form = "{KEY: VALUE, ...}", AT(reference), .help = "replacements that make the reference"},
     {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = read_grid, .required = true,

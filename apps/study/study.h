@@ -19,6 +19,7 @@ typedef enum bough_study_kind {
     BOUGH_STUDY_VERIFY,
     BOUGH_STUDY_TWO_MASS,
     BOUGH_STUDY_ADDED_MASS,
+    BOUGH_STUDY_TIMING,
 } bough_study_kind;
 
 // A replacement in the scene.

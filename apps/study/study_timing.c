@@ -1,0 +1,200 @@
+#include "apps/study/study_timing.h"
+
+#include "apps/output/folder.h"
+#include "apps/study/study_run.h"
+#include "apps/study/study_store.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { MAX_REPEAT = 99 };
+
+// Median and quartiles of a few values.
+typedef struct spread {
+    double median, low, high;
+} spread;
+
+typedef struct cell_times {
+    double wall[MAX_REPEAT], cpu[MAX_REPEAT], ratio[MAX_REPEAT]; // per turn
+    double build;               // of the first turn [s]
+    bough_timing_run clocked;   // behind the clock
+    bough_study_result result;  // errors against the reference
+} cell_times;
+
+typedef struct timing {
+    const bough_study *study;
+    const bough_study_options *options;
+    cell_times *cell; // (n_cell)
+    bough_study_series reference, series;
+    bough_study_drive drive;
+} timing;
+
+static int compare_numbers(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static spread spread_of(const double *values, int n) {
+    double sorted[MAX_REPEAT];
+    memcpy(sorted, values, (size_t)n * sizeof *values);
+    qsort(sorted, (size_t)n, sizeof *sorted, compare_numbers);
+    return (spread){0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]), sorted[n / 4],
+                    sorted[n - 1 - n / 4]};
+}
+
+// The cell with the first value of the last axis and this cell's values of all others: what the
+// ratios are against.
+static int partner(const bough_study *s, int cell) {
+    int last = s->grid.n - 1;
+    return cell - s->cell[cell].index[last];
+}
+
+// -- runs -----------------------------------------------------------------------------------------
+
+// Errors do not depend on the turn: bits are the same in all.
+static bough_status find_errors(timing *t) {
+    bough_study_result reference;
+    t->drive.label = "reference";
+    bough_status status = bough_study_run(t->study, t->study->reference_cell, 1, &t->drive,
+                                          &t->reference, &reference);
+    if (!bough_is_ok(&status)) return status;
+    if (!bough_is_ok(&reference.outcome)) return reference.outcome;
+    for (int i = 0; i < t->study->n_cell; i++) {
+        bough_study_result *result = &t->cell[i].result;
+        t->drive.label = t->study->cell[i].settings;
+        status = bough_study_run(t->study, &t->study->cell[i], 1, &t->drive, &t->series, result);
+        if (!bough_is_ok(&status)) return status;
+        if (!bough_is_ok(&result->outcome)) return result->outcome;
+        bough_study_compare(t->study, &t->series, &t->reference, result->error);
+    }
+    return status;
+}
+
+static bough_status take_turn(timing *t, int turn) {
+    for (int i = 0; i < t->study->n_cell; i++) {
+        bough_timing_run run;
+        bough_status status =
+            bough_timing_run_cell(t->study, &t->study->cell[i], t->options, false, &run);
+        if (!bough_is_ok(&status)) return status;
+        t->cell[i].wall[turn] = run.wall;
+        t->cell[i].cpu[turn] = run.cpu;
+        if (turn == 0) t->cell[i].build = run.build;
+    }
+    for (int i = 0; i < t->study->n_cell; i++) {
+        t->cell[i].ratio[turn] =
+            t->cell[partner(t->study, i)].wall[turn] / t->cell[i].wall[turn];
+    }
+    return bough_ok();
+}
+
+static bough_status run_all(timing *t) {
+    bough_status status = find_errors(t);
+    for (int turn = 0; turn < t->study->repeat && bough_is_ok(&status); turn++)
+        status = take_turn(t, turn);
+    for (int i = 0; i < t->study->n_cell && bough_is_ok(&status); i++) {
+        status = bough_timing_run_cell(t->study, &t->study->cell[i], t->options, true,
+                                       &t->cell[i].clocked);
+    }
+    bough_progress_clear(&t->drive.progress);
+    return status;
+}
+
+// -- tables ---------------------------------------------------------------------------------------
+
+static void print_times(const timing *t, FILE *f) {
+    const bough_study *s = t->study;
+    fprintf(f, "%s\n%d turns: medians, quartiles in brackets; ratio: wall time of the first %s to the "
+            "cell's\n\n", s->title ? s->title : s->file, s->repeat,
+            s->grid.axis[s->grid.n - 1].label);
+    fprintf(f, "%-52s %9s %9s %17s %21s", "", "cpu [s]", "wall [s]", "x real time", "ratio");
+    for (int m = 0; m < s->n_measure; m++) {
+        fprintf(f, "  %s [%s]", s->measure[m].name, s->measure[m].unit);
+    }
+    fprintf(f, "\n");
+    for (int i = 0; i < s->n_cell; i++) {
+        const cell_times *c = &t->cell[i];
+        spread wall = spread_of(c->wall, s->repeat), cpu = spread_of(c->cpu, s->repeat);
+        spread ratio = spread_of(c->ratio, s->repeat);
+        double x = s->duration;
+        fprintf(f, "%-52s %9.3f %9.3f %5.1f [%4.1f, %4.1f] %6.3f [%.3f, %.3f]", s->cell[i].settings,
+                cpu.median, wall.median, x / wall.median, x / wall.high, x / wall.low,
+                ratio.median, ratio.low, ratio.high);
+        for (int m = 0; m < s->n_measure; m++) {
+            int width = (int)(strlen(s->measure[m].name) + strlen(s->measure[m].unit)) + 3;
+            fprintf(f, "  %*.1e", width, c->result.error[m]);
+        }
+        fprintf(f, "\n");
+    }
+}
+
+// Shares of the wall time: parts that run side by side come to more than 100 together. The rest is
+// what the coupling itself does, and waiting.
+static void print_shares(const timing *t, FILE *f) {
+    const bough_study *s = t->study;
+    fprintf(f, "\nshares of the wall time behind the clock, summed over the threads, in percent\n%-52s", "");
+    for (int p = 0; p < BOUGH_CLOCK_PARTS; p++) {
+        fprintf(f, " %11s", bough_clock_name((bough_clock_part)p));
+    }
+    fprintf(f, " %11s\n", "rest");
+    for (int i = 0; i < s->n_cell; i++) {
+        const bough_timing_run *run = &t->cell[i].clocked;
+        double all = run->wall, rest = all;
+        fprintf(f, "%-52s", s->cell[i].settings);
+        for (int p = 0; p < BOUGH_CLOCK_PARTS; p++) {
+            fprintf(f, " %11.1f", 100 * run->part[p] / all);
+            rest -= run->part[p];
+        }
+        if (rest >= 0) fprintf(f, " %11.1f", 100 * rest / all);
+        fprintf(f, "\n");
+    }
+}
+
+static void write_csv(const timing *t, FILE *f) {
+    const bough_study *s = t->study;
+    fprintf(f, "settings,turn,cpu (s),wall (s),ratio\n");
+    for (int i = 0; i < s->n_cell; i++) {
+        for (int k = 0; k < s->repeat; k++) {
+            bough_csv_text(f, s->cell[i].settings);
+            fprintf(f, ",%d,%.6g,%.6g,%.6g\n", k + 1, t->cell[i].cpu[k], t->cell[i].wall[k],
+                    t->cell[i].ratio[k]);
+        }
+    }
+}
+
+static bough_status write_tables(const timing *t) {
+    static const char *const names[] = {"timing.csv", "table.txt"};
+    bough_status status = bough_ok();
+    for (int i = 0; i < 2 && bough_is_ok(&status); i++) {
+        char path[BOUGH_PATH_MAX];
+        FILE *f = NULL;
+        status = bough_folder_path(t->options->folder, names[i], path);
+        if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &f);
+        if (!bough_is_ok(&status)) break;
+        if (i == 0) {
+            write_csv(t, f);
+        } else {
+            print_times(t, f);
+            print_shares(t, f);
+        }
+        status = bough_folder_commit(path, f);
+    }
+    return status;
+}
+
+bough_status bough_timing_perform(bough_arena *arena, const bough_study *study,
+                                  const bough_study_options *options) {
+    timing t = {.study = study, .options = options};
+    t.cell = bough_arena_take(arena, (size_t)study->n_cell * sizeof *t.cell);
+    t.reference = bough_study_series_take(arena, study);
+    t.series = bough_study_series_take(arena, study);
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    t.drive.stop = options->stop;
+    t.drive.progress = bough_progress_start(0, study->duration, options->quiet);
+    bough_status status = bough_folder_make(options->folder);
+    if (bough_is_ok(&status)) status = run_all(&t);
+    if (bough_is_ok(&status)) status = write_tables(&t);
+    if (!bough_is_ok(&status)) return status;
+    print_times(&t, options->stream);
+    print_shares(&t, options->stream);
+    return status;
+}
