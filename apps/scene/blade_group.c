@@ -49,7 +49,9 @@ static bool is_alike(const bough_simulation *s, const bough_blade_group *group, 
     const bough_beam *first = group->blade[0], *blade = group->blade[k];
     int rotor = s->tree->bodies[s->scene->turbine.rotor].link;
     double angle = azimuth_of(s, blade) - azimuth_of(s, first) - 2 * BOUGH_PI * k / group->n;
-    return blade->rod != NULL && s->tree->markers[blade->marker].link == rotor &&
+    return blade->port >= 0 && blade->body->fidelity == first->body->fidelity &&
+           s->rod[blade->port].n_state == s->rod[first->port].n_state &&
+           s->tree->markers[blade->marker].link == rotor &&
            same_structure(&first->def, &blade->def) && fabs(angle) < even;
 }
 
@@ -71,7 +73,7 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
         return bough_ok();
     }
     group->azimuth = azimuth_of(s, group->blade[0]);
-    group->n_row = BOUGH_ROD_STATES * bough_rod_body_model(group->blade[0]->rod)->n;
+    group->n_row = s->rod[group->blade[0]->port].n_state;
     group->row = bough_arena_take(arena, (size_t)n * (size_t)group->n_row * sizeof(int));
     if (!group->row) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < n; k++) {
@@ -90,7 +92,7 @@ void bough_blade_group_average(const bough_blade_group *group, double *state) {
         for (int k = 0; k < group->n; k++) sum += state[group->first[k] + j];
         mean[j] = sum / group->n;
     }
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n && group->blade[0]->rod != NULL; i++) {
         double *p = mean + BOUGH_ROD_P * n + i;
         bough_quaternion unit =
             bough_quaternion_normalised((bough_quaternion){p[0], p[n], p[2 * n], p[3 * n]});

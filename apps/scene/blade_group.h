@@ -5,7 +5,7 @@
 #include "apps/scene/build.h"
 
 typedef struct bough_blade_group {
-    int n;                    // blades; 0: not equal, not evenly spaced, fewer than three, rigid
+    int n;                    // blades; 0: unequal, not evenly spaced, fewer than three, rigid
     const bough_beam **blade; // (n) by azimuth
     int *first;               // (n) row of each one's first state
     double azimuth;           // of the first, about the shaft from the upright [rad]

@@ -1,6 +1,7 @@
 #include "apps/scene/vibration.h"
 
 #include "apps/scene/blade_group.h"
+#include "apps/scene/steady.h"
 #include "core/dynamics.h"
 #include "cosim/modes.h"
 
@@ -21,17 +22,82 @@ enum { FREE_MOTIONS = 8 }; // that may be found before the modes
 
 static const double rounding = 1e-10;   // damping ratios below it are none
 
+// A flexible beam's vertices and their tangents along the shape, as rod.h lays them out.
+typedef struct beam_shape {
+    const double *state;       // (13 n)
+    const double *tangent[2];  // (13 n) real and imaginary part
+    double *memory;            // (3 × 13 n) of both unless a rod, whose own they are
+} beam_shape;
+
 // What shares are taken of.
 typedef struct shape {
     const bough_simulation *simulation;
     const bough_assembly *assembly;
     const bough_blade_group *group;
     const double *state;          // (n_state) that the modes are about
+    double *moved;                // (n_state) work
     const bough_eigen_pair *pair;
+    beam_shape *beam;             // (n_beam)
 } shape;
 
 static const double *part_of(const shape *x, int part) {
     return part == 0 ? x->pair->shape_real : x->pair->shape_imag;
+}
+
+// -- beams ----------------------------------------------------------------------------------------
+
+// The vertices of a modal body at its state and frame's twist moved by a part of the shape.
+static void expand(const shape *x, const bough_beam *beam, int part, double step, double *to) {
+    const bough_simulation *s = x->simulation;
+    const bough_frame *frame = &s->tree->markers[beam->marker];
+    int at = x->assembly->state_offset[beam->port + 1], n = s->rod[beam->port].n_state;
+    bough_twist twist = bough_tree_frame_twist(s->view, frame);
+    double input[BOUGH_ROD_INPUTS] = {0}, change[6] = {0}; // gravity does not matter
+    bough_twist_store(twist, input);
+    if (frame->link >= 0) {
+        bough_twist_store(
+            bough_twist_to_child(&frame->placement, s->view->acceleration[frame->link]), change);
+    }
+    for (int c = 0; c < 6; c++) input[c] += step * change[c];
+    for (int k = 0; k < n; k++) x->moved[k] = x->state[at + k] + step * part_of(x, part)[at + k];
+    memcpy(to, bough_modal_body_vertices(beam->modal, x->moved, input),
+           (size_t)BOUGH_ROD_STATES * bough_beam_mesh(beam)->n * sizeof *to);
+}
+
+// By central differences, of steps that move nothing by more than a millionth.
+static void set_modal(const shape *x, const bough_beam *beam, beam_shape *b) {
+    size_t n = (size_t)BOUGH_ROD_STATES * bough_beam_mesh(beam)->n;
+    for (int part = 0; part < 2; part++) {
+        double most = DBL_MIN, *to = b->memory + (size_t)(1 + part) * n;
+        for (int k = 0; k < x->assembly->n_state; k++) most = fmax(most, fabs(part_of(x, part)[k]));
+        double step = 1e-6 / most;
+        bough_tree_tangent(x->simulation->tree, x->state, part_of(x, part), x->simulation->view);
+        expand(x, beam, part, -step, b->memory);
+        expand(x, beam, part, step, to);
+        for (size_t k = 0; k < n; k++) to[k] = (to[k] - b->memory[k]) / (2 * step);
+        b->tangent[part] = to;
+    }
+    expand(x, beam, 0, 0, b->memory);
+    b->state = b->memory;
+}
+
+static void set_beams(const shape *x) {
+    for (int k = 0; k < x->simulation->n_beam; k++) {
+        const bough_beam *beam = &x->simulation->beam[k];
+        beam_shape *b = &x->beam[k];
+        if (beam->port < 0) continue;
+        int at = x->assembly->state_offset[beam->port + 1];
+        if (beam->modal != NULL) {
+            set_modal(x, beam, b);
+            continue;
+        }
+        b->state = x->state + at;
+        for (int part = 0; part < 2; part++) b->tangent[part] = part_of(x, part) + at;
+    }
+}
+
+static const beam_shape *shape_of(const shape *x, const bough_beam *beam) {
+    return &x->beam[beam - x->simulation->beam];
 }
 
 // -- energy ---------------------------------------------------------------------------------------
@@ -76,13 +142,13 @@ static double vertex_energy(const bough_vertex_inertia *v, bough_vec3 u, bough_v
 }
 
 static double rod_energy(const shape *x, const bough_beam *beam, int part) {
-    int at = x->assembly->state_offset[beam->port + 1];
-    const bough_rod_model *m = bough_rod_body_model(beam->rod);
-    const double *d = part_of(x, part) + at + (size_t)BOUGH_ROD_U * m->n;
+    const beam_shape *b = shape_of(x, beam);
+    const bough_rod_model *m = bough_beam_mesh(beam);
+    const double *d = b->tangent[part] + (size_t)BOUGH_ROD_U * m->n;
     double sum = 0;
     int n = m->n;
     for (int i = 0; i < n; i++) {
-        bough_vec3 u = bough_mat3_tmul(rotation_of(x->state + at, n, i),
+        bough_vec3 u = bough_mat3_tmul(rotation_of(b->state, n, i),
                                        bough_v3(d[i], d[n + i], d[2 * n + i]));
         bough_vec3 w = {d[3 * n + i], d[4 * n + i], d[5 * n + i]};
         sum += vertex_energy(&m->vertex[i + 1], u, w);
@@ -97,7 +163,7 @@ static void set_shares(const shape *x, bough_scene_mode *mode) {
     for (int part = 0; part < 2; part++) {
         add_links(x, part, mode->share);
         for (int k = 0; k < s->n_beam; k++) {
-            if (s->beam[k].rod == NULL) continue;
+            if (s->beam[k].port < 0) continue;
             mode->share[s->beam[k].body - s->scene->body] += rod_energy(x, &s->beam[k], part);
         }
     }
@@ -120,9 +186,9 @@ enum { BENDING = 6 };
 
 // The square root of its inertia times displacement c < 3 or turn of a vertex against the body.
 static double bending(const shape *x, const bough_beam *beam, int part, int i, int c) {
-    const bough_rod_model *m = bough_rod_body_model(beam->rod);
-    int at = x->assembly->state_offset[beam->port + 1], n = m->n;
-    const double *d = part_of(x, part) + at, *y = x->state + at;
+    const bough_rod_model *m = bough_beam_mesh(beam);
+    int n = m->n;
+    const double *d = shape_of(x, beam)->tangent[part], *y = shape_of(x, beam)->state;
     const bough_vertex_inertia *v = &m->vertex[i + 1];
     if (c < 3) return sqrt(v->mass) * d[c * n + i];
     bough_quaternion p = {y[3 * n + i], -y[4 * n + i], -y[5 * n + i], -y[6 * n + i]};
@@ -133,7 +199,7 @@ static double bending(const shape *x, const bough_beam *beam, int part, int i, i
 }
 
 static void add_direction(const shape *x, const bough_beam *beam, double *sum) {
-    for (int i = 0; i < bough_rod_body_model(beam->rod)->n; i++) {
+    for (int i = 0; i < bough_beam_mesh(beam)->n; i++) {
         for (int part = 0; part < 2; part++) {
             for (int c = 0; c < 3; c++) sum[c] += pow(bending(x, beam, part, i, c), 2);
             sum[BOUGH_ROD_TORSION] += pow(bending(x, beam, part, i, 5), 2);
@@ -163,7 +229,7 @@ static void add_motion(const shape *x, int body, int part, double *sum) {
 static void set_direction(const shape *x, bough_scene_mode *mode) {
     const bough_beam *beam = bough_simulation_beam(x->simulation, mode->body);
     double sum[BOUGH_ROD_DIRECTIONS] = {0};
-    bool rigid = !mode->blades && (beam == NULL || beam->rod == NULL);
+    bool rigid = !mode->blades && (beam == NULL || beam->port < 0);
     for (int part = 0; rigid && part < 2; part++) add_motion(x, mode->body, part, sum);
     if (!mode->blades && !rigid) add_direction(x, beam, sum);
     for (int k = 0; mode->blades && k < x->group->n; k++) add_direction(x, x->group->blade[k], sum);
@@ -218,7 +284,7 @@ static void set_pattern(const shape *x, bough_scene_mode *mode) {
     const bough_blade_group *g = x->group;
     pattern sum = {0};
     if (g->n == 0 || g->n > MOST_BLADES) return;
-    for (int i = 0; i < bough_rod_body_model(g->blade[0]->rod)->n; i++) {
+    for (int i = 0; i < bough_beam_mesh(g->blade[0])->n; i++) {
         for (int c = 0; c < BENDING; c++) {
             double real[MOST_BLADES], imaginary[MOST_BLADES];
             for (int k = 0; k < g->n; k++) {
@@ -306,10 +372,27 @@ static void define(double time, solution *x) {
     x->def.point = fmax(least_point, spins * ((g->n - 1) / 2) * fabs(g->speed));
 }
 
+static bool take_beams(bough_arena *arena, const bough_simulation *s, shape *x) {
+    x->moved = bough_arena_doubles(arena, (size_t)x->assembly->n_state + 1);
+    x->beam = bough_arena_take(arena, ((size_t)s->n_beam + 1) * sizeof *x->beam);
+    for (int k = 0; x->beam && k < s->n_beam; k++) {
+        if (s->beam[k].modal == NULL) continue;
+        size_t n = (size_t)BOUGH_ROD_STATES * bough_beam_mesh(&s->beam[k])->n;
+        x->beam[k].memory = bough_arena_doubles(arena, 3 * n);
+    }
+    return !bough_arena_exhausted(arena);
+}
+
 static bough_status describe(bough_arena *arena, const bough_simulation *s, const solution *x,
                              bough_vibration *v) {
+    shape one = {.simulation = s,
+                 .assembly = s->master->assembly,
+                 .group = &x->group,
+                 .state = x->state};
+    if (!take_beams(arena, s, &one)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < v->found; k++) {
-        shape one = {s, s->master->assembly, &x->group, x->state, &v->pair[k]};
+        one.pair = &v->pair[k];
+        set_beams(&one);
         bough_scene_mode *mode = &v->mode[k];
         mode->share = bough_arena_doubles(arena, (size_t)s->scene->n_body);
         if (!mode->share) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
@@ -352,7 +435,8 @@ bool bough_vibration_wanted(const bough_simulation *s) {
     const bough_scene_modes *modes = &s->scene->modes;
     if (modes->of != BOUGH_SCENE_MODES_AUTO) return modes->of == BOUGH_SCENE_MODES_SCENE;
     bool axis = modes->axis[0] != 0 || modes->axis[1] != 0 || modes->axis[2] != 0;
-    return !bough_settle_apart(s) && modes->speed == 0 && !axis;
+    bool reduced = bough_steady_rods(s) < s->n_rod; // what is no rod has no modes by itself
+    return (!bough_settle_apart(s) || reduced) && modes->speed == 0 && !axis;
 }
 
 bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count,
