@@ -113,10 +113,13 @@ static double fraction(double a, double fa, double b, double fb, double c, doubl
     return fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb);
 }
 
-// The balance at a root in [low, high], where f changes sign.
-static balance root(problem *p, double low, balance at_low, double high, balance at_high) {
+// The balance at a root in [low, high], where f changes sign; it begins in the middle, or where the
+// chord meets zero.
+static balance root(problem *p, double low, balance at_low, double high, balance at_high,
+                    bool secant) {
     enum { MOST = 100 };
-    double a = high, fa = residual(p, at_high), b = low, fb = residual(p, at_low), t = 0.5;
+    double a = high, fa = residual(p, at_high), b = low, fb = residual(p, at_low);
+    double t = secant ? bough_clamp(fa / (fa - fb), 0.01, 0.99) : 0.5;
     balance at_a = at_high;
     for (int i = 0; i < MOST; i++) {
         double x = a + t * (b - a);
@@ -140,9 +143,40 @@ static bool changes_sign(const problem *p, balance a, balance b) {
     return (residual(p, a) > 0) != (residual(p, b) > 0);
 }
 
+// Where a windmill element with linear lift, no drag and no swirl would balance, if that is attached
+// flow: 4F φ (φ₀ − φ) = σ c_lα (φ − θ − α₀) for small angles, φ₀ the angle without induction.
+static bool attached_angle(const problem *p, double phi0, double *phi) {
+    const bough_element *e = p->element;
+    if (p->sign_x < 0 || p->sign_y < 0 || e->polar->slope == 0) return false;
+    double zero = e->twist + e->polar->zero_lift;
+    double k = e->solidity * e->cone * e->polar->slope / (4 * loss(p, sin(0.7 * phi0)));
+    double h = (phi0 - k) / 2, square = h * h + k * zero;
+    if (!(square > 0)) return false;
+    *phi = h + sqrt(square);
+    return *phi > 1e-3 && *phi < phi0 && fabs(*phi - zero) < 0.2;
+}
+
+// The root next to that angle, which the answer takes whatever other roots there are.
+static bool search_attached(problem *p, double phi0, balance *found) {
+    double a, b;
+    if (!attached_angle(p, phi0, &a)) return false;
+    balance at_a = balance_at(p, a), at_b;
+    for (double share = 0.04; share < 0.5; share *= 5) {
+        b = residual(p, at_a) > 0 ? (1 - share) * a : fmin((1 + share) * a, phi0);
+        at_b = balance_at(p, b);
+        if (changes_sign(p, at_a, at_b)) {
+            *found = root(p, b, at_b, a, at_a, true);
+            return found->axial > 0;
+        }
+        a = b, at_a = at_b;
+    }
+    return false;
+}
+
 // The windmill state, φ in (0, π/2], split at the angle without induction, near which it ends.
 static bool search_windmill(problem *p, balance *found) {
     double middle = bough_clamp(atan(p->slope), 2 * clearance, BOUGH_PI / 2 - clearance);
+    if (search_attached(p, middle, found)) return true;
     double low = clearance, high = middle;
     balance at_low = balance_at(p, low), at_high = balance_at(p, high);
     if (!changes_sign(p, at_low, at_high)) {
@@ -150,7 +184,7 @@ static bool search_windmill(problem *p, balance *found) {
         high = BOUGH_PI / 2, at_high = balance_at(p, high);
         if (!changes_sign(p, at_low, at_high)) return false;
     }
-    *found = root(p, low, at_low, high, at_high);
+    *found = root(p, low, at_low, high, at_high, false);
     return found->axial > 0;
 }
 
@@ -159,7 +193,7 @@ static bool search(problem *p, double low, double high, bool brake, balance *fou
     p->brake = brake;
     balance at_low = balance_at(p, low), at_high = balance_at(p, high);
     if (!changes_sign(p, at_low, at_high)) return false;
-    *found = root(p, low, at_low, high, at_high);
+    *found = root(p, low, at_low, high, at_high, false);
     return brake ? found->axial < 0 : found->axial > 0;
 }
 

@@ -55,6 +55,53 @@ static void fill_bins(bough_polar *polar, int *bin) {
     }
 }
 
+// -- attached flow --------------------------------------------------------------------------------
+
+static double lift_at(const bough_polar *polar, double alpha) {
+    return bough_polar_at(polar, alpha).lift;
+}
+
+// Where the lift grows through zero, nearest to no angle within 20°; false if nowhere.
+static bool find_zero_lift(const bough_polar *polar, double *zero) {
+    const double step = 0.25 * BOUGH_PI / 180;
+    bool found = false;
+    for (int k = -80; k < 80; k++) {
+        double a = k * step, b = a + step, fa = lift_at(polar, a), fb = lift_at(polar, b);
+        if (!(fa <= 0 && fb > 0)) continue;
+        for (int i = 0; i < 50; i++) {
+            double middle = (a + b) / 2;
+            if (lift_at(polar, middle) > 0) {
+                b = middle;
+            } else {
+                a = middle;
+            }
+        }
+        if (!found || fabs(a) < fabs(*zero)) *zero = a;
+        found = true;
+    }
+    return found;
+}
+
+// The steepest line through zero lift that touches the polar: so f never exceeds one, and the
+// static polar is met exactly. Between knots the ratio has no maximum if they are joined linearly.
+static double steepest(const bough_polar *polar, double zero) {
+    const double near_zero = 1e-4; // closer to it the ratio is that of small numbers [rad]
+    enum { FINE = 1200 };
+    const double reach = 30 * BOUGH_PI / 180;
+    double slope = 0;
+    for (int k = 0; k < polar->n + 2 * FINE; k++) {
+        int j = k - polar->n - FINE;
+        double d = k < polar->n ? remainder(polar->row[ROW * k] - zero, turn) : j * reach / FINE;
+        if (fabs(d) < near_zero || fabs(d) > reach) continue;
+        slope = fmax(slope, lift_at(polar, zero + d) / d);
+    }
+    return slope;
+}
+
+static void fit_attached(bough_polar *polar) {
+    if (find_zero_lift(polar, &polar->zero_lift)) polar->slope = steepest(polar, polar->zero_lift);
+}
+
 bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar) {
     bough_status status = check(def);
     if (!bough_is_ok(&status)) return status;
@@ -69,6 +116,7 @@ bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, b
     *polar =
         (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / turn, .bin = bin};
     fill_bins(polar, bin);
+    fit_attached(polar);
     return bough_ok();
 }
 

@@ -24,6 +24,9 @@ typedef struct bough_polar {
     int n_bin;
     double bin_per_rad;
     const int *bin; // (n_bin): last knot at or below the bin's start
+    // Of attached flow; slope 0: no lift to speak of.
+    double slope;     // the steepest line through zero lift that touches the polar [1/rad]
+    double zero_lift; // where the lift grows through zero, nearest to no angle [rad]
 } bough_polar;
 
 bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar);

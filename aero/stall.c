@@ -24,47 +24,8 @@ static double lift_at(const bough_polar *polar, double alpha) {
     return bough_polar_at(polar, alpha).lift;
 }
 
-// Where the lift grows through zero, nearest to no angle within 20°; false if nowhere.
-static bool find_zero_lift(const bough_polar *polar, double *zero) {
-    const double step = 0.25 * BOUGH_PI / 180;
-    bool found = false;
-    for (int k = -80; k < 80; k++) {
-        double a = k * step, b = a + step, fa = lift_at(polar, a), fb = lift_at(polar, b);
-        if (!(fa <= 0 && fb > 0)) continue;
-        for (int i = 0; i < 50; i++) {
-            double middle = (a + b) / 2;
-            if (lift_at(polar, middle) > 0) {
-                b = middle;
-            } else {
-                a = middle;
-            }
-        }
-        if (!found || fabs(a) < fabs(*zero)) *zero = a;
-        found = true;
-    }
-    return found;
-}
-
-// The steepest line through zero lift that touches the polar: so f never exceeds one, and the
-// static polar is met exactly. Between knots the ratio has no maximum if they are joined linearly.
-static double steepest(const bough_polar *polar, double zero) {
-    enum { FINE = 1200 };
-    const double reach = 30 * BOUGH_PI / 180;
-    double slope = 0;
-    for (int k = 0; k < polar->n + 2 * FINE; k++) {
-        int j = k - polar->n - FINE;
-        double d = k < polar->n ? remainder(polar->row[8 * k] - zero, turn) : j * reach / FINE;
-        if (fabs(d) < near_zero || fabs(d) > reach) continue;
-        slope = fmax(slope, lift_at(polar, zero + d) / d);
-    }
-    return slope;
-}
-
 bough_stall_airfoil bough_stall_airfoil_of(const bough_polar *polar) {
-    bough_stall_airfoil airfoil = {.polar = polar};
-    if (!find_zero_lift(polar, &airfoil.zero_lift)) return airfoil;
-    airfoil.slope = steepest(polar, airfoil.zero_lift);
-    return airfoil;
+    return (bough_stall_airfoil){polar, polar->slope, polar->zero_lift};
 }
 
 // With r = Cl/(slope·(α − α₀)) Kirchhoff's f = (2√r − 1)² leaves the separated lift
