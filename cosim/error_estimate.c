@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BATCH = 32, POINTS = 4 };
+enum { BATCH = 32, PAST = 3 };
 static const double longest_batch = 0.25; // the members are linearised once in it [s]
 static const double longest_step = 0.02;  // of the SDIRK method [s]
 static const double sdirk_gamma = 0.29289321881345248; // 1 − 1/√2
@@ -21,9 +21,11 @@ struct bough_error_estimate {
     bool lost; // a member could not be linearised
     // reconstruction of the inputs
     int n_point;            // valid entries of the two below
-    double time[POINTS];    // newest first [s]
-    double *value[POINTS];  // (n_input) inputs there
-    bough_signal curve;     // (n_input) through them
+    double time[PAST];      // synchronisation points before the step, newest first [s]
+    double *value[PAST];    // (n_input) inputs there
+    bough_signal curve;     // (n_input) through them and the step's end
+    int *vector;            // (n_input) first of the up to three inputs that form a vector
+    double *size;           // (n_input) of a vector's first: its largest norm so far
     // the error
     double *error;      // (n_state) ε
     double *input_worst; // (n_input) largest |P (C ε + D υ)|
@@ -34,6 +36,7 @@ struct bough_error_estimate {
     // scratch
     double *x;       // (n_state)
     double *outside; // (n_input) δ at a time
+    double *seen;    // (n_input)
 };
 
 // -- building -------------------------------------------------------------------------------------
@@ -42,14 +45,29 @@ static bool take(bough_error_estimate *e, bough_arena *arena) {
     const bough_assembly *a = e->assembly;
     size_t n = (size_t)a->n_state, n_input = (size_t)a->n_input;
     e->defect = bough_arena_doubles(arena, BATCH * 4 * n_input);
-    for (int p = 0; p < POINTS; p++) e->value[p] = bough_arena_doubles(arena, n_input);
+    for (int p = 0; p < PAST; p++) e->value[p] = bough_arena_doubles(arena, n_input);
     e->curve = bough_port_signal(arena, a->n_input);
     e->error = bough_arena_doubles(arena, n);
     e->input_worst = bough_arena_doubles(arena, n_input);
+    e->vector = bough_arena_take(arena, n_input * sizeof *e->vector);
+    e->size = bough_arena_doubles(arena, n_input);
     e->at = bough_arena_doubles(arena, n);
     e->x = bough_arena_doubles(arena, n);
     e->outside = bough_arena_doubles(arena, n_input);
+    e->seen = bough_arena_doubles(arena, n_input);
     return !bough_arena_exhausted(arena);
+}
+
+static void find_vectors(bough_error_estimate *e) {
+    const bough_assembly *a = e->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+            bool continues = j > a->input_offset[i] && a->source[j] == a->source[j - 1] + 1 &&
+                             a->source_member[j] == a->source_member[j - 1] &&
+                             j - e->vector[j - 1] < 3;
+            e->vector[j] = continues ? e->vector[j - 1] : j;
+        }
+    }
 }
 
 bough_status bough_error_estimate_create(bough_arena *arena, const bough_coupling *c,
@@ -58,6 +76,7 @@ bough_status bough_error_estimate_create(bough_arena *arena, const bough_couplin
     if (!e) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     e->assembly = c->assembly;
     if (!take(e, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    find_vectors(e);
     e->n_point = 1;
     e->time[0] = c->t1;
     memcpy(e->value[0], c->input, (size_t)c->assembly->n_input * sizeof(double));
@@ -70,20 +89,29 @@ bough_status bough_error_estimate_create(bough_arena *arena, const bough_couplin
 // The inputs as they turned out to be: the polynomial through the last synchronisation points, none
 // of them before a jump.
 static void reconstruct(bough_error_estimate *e, const bough_coupling *c) {
-    double *oldest = e->value[POINTS - 1];
-    if (c->restart) e->n_point = 1;
-    for (int p = POINTS - 1; p > 0; p--) {
+    int past = c->restart ? 1 : e->n_point;
+    double time[PAST + 1] = {c->t1};
+    const double *value[PAST + 1] = {c->input};
+    for (int p = 0; p < past; p++) {
+        time[p + 1] = e->time[p];
+        value[p + 1] = e->value[p];
+    }
+    e->curve.t0 = c->t0;
+    e->curve.t1 = c->t1;
+    bough_port_polynomial(&e->curve, 0, e->curve.n, past + 1, time, value);
+}
+
+// The end of the step becomes the last synchronisation point.
+static void remember(bough_error_estimate *e, const bough_coupling *c) {
+    double *oldest = e->value[PAST - 1];
+    for (int p = PAST - 1; p > 0; p--) {
         e->value[p] = e->value[p - 1];
         e->time[p] = e->time[p - 1];
     }
     e->value[0] = oldest;
     e->time[0] = c->t1;
     memcpy(oldest, c->input, (size_t)e->assembly->n_input * sizeof(double));
-    if (e->n_point < POINTS) e->n_point++;
-    e->curve.t0 = c->t0;
-    e->curve.t1 = c->t1;
-    bough_port_polynomial(&e->curve, 0, e->curve.n, e->n_point, e->time,
-                          (const double *const *)e->value);
+    e->n_point = c->restart ? 2 : e->n_point < PAST ? e->n_point + 1 : PAST;
 }
 
 static void keep_defects(bough_error_estimate *e, const bough_coupling *c) {
@@ -107,9 +135,67 @@ static void keep_defects(bough_error_estimate *e, const bough_coupling *c) {
 void bough_error_estimate_step(bough_error_estimate *e, const bough_coupling *c) {
     reconstruct(e, c);
     keep_defects(e, c);
+    remember(e, c);
     if (e->n_step == BATCH || c->t1 - e->start[0] >= longest_batch) {
         bough_error_estimate_finish(e, c);
     }
+}
+
+// -- of one step ----------------------------------------------------------------------------------
+
+// Squares of the vectors' norms: square (n_input), in a vector's first.
+static void square_norms(const bough_error_estimate *e, const double *x, double *square) {
+    for (int j = 0; j < e->assembly->n_input; j++) {
+        if (e->vector[j] == j) square[j] = 0;
+        square[e->vector[j]] += x[j] * x[j];
+    }
+}
+
+// Largest norm of a vector in x (n_input) relative to its size.
+static double worst_relative(bough_error_estimate *e, const double *x) {
+    double *square = e->outside, worst = 0;
+    square_norms(e, x, square);
+    for (int j = 0; j < e->assembly->n_input; j++) {
+        if (e->vector[j] != j || !(square[j] > 0)) continue;
+        double relative = sqrt(square[j]) / e->size[j];
+        worst = relative <= worst ? worst : relative; // a NaN wins
+    }
+    return worst;
+}
+
+// Largest relative difference of seen and reconstructed inputs at t.
+static double defect_near(bough_error_estimate *e, const bough_coupling *c, double t) {
+    const bough_assembly *a = e->assembly;
+    bough_signal_value(&e->curve, t, e->seen);
+    for (int i = 0; i < a->n_member; i++) {
+        bough_signal_value(&c->signal[i], t, e->outside + a->input_offset[i]);
+    }
+    for (int j = 0; j < a->n_input; j++) {
+        e->seen[j] = c->followed[j] ? 0 : e->outside[j] - e->seen[j];
+    }
+    return worst_relative(e, e->seen);
+}
+
+// Largest relative change over the step. After a start or a jump no curvature is known yet; a quarter
+// of the change stands in for it.
+static double change_over(bough_error_estimate *e, const bough_coupling *c) {
+    for (int j = 0; j < e->assembly->n_input; j++) {
+        e->seen[j] = c->followed[j] ? 0 : c->input[j] - e->value[0][j];
+    }
+    return worst_relative(e, e->seen);
+}
+
+double bough_error_estimate_defect(bough_error_estimate *e, const bough_coupling *c) {
+    square_norms(e, c->input, e->outside);
+    for (int j = 0; j < e->assembly->n_input; j++) {
+        if (e->vector[j] == j) e->size[j] = fmax(e->size[j], sqrt(e->outside[j]));
+    }
+    reconstruct(e, c);
+    double end = defect_near(e, c, c->t1);
+    double middle = defect_near(e, c, 0.5 * (c->t0 + c->t1));
+    if (!isfinite(end) || !isfinite(middle)) return HUGE_VAL;
+    bool first = c->restart || e->n_point == 1;
+    return fmax(fmax(end, middle), first ? 0.25 * change_over(e, c) : 0);
 }
 
 // -- propagation ----------------------------------------------------------------------------------

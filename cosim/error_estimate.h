@@ -24,6 +24,10 @@ typedef struct bough_error_estimate bough_error_estimate;
 bough_status bough_error_estimate_create(bough_arena *arena, const bough_coupling *c,
                                          bough_error_estimate **estimate);
 
+// The worst defect of a step just exchanged but not yet taken, at its middle and its end: of a vector
+// of up to three inputs relative to its largest norm so far [1].
+double bough_error_estimate_defect(bough_error_estimate *e, const bough_coupling *c);
+
 // Takes the defects of the step just exchanged; ends the batch when it is full.
 void bough_error_estimate_step(bough_error_estimate *e, const bough_coupling *c);
 

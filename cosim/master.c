@@ -59,6 +59,14 @@ static void judge(bough_master *m) {
     bough_stability_describe(m->assembly, &advice, options, m->macro_step, m->verdict);
 }
 
+// Order of the defects in the macro step.
+static int defect_order(const bough_scheme_options *o) {
+    const bough_scheme *scheme = bough_scheme_find(o->name);
+    if (scheme == &bough_scheme_ramp) return 2;
+    bool polynomial = scheme == &bough_scheme_extrapolated || scheme == &bough_scheme_iterated;
+    return polynomial ? o->order + 1 : 1;
+}
+
 bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
                                 bough_master **master) {
     bough_status status = check(def);
@@ -82,8 +90,12 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     if (bough_is_ok(&status) && m->scheme != &bough_scheme_monolithic) {
         status = bough_error_estimate_create(arena, m->coupling, &m->estimate);
     }
+    if (bough_is_ok(&status) && m->estimate && def->control.tolerance > 0) {
+        status = bough_step_control_create(arena, m->coupling, &def->control, m->macro_step,
+                                           defect_order(&def->scheme), &m->control);
+    }
     if (!bough_is_ok(&status)) return status;
-    judge(m);
+    if (!m->control) judge(m);
     *master = m;
     return status;
 }
@@ -148,6 +160,32 @@ static bough_status explain(const bough_master *m, bough_status cause) {
                       advice);
 }
 
+// One macro step: predict, exchange, advance, correct, as the scheme orders them.
+static bough_status take_step(bough_master *m) {
+    bough_status status = m->scheme->step(m->coupling);
+    if (bough_is_ok(&status)) bough_coupling_exchange(m->coupling);
+    return status;
+}
+
+// The same under step control: taken back and repeated with shorter steps until it stands.
+static bough_status take_controlled_step(bough_master *m) {
+    bough_step_control *control = m->control;
+    bough_coupling *c = m->coupling;
+    double to = c->t1;
+    bough_step_control_save(control, c);
+    for (;;) {
+        c->t1 = bough_step_control_end(control, c->t0, to);
+        bough_status status = take_step(m);
+        bool good = bough_is_ok(&status);
+        if (!good && bough_step_control_exhausted(control)) return status;
+        double error = good ? bough_error_estimate_defect(m->estimate, c) : HUGE_VAL;
+        bool shortest = bough_step_control_exhausted(control);
+        if (bough_step_control_accept(control, error, c->t1 - c->t0)) return status;
+        if (shortest) return status; // for the monitor to tell
+        bough_step_control_restore(control, c);
+    }
+}
+
 bough_status bough_step(bough_master *m) {
     bough_coupling *c = m->coupling;
     c->t0 = m->time;
@@ -156,9 +194,8 @@ bough_status bough_step(bough_master *m) {
     bough_status status = sample_loads(m, &c->restart);
     if (!bough_is_ok(&status)) return status;
 
-    status = m->scheme->step(c); // predict, exchange, advance, correct: as the scheme orders them
+    status = m->control ? take_controlled_step(m) : take_step(m);
     if (!bough_is_ok(&status)) return explain(m, status);
-    bough_coupling_exchange(c);
 
     status = bough_monitor_step(m->monitor, c);
     if (!bough_is_ok(&status)) return status;

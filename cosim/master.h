@@ -6,6 +6,7 @@
 #include "cosim/error_estimate.h"
 #include "cosim/monitor.h"
 #include "cosim/stability.h"
+#include "cosim/step_control.h"
 
 // Loads that arrive at their own rate: sample() is called at multiples of the period, between
 // steps, and sets the loads inside the subsystems for [t, t_next].
@@ -19,7 +20,8 @@ typedef struct bough_sampled_load {
 typedef struct bough_master_def {
     bough_assembly_def assembly;
     bough_scheme_options scheme;
-    double macro_step; // H [s]
+    double macro_step; // H, the longest [s]
+    bough_step_control_def control; // shorter ones by error; tolerance 0: none
     double duration;   // [s]; the run starts at time 0
     int n_load;
     const bough_sampled_load *load; // (n_load), copied
@@ -40,6 +42,7 @@ typedef struct bough_master {
     bough_coupling *coupling;
     bough_monitor *monitor;
     bough_error_estimate *estimate; // NULL: the scheme makes no coupling error
+    bough_step_control *control;    // NULL: fixed steps
     int n_load;
     bough_sampled_load *load; // (n_load)
     long *load_every;         // (n_load) macro steps per period

@@ -51,7 +51,7 @@ typedef struct ramp {
     int *pivot;     // (n_lead)
     double theta; // of the present step
     double final; // after the damped first steps
-    int damped;   // steps still to be damped
+    double damped; // steps that begin before are damped [s]
     bool chosen;  // θ is final
     bool repays;  // impulses
 } ramp;
@@ -143,6 +143,7 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     c->owed = bough_arena_doubles(arena, (size_t)a->n_input);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    r->damped = -HUGE_VAL;
     r->chosen = c->options.theta > 0;
     r->theta = r->final = r->chosen ? c->options.theta : 0.5;
     c->scheme_data = r;
@@ -448,12 +449,9 @@ static bough_status choose_weight(bough_coupling *c) {
 }
 
 // The trapezoidal rule never forgets a light body's start, so its first step is damped.
-enum { FIRST_STEPS = 1 };
-
 static bough_status predict_damped(bough_coupling *c) {
     ramp *r = c->scheme_data;
-    r->theta = r->damped > 0 ? 1 : r->final;
-    if (r->damped > 0) r->damped--;
+    r->theta = c->t0 < r->damped ? 1 : r->final;
     return predict(c);
 }
 
@@ -465,7 +463,7 @@ static bough_status choose_theta(bough_coupling *c) {
     if (!r->chosen && c->interface_ratio > light_interface) {
         status = choose_weight(c);
         if (!bough_is_ok(&status)) return status;
-        r->damped = FIRST_STEPS;
+        r->damped = c->t1;
         status = predict_damped(c);
     }
     r->chosen = true;

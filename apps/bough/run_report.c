@@ -75,6 +75,18 @@ static void write_size(bough_summary *s, const bough_run *run) {
     bough_summary_integer(s, "channels", run->channels.count);
 }
 
+static void write_control(bough_summary *s, const bough_run *run) {
+    const bough_step_control *control = run->simulation->master->control;
+    if (!control) return;
+    bough_summary_object(s, "step_control");
+    bough_summary_number(s, "tolerance", control->tolerance);
+    bough_summary_integer(s, "accepted", control->accepted);
+    bough_summary_integer(s, "rejected", control->rejected);
+    bough_summary_integer(s, "forced", control->forced);
+    bough_summary_number(s, "shortest", control->shortest);
+    bough_summary_end(s);
+}
+
 static void write_accuracy(bough_summary *s, const bough_run *run) {
     const bough_master *m = run->simulation->master;
     bough_coupling_report report = bough_monitor_report(m->monitor, m->coupling);
@@ -147,6 +159,7 @@ bough_status bough_run_summarise(const bough_run *run) {
     write_method(&s, run);
     write_cost(&s, run);
     write_size(&s, run);
+    write_control(&s, run);
     write_accuracy(&s, run);
     write_interfaces(&s, run);
     write_estimates(&s, run);

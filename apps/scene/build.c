@@ -451,6 +451,7 @@ static bough_status build_master(builder *b) {
                                         b->connection};
     def.scheme = scheme_options(b->scene);
     def.macro_step = sim->macro_step;
+    def.control = (bough_step_control_def){sim->step_control.tolerance, sim->step_control.min};
     def.duration = sim->duration;
     def.event = b->event;
     def.n_event = b->n_event;

@@ -74,6 +74,12 @@ typedef struct bough_scene_output {
     double frames;   // between stored shapes [s]; 0: none
 } bough_scene_output;
 
+typedef struct bough_scene_step_control {
+    const bough_node *node;
+    double tolerance; // 0: fixed steps
+    double min;       // [s]
+} bough_scene_step_control;
+
 typedef enum bough_scene_initial {
     BOUGH_SCENE_UNDEFORMED,
     BOUGH_SCENE_IN_EQUILIBRIUM, // under the loads at time 0
@@ -83,6 +89,7 @@ typedef struct bough_scene_simulation {
     const bough_node *node;
     double duration;   // [s], a multiple of the macro step
     double macro_step; // [s]
+    bough_scene_step_control step_control;
     int initial;       // bough_scene_initial: how the rods and joints start
     bough_scene_coupling coupling;
     bough_scene_solver master, micro;

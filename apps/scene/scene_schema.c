@@ -287,12 +287,26 @@ static const bough_key output_keys[] = {
 };
 static const bough_schema output_schema = {SCHEMA("the output", bough_scene_output, output_keys)};
 
+#define AT(member) .offset = offsetof(bough_scene_step_control, member)
+static const bough_key step_control_keys[] = {
+    {.name = "tolerance", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0",
+     AT(tolerance), .help = "of what a port turned out to be against what it was told, relative to "
+                            "its largest value so far; 0: fixed steps"},
+    {.name = "min", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
+     .fallback = "0.1 ms", AT(min), .help = "shortest macro step"},
+};
+#undef AT
+static const bough_schema step_control_schema = {
+    SCHEMA("the step control", bough_scene_step_control, step_control_keys)};
+
 #define AT(member) .offset = offsetof(bough_scene_simulation, member)
 static const bough_key simulation_keys[] = {
     {.name = "duration", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .required = true, AT(duration), .help = "simulated time, a multiple of the macro step"},
     {.name = "macro_step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .required = true, AT(macro_step), .help = "time between exchanges"},
+    {.name = "step_control", .kind = BOUGH_KEY_MAPPING, .of = &step_control_schema,
+     AT(step_control), .help = "halves of the macro step, and their halves, where the coupling errs"},
     {.name = "initial", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("undeformed", "equilibrium"),
      .fallback = "undeformed", AT(initial),
      .help = "start as the scene says, or from equilibrium with the loads at time 0; a joint with a "

@@ -1,0 +1,49 @@
+// Macro-step control: each span between two synchronisation points of the fixed grid (where loads are
+// sampled, events lie and results are recorded) is cut into 2ⁿ equal macro steps. A step whose defects
+// exceed the tolerance is taken back, with all that members and coupling had stored, and halved; where
+// they fall well below, the steps become twice as long again. Halves and doubles keep the sub-solvers'
+// and the estimate's factors, and the same results for any number of threads.
+#ifndef BOUGH_COSIM_STEP_CONTROL_H
+#define BOUGH_COSIM_STEP_CONTROL_H
+
+#include "cosim/coupling.h"
+
+typedef struct bough_step_control_def {
+    double tolerance; // of the defects, relative to the largest value of their port so far; 0: fixed
+    double least;     // shortest macro step [s]
+} bough_step_control_def;
+
+typedef struct bough_step_control {
+    double tolerance, easy; // below `easy` the steps may be twice as long
+    int most;               // levels
+    int level, part;        // the next step is the part-th of 2^level of the span
+    double from, to;        // the span [s]
+    long accepted, rejected;
+    long forced;            // accepted above the tolerance, because it was the shortest
+    double shortest;        // step accepted [s]
+    // copies at the start of the step
+    void **member;          // (n_member)
+    double *array;          // of the coupling
+    double past_time[BOUGH_HISTORY];
+    int n_past;
+} bough_step_control;
+
+// `order`: of the defects in the macro step. Takes the memory for the copies from the arena.
+bough_status bough_step_control_create(bough_arena *arena, const bough_coupling *c,
+                                       const bough_step_control_def *def, double macro_step,
+                                       int order, bough_step_control **control);
+
+// End of the next step of a span that ends at `to` and, for its first step, begins at `from` [s].
+double bough_step_control_end(bough_step_control *s, double from, double to);
+
+void bough_step_control_save(bough_step_control *s, bough_coupling *c);
+void bough_step_control_restore(bough_step_control *s, bough_coupling *c);
+
+// Whether the step of that length stands; if not, the next are shorter. A step that failed has an
+// infinite error and never stands.
+bool bough_step_control_accept(bough_step_control *s, double error, double length);
+
+// Whether a step cannot become shorter.
+bool bough_step_control_exhausted(const bough_step_control *s);
+
+#endif
