@@ -4,15 +4,15 @@
 #include <math.h>
 #include <string.h>
 
-// What the second correction of a step may be of the first: the step is taken below `contracting`,
-// and the next one longer by `growth` below `easy`.
-static const double contracting = 0.5, easy = 0.1, growth = 8, shrink = 0.2;
+// What the second correction of a step may be of the first, and what it should be: it goes with the
+// square of γ, or worse. γ grows and shrinks by these factors at most, after a refusal by `cautious`.
+static const double contracting = 0.5, aim = 0.2, growth = 8, shrink = 0.1, cautious = 1.5;
 
 static const double shortest = 1e-9;  // γ below which there is no hope [s]
 static const double rounding = 1e-6; // changes that only rounding keeps from contracting
 
 bough_equilibrium_def bough_equilibrium_def_default(void) {
-    return (bough_equilibrium_def){.step = 0.1, .tolerance = 1e-10, .steps = 300};
+    return (bough_equilibrium_def){.step = 0.1, .tolerance = 1e-10, .steps = 1000};
 }
 
 typedef struct search {
@@ -78,6 +78,7 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_arrow *arrow,
         size_t size = (size_t)a->member[i]->n_state * sizeof(double);
         memcpy(s.scale + a->state_offset[i], a->member[i]->scale, size);
     }
+    double most = growth;
     while (report->steps < def->steps && s.gamma > shortest && find_rate(&s, state)) {
         double contraction = step(&s, state, report);
         bool last = s.gamma >= BOUGH_EQUILIBRIUM_LONGEST;
@@ -85,13 +86,13 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_arrow *arrow,
         if (report->change < def->tolerance) contraction = 0; // but for rounding
         if (last && report->change < rounding && !(contraction < contracting)) return bough_ok();
         if (last && report->change < def->tolerance) return bough_ok();
-        if (!(contraction < contracting)) {
-            s.gamma *= shrink;
-            continue;
-        }
+        bool refused = !(contraction < contracting);
+        most = refused ? cautious : fmin(growth, most * cautious);
+        s.gamma *= fmin(most, fmax(shrink, sqrt(aim / (contraction + DBL_MIN))));
+        s.gamma = fmin(s.gamma, BOUGH_EQUILIBRIUM_LONGEST);
+        if (refused) continue;
         for (int k = 0; k < s.n; k++) state[k] = s.trial[k] + s.second[k];
         if (def->calm) def->calm(def->self, state);
-        if (contraction < easy) s.gamma = fmin(growth * s.gamma, BOUGH_EQUILIBRIUM_LONGEST);
     }
     return bough_fail(BOUGH_FAILED, "no equilibrium found in %d steps", report->steps);
 }

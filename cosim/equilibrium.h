@@ -19,7 +19,7 @@ typedef struct bough_equilibrium_def {
     void (*calm)(void *self, double *state);
 } bough_equilibrium_def;
 
-// Time 0, 0.1 s, 1e-10, 300 steps.
+// Time 0, 0.1 s, 1e-10, 1000 steps.
 bough_equilibrium_def bough_equilibrium_def_default(void);
 
 enum { BOUGH_EQUILIBRIUM_LONGEST = 30 }; // γ of the last steps [s]; beyond, rounding grows

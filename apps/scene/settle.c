@@ -129,8 +129,8 @@ typedef struct settler {
     double time;
 } settler;
 
-// Joints rest but for those held, and the rods ride on them: without the vibration that the
-// search's steps would follow.
+// Joints rest but for those held, and the rods ride on them. Where something turns the search must
+// not follow the vibration: Coriolis forces lead it astray.
 static void calm(void *self, double *state) {
     const settler *x = self;
     const bough_simulation *s = x->simulation;
@@ -151,6 +151,13 @@ static void calm(void *self, double *state) {
     }
 }
 
+static bool turns(const bough_arrow *arrow, const bough_tree *tree, const double *state) {
+    for (int i = 0; i < arrow->n_held; i++) {
+        if (arrow->held[i] >= tree->n_q && state[arrow->held[i]] != 0) return true;
+    }
+    return false;
+}
+
 static bough_status settle_members(bough_arena *arena, bough_simulation *s,
                                    const bough_assembly *assembly, double time,
                                    bough_settling *settling) {
@@ -168,8 +175,8 @@ static bough_status settle_members(bough_arena *arena, bough_simulation *s,
     bough_tree_prescribe(s->tree, time, state);
     settler self = {s, arrow, time};
     def.self = &self;
-    def.calm = calm;
     calm(&self, state);
+    if (turns(arrow, s->tree, state)) def.calm = calm;
     return s->aero ? settle_in_air(arena, s, arrow, &def, state, settling)
                    : settle(arena, s, arrow, &def, state, settling);
 }
