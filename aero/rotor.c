@@ -494,17 +494,26 @@ static void sum_rotor(const bough_rotor *rotor, const bough_rotor_motion *motion
     }
 }
 
+// A parallel region of one thread would take memory.
 static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *motion,
                           bough_rotor_data *data) {
     int n = rotor->n_blade * rotor->n_station;
-#pragma omp parallel for schedule(static) num_threads(data->threads) if (data->threads > 1)
-    for (int k = 0; k < n; k++) move_station(rotor, motion, k, data);
+    if (data->threads > 1) {
+#pragma omp parallel for schedule(static) num_threads(data->threads)
+        for (int k = 0; k < n; k++) move_station(rotor, motion, k, data);
+    } else {
+        for (int k = 0; k < n; k++) move_station(rotor, motion, k, data);
+    }
 }
 
 static void load_stations(const bough_rotor *rotor, const disk *d, bough_rotor_data *data) {
     int n = rotor->n_blade * rotor->n_station;
-#pragma omp parallel for schedule(static) num_threads(data->threads) if (data->threads > 1)
-    for (int k = 0; k < n; k++) load_station(rotor, d, k, data);
+    if (data->threads > 1) {
+#pragma omp parallel for schedule(static) num_threads(data->threads)
+        for (int k = 0; k < n; k++) load_station(rotor, d, k, data);
+    } else {
+        for (int k = 0; k < n; k++) load_station(rotor, d, k, data);
+    }
 }
 
 void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,

@@ -37,6 +37,7 @@ typedef struct bough_coupling {
     // the step to take, set by the master
     double t0, t1; // [s]
     bool restart;  // a load jumped at t0: integrators start anew
+    bool refactor; // the members' Newton factors are not the scheme's any more
 
     // by bough_coupling_exchange: at the end of the last step
     double *output; // (n_output) of all members at their current states

@@ -132,7 +132,7 @@ static void keep_defects(bough_error_estimate *e, const bough_coupling *c) {
     e->n_step++;
 }
 
-void bough_error_estimate_step(bough_error_estimate *e, const bough_coupling *c) {
+void bough_error_estimate_step(bough_error_estimate *e, bough_coupling *c) {
     reconstruct(e, c);
     keep_defects(e, c);
     remember(e, c);
@@ -246,7 +246,8 @@ static bool propagate(bough_error_estimate *e, const bough_coupling *c, int step
     return true;
 }
 
-void bough_error_estimate_finish(bough_error_estimate *e, const bough_coupling *c) {
+void bough_error_estimate_finish(bough_error_estimate *e, bough_coupling *c) {
+    c->refactor = true;
     for (int k = 0; k < e->n_step && !e->lost; k++) e->lost = !propagate(e, c, k);
     if (e->n_step > 0) e->batches++;
     e->n_step = 0;

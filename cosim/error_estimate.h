@@ -29,11 +29,11 @@ bough_status bough_error_estimate_create(bough_arena *arena, const bough_couplin
 double bough_error_estimate_defect(bough_error_estimate *e, const bough_coupling *c);
 
 // Takes the defects of the step just exchanged; ends the batch when it is full.
-void bough_error_estimate_step(bough_error_estimate *e, const bough_coupling *c);
+void bough_error_estimate_step(bough_error_estimate *e, bough_coupling *c);
 
 // Ends the batch: ε is then that at the current synchronisation point. It uses the members' Newton
 // factors.
-void bough_error_estimate_finish(bough_error_estimate *e, const bough_coupling *c);
+void bough_error_estimate_finish(bough_error_estimate *e, bough_coupling *c);
 
 // Batches ended so far: ε is new when it has changed.
 long bough_error_estimate_batches(const bough_error_estimate *e);

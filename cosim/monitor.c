@@ -270,7 +270,8 @@ static bough_status lost(const bough_monitor *m, const bough_coupling *c, int in
 }
 
 // The eigenvalues about the current state tell a coupling that is unstable from one that is coarse.
-static bough_status confirm(const bough_monitor *m, const bough_coupling *c, int interface) {
+static bough_status confirm(const bough_monitor *m, bough_coupling *c, int interface) {
+    c->refactor = true;
     bough_scheme_options options = c->options;
     bough_stability_advice advice = {0};
     double h = c->t1 - c->t0;
@@ -313,7 +314,7 @@ static bough_status judge_balance(const bough_monitor *m, const bough_coupling *
 }
 
 // Windows are of at least 64 steps and a second.
-static bough_status judge_error(bough_monitor *m, const bough_coupling *c) {
+static bough_status judge_error(bough_monitor *m, bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     m->window_steps++;
     m->window_time += c->t1 - c->t0;
@@ -336,7 +337,7 @@ static bough_status judge_error(bough_monitor *m, const bough_coupling *c) {
 
 // -- the step -------------------------------------------------------------------------------------
 
-bough_status bough_monitor_step(bough_monitor *m, const bough_coupling *c) {
+bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c) {
     bough_status status = check_finite(m, c);
     if (!bough_is_ok(&status)) return status;
     m->steps++;

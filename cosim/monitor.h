@@ -20,7 +20,7 @@ bough_status bough_monitor_create(bough_arena *arena, const bough_scheme *scheme
                                   const bough_coupling *coupling, bough_monitor **monitor);
 
 // Judges the step just taken: BOUGH_FAILED with a diagnosis when the run has become meaningless.
-bough_status bough_monitor_step(bough_monitor *m, const bough_coupling *c);
+bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c);
 
 bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_coupling *c);
 
