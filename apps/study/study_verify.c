@@ -75,8 +75,8 @@ static void read_set(bough_schema_reader *r, const bough_node *node, void *field
 static const char quantity_form[] =
     "'tip x|y|z|ux|uy|uz|rx|ry|rz', 'frequency N', 'damping N', 'growth', 'CHANNEL at TIME', "
     "'largest CHANNEL', 'smallest CHANNEL', 'mean CHANNEL from TIME', 'amplitude CHANNEL from TIME' "
-    "once per turn of the rotor, 'inflow states|failures|spread' or 'drift of energy|momentum|"
-    "angular momentum|strain energy from TIME'";
+    "once per turn of the rotor, 'inflow states|failures|spread', 'drift of energy|momentum|"
+    "angular momentum|strain energy from TIME', 'evaluations per step'";
 
 static int word_index(const char *word, const char *const *words, int n) {
     for (int i = 0; i < n; i++) {
@@ -117,6 +117,12 @@ static bool parse_drift(const char *phrase, bough_verify_quantity *q) {
     q->what = BOUGH_VERIFY_DRIFT;
     q->index = word_index(word, names, BOUGH_VERIFY_INVARIANTS);
     return q->index >= 0 && bough_quantity(from + 6, BOUGH_TIME, &q->time, why);
+}
+
+static bool parse_work(const char *phrase, bough_verify_quantity *q) {
+    if (strcmp(phrase, "evaluations per step") != 0) return false;
+    q->what = BOUGH_VERIFY_WORK;
+    return true;
 }
 
 static bool parse_inflow(const char *phrase, bough_verify_quantity *q) {
@@ -163,7 +169,7 @@ static void check_expect(bough_schema_reader *r, void *item) {
     if (e->diagnosis) return;
     bough_verify_quantity *q = &e->quantity;
     if (!parse_tip(e->name, q) && !parse_mode(e->name, q) && !parse_drift(e->name, q) &&
-        !parse_inflow(e->name, q) && !parse_wave(r->arena, e->name, q) &&
+        !parse_work(e->name, q) && !parse_inflow(e->name, q) && !parse_wave(r->arena, e->name, q) &&
         !parse_channel(r->arena, e->name, q)) {
         bough_schema_error(r, e->node, "quantity", "expected %s, got '%.80s'", quantity_form,
                            e->name);

@@ -25,6 +25,7 @@ typedef enum bough_verify_what {
     BOUGH_VERIFY_SMALLEST,  // "smallest CHANNEL"
     BOUGH_VERIFY_DRIFT,     // "drift of energy from 2 s", the largest, as a share of the
                             // largest value, of the energy without gravity's
+    BOUGH_VERIFY_WORK,      // "evaluations per step" of the tree's equations, all of them
     BOUGH_VERIFY_MEAN,      // "mean CHANNEL from 2 s"
     BOUGH_VERIFY_AMPLITUDE, // "amplitude CHANNEL from 2 s", once per turn of the rotor
     BOUGH_VERIFY_INFLOW_QUANTITY, // "inflow states", "inflow failures", "inflow spread"

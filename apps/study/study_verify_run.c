@@ -325,6 +325,18 @@ static void look(run *r) {
     }
 }
 
+// What a step of the tree takes.
+static void count_work(run *r) {
+    bough_statistics work;
+    const bough_subsystem *trunk = &r->simulation->trunk;
+    trunk->ops->statistics(trunk->self, &work);
+    for (int i = 0; i < r->x->n_expect; i++) {
+        const bough_verify_expect *e = &r->x->expect[i];
+        if (e->diagnosis || e->quantity.what != BOUGH_VERIFY_WORK || work.steps == 0) continue;
+        r->value[i] = (double)work.derivatives / (double)work.steps;
+    }
+}
+
 static bough_status do_run(bough_arena *arena, const bough_verify_case *x, bough_simulation *s,
                            bool (*stop)(void), double *value) {
     run r = {.x = x, .simulation = s, .value = value};
@@ -335,6 +347,7 @@ static bough_status do_run(bough_arena *arena, const bough_verify_case *x, bough
         status = bough_step(s->master);
         if (bough_is_ok(&status)) look(&r);
     }
+    count_work(&r);
     return status;
 }
 
