@@ -9,17 +9,17 @@ enum { MOST_ITERATIONS = 30 };
 static const double near_enough = 0.1; // of the mechanism's extent, and in equations of directions
 static const double satisfied = 1e-10;
 
-// The largest distance of a link from the ground's origin or another closure's end [m]
+// The largest distance from a closure's end to the ground's origin, a link or another closure [m]
 static double extent(const bough_tree *tree, const bough_tree_data *d) {
-    double largest = 0;
     bough_vec3 at = bough_tree_frame_pose(d, bough_loops_end(tree, 0, 0)).position;
+    double largest = bough_norm(at);
     for (int i = 0; i < tree->n_links; i++)
         largest = fmax(largest, bough_norm(bough_sub(d->pose[i].position, at)));
     for (int c = 0; c < tree->n_closures; c++) {
         bough_vec3 x = bough_tree_frame_pose(d, bough_loops_end(tree, c, 0)).position;
         largest = fmax(largest, bough_norm(bough_sub(x, at)));
     }
-    return largest > 0 ? largest : 1;
+    return largest > 1e-6 ? largest : 1;
 }
 
 // The row that is violated most, lengths measured by `size`.

@@ -375,6 +375,30 @@ static void closed_trees_fulfil_the_contract(void **state) {
     }
 }
 
+// A crank turned at 1 rad/s: the kinetic energy is constant, so the drive balances the weight of the
+// uprights at half their height and the coupler, 2 g cos φ.
+static void driven_cranks_take_the_torque_of_the_weights(void **state) {
+    (void)state;
+    windows w;
+    make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
+    w.body[0].motion = (bough_motion_def){.given = true, .speed = true, .from = 1, .to = 1};
+    w.body[1].speeds[0] = w.body[2].speeds[0] = 0; // they follow
+    for (int solver = BOUGH_TREE_IDA; solver <= BOUGH_TREE_RADAU; solver++) {
+        fixture f = build(&w.def, solver, 1e-9);
+        check_near(f.s.state[4], 1, 1e-9, 0);
+        for (int k = 1; k <= 10; k++) {
+            double t = 0.1 * k, acceleration[MOST];
+            advance(&f, t, k == 1);
+            check_closed(&f, 1e-7);
+            check_near(f.s.state[0], t, 0, 1e-14);
+            check_near(f.s.state[1], t, 0, 1e-7);
+            bough_tree_forward_dynamics(f.tree, f.data, t, NULL, acceleration);
+            check_near(f.data->drive[0], -2 * 9.81 * sin(t), 0, 1e-5);
+        }
+        bough_arena_destroy(f.arena);
+    }
+}
+
 // Off the closures the state comes back to them within a few time constants.
 static void violations_decay(void **state) {
     (void)state;
@@ -460,6 +484,7 @@ int main(void) {
         cmocka_unit_test(windows_follow_their_one_equation),
         cmocka_unit_test(windows_pass_the_singular_position),
         cmocka_unit_test(closed_trees_fulfil_the_contract),
+        cmocka_unit_test(driven_cranks_take_the_torque_of_the_weights),
         cmocka_unit_test(violations_decay),
         cmocka_unit_test(loops_are_assembled_from_near),
         cmocka_unit_test(what_cannot_be_closed_is_refused),
