@@ -3,6 +3,7 @@
 #include "core/base.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { ROW = 8 }; // doubles per knot: one cache line
 
@@ -130,5 +131,74 @@ bough_coefficients bough_polar_at(const bough_polar *polar, double alpha) {
         knot++;
     const double *r = polar->row + ROW * knot;
     double d = x - r[0];
-    return (bough_coefficients){r[1] + d * r[4], r[2] + d * r[5], r[3] + d * r[6]};
+    bough_coefficients k = {r[1] + d * r[4], r[2] + d * r[5], r[3] + d * r[6]};
+    if (!polar->curve) return k;
+    const double *c = polar->curve + 6 * knot;
+    return (bough_coefficients){k.lift + d * d * (c[0] + d * c[1]),
+                                k.drag + d * d * (c[2] + d * c[3]),
+                                k.moment + d * d * (c[4] + d * c[5])};
+}
+
+// -- blending and smoothing -----------------------------------------------------------------------
+
+static int ascending(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+bough_status bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b,
+                               double share, bough_polar *polar) {
+    int most = a->n + b->n, n = 0;
+    double *angle = bough_arena_doubles(arena, (size_t)most);
+    double *row = bough_arena_doubles(arena, 4 * (size_t)most);
+    if (!angle || !row) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for a polar.");
+    for (int k = 0; k < most; k++)
+        angle[k] = k < a->n ? a->row[ROW * k] : remainder(b->row[ROW * (k - a->n)], turn);
+    qsort(angle, (size_t)most, sizeof *angle, ascending);
+    for (int k = 0; k < most && angle[k] < angle[0] + turn - 1e-9; k++) {
+        if (n > 0 && angle[k] * (180 / BOUGH_PI) - row[4 * (n - 1)] < 1e-9) continue;
+        bough_coefficients x = bough_polar_at(a, angle[k]), y = bough_polar_at(b, angle[k]);
+        double *to = row + 4 * n++;
+        to[0] = angle[k] * (180 / BOUGH_PI);
+        to[1] = (1 - share) * x.lift + share * y.lift;
+        to[2] = (1 - share) * x.drag + share * y.drag;
+        to[3] = (1 - share) * x.moment + share * y.moment;
+    }
+    bough_polar_def def = {.name = "blend", .n = n, .row = row};
+    return bough_polar_build(arena, &def, polar);
+}
+
+// The slope at a knot between chords of slopes s0, s1 over h0, h1: none at an extremum, else the
+// harmonic mean weighted towards the shorter side.
+static double monotone_slope(double h0, double s0, double h1, double s1) {
+    if (!(s0 * s1 > 0)) return 0;
+    double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
+    return (w0 + w1) / (w0 / s0 + w1 / s1);
+}
+
+bough_status bough_polar_smoothen(bough_arena *arena, bough_polar *polar) {
+    int last = polar->n - 1;
+    double *curve = bough_arena_doubles(arena, 6 * (size_t)polar->n);
+    double *slope = bough_arena_doubles(arena, 3 * (size_t)polar->n);
+    if (!curve || !slope) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for a polar.");
+    for (int k = 0; k <= last; k++) {
+        const double *here = polar->row + ROW * (k % last); // the turn is closed: last is first
+        const double *before = polar->row + ROW * (k % last == 0 ? last - 1 : k % last - 1);
+        for (int c = 0; c < 3; c++)
+            slope[3 * k + c] =
+                monotone_slope(before[ROW] - before[0], before[4 + c], here[ROW] - here[0],
+                               here[4 + c]);
+    }
+    for (int k = 0; k < last; k++) {
+        double *row = polar->row + ROW * k, h = row[ROW] - row[0];
+        for (int c = 0; c < 3; c++) {
+            double chord = row[4 + c], s0 = slope[3 * k + c], s1 = slope[3 * (k + 1) + c];
+            curve[6 * k + 2 * c] = (3 * chord - 2 * s0 - s1) / h;
+            curve[6 * k + 2 * c + 1] = (s0 + s1 - 2 * chord) / (h * h);
+            row[4 + c] = s0;
+        }
+    }
+    polar->curve = curve;
+    fit_attached(polar);
+    return bough_ok();
 }

@@ -1,5 +1,5 @@
 // Airfoil coefficients: tables over the angle of attack, periodic over a full turn, interpolated
-// linearly as the field's reference codes do.
+// linearly as the field's reference codes do, or by monotone cubics.
 #ifndef BOUGH_AERO_POLAR_H
 #define BOUGH_AERO_POLAR_H
 
@@ -20,7 +20,8 @@ typedef struct bough_coefficients {
 
 typedef struct bough_polar {
     int n;             // knots, both ends of the turn included
-    const double *row; // (n × 8): α [rad], Cl, Cd, Cm, their slopes to the next knot, unused
+    double *row; // (n × 8): α [rad], Cl, Cd, Cm, their slopes to the next knot, unused
+    const double *curve; // (n × 6) of each: quadratic and cubic coefficient; NULL: linear
     int n_bin;
     double bin_per_rad;
     const int *bin; // (n_bin): last knot at or below the bin's start
@@ -30,6 +31,14 @@ typedef struct bough_polar {
 } bough_polar;
 
 bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar);
+
+// The mixture (1 − share)·a + share·b of two linear polars, exactly: with the knots of both.
+bough_status bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b,
+                               double share, bough_polar *polar);
+
+// Makes a linear polar smooth: continuous slopes, between knots as monotone as the knots are.
+// F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984).
+bough_status bough_polar_smoothen(bough_arena *arena, bough_polar *polar);
 
 // The coefficients at any finite angle of attack [rad].
 bough_coefficients bough_polar_at(const bough_polar *polar, double alpha);

@@ -96,8 +96,13 @@ static bough_status check_station(const bough_rotor_def *def, int j) {
     if (!(s->chord > 0)) {
         return bough_fail(BOUGH_INVALID, "Aero station %d: the chord must be positive.", j + 1);
     }
-    if (s->polar < 0 || s->polar >= def->n_polar) {
-        return bough_fail(BOUGH_INVALID, "Aero station %d: there is no polar %d.", j + 1, s->polar);
+    const int wanted[2] = {s->polar, s->share > 0 ? s->second : s->polar};
+    for (int i = 0; i < 2; i++) {
+        if (wanted[i] >= 0 && wanted[i] < def->n_polar) continue;
+        return bough_fail(BOUGH_INVALID, "Aero station %d: there is no polar %d.", j + 1, wanted[i]);
+    }
+    if (!(s->share >= 0 && s->share <= 1)) {
+        return bough_fail(BOUGH_INVALID, "Aero station %d: a polar's share is from 0 to 1.", j + 1);
     }
     return bough_ok();
 }
@@ -158,7 +163,7 @@ static void place_station(const bough_rotor_def *def, const bough_station_def *f
     double radius = def->hub_radius + from->span;
     double tip = def->hub_radius + def->station[def->n_station - 1].span;
     *to = (station_model){
-        .polar = polar + from->polar,
+        .polar = polar,
         .vertex = i,
         .weight = w,
         .section = bough_mat3_product(bough_mat3_transpose(structure), twisted(from->twist)),
@@ -214,16 +219,28 @@ static void compress_rows(const bough_rotor *rotor, const double *dense) {
     }
 }
 
+// The def's polars and, after them, one for each station that has a mixture.
 static bough_status build_polars(bough_arena *arena, const bough_rotor_def *def,
                                  const bough_polar **polars) {
-    bough_polar *polar = bough_arena_take(arena, (size_t)def->n_polar * sizeof *polar);
+    int most = def->n_polar + def->n_station;
+    bough_polar *polar = bough_arena_take(arena, (size_t)most * sizeof *polar);
     if (!polar) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the polars.");
     *polars = polar;
-    for (int i = 0; i < def->n_polar; i++) {
-        bough_status status = bough_polar_build(arena, def->polar + i, polar + i);
-        if (!bough_is_ok(&status)) return status;
+    bough_status status = bough_ok();
+    for (int i = 0; i < most && bough_is_ok(&status); i++) {
+        if (i < def->n_polar) {
+            status = bough_polar_build(arena, def->polar + i, polar + i);
+            continue;
+        }
+        const bough_station_def *s = def->station + i - def->n_polar;
+        if (s->share > 0) {
+            status = bough_polar_blend(arena, polar + s->polar, polar + s->second, s->share,
+                                       polar + i);
+        }
     }
-    return bough_ok();
+    for (int i = 0; i < most && def->smooth_polars && bough_is_ok(&status); i++)
+        if (polar[i].n > 0) status = bough_polar_smoothen(arena, polar + i);
+    return status;
 }
 
 static bough_status prepare_stall(bough_arena *arena, bough_rotor *rotor) {
@@ -265,7 +282,9 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
     if (bough_is_ok(&status)) status = bough_tower_build(arena, &def->tower, &rotor->tower);
     if (!bough_is_ok(&status)) return status;
     for (int j = 0; j < def->n_station; j++) {
-        place_station(def, def->station + j, polar, station + j);
+        const bough_station_def *from = def->station + j;
+        place_station(def, from, polar + (from->share > 0 ? def->n_polar + j : from->polar),
+                      station + j);
     }
     fill_mapping(def, dense);
     compress_rows(rotor, dense);

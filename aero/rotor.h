@@ -26,6 +26,8 @@ typedef struct bough_station_def {
     double centre_x; // aerodynamic centre in blade-root axes, flapwise [m]
     double centre_y; //   and edgewise [m]; its z is that of the reference axis at `span`
     int polar;       // index into the rotor's polars
+    int second;      // of a second polar …
+    double share;    // … and its share in the coefficients, 0 to 1
 } bough_station_def;
 
 typedef struct bough_rotor_def {
@@ -42,6 +44,7 @@ typedef struct bough_rotor_def {
 
     int n_polar;
     const bough_polar_def *polar; // (n_polar)
+    bool smooth_polars;           // monotone cubics in place of straight lines
     int n_station;
     const bough_station_def *station; // (n_station) increasing in span, the last one is the tip
 

@@ -76,6 +76,71 @@ static void gap_is_bridged(void **state) {
     bough_arena_destroy(arena);
 }
 
+// Knots stay, slopes are continuous, and nothing overshoots; across the seam of the turn too. A
+// smooth function is met to the third order at least.
+static void smooth_polars_are_monotone_and_smooth(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    for (int p = 0; p < 8; p++) {
+        const bough_polar_def *def = nrel5mw_polars + p;
+        bough_polar polar = build(arena, def);
+        bough_status status = bough_polar_smoothen(arena, &polar);
+        assert_int_equal(status.code, BOUGH_OK);
+        for (int i = 0; i + 1 < def->n; i++) {
+            const double *r = def->row + 4 * i;
+            double a = r[0] * degree, b = r[4] * degree, h = 1e-7;
+            check_near(bough_polar_at(&polar, a).lift, r[1], 1e-11, 1e-11);
+            double left = (bough_polar_at(&polar, a).lift - bough_polar_at(&polar, a - h).lift) / h;
+            double right = (bough_polar_at(&polar, a + h).lift - bough_polar_at(&polar, a).lift) / h;
+            check_near(left, right, 1e-4, 1e-3);
+            double low = fmin(r[1], r[5]), high = fmax(r[1], r[5]);
+            for (int k = 1; k < 20; k++) {
+                double lift = bough_polar_at(&polar, a + (b - a) * k / 20).lift;
+                assert_true(lift >= low - 1e-12 && lift <= high + 1e-12);
+            }
+        }
+    }
+    double error[2];
+    for (int fine = 0; fine < 2; fine++) {
+        int n = fine ? 73 : 37;
+        double row[4 * 73] = {0};
+        error[fine] = 0;
+        for (int i = 0; i < n; i++) {
+            row[4 * i] = -180 + 360. * i / (n - 1);
+            row[4 * i + 1] = sin(row[4 * i] * degree);
+        }
+        bough_polar polar = build(arena, &(bough_polar_def){"sine", n, row});
+        bough_polar_smoothen(arena, &polar);
+        for (double a = -1; a < 1; a += 0.01) // away from the extrema, where monotony costs order
+            error[fine] = fmax(error[fine], fabs(bough_polar_at(&polar, a).lift - sin(a)));
+    }
+    assert_true(error[0] < 1e-3 && error[1] < error[0] / 6);
+    bough_arena_destroy(arena);
+}
+
+// A mixture is the mixture of the coefficients at any angle, whatever the knots.
+static void blends_are_exact(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    const double gap[] = {-90, 1, 0.1, 0, 90, 3, 0, 0.2};
+    bough_polar a = build(arena, nrel5mw_polars + 2), b = build(arena, nrel5mw_polars + 7), mixed;
+    bough_polar c = build(arena, &(bough_polar_def){"gap", 2, gap});
+    for (int i = 0; i < 3; i++) {
+        const bough_polar *other = i == 1 ? &c : &b;
+        double share = i == 2 ? 1 : 0.3;
+        bough_status status = bough_polar_blend(arena, &a, other, share, &mixed);
+        assert_int_equal(status.code, BOUGH_OK);
+        for (double x = -3.5; x < 3.5; x += 0.0317) {
+            bough_coefficients p = bough_polar_at(&a, x), q = bough_polar_at(other, x);
+            bough_coefficients m = bough_polar_at(&mixed, x);
+            check_near(m.lift, (1 - share) * p.lift + share * q.lift, 1e-9, 1e-9);
+            check_near(m.drag, (1 - share) * p.drag + share * q.drag, 1e-9, 1e-9);
+            check_near(m.moment, (1 - share) * p.moment + share * q.moment, 1e-9, 1e-9);
+        }
+    }
+    bough_arena_destroy(arena);
+}
+
 static void bad_tables_are_refused(void **state) {
     (void)state;
     const double backward[] = {0, 1, 0, 0, -1, 1, 0, 0}, wide[] = {-180, 1, 0, 0, 181, 1, 0, 0};
@@ -95,7 +160,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(knots_are_reproduced),   cmocka_unit_test(interpolation_is_linear),
         cmocka_unit_test(turns_repeat),           cmocka_unit_test(gap_is_bridged),
-        cmocka_unit_test(bad_tables_are_refused),
+        cmocka_unit_test(smooth_polars_are_monotone_and_smooth),
+        cmocka_unit_test(blends_are_exact),       cmocka_unit_test(bad_tables_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -94,8 +94,14 @@ static bool take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
     }
     for (int k = 0; k < aero->blade.n_station; k++) {
         const bough_scene_aero_station *from = &aero->blade.station[k];
-        t->station[k] = (bough_station_def){from->span,  from->chord, from->twist,
-                                            from->ac[0], from->ac[1], from->polar};
+        t->station[k] = (bough_station_def){.span = from->span,
+                                            .chord = from->chord,
+                                            .twist = from->twist,
+                                            .centre_x = from->ac[0],
+                                            .centre_y = from->ac[1],
+                                            .polar = from->polar,
+                                            .second = from->second,
+                                            .share = from->share};
     }
     for (int i = 0; i < aero->tower.n_height; i++) {
         t->drag[i] = aero->tower.drag[aero->tower.n_drag == 1 ? 0 : i];
@@ -166,6 +172,7 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     if (aero->induction.inflow == BOUGH_SCENE_OYE) {
         def.inflow = (bough_inflow_def){BOUGH_INFLOW_OYE, aero->induction.inflow_time};
     }
+    def.smooth_polars = aero->interpolation == BOUGH_SCENE_POLARS_SMOOTH;
     def.pitching_moment = aero->pitching_moment;
     if (aero->dynamic_stall == BOUGH_SCENE_STALL_HGM) def.stall = BOUGH_STALL_HGM;
     def.wind = wind_def(&aero->wind, l->simulation->scene->simulation.duration);

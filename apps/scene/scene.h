@@ -315,6 +315,9 @@ typedef struct bough_scene_aero_station {
     double chord; // [m]
     const char *polar_name;
     int polar; // index
+    const char *second_name; // NULL: the polar alone
+    int second;
+    double share; // of the second
 } bough_scene_aero_station;
 
 typedef struct bough_scene_aero_blade {
@@ -351,6 +354,10 @@ typedef enum bough_scene_high_thrust {
 typedef enum bough_scene_hold { BOUGH_SCENE_LINEAR, BOUGH_SCENE_CONSTANT } bough_scene_hold;
 typedef enum bough_scene_skew { BOUGH_SCENE_SKEW_NONE, BOUGH_SCENE_PITT_PETERS } bough_scene_skew;
 typedef enum bough_scene_inflow { BOUGH_SCENE_EQUILIBRIUM, BOUGH_SCENE_OYE } bough_scene_inflow;
+typedef enum bough_scene_interpolation {
+    BOUGH_SCENE_POLARS_LINEAR,
+    BOUGH_SCENE_POLARS_SMOOTH,
+} bough_scene_interpolation;
 typedef enum bough_scene_stall { BOUGH_SCENE_STALL_NONE, BOUGH_SCENE_STALL_HGM } bough_scene_stall;
 typedef enum bough_scene_wind_kind {
     BOUGH_SCENE_WIND_UNIFORM,
@@ -421,6 +428,7 @@ typedef struct bough_scene_aero {
     bough_scene_tower tower;
     double hub_radius; // [m]
     int dynamic_stall; // bough_scene_stall
+    int interpolation; // bough_scene_interpolation
     int n_node;        // blade elements whose channels are recorded, of every blade
     double *nodes;     // (n_node) numbers from 1
     bool pitching_moment;

@@ -358,23 +358,36 @@ static void link_modes(bough_schema_reader *r, bough_scene *s) {
 // -- aerodynamics
 // -----------------------------------------------------------------------------------
 
-static void link_polar(bough_schema_reader *r, bough_scene *s, const char *const *names, int i) {
+// The index of the polar that a station's key names; −1 after an error.
+static int find_polar(bough_schema_reader *r, bough_scene *s, const char *const *names, int i,
+                      const char *key, const char *name) {
     const bough_scene_polars *polars = &s->aero.polars;
-    bough_scene_aero_station *station = &s->aero.blade.station[i];
-    station->polar = -1;
-    if (station->polar_name == NULL) return;
-    for (int k = 0; k < polars->n_polar && station->polar < 0; k++) {
-        if (names[k] != NULL && strcmp(names[k], station->polar_name) == 0) station->polar = k;
+    for (int k = 0; k < polars->n_polar; k++) {
+        if (names[k] != NULL && strcmp(names[k], name) == 0) return k;
     }
-    if (station->polar >= 0) return;
     bool compact = bough_node_find(s->aero.blade.node, "stations")->kind == BOUGH_MAPPING;
     at(r, "stations%s[%d]", compact ? ".rows" : "", i);
     int n = r->errors->dropped > 0 ? 0 : polars->n_polar;
-    const char *near = bough_nearest(station->polar_name, names, n);
-    bough_schema_error(r, value_of(station->node, "polar"), "polar",
-                       "the polars file has no '%.48s'%s%s%s", station->polar_name,
+    const char *near = bough_nearest(name, names, n);
+    bough_schema_error(r, value_of(s->aero.blade.station[i].node, key), key,
+                       "the polars file has no '%.48s'%s%s%s", name,
                        near == NULL ? "" : " (did you mean '", near == NULL ? "" : near,
                        near == NULL ? "" : "'?)");
+    return -1;
+}
+
+static void link_polar(bough_schema_reader *r, bough_scene *s, const char *const *names, int i) {
+    bough_scene_aero_station *station = &s->aero.blade.station[i];
+    station->polar = station->second = -1;
+    if (station->polar_name != NULL) {
+        station->polar = find_polar(r, s, names, i, "polar", station->polar_name);
+    }
+    if (station->second_name != NULL) {
+        station->second = find_polar(r, s, names, i, "blend", station->second_name);
+    } else if (station->share > 0) {
+        at(r, "stations[%d]", i);
+        bough_schema_error(r, station->node, "share", "needs 'blend', which names a second polar");
+    }
 }
 
 static void link_polars(bough_schema_reader *r, bough_scene *s) {

@@ -480,6 +480,10 @@ static const bough_key aero_station_keys[] = {
      .required = true, AT(chord), .help = "chord"},
     {.name = "polar", .kind = BOUGH_KEY_TEXT, .required = true, AT(polar_name),
      .help = "name of a polar in the polars file"},
+    {.name = "blend", .kind = BOUGH_KEY_TEXT, AT(second_name),
+     .help = "name of a second polar, with which the first is mixed"},
+    {.name = "share", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0", AT(share),
+     .help = "of the second polar, as by the place or the thickness between two airfoils"},
 };
 #undef AT
 static const bough_schema aero_station_schema = {
@@ -651,6 +655,9 @@ static const bough_key aero_keys[] = {
      .fallback = "none", AT(dynamic_stall),
      .help = "how lift follows the angle of attack: at once, or by the Beddoes-Leishman model of "
              "Hansen, Gaunaa and Madsen"},
+    {.name = "interpolation", .kind = BOUGH_KEY_CHOICE,
+     .choices = CHOICES("linear", "monotone-cubic"), .fallback = "linear", AT(interpolation),
+     .help = "of the polars between their rows"},
     {.name = "pitching_moment", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(pitching_moment),
      .help = "the sections' moment coefficients count"},
     {.name = "nodes", .kind = BOUGH_KEY_NUMBERS, .range = ">= 1", .count = 1, AT(nodes),

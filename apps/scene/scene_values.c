@@ -276,6 +276,20 @@ void bough_scene_check_aero_blade(bough_schema_reader *r, void *item) {
     }
 }
 
+// A turn later the coefficients are the same.
+static void check_turn(bough_schema_reader *r, const bough_scene_polar *p) {
+    const bough_scene_polar_row *a = &p->row[0], *b = &p->row[p->n_row - 1];
+    const double first[3] = {a->cl, a->cd, a->cm}, last[3] = {b->cl, b->cd, b->cm};
+    static const char *const names[3] = {"cl", "cd", "cm"};
+    for (int c = 0; c < 3; c++) {
+        if (!(fabs(first[c] - last[c]) > 1e-6)) continue;
+        size_t length = push_row(r, p->node, "table", p->n_row - 1);
+        bough_schema_error(r, b->node, names[c], "at 180 deg must be as at -180 deg, %g, got %g",
+                           first[c], last[c]);
+        r->path[length] = '\0';
+    }
+}
+
 void bough_scene_check_polar(bough_schema_reader *r, void *item) {
     static const sequence angles = {"table", "alpha", -BOUGH_PI, BOUGH_PI / 180, "deg"};
     const bough_scene_polar *p = item;
@@ -285,6 +299,7 @@ void bough_scene_check_polar(bough_schema_reader *r, void *item) {
         good = check_next(r, &angles, p->node, p->row[i].node, i, before, p->row[i].alpha) && good;
         before = p->row[i].alpha;
     }
+    if (good && fabs(before - BOUGH_PI) <= 1e-6) check_turn(r, p);
     if (!good || fabs(before - BOUGH_PI) <= 1e-6) return;
     size_t length = push_row(r, p->node, "table", p->n_row - 1);
     bough_schema_error(r, bough_node_find(p->row[p->n_row - 1].node, "alpha"), "alpha",
