@@ -7,7 +7,7 @@ static const char text[] =
     "title: Falling bar\nkind: timing\nrepeat: 3\n"
     "scene: " BOUGH_SOURCE_DIR "/apps/beams/rubber-bar.yaml\n"
     "reference: {simulation.coupling.scheme: monolithic, simulation.macro_step: 1 ms}\n"
-    "grid:\n  simulation.macro_step: [1 ms, 4 ms]\n  simulation.threads: [1, 2]\n"
+    "grid:\n  simulation.micro.rtol: [1e-4, 1e-5]\n  simulation.macro_step: [1 ms, 4 ms]\n"
     "common: {simulation.coupling.scheme: monolithic, simulation.duration: 20 ms,"
     " simulation.output.interval: 4 ms}\n"
     "measures:\n  - {name: tip, channels: [barTipX, barTipZ]}\n";
