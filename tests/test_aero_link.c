@@ -293,6 +293,37 @@ static void loads_are_sampled_at_their_rate(void **context) {
     close_turbine(&f);
 }
 
+// From the saved row samples repeat to the bit, and at once the loads are those of before.
+static void samples_repeat_from_saved(void **context) {
+    (void)context;
+    static const char *const sets[] = {"aero.dynamic_stall=hgm", "aero.induction.inflow=oye", NULL};
+    fixture f = open_turbine(sets);
+    for (int k = 0; k < 4; k++) sample(&f, k * period, (k + 1) * period);
+    int n = bough_aero_link_size(f.s->aero);
+    double *saved = calloc((size_t)n, sizeof *saved);
+    signal before[2], first[2];
+    bough_aero_link_save(f.s->aero, saved);
+    for (int b = 0; b < 2; b++) before[b] = signal_of(&f, b);
+    for (int round = 0; round < 2; round++) {
+        sample(&f, 4 * period, 5 * period);
+        sample(&f, 5 * period, 6 * period);
+        for (int b = 0; b < 2; b++) {
+            signal now = signal_of(&f, b);
+            if (round == 0) first[b] = now;
+            assert_memory_equal(now.value, first[b].value, (size_t)now.n * sizeof(double));
+            assert_memory_equal(now.rate, first[b].rate, (size_t)now.n * sizeof(double));
+        }
+        bough_aero_link_restore(f.s->aero, saved);
+        for (int b = 0; b < 2; b++) {
+            signal now = signal_of(&f, b);
+            assert_memory_equal(now.value, before[b].value, (size_t)now.n * sizeof(double));
+            check_near(now.start, 3 * period, 0, 0);
+        }
+    }
+    free(saved);
+    close_turbine(&f);
+}
+
 static void blades_want_one_mesh(void **context) {
     (void)context;
     static const char *const sets[] = {"bodies[4].rod.segments=10", NULL};
@@ -316,6 +347,7 @@ int main(void) {
         cmocka_unit_test(linear_hold_is_continuous_and_exact_for_linear_loads),
         cmocka_unit_test(constant_hold_takes_each_sample_at_once),
         cmocka_unit_test(loads_are_sampled_at_their_rate),
+        cmocka_unit_test(samples_repeat_from_saved),
         cmocka_unit_test(blades_want_one_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

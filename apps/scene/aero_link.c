@@ -9,6 +9,7 @@
 typedef struct blade_loads {
     const bough_beam *beam;
     double *sampled, *reached; // (n)
+    double *value, *rate;      // (n) of the signal that the body has, since the last sample
     int n;
 } blade_loads;
 
@@ -22,6 +23,7 @@ struct bough_aero_link {
     blade_loads *blade; // (n_blade)
     double *fresh;      // (6 × vertices) work
     double factor;      // of the ramp at the last sample
+    double start;       // of the signals, the last sample's time [s]
     bool started;
 };
 
@@ -49,6 +51,8 @@ static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
         blade->n = blade->beam->port < 0 ? 6 : 6 * l->n_vertex;
         blade->sampled = bough_arena_doubles(arena, (size_t)blade->n);
         blade->reached = bough_arena_doubles(arena, (size_t)blade->n);
+        blade->value = bough_arena_doubles(arena, (size_t)blade->n);
+        blade->rate = bough_arena_doubles(arena, (size_t)blade->n);
     }
     return bough_ok();
 }
@@ -284,30 +288,35 @@ static void load_signal(const bough_aero_link *l, const blade_loads *blade, int 
     *rate = (2 * fresh - blade->sampled[k] - *value) / span;
 }
 
-static void apply(bough_aero_link *l, int b, double t, double span) {
+// Hands a blade's signal to its body.
+static void put(bough_aero_link *l, int b) {
     blade_loads *blade = &l->blade[b];
-    double wrench[6], wrench_rate[6];
-    bough_rod_loads *rod = blade->beam->port < 0 ? NULL : bough_beam_loads(blade->beam);
-    int stride = rod == NULL ? 0 : bough_beam_mesh(blade->beam)->stride;
+    if (blade->beam->port < 0) {
+        bough_tree_set_wrench(l->simulation->tree, blade->beam->marker, l->start, blade->value,
+                              blade->rate);
+        return;
+    }
+    bough_rod_loads *rod = bough_beam_loads(blade->beam);
+    int stride = bough_beam_mesh(blade->beam)->stride;
+    for (int k = 0; k < blade->n; k++) {
+        int at = k / l->n_vertex * stride + k % l->n_vertex;
+        rod->value[at] = blade->value[k];
+        rod->rate[at] = blade->rate[k];
+    }
+    rod->start = l->start;
+}
+
+static void apply(bough_aero_link *l, int b, double span) {
+    blade_loads *blade = &l->blade[b];
     for (int k = 0; k < blade->n; k++) {
         double value, rate;
         load_signal(l, blade, k, span, &value, &rate);
-        if (rod == NULL) {
-            wrench[k] = value;
-            wrench_rate[k] = rate;
-        } else {
-            int at = k / l->n_vertex * stride + k % l->n_vertex;
-            rod->value[at] = value;
-            rod->rate[at] = rate;
-        }
+        blade->value[k] = value;
+        blade->rate[k] = rate;
         blade->reached[k] = value + span * rate;
         blade->sampled[k] = l->fresh[k];
     }
-    if (rod != NULL) {
-        rod->start = t;
-    } else {
-        bough_tree_set_wrench(l->simulation->tree, blade->beam->marker, t, wrench, wrench_rate);
-    }
+    put(l, b);
 }
 
 static bough_status sample(void *self, double t, double t_next, bool *jumped) {
@@ -316,9 +325,10 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     gather_motion(l, t);
     bough_rotor_sample(l->rotor, &l->motion, &l->data);
     l->factor = ramp_factor(aero->ramp, t);
+    l->start = t;
     for (int b = 0; b < l->n_blade; b++) {
         blade_fresh(l, b);
-        apply(l, b, t, t_next - t);
+        apply(l, b, t_next - t);
     }
     *jumped = !l->started || aero->hold == BOUGH_SCENE_CONSTANT;
     l->started = true;
@@ -341,4 +351,43 @@ bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor) {
     *factor = link->factor;
     return &link->data;
+}
+
+// -- saving ---------------------------------------------------------------------------------------
+
+enum { SCALARS = 3, PER_LOAD = 4 };
+
+int bough_aero_link_size(const bough_aero_link *link) {
+    int n = SCALARS + bough_rotor_memory_size(link->rotor);
+    for (int b = 0; b < link->n_blade; b++)
+        n += PER_LOAD * link->blade[b].n;
+    return n;
+}
+
+void bough_aero_link_save(const bough_aero_link *link, double *to) {
+    *to++ = link->factor;
+    *to++ = link->start;
+    *to++ = link->started;
+    for (int b = 0; b < link->n_blade; b++) {
+        const blade_loads *blade = &link->blade[b];
+        const double *const part[PER_LOAD] = {blade->sampled, blade->reached, blade->value,
+                                              blade->rate};
+        for (int i = 0; i < PER_LOAD; i++, to += blade->n)
+            memcpy(to, part[i], (size_t)blade->n * sizeof *to);
+    }
+    bough_rotor_save(link->rotor, &link->data, to);
+}
+
+void bough_aero_link_restore(bough_aero_link *link, const double *from) {
+    link->factor = *from++;
+    link->start = *from++;
+    link->started = *from++ != 0;
+    for (int b = 0; b < link->n_blade; b++) {
+        const blade_loads *blade = &link->blade[b];
+        double *const part[PER_LOAD] = {blade->sampled, blade->reached, blade->value, blade->rate};
+        for (int i = 0; i < PER_LOAD; i++, from += blade->n)
+            memcpy(part[i], from, (size_t)blade->n * sizeof *from);
+        if (link->started) put(link, b);
+    }
+    bough_rotor_restore(link->rotor, from, &link->data);
 }

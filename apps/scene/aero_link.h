@@ -18,6 +18,12 @@ bough_sampled_load bough_aero_link_load(bough_aero_link *link);
 // Samples the blades as they are and holds the loads from t on; the next sample starts anew.
 void bough_aero_link_hold(bough_aero_link *link, double t);
 
+// All that the next samples depend on as a row of numbers, and the loads that the bodies have, for
+// schemes that repeat samples: restoring puts the loads back. The results below are not in it.
+int bough_aero_link_size(const bough_aero_link *link);
+void bough_aero_link_save(const bough_aero_link *link, double *to);
+void bough_aero_link_restore(bough_aero_link *link, const double *from);
+
 // Results of the last sample, with the ramp's factor at its time.
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor);
 
