@@ -154,6 +154,8 @@ checks() {
     has ../stdout '^joints: 3 moving, 0 fixed$'
     expect 0 check "$scenes/springs.yaml"
     has ../stdout '^body slider: .* 1 degree of freedom, spring 50 N/m, damper 0.5 N s/m, stops 3000 N/m'
+    expect 0 check "$scenes/motion.yaml"
+    has ../stdout '^body table: .* 1 degree of freedom, its angle prescribed'
     expect 0 check "$mechanisms/elastic-pendulum.yaml"
     has ../stdout '^springs: 1$'
     expect 0 check "$bar" --set 'simulation.coupling={scheme: extrapolated, order: 2}' \

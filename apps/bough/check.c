@@ -62,6 +62,10 @@ static void print_joint(const bough_scene *scene, int body) {
     if (word != NULL) printf(" %s %c", word, "xyz"[joint->axis]);
     if (joint->kind == BOUGH_SCENE_UNIVERSAL) printf(" and %c", "xyz"[joint->second_axis]);
     printf(" on %s: %d degree%s of freedom", body_name(scene, joint->parent), n, plural(n));
+    if (joint->motion.node != NULL) {
+        const char *what = joint->kind == BOUGH_SCENE_REVOLUTE ? "angle" : "position";
+        printf(", its %s prescribed", joint->motion.speed ? "speed" : what);
+    }
     print_spring(joint);
 }
 
@@ -125,6 +129,7 @@ static void print_bodies(const bough_simulation *s) {
     printf("states: %d\n", s->master->assembly->n_state);
     printf("loads: %d\n", s->scene->n_load);
     if (s->scene->n_spring > 0) printf("springs: %d\n", s->scene->n_spring);
+    if (s->scene->n_bushing > 0) printf("bushings: %d\n", s->scene->n_bushing);
     if (tree->n_closures > 0) print_closures(tree);
 }
 
