@@ -43,6 +43,16 @@ typedef struct bough_statistics {
     long steps, failed_steps, derivatives, jacobians, factorisations, iterations, restarts;
 } bough_statistics;
 
+static inline void bough_statistics_add(bough_statistics *sum, const bough_statistics *part) {
+    sum->steps += part->steps;
+    sum->failed_steps += part->failed_steps;
+    sum->derivatives += part->derivatives;
+    sum->jacobians += part->jacobians;
+    sum->factorisations += part->factorisations;
+    sum->iterations += part->iterations;
+    sum->restarts += part->restarts;
+}
+
 typedef struct bough_subsystem_ops {
     // -- model exchange: no effect on the current time and state ------------------------------
 

@@ -184,11 +184,5 @@ bough_status bough_micro_alpha_advance(bough_micro_alpha *micro, double t, doubl
 }
 
 void bough_micro_alpha_statistics(const bough_micro_alpha *micro, bough_statistics *sum) {
-    sum->steps += micro->sum.steps;
-    sum->failed_steps += micro->sum.failed_steps;
-    sum->derivatives += micro->sum.derivatives;
-    sum->jacobians += micro->sum.jacobians;
-    sum->factorisations += micro->sum.factorisations;
-    sum->iterations += micro->sum.iterations;
-    sum->restarts += micro->sum.restarts;
+    bough_statistics_add(sum, &micro->sum);
 }

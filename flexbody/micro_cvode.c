@@ -134,12 +134,8 @@ bough_status bough_micro_cvode_advance(bough_micro_cvode *micro, double t, doubl
 }
 
 void bough_micro_cvode_statistics(const bough_micro_cvode *micro, bough_statistics *sum) {
+    bough_statistics_add(sum, &micro->past);
     sum->jacobians += micro->newton.jacobians;
     sum->factorisations += micro->newton.factorisations;
-    sum->restarts += micro->past.restarts;
-    sum->steps += micro->past.steps;
-    sum->derivatives += micro->past.derivatives;
-    sum->failed_steps += micro->past.failed_steps;
-    sum->iterations += micro->past.iterations;
     if (micro->started) collect(micro, sum);
 }

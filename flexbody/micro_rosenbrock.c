@@ -197,10 +197,5 @@ bough_status bough_micro_rosenbrock_advance(bough_micro_rosenbrock *micro, doubl
 
 void bough_micro_rosenbrock_statistics(const bough_micro_rosenbrock *micro,
                                        bough_statistics *sum) {
-    sum->steps += micro->sum.steps;
-    sum->failed_steps += micro->sum.failed_steps;
-    sum->derivatives += micro->sum.derivatives;
-    sum->jacobians += micro->sum.jacobians;
-    sum->factorisations += micro->sum.factorisations;
-    sum->restarts += micro->sum.restarts;
+    bough_statistics_add(sum, &micro->sum);
 }

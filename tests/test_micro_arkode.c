@@ -1,129 +1,7 @@
 // ARKODE with a Newton solver of one's own, on a stiff linear system whose solution is known.
-#include "tests/check.h"
+#include "tests/stiff_modes.h"
 
-#include "core/linalg.h"
-#include "flexbody/micro_arkode.h"
-
-#include <stdlib.h>
-#include <string.h>
-
-enum { N = 3 };
-
-// ẏ = Q Λ (w(t) − Qᵀy) with Q orthogonal, w = (cos t, cos t, cos t): each mode follows the cosine
-// with its own rate.
-static const double rates[N] = {0.7, 40, 3000}; // Λ [1/s]
-static const double columns[N][N] = {{2.0 / 3, 2.0 / 3, 1.0 / 3},
-                                     {-2.0 / 3, 1.0 / 3, 2.0 / 3},
-                                     {1.0 / 3, -2.0 / 3, 2.0 / 3}};
-
-typedef struct problem {
-    bough_arena *arena;
-    bough_micro_arkode *micro;
-    double wall;   // f has no value beyond [s]
-    bool lasting;  // nor anywhere once it was asked for there
-    bool broken;
-    bool singular;
-    double latest; // time of an evaluation [s]
-    long derivatives, linearisations, factorisations, solutions;
-    double factor[N * N];
-    int pivot[N];
-} problem;
-
-static double mode(const double *y, int k) {
-    return columns[k][0] * y[0] + columns[k][1] * y[1] + columns[k][2] * y[2];
-}
-
-static bool derivative(void *self, double t, const double *y, double *rate) {
-    problem *p = self;
-    p->derivatives++;
-    p->latest = fmax(p->latest, t);
-    if (t > p->wall && isfinite(p->wall)) p->broken = p->lasting;
-    if (t > p->wall || p->broken) return false;
-    memset(rate, 0, N * sizeof *rate);
-    for (int k = 0; k < N; k++) {
-        double z = rates[k] * (cos(t) - mode(y, k));
-        for (int i = 0; i < N; i++) rate[i] += columns[k][i] * z;
-    }
-    return true;
-}
-
-static bool linearise(void *self, double t, const double *y) {
-    (void)y;
-    problem *p = self;
-    p->linearisations++;
-    return t <= p->wall;
-}
-
-static bool factor(void *self, double gamma) {
-    problem *p = self;
-    p->factorisations++;
-    if (p->singular) return false;
-    for (int i = 0; i < N; i++) {
-        for (int j = 0; j < N; j++) {
-            p->factor[N * j + i] = i == j;
-            for (int k = 0; k < N; k++) {
-                p->factor[N * j + i] += gamma * rates[k] * columns[k][i] * columns[k][j];
-            }
-        }
-    }
-    return bough_dense_factor(N, p->factor, p->pivot);
-}
-
-static void solve(void *self, double *x) {
-    problem *p = self;
-    p->solutions++;
-    bough_dense_solve(N, 1, p->factor, p->pivot, x);
-}
-
-static const double first[N] = {0.5, -1, 2}; // initial values of the modes
-
-static double exact_mode(double lambda, double start, double t) {
-    double square = lambda * lambda + 1, c = lambda * lambda / square, s = lambda / square;
-    return c * cos(t) + s * sin(t) + (start - c) * exp(-lambda * t);
-}
-
-static void exact(double t, double *y) {
-    memset(y, 0, N * sizeof *y);
-    for (int k = 0; k < N; k++) {
-        for (int i = 0; i < N; i++) y[i] += columns[k][i] * exact_mode(rates[k], first[k], t);
-    }
-}
-
-static problem *create(double rtol) {
-    static const double scale[N] = {1, 1, 1};
-    problem *p = calloc(1, sizeof *p);
-    assert_non_null(p);
-    p->arena = bough_arena_create();
-    p->wall = INFINITY;
-    bough_ode ode = {"stiff", N, p, derivative, linearise, factor, solve};
-    bough_status status = bough_micro_arkode_create(p->arena, &ode, scale, rtol, &p->micro);
-    assert_int_equal(status.code, BOUGH_OK);
-    return p;
-}
-
-static void destroy(problem *p) {
-    bough_arena_destroy(p->arena);
-    free(p);
-}
-
-static void advance(problem *p, double t, double t1, bool restart, double *y) {
-    bough_status status = bough_micro_arkode_advance(p->micro, t, t1, restart, y);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
-}
-
-static bough_statistics counts(const problem *p) {
-    bough_statistics sum = {0};
-    bough_micro_arkode_statistics(p->micro, &sum);
-    return sum;
-}
-
-static double error_at(const double *y, double t) {
-    double expected[N], largest = 0;
-    exact(t, expected);
-    for (int i = 0; i < N; i++) largest = fmax(largest, fabs(y[i] - expected[i]));
-    return largest;
-}
+static problem *create(double rtol) { return create_kind(BOUGH_MICRO_ARKODE_ESDIRK, rtol); }
 
 static double error_with(double rtol) {
     problem *p = create(rtol);
@@ -155,14 +33,10 @@ static void tolerance_is_relative_to_the_scale(void **context) {
     static const double scales[2][N] = {{1, 1, 1}, {1e-3, 1e-3, 1e-3}};
     double y[2][N];
     for (int k = 0; k < 2; k++) {
-        problem p = {.arena = bough_arena_create(), .wall = INFINITY};
-        bough_ode ode = {"stiff", N, &p, derivative, linearise, factor, solve};
-        bough_status status = bough_micro_arkode_create(p.arena, &ode, scales[k],
-                                                       k == 0 ? 1e-6 : 1e-3, &p.micro);
-        assert_int_equal(status.code, BOUGH_OK);
+        problem *p = create_scaled(BOUGH_MICRO_ARKODE_ESDIRK, scales[k], k == 0 ? 1e-6 : 1e-3);
         exact(0, y[k]);
-        advance(&p, 0, 1, true, y[k]);
-        bough_arena_destroy(p.arena);
+        advance(p, 0, 1, true, y[k]);
+        destroy(p);
     }
     for (int i = 0; i < N; i++) check_near(y[1][i], y[0][i], 1e-9, 1e-12);
 }
@@ -237,22 +111,22 @@ static void failure_names_body_time_and_solver(void **context) {
     exact(0, y);
     advance(p, 0, 0.2, true, y);
     p->wall = 0.5;
-    bough_status status = bough_micro_arkode_advance(p->micro, 0.2, 1, false, y);
+    bough_status status = try_advance(p, 0.2, 1, false, y);
     check_failure(&status, "t = 0.5 s", "no finite forces"); // ever smaller ones up to the wall
     exact(0.2, y);
     p->wall = 0.3;
     p->lasting = true;
-    status = bough_micro_arkode_advance(p->micro, 0.2, 1, true, y);
+    status = try_advance(p, 0.2, 1, true, y);
     check_failure(&status, "t = 0.2", "finite");
     p->broken = false;
     p->wall = 0;
     exact(0.25, y);
-    status = bough_micro_arkode_advance(p->micro, 0.25, 1, true, y);
+    status = try_advance(p, 0.25, 1, true, y);
     check_failure(&status, "t = 0.25 s", "finite");
     p->broken = false;
     p->wall = INFINITY;
     p->singular = true;
-    status = bough_micro_arkode_advance(p->micro, 0.25, 1, true, y);
+    status = try_advance(p, 0.25, 1, true, y);
     check_failure(&status, "t = 0.25 s", "Newton");
     p->singular = false; // and a restart brings it back
     exact(0.25, y);
@@ -280,7 +154,7 @@ static void statistics_add_up_over_restarts(void **context) {
     assert_int_equal(sum.iterations, p->solutions);
     assert_int_equal(sum.restarts, 2);
     bough_statistics twice = sum; // counts are added to what is there
-    bough_micro_arkode_statistics(p->micro, &twice);
+    add_counts(p, &twice);
     assert_int_equal(twice.steps, 2 * sum.steps);
     assert_int_equal(twice.failed_steps, 2 * sum.failed_steps);
     assert_int_equal(twice.restarts, 4);
