@@ -196,6 +196,12 @@ static void two_threads_take_no_memory(void **context) {
     count_steps(*context, "apps/turbine/runup.yaml", sets);
 }
 
+static void rods_that_carry_take_no_memory(void **context) {
+    if (!CAN_COUNT) skip();
+    const char *sets[] = {"simulation.duration=2 s", "simulation.threads=1", NULL};
+    count_steps(*context, "apps/turbine/land.yaml", sets);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_of_allocation_is_counted),
@@ -211,6 +217,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(monolithic_steps_take_no_memory, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(two_threads_take_no_memory, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(rods_that_carry_take_no_memory, scratch_make,
+                                        scratch_remove),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
