@@ -112,6 +112,22 @@ static void parked_turbine_stays_at_rest(void **context) {
     bough_arena_destroy(arena);
 }
 
+// With tower, yaw drive and drive train.
+static void turbine_on_its_tower_stays_at_rest(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[0].rod.segments=8", "bodies[4].rod.segments=8",
+                          "bodies[5].rod.segments=8", "bodies[6].rod.segments=8", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/turbine/parked.yaml", sets);
+    size_t n = (size_t)s->master->assembly->n_state;
+    double *before = bough_arena_doubles(arena, 2 * n), *after = before + n;
+    bough_settle_state(s->master->assembly, before);
+    for (int step = 0; step < 30; step++) scene_step(s);
+    bough_settle_state(s->master->assembly, after);
+    for (size_t k = 0; k < n; k++) check_near(after[k], before[k], 0, 1e-6);
+    bough_arena_destroy(arena);
+}
+
 // At the speed where load and air balance, only the tower excites.
 static void turning_rotor_starts_smoothly(void **context) {
     (void)context;
@@ -161,6 +177,7 @@ int main(void) {
         cmocka_unit_test(turning_bar_stretches),
         cmocka_unit_test(rod_alone_settles_where_its_own_statics_says),
         cmocka_unit_test(parked_turbine_stays_at_rest),
+        cmocka_unit_test(turbine_on_its_tower_stays_at_rest),
         cmocka_unit_test(turning_rotor_starts_smoothly),
         cmocka_unit_test(driven_free_rotor_has_none),
     };

@@ -74,6 +74,29 @@ static void gyroscope_nutates_and_precesses(void **context) {
     bough_arena_destroy(f.arena);
 }
 
+// A nearly massless cantilever of length L with a body at its end, its centre a further: flexibility
+// D and mass M of the end's deflection and turn, 1/ω² are the eigenvalues of D M.
+static void body_on_a_rod_swings(void **context) {
+    (void)context;
+    const char *sets[] = {"gravity=[0, 0, 0]", "bodies[0].rod.mass=[1e-6, 0, 0, 1e-9, 1e-9, 0]",
+                          NULL};
+    found f = modes_of("tests/scenes/tip-weight.yaml", sets, 5);
+    double l = 2, ei = 1000, ga = 1e5, m = 0.05, a = 0.1, j = 2e-3;
+    double d[3] = {l * l * l / (3 * ei) + l / ga, l * l / (2 * ei), l / ei};
+    double mass[3] = {m, m * a, j + m * a * a};
+    double trace = d[0] * mass[0] + 2 * d[1] * mass[1] + d[2] * mass[2];
+    double determinant = (d[0] * d[2] - d[1] * d[1]) * (mass[0] * mass[2] - mass[1] * mass[1]);
+    double largest = 0.5 * (trace + sqrt(trace * trace - 4 * determinant));
+    double torsion = l / 800 * 1e-3;
+    assert_int_equal(f.v.found, 5);
+    for (int k = 0; k < 5; k++) {
+        double square = k < 2 ? largest : k == 2 ? torsion : determinant / largest;
+        check_near(f.v.mode[k].frequency, 1 / (2 * BOUGH_PI * sqrt(square)), 1e-4, 0);
+        assert_true(f.v.mode[k].share[1] > 0.99);
+    }
+    bough_arena_destroy(f.arena);
+}
+
 #define HUB(motion)                                                                               \
     "bodies[2].joint={kind: revolute, parent: nacelle, axis: x, motion: " motion                  \
     ", placement: [move z 1.96256 m, rotate y 5 deg, move x -5.0191 m]}"
@@ -135,6 +158,25 @@ static void whirl_is_split_by_the_rotation(void **context) {
     bough_arena_destroy(f.arena);
 }
 
+// Reduced to their modes, the blades of a rotor on a rigid support keep patterns and frequencies.
+static void modal_blades_whirl_as_rods_do(void **context) {
+    (void)context;
+    const char *rods[] = {HUB("{speed: 6 rpm}"), CALM, COARSE, "aero.air_density=1e-9", NULL};
+    const char *modal[] = {HUB("{speed: 6 rpm}"), CALM, COARSE, "aero.air_density=1e-9",
+                           "bodies[3].fidelity=modal", "bodies[4].fidelity=modal",
+                           "bodies[5].fidelity=modal", NULL};
+    found a = modes_of(runup, rods, 6), b = modes_of(runup, modal, 6);
+    for (int k = 0; k < 6; k++) {
+        const bough_scene_mode *rod = &a.v.mode[k], *reduced = &b.v.mode[k];
+        check_near(reduced->frequency, rod->frequency, 1e-2, 0);
+        assert_int_equal(reduced->pattern, rod->pattern);
+        assert_int_equal(reduced->direction, rod->direction);
+        check_near(reduced->share[3], rod->share[3], 1e-2, 0);
+    }
+    bough_arena_destroy(a.arena);
+    bough_arena_destroy(b.arena);
+}
+
 // On a support that yaws and rolls the transformed system is the same at any azimuth; that of the
 // blades' own axes is not.
 static void azimuth_does_not_matter(void **context) {
@@ -171,6 +213,8 @@ int main(void) {
         cmocka_unit_test(damper_damps_the_pendulum),
         cmocka_unit_test(spherical_pendulum_swings_twice),
         cmocka_unit_test(gyroscope_nutates_and_precesses),
+        cmocka_unit_test(body_on_a_rod_swings),
+        cmocka_unit_test(modal_blades_whirl_as_rods_do),
         cmocka_unit_test(parked_blades_have_their_own_frequencies),
         cmocka_unit_test(whirl_is_split_by_the_rotation),
         cmocka_unit_test(azimuth_does_not_matter),

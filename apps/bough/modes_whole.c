@@ -50,6 +50,7 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
         for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
         putchar('\n');
     }
+    if (v->found < s->scene->modes.count) printf("no more modes found\n");
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
         if (m->growth <= unstable * 2 * BOUGH_PI * m->frequency) continue;

@@ -427,6 +427,10 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, double time, 
     v->spin = x.group.speed;
     v->frozen = is_frozen(s, &x.group);
     status = bough_modes_find(arena, x.arrow, &x.def, wanted, v->pair, &v->found);
+    while (status.code == BOUGH_FAILED && wanted > 1) { // the highest may be beyond rounding
+        wanted /= 2;
+        status = bough_modes_find(arena, x.arrow, &x.def, wanted, v->pair, &v->found);
+    }
     drop_free_motions(x.def.point, count, v);
     return bough_is_ok(&status) ? describe(arena, s, &x, v) : status;
 }
