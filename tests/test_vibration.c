@@ -56,6 +56,30 @@ static void spherical_pendulum_swings_twice(void **context) {
     bough_arena_destroy(f.arena);
 }
 
+// Two windows of four-bars hang: ω² = g ((N + 1)/2 + N)/((N + 1)/3 + N), and nothing else moves.
+static void closed_loops_swing_as_one(void **context) {
+    (void)context;
+    const char *sets[] = {"bodies[0].joint.speed=0", "bodies[0].joint.angle=180 deg",
+                          "bodies[1].joint.angle=180 deg", "bodies[2].joint.angle=180 deg",
+                          "bodies[3].joint.angle=-180 deg", "bodies[4].joint.angle=-180 deg", NULL};
+    found f = modes_of("apps/mechanisms/four-bar.yaml", sets, 6);
+    assert_int_equal(f.v.found, 1);
+    check_near(f.v.mode[0].frequency, sqrt(9.81 * 3.5 / 3) / (2 * BOUGH_PI), 1e-6, 0);
+    bough_arena_destroy(f.arena);
+}
+
+// Clamped and propped: β² √(EI/ρA)/2πL², β = 3.926602, in both planes; shear and inertia of the
+// sections lower it a little.
+static void propped_beam_vibrates_in_both_planes(void **context) {
+    (void)context;
+    const char *sets[] = {NULL};
+    found f = modes_of("tests/scenes/prop.yaml", sets, 3);
+    double exact = 3.926602 * 3.926602 * sqrt(1e5 / 2) / (2 * BOUGH_PI * 9);
+    for (int k = 0; k < 2; k++) check_near(f.v.mode[k].frequency, exact, 3e-3, 0);
+    assert_true(f.v.mode[2].frequency > 2 * exact);
+    bough_arena_destroy(f.arena);
+}
+
 // A disc that spins in two elastic gimbals: A λ² ± i C Ω λ + k = 0.
 static void gyroscope_nutates_and_precesses(void **context) {
     (void)context;
@@ -215,6 +239,8 @@ int main(void) {
         cmocka_unit_test(gyroscope_nutates_and_precesses),
         cmocka_unit_test(body_on_a_rod_swings),
         cmocka_unit_test(modal_blades_whirl_as_rods_do),
+        cmocka_unit_test(closed_loops_swing_as_one),
+        cmocka_unit_test(propped_beam_vibrates_in_both_planes),
         cmocka_unit_test(parked_blades_have_their_own_frequencies),
         cmocka_unit_test(whirl_is_split_by_the_rotation),
         cmocka_unit_test(azimuth_does_not_matter),

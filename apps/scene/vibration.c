@@ -404,11 +404,19 @@ static bough_status describe(bough_arena *arena, const bough_simulation *s, cons
     return bough_ok();
 }
 
-static void drop_free_motions(double point, int count, bough_vibration *v) {
+// Violations of closures decay at a rate of their own, which is no motion of the scene.
+static bool is_closure(const bough_tree *tree, const bough_eigen_pair *pair) {
+    double rate = 1 / tree->closure_time;
+    return tree->n_closures > 0 && hypot(pair->real + rate, pair->imaginary) < 1e-3 * rate;
+}
+
+static void drop_other_motions(const bough_tree *tree, double point, int count,
+                               bough_vibration *v) {
     int kept = 0;
     for (int k = 0; k < v->found && kept < count; k++) {
         double modulus = hypot(v->pair[k].real, v->pair[k].imaginary);
-        if (modulus > free_motion * point) v->pair[kept++] = v->pair[k];
+        bool moves = modulus > free_motion * point && !is_closure(tree, &v->pair[k]);
+        if (moves) v->pair[kept++] = v->pair[k];
     }
     v->found = kept;
 }
@@ -416,7 +424,7 @@ static void drop_free_motions(double point, int count, bough_vibration *v) {
 static bough_status solve(bough_arena *arena, bough_simulation *s, double time, int count,
                           bough_vibration *v) {
     solution x = {0};
-    int wanted = count + FREE_MOTIONS;
+    int wanted = count + FREE_MOTIONS + 2 * s->tree->closure_rank;
     v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
     if (!v->pair || !v->mode) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
@@ -431,7 +439,7 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, double time, 
         wanted /= 2;
         status = bough_modes_find(arena, x.arrow, &x.def, wanted, v->pair, &v->found);
     }
-    drop_free_motions(x.def.point, count, v);
+    drop_other_motions(s->tree, x.def.point, count, v);
     return bough_is_ok(&status) ? describe(arena, s, &x, v) : status;
 }
 
