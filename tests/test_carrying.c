@@ -91,6 +91,26 @@ static void weight_swings_on_a_cantilever_as_beam_theory_says(void **context) {
 
 // -- equivalence and conservation -----------------------------------------------------------------
 
+// A wire along z holds the end of a beam by a body without mass: of two springs in a row the force.
+static void spring_takes_hold_of_a_rod(void **context) {
+    (void)context;
+    const double wire = 1000, slack = 1e-3, own = 9.8 * 1e-4;
+    double f[2][2];
+    flexibility(f);
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "tests/scenes/wire.yaml", no_sets);
+    bough_settling settling;
+    bough_status status = bough_settle(s, s->master->assembly, 0, &settling);
+    assert_int_equal(status.code, BOUGH_OK);
+    double sag = own * pow(length, 4) / (8 * bending);
+    double force = (slack + sag) / (1 / wire + f[0][0]), tension;
+    bough_vec3 direction;
+    bough_simulation_update(s);
+    bough_tree_spring(s->tree, s->view, 0, &tension, &direction);
+    check_near(tension, force, 1e-4, 0);
+    bough_arena_destroy(arena);
+}
+
 static void rod_that_carries_nothing_heavy_moves_as_a_free_one(void **context) {
     (void)context;
 #define SAME                                                                                       \
@@ -333,6 +353,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(weight_bends_a_cantilever_as_beam_theory_says),
         cmocka_unit_test(weight_swings_on_a_cantilever_as_beam_theory_says),
+        cmocka_unit_test(spring_takes_hold_of_a_rod),
         cmocka_unit_test(rod_that_carries_nothing_heavy_moves_as_a_free_one),
         cmocka_unit_test(rods_in_a_row_are_the_whole),
         cmocka_unit_test(weight_at_an_inner_vertex_bends_the_beam_as_theory_says),

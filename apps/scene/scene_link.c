@@ -251,8 +251,9 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
         const bough_node *node = value_of(item, keys[end]);
         body[end] = resolve(r, s, node, keys[end], name[end]);
         if (body[end] < 0 || s->body[body[end]].fidelity <= BOUGH_SCENE_RIGID) continue;
-        bough_schema_error(r, node, keys[end], "'%s' is a rod; it must be a rigid body",
-                           name[end]);
+        bough_schema_error(r, node, keys[end],
+                           "'%s' is a rod; it must be a rigid body, which may hang on the rod and "
+                           "needs no mass", name[end]);
     }
     if (name[0] != NULL && name[1] != NULL && strcmp(name[0], name[1]) == 0) {
         bough_schema_error(r, value_of(item, "to"), "to", "must be another body");
