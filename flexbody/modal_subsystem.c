@@ -200,6 +200,10 @@ void bough_modal_body_ride(bough_modal_body *body, const double *input, double *
     bough_modal_ride(body->model, input, &body->chain, state);
 }
 
+const bough_modal_model *bough_modal_body_model(const bough_modal_body *body) {
+    return body->model;
+}
+
 const bough_rod_model *bough_modal_body_rod(const bough_modal_body *body) {
     return body->model->rod;
 }

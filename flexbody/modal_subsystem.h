@@ -25,6 +25,8 @@ bough_rod_loads *bough_modal_body_loads(bough_modal_body *body);
 // bough_modal_ride with the body's scratch.
 void bough_modal_body_ride(bough_modal_body *body, const double *input, double *state);
 
+const bough_modal_model *bough_modal_body_model(const bough_modal_body *body);
+
 // The rod it stands for.
 const bough_rod_model *bough_modal_body_rod(const bough_modal_body *body);
 

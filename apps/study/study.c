@@ -4,6 +4,7 @@
 #include "apps/scene/schema.h"
 #include "apps/study/study_parts.h"
 #include "apps/study/study_added_mass.h"
+#include "apps/study/study_rivals.h"
 #include "apps/study/study_two_mass.h"
 #include "apps/study/study_verify.h"
 
@@ -193,9 +194,11 @@ static const bough_key study_keys[] = {
     {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
      .help = "file of the scene, relative to the study"},
     {.name = "kind", .kind = BOUGH_KEY_CHOICE,
-     .choices = CHOICES("work-precision", "verify", "two-mass", "added-mass", "timing"),
+     .choices = CHOICES("work-precision", "verify", "two-mass", "added-mass", "timing",
+                        "rivals"),
      .required = true, AT(kind),
      .help = "work-precision: time and difference to the reference of every cell of the grid; "
+             "rivals: one blade modelled in several ways; "
              "verify: cases against what they should give; two-mass, added-mass: coupling schemes on "
              "masses and springs; timing: what the cells cost, in turns"},
     {.name = "reference", .kind = BOUGH_KEY_CUSTOM, .read = read_settings, .required = true,
@@ -273,6 +276,9 @@ static bool read_own_kind(bough_arena *arena, const char *path, const bough_node
     } else if (is_kind(root, "two-mass")) {
         s->kind = BOUGH_STUDY_TWO_MASS;
         s->two_mass = bough_two_mass_read(arena, root, errors);
+    } else if (is_kind(root, "rivals")) {
+        s->kind = BOUGH_STUDY_RIVALS;
+        s->rivals = bough_rivals_read(arena, path, root, errors);
     } else if (is_kind(root, "added-mass")) {
         s->kind = BOUGH_STUDY_ADDED_MASS;
         s->added_mass = bough_added_mass_read(arena, root, errors);

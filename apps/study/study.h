@@ -20,6 +20,7 @@ typedef enum bough_study_kind {
     BOUGH_STUDY_TWO_MASS,
     BOUGH_STUDY_ADDED_MASS,
     BOUGH_STUDY_TIMING,
+    BOUGH_STUDY_RIVALS,
 } bough_study_kind;
 
 // A replacement in the scene.
@@ -97,6 +98,7 @@ typedef struct bough_study {
     struct bough_verify *verify;
     struct bough_two_mass_study *two_mass;
     struct bough_added_mass_study *added_mass;
+    struct bough_rivals *rivals;
 
     // by bough_study_expand
     bough_study_cell *reference_cell;

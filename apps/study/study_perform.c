@@ -3,6 +3,7 @@
 #include "apps/output/folder.h"
 #include "apps/study/study_plot.h"
 #include "apps/study/study_added_mass.h"
+#include "apps/study/study_rivals.h"
 #include "apps/study/study_store.h"
 #include "apps/study/study_timing.h"
 #include "apps/study/study_two_mass.h"
@@ -125,6 +126,7 @@ typedef bough_status perform_function(bough_arena *arena, const bough_study *stu
 static perform_function *const kinds[] = {[BOUGH_STUDY_WORK_PRECISION] = work_precision,
                                           [BOUGH_STUDY_VERIFY] = bough_verify_perform,
                                           [BOUGH_STUDY_TWO_MASS] = bough_two_mass_perform,
+                                          [BOUGH_STUDY_RIVALS] = bough_rivals_perform,
                                           [BOUGH_STUDY_ADDED_MASS] = bough_added_mass_perform,
                                           [BOUGH_STUDY_TIMING] = bough_timing_perform};
 

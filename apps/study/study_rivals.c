@@ -1,0 +1,286 @@
+#include "apps/study/study_rivals.h"
+
+#include "apps/output/folder.h"
+#include "apps/scene/scene.h"
+#include "apps/scene/schema.h"
+#include "apps/study/study_parts.h"
+#include "apps/study/study_rivals_parts.h"
+#include "apps/study/study_store.h"
+
+#include <math.h>
+#include <string.h>
+
+// -- reading --------------------------------------------------------------------------------------
+
+// clang-format off
+#define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
+#define CHOICES(...) (const char *const[]){__VA_ARGS__, NULL}
+
+#define AT(member) .offset = offsetof(bough_rival, member)
+static const bough_key rival_keys[] = {
+    {.name = "name", .kind = BOUGH_KEY_TEXT, .fallback = "reference", AT(name),
+     .help = "heads its row"},
+    {.name = "body", .kind = BOUGH_KEY_TEXTS, .count = 1, .required = true, AT(set.item),
+     .count_offset = offsetof(bough_rival, set.n),
+     .help = "replacements KEY=VALUE in every body that bends"},
+};
+#undef AT
+static const bough_schema rival_schema = {
+    .name = "a rival", .size = sizeof(bough_rival), .n_key = COUNT(rival_keys), .key = rival_keys};
+
+#define AT(member) .offset = offsetof(bough_rivals, member)
+static const bough_key study_keys[] = {
+    {.name = "title", .kind = BOUGH_KEY_TEXT, .fallback = "Rivals", AT(title),
+     .help = "one line: what is asked"},
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("rivals"), .required = true,
+     AT(kind), .help = "rivals: one blade modelled in several ways"},
+    {.name = "blade", .kind = BOUGH_KEY_TEXT, .required = true, AT(blade),
+     .help = "scene of the clamped blade, relative to the study"},
+    {.name = "load", .kind = BOUGH_KEY_TEXTS, .count = 1, .required = true, AT(load.item),
+     .count_offset = offsetof(bough_rivals, load.n),
+     .help = "replacements KEY=VALUE that bend the blade"},
+    {.name = "turbine", .kind = BOUGH_KEY_TEXT, .required = true, AT(turbine),
+     .help = "scene of the run, relative to the study"},
+    {.name = "run", .kind = BOUGH_KEY_TEXTS, .count = 1, .required = true, AT(run.item),
+     .count_offset = offsetof(bough_rivals, run.n), .help = "replacements KEY=VALUE in that scene"},
+    {.name = "reference", .kind = BOUGH_KEY_MAPPING, .of = &rival_schema, .required = true,
+     AT(reference), .help = "what all are measured against"},
+    {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 99]", .fallback = "3", AT(repeat),
+     .help = "runs of each rival, one after the other in turns; the least time counts"},
+    {.name = "rivals", .kind = BOUGH_KEY_LIST, .of = &rival_schema, .count = 1, .required = true,
+     AT(rival), .count_offset = offsetof(bough_rivals, n),
+     .help = "times are relative to the first one's"},
+};
+#undef AT
+static const bough_schema study_schema = {
+    .name = "a study", .size = sizeof(bough_rivals), .n_key = COUNT(study_keys),
+    .key = study_keys};
+// clang-format on
+
+struct bough_rivals *bough_rivals_read(bough_arena *arena, const char *path,
+                                       const bough_node *root, bough_errors *errors) {
+    bough_rivals *s = bough_arena_take(arena, sizeof *s);
+    if (!s) return NULL;
+    bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
+    bough_schema_read(&reader, &study_schema, root, s);
+    if (errors->n > 0) return s;
+    s->blade = bough_study_path(arena, path, s->blade);
+    s->turbine = bough_study_path(arena, path, s->turbine);
+    return s;
+}
+
+// -- the run --------------------------------------------------------------------------------------
+
+// What is recorded of the run: tip positions, twist of the tips, speed of the rotor.
+static const struct {
+    const char *name, *unit;
+    int n; // channels per vector, numbered by the blade; 0: one for all
+    const char *channel[3];
+} measures[BOUGH_RIVALS_MEASURES] = {
+    {"tip", "m", 3, {"TipDxb", "TipDyb", "TipDzb"}},
+    {"twist", "deg", 1, {"TwstDefl"}},
+    {"speed", "rpm", 0, {"RotSpeed"}},
+};
+
+static void set_measure(bough_arena *arena, int k, int n_blade, bough_study *run) {
+    int vectors = measures[k].n > 0 ? n_blade : 1, each = measures[k].n > 0 ? measures[k].n : 1;
+    bough_study_measure *m = &run->measure[k];
+    *m = (bough_study_measure){.name = measures[k].name, .unit = measures[k].unit, .scale = 1};
+    m->channels.n = vectors;
+    m->channels.item = bough_arena_take(arena, (size_t)vectors * sizeof *m->channels.item);
+    for (int v = 0; v < vectors && m->channels.item; v++) {
+        const char **names = bough_arena_take(arena, (size_t)each * sizeof *names);
+        m->channels.item[v] = (bough_study_vector){each, names};
+        for (int c = 0; c < each && names; c++) {
+            char text[32];
+            snprintf(text, sizeof text, measures[k].n > 0 ? "%s%d" : "%s", measures[k].channel[c],
+                     v + 1);
+            names[c] = run->channel[run->n_channel++] = bough_arena_string(arena, text);
+        }
+    }
+}
+
+// A study of one cell, filled as the reading of a grid would.
+static bough_status make_run(bough_arena *arena, const bough_rivals *s, bough_study *run) {
+    bough_errors errors = {.arena = arena};
+    bough_scene *scene;
+    bough_status status =
+        bough_scene_read(arena, s->turbine, s->run.item, s->run.n, &errors, &scene);
+    if (errors.n > 0) bough_errors_print(&errors, stderr);
+    if (!bough_is_ok(&status)) return status;
+    int n_blade = scene->turbine.n_blade;
+    *run = (bough_study){.scene = s->turbine,
+                         .n_measure = BOUGH_RIVALS_MEASURES,
+                         .duration = scene->simulation.duration,
+                         .interval = 5 * scene->simulation.macro_step};
+    run->measure = bough_arena_take(arena, BOUGH_RIVALS_MEASURES * sizeof *run->measure);
+    run->channel = bough_arena_take(arena, (size_t)(4 * n_blade + 1) * sizeof *run->channel);
+    if (!run->measure || !run->channel) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    for (int k = 0; k < BOUGH_RIVALS_MEASURES; k++) set_measure(arena, k, n_blade, run);
+    return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
+                                        : status;
+}
+
+// -- performing -----------------------------------------------------------------------------------
+
+typedef struct outcome {
+    bough_rival_blade blade;
+    bough_study_cell cell;
+    bough_study_result result; // of the first run
+    double cpu;                // least of the runs [s]
+    double flap, twist;        // largest differences along the blade [m, rad]
+    double rest, bent;         // largest relative differences of frequencies
+} outcome;
+
+typedef struct contest {
+    const bough_rivals *study;
+    bough_study run;
+    bough_study_drive drive;
+    bough_study_series reference, series;
+    outcome base;
+    outcome *outcome; // (n)
+} contest;
+
+static bough_status prepare(bough_arena *arena, contest *c, const bough_rival *rival,
+                            outcome *o) {
+    bough_rival_sets sets;
+    bough_status status = bough_rival_blade_find(arena, c->study, rival, &o->blade);
+    if (bough_is_ok(&status)) {
+        status = bough_rival_scene_sets(arena, c->study->turbine, &c->study->run, rival, &sets);
+    }
+    if (!bough_is_ok(&status)) return status;
+    o->cell = (bough_study_cell){.n_set = sets.n, .set = sets.item, .settings = rival->name};
+    o->cpu = HUGE_VAL;
+    return status;
+}
+
+static double frequency_difference(const double *a, const double *b) {
+    double largest = 0;
+    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) {
+        largest = fmax(largest, fabs(a[k] / b[k] - 1));
+    }
+    return largest;
+}
+
+static bough_status compare_blades(const bough_rival_blade *base, outcome *o) {
+    const bough_rival_blade *blade = &o->blade;
+    int step = base->n / blade->n;
+    if (step * blade->n != base->n) {
+        return bough_fail(BOUGH_INVALID,
+                          "the reference's %d segments are no multiple of %d of '%s'", base->n,
+                          blade->n, o->cell.settings);
+    }
+    for (int i = 0; i <= blade->n; i++) {
+        o->flap = fmax(o->flap, fabs(blade->flap[i] - base->flap[i * step]));
+        o->twist = fmax(o->twist, fabs(blade->twist[i] - base->twist[i * step]));
+    }
+    o->rest = frequency_difference(blade->rest, base->rest);
+    o->bent = frequency_difference(blade->bent, base->bent);
+    return bough_ok();
+}
+
+static bough_status run_once(contest *c, outcome *o, bough_study_series *series) {
+    bough_study_result result;
+    c->drive.label = o->cell.settings;
+    bough_status status = bough_study_run(&c->run, &o->cell, 1, &c->drive, series, &result);
+    if (!bough_is_ok(&status)) return status;
+    if (!bough_is_ok(&result.outcome)) {
+        return bough_fail(BOUGH_FAILED, "%.60s: %.300s", o->cell.settings, result.outcome.message);
+    }
+    bough_study_compare(&c->run, series, &c->reference, result.error);
+    o->result = result;
+    o->cpu = fmin(o->cpu, result.cpu);
+    return status;
+}
+
+static bough_status contend(bough_arena *arena, contest *c) {
+    bough_status status = prepare(arena, c, &c->study->reference, &c->base);
+    if (bough_is_ok(&status)) status = run_once(c, &c->base, &c->reference);
+    for (int k = 0; k < c->study->n && bough_is_ok(&status); k++) {
+        status = prepare(arena, c, &c->study->rival[k], &c->outcome[k]);
+        if (bough_is_ok(&status)) status = compare_blades(&c->base.blade, &c->outcome[k]);
+    }
+    for (int turn = 0; turn < c->study->repeat; turn++) {
+        for (int k = 0; k < c->study->n && bough_is_ok(&status); k++) {
+            status = run_once(c, &c->outcome[k], &c->series);
+        }
+    }
+    return status;
+}
+
+// -- report ---------------------------------------------------------------------------------------
+
+#define DEGREES(angle) ((angle) * (180 / 3.14159265358979323846))
+
+static void print_table(const contest *c, FILE *f) {
+    const bough_rival_blade *base = &c->base.blade;
+    fprintf(f,
+            "%s\nreference: tip %.4f m, twist %.4f deg, f1 %.5f Hz, f12 %.4f Hz; %.2f s of CPU\n",
+            c->study->title, base->flap[base->n], DEGREES(base->twist[base->n]), base->rest[0],
+            base->rest[BOUGH_RIVALS_FREQUENCIES - 1], c->base.cpu);
+    fprintf(f, "%-22s %6s | clamped blade: largest differences       | run: largest differences"
+               "             CPU\n", "", "states");
+    fprintf(f, "%-22s %6s | %8s %8s %9s %9s   | %8s %8s %8s %9s %6s\n", "", "", "tip (%)",
+            "twist (°)", "f1-12 (%)", "bent (%)", "tip (m)", "twist (°)", "speed(rpm)", "(s)",
+            "ratio");
+    for (int k = 0; k < c->study->n; k++) {
+        const outcome *o = &c->outcome[k];
+        fprintf(f, "%-22.22s %6d | %8.3f %8.4f %9.3f %9.3f   | %8.4f %8.4f %9.5f %9.3f %6.2f\n",
+                o->cell.settings, o->blade.n_state, 100 * o->flap / fabs(base->flap[base->n]),
+                DEGREES(o->twist), 100 * o->rest, 100 * o->bent, o->result.error[0],
+                o->result.error[1], o->result.error[2], o->cpu, o->cpu / c->outcome[0].cpu);
+    }
+}
+
+static void write_frequencies(FILE *f, const char *name, const bough_rival_blade *b) {
+    bough_csv_text(f, name);
+    fprintf(f, ",%d,%.9g,%.9g", b->n_state, b->flap[b->n], DEGREES(b->twist[b->n]));
+    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) fprintf(f, ",%.9g", b->rest[k]);
+    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) fprintf(f, ",%.9g", b->bent[k]);
+}
+
+static void write_rows(const contest *c, FILE *f) {
+    fputs("rival,states,tip (m),twist (deg)", f);
+    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) fprintf(f, ",f%d (Hz)", k + 1);
+    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) fprintf(f, ",bent f%d (Hz)", k + 1);
+    fputs(",largest flap difference (m),largest twist difference (deg),run tip difference (m),"
+          "run twist difference (deg),run speed difference (rpm),CPU (s)\n", f);
+    write_frequencies(f, "reference", &c->base.blade);
+    fprintf(f, ",0,0,0,0,0,%.6g\n", c->base.cpu);
+    for (int k = 0; k < c->study->n; k++) {
+        const outcome *o = &c->outcome[k];
+        write_frequencies(f, o->cell.settings, &o->blade);
+        fprintf(f, ",%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n", o->flap, DEGREES(o->twist),
+                o->result.error[0], o->result.error[1], o->result.error[2], o->cpu);
+    }
+}
+
+static bough_status write_file(const contest *c, const char *folder) {
+    char path[BOUGH_PATH_MAX];
+    FILE *file = NULL;
+    bough_status status = bough_folder_path(folder, "rivals.csv", path);
+    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    if (!bough_is_ok(&status)) return status;
+    write_rows(c, file);
+    return bough_folder_commit(path, file);
+}
+
+bough_status bough_rivals_perform(bough_arena *arena, const bough_study *study,
+                                  const bough_study_options *options) {
+    contest c = {.study = study->rivals};
+    bough_status status = make_run(arena, c.study, &c.run);
+    if (bough_is_ok(&status)) status = bough_folder_make(options->folder);
+    if (!bough_is_ok(&status)) return status;
+    c.run.threads = study->threads;
+    c.drive.stop = options->stop;
+    c.drive.progress = bough_progress_start(0, c.run.duration, options->quiet);
+    c.reference = bough_study_series_take(arena, &c.run);
+    c.series = bough_study_series_take(arena, &c.run);
+    c.outcome = bough_arena_take(arena, (size_t)c.study->n * sizeof *c.outcome);
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    status = contend(arena, &c);
+    bough_progress_clear(&c.drive.progress);
+    if (bough_is_ok(&status)) status = write_file(&c, options->folder);
+    if (bough_is_ok(&status)) print_table(&c, options->stream);
+    return status;
+}

@@ -1,0 +1,114 @@
+// The study that compares a blade's models: what it finds of a small clamped blade and a short run.
+#include "apps/study/study_perform.h"
+#include "apps/study/study_rivals_parts.h"
+#include "tests/scratch.h"
+
+static const char head[] = "title: Two models\nkind: rivals\n"
+                           "blade: " BOUGH_SOURCE_DIR "/apps/beams/blade.yaml\n"
+                           "load: [\"loads=[{body: blade, along: [0, 61.5], force: [2 kN/m, 0, 0],"
+                           " frame: body}]\"]\n"
+                           "turbine: " BOUGH_SOURCE_DIR "/apps/turbine/runup.yaml\n"
+                           "run: [simulation.duration=0.2 s, simulation.threads=1]\n"
+                           "reference: {body: [fidelity=rod, rod.segments=24]}\nrepeat: 1\n";
+static const char rivals[] =
+    "rivals:\n"
+    "  - {name: same, body: [fidelity=rod, rod.segments=24]}\n"
+    "  - {name: coarse, body: [fidelity=rod, rod.segments=12]}\n"
+    "  - {name: linear, body: [fidelity=modal, rod.segments=24, modal.modes=14]}\n";
+
+static bough_study *read_study(bough_arena *arena, const char *folder, const char *text,
+                               bough_errors *errors) {
+    char path[128];
+    bough_study *study = NULL;
+    snprintf(path, sizeof path, "%s/study.yaml", folder);
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "%s%s", head, text);
+    fclose(file);
+    errors->arena = arena;
+    bough_study_read(arena, path, 0, errors, &study);
+    return study;
+}
+
+// The linear body: the undeformed frequencies of the same mesh, of a cubic deflection error.
+static void blades_are_found_by_their_models(void **state) {
+    bough_arena *arena = bough_arena_create();
+    bough_errors errors = {0};
+    bough_study *study = read_study(arena, *state, rivals, &errors);
+    assert_non_null(study);
+    bough_rival_blade blade[3];
+    for (int k = 0; k < 3; k++) {
+        bough_status status =
+            bough_rival_blade_find(arena, study->rivals, &study->rivals->rival[k], &blade[k]);
+        assert_int_equal(status.code, BOUGH_OK);
+    }
+    assert_int_equal(blade[0].n, 24);
+    assert_int_equal(blade[1].n, 12);
+    assert_int_equal(blade[2].n_state, 2 * (14 + 12));
+    check_near(blade[0].flap[24], 2.022713, 3e-3, 0); // an independent beam solver
+    check_near(blade[0].twist[24], 0.0291 * acos(-1) / 180, 0.1, 0);
+    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) {
+        check_near(blade[2].rest[k], blade[0].rest[k], 1e-3, 0); // dampers couple
+        assert_true(k == 0 || blade[0].rest[k] > blade[0].rest[k - 1]);
+    }
+    check_near(blade[2].flap[24], blade[0].flap[24], 0.01, 0);
+    bough_arena_destroy(arena);
+}
+
+static void table_and_file_hold_every_rival(void **state) {
+    char table[4096] = "";
+    bough_arena *arena = bough_arena_create();
+    bough_errors errors = {0};
+    bough_study *study = read_study(arena, *state, rivals, &errors);
+    FILE *stream = fmemopen(table, sizeof table, "w");
+    bough_study_options options = {.folder = *state, .quiet = true, .stream = stream};
+    bough_status status = bough_study_perform(arena, study, &options);
+    fclose(stream);
+    assert_int_equal(status.code, BOUGH_OK);
+    const char *same = strstr(table, "\nsame ");
+    assert_non_null(same);
+    double values[8];
+    int states, n = sscanf(same + 23, "%d | %lf %lf %lf %lf | %lf %lf %lf", &states, &values[0],
+                           &values[1], &values[2], &values[3], &values[4], &values[5], &values[6]);
+    assert_int_equal(n, 8);
+    for (int k = 0; k < 7; k++) check_near(values[k], 0, 0, 0); // it is the reference
+    char *csv = scratch_read(*state, "rivals.csv");
+    assert_non_null(csv);
+    assert_non_null(strstr(csv, "\ncoarse,156,"));
+    assert_non_null(strstr(csv, "\nlinear,52,"));
+    free(csv);
+    bough_arena_destroy(arena);
+}
+
+static void meshes_must_fit_the_reference(void **state) {
+    bough_arena *arena = bough_arena_create();
+    bough_errors errors = {0};
+    bough_study *study = read_study(
+        arena, *state, "rivals: [{name: odd, body: [fidelity=rod, rod.segments=7]}]\n", &errors);
+    bough_study_options options = {.folder = *state, .quiet = true, .stream = stderr};
+    bough_status status = bough_study_perform(arena, study, &options);
+    assert_int_equal(status.code, BOUGH_INVALID);
+    assert_non_null(strstr(status.message, "24 segments are no multiple of 7 of 'odd'"));
+    bough_arena_destroy(arena);
+}
+
+static void keys_are_checked(void **state) {
+    bough_arena *arena = bough_arena_create();
+    bough_errors errors = {0};
+    assert_null(read_study(arena, *state, "rivals: [{name: a, bodies: [x=1]}]\n", &errors));
+    assert_int_equal(errors.n, 2); // the unknown key, the missing one
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(blades_are_found_by_their_models, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(table_and_file_hold_every_rival, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(meshes_must_fit_the_reference, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(keys_are_checked, scratch_make, scratch_remove),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
