@@ -557,3 +557,15 @@ bool bough_rotor_has_stall(const bough_rotor *rotor) { return rotor->airfoil != 
 bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius) {
     return bough_wind_covers(&rotor->wind, hub, radius);
 }
+
+bough_vec3 bough_rotor_tower_drag(const bough_rotor *rotor, bough_vec3 position, bough_vec3 axis,
+                                  bough_vec3 velocity, double t) {
+    bough_vec3 inflow = bough_sub(bough_wind_at(&rotor->wind, position, t), velocity);
+    return bough_tower_drag(&rotor->tower, rotor->density, position, axis, inflow);
+}
+
+bough_vec3 bough_rotor_hub_drag(const bough_rotor *rotor, double area, bough_vec3 position,
+                                bough_vec3 velocity, double t) {
+    bough_vec3 inflow = bough_sub(bough_wind_at(&rotor->wind, position, t), velocity);
+    return bough_scale(0.5 * rotor->density * area * bough_norm(inflow), inflow);
+}

@@ -129,6 +129,13 @@ int bough_rotor_memory_size(const bough_rotor *rotor);
 void bough_rotor_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to);
 void bough_rotor_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data);
 
+// Drag by the undisturbed wind at a time [s]: of the tower, bough_tower_drag [N/m], and of a hub of
+// that drag area [m²] at a place and velocity in ground axes [N].
+bough_vec3 bough_rotor_tower_drag(const bough_rotor *rotor, bough_vec3 position, bough_vec3 axis,
+                                  bough_vec3 velocity, double t);
+bough_vec3 bough_rotor_hub_drag(const bough_rotor *rotor, double area, bough_vec3 position,
+                                bough_vec3 velocity, double t);
+
 // Whether the wind is known all over a disk: bough_wind_covers.
 bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius);
 

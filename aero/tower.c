@@ -120,3 +120,15 @@ bough_vec3 bough_tower_disturbed(const bough_tower *tower, bough_vec3 position, 
     double along = speed * f.along, across = speed * f.across;
     return bough_v3(cx * along - cy * across, cy * along + cx * across, wind.z);
 }
+
+// Above the top, where a bent tower may reach, all is as at the top.
+bough_vec3 bough_tower_drag(const bough_tower *tower, double density, bough_vec3 position,
+                            bough_vec3 axis, bough_vec3 inflow) {
+    if (tower->n == 0) return bough_v3(0, 0, 0);
+    double top = tower->height[tower->n - 1];
+    double height = bough_clamp(position.z - tower->base.z, tower->height[0], top);
+    double diameter = 2 * radius_at(tower, height);
+    bough_vec3 across = bough_axpy(-bough_dot(inflow, axis), axis, inflow);
+    double q = 0.5 * density * bough_norm(across) * drag_at(tower, height) * diameter;
+    return bough_scale(q, across);
+}

@@ -159,6 +159,25 @@ static void inside_is_finite(void **state) {
     bough_arena_destroy(arena);
 }
 
+// ½ρ c D V² along the wind across the axis, whatever blows along it.
+static void drag_is_across_the_axis(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    static const double height[] = {0, 100}, diameter[] = {6, 4}, drag[] = {0.5, 1};
+    const bough_tower_def def = {
+        .n = 2, .height = height, .diameter = diameter, .drag = drag, .base = {0, 0, 10}};
+    bough_tower tower;
+    bough_status status = bough_tower_build(arena, &def, &tower);
+    assert_int_equal(status.code, BOUGH_OK);
+    bough_vec3 axis = bough_v3(sin(0.1), 0, cos(0.1)), wind = bough_axpy(7, axis, bough_v3(0, 9, 0));
+    bough_vec3 f = bough_tower_drag(&tower, 1.2, bough_v3(1, 2, 60), axis, wind);
+    check_near(f.y, 0.5 * 1.2 * 0.75 * 5 * 81, 1e-12, 0);
+    check_near(hypot(f.x, f.z), 0, 0, 1e-9);
+    f = bough_tower_drag(&tower, 1.2, bough_v3(0, 0, 300), bough_v3(0, 0, 1), bough_v3(3, 4, 0));
+    check_near(f.x, 0.5 * 1.2 * 4 * 15, 1e-12, 0); // as at the top
+    bough_arena_destroy(arena);
+}
+
 static void no_tower_leaves_the_wind(void **state) {
     (void)state;
     bough_tower tower;
@@ -191,6 +210,7 @@ int main(void) {
         cmocka_unit_test(bak_displaces_half_the_drag),
         cmocka_unit_test(powles_takes_its_share_behind),
         cmocka_unit_test(inside_is_finite),
+        cmocka_unit_test(drag_is_across_the_axis),
         cmocka_unit_test(no_tower_leaves_the_wind),
         cmocka_unit_test(bad_tables_are_refused),
     };

@@ -348,6 +348,8 @@ bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
     return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample};
 }
 
+const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link) { return link->rotor; }
+
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor) {
     *factor = link->factor;
     return &link->data;

@@ -24,6 +24,8 @@ int bough_aero_link_size(const bough_aero_link *link);
 void bough_aero_link_save(const bough_aero_link *link, double *to);
 void bough_aero_link_restore(bough_aero_link *link, const double *from);
 
+const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link);
+
 // Results of the last sample, with the ramp's factor at its time.
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor);
 

@@ -2,6 +2,7 @@
 
 #include "apps/scene/aero_link.h"
 #include "apps/scene/control_link.h"
+#include "apps/scene/drag_link.h"
 #include "apps/scene/force_link.h"
 #include "apps/scene/load_link.h"
 #include "apps/scene/placement.h"
@@ -446,7 +447,7 @@ static bough_status build_master(builder *b) {
     bough_simulation *s = b->s;
     const bough_scene_simulation *sim = &b->scene->simulation;
     bough_master_def def = bough_master_def_default();
-    bough_sampled_load load[2];
+    bough_sampled_load load[3];
     def.assembly = (bough_assembly_def){s->n_rod + 1, b->member, b->n_connection,
                                         b->connection};
     def.scheme = scheme_options(b->scene);
@@ -459,6 +460,7 @@ static bough_status build_master(builder *b) {
     if (s->aero != NULL) {
         load[def.n_load++] = bough_aero_link_load(s->aero);
     }
+    if (s->drag != NULL) load[def.n_load++] = bough_drag_link_load(s->drag);
     if (s->control != NULL) load[def.n_load++] = bough_control_link_load(s->control);
     def.load = load;
     if (sim->initial == BOUGH_SCENE_IN_EQUILIBRIUM) {
@@ -501,6 +503,9 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
     if (bough_is_ok(&status)) status = bough_load_link_build(arena, b.s);
     if (bough_is_ok(&status) && scene->aero.node != NULL) {
         status = bough_aero_link_build(arena, b.s, &b.s->aero);
+    }
+    if (bough_is_ok(&status) && bough_drag_link_wanted(scene)) {
+        status = bough_drag_link_build(arena, b.s, b.force.hub, &b.s->drag);
     }
     if (bough_is_ok(&status) && scene->control.node != NULL) {
         status = bough_control_link_build(arena, b.s, b.n_load - 1, &b.s->control);

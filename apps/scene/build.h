@@ -12,6 +12,7 @@
 
 struct bough_aero_link;
 struct bough_control_link;
+struct bough_drag_link;
 
 // A flexible blade, cable or tower, or the same body integrated to a rigid one: where it is and, if
 // it is a rod, its sub-solver.
@@ -37,6 +38,7 @@ typedef struct bough_simulation {
     bough_subsystem *rod;  // (number of rods) their contracts, in port order
     int n_rod, n_end;
     struct bough_aero_link *aero; // NULL without an aero block
+    struct bough_drag_link *drag; // NULL without drag of tower and hub
     struct bough_control_link *control; // NULL without a control block
     bough_master *master;
     // the rods in a row that carry the rotor, NULL without; undeformed top in the frame of the foot

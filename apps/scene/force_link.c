@@ -9,7 +9,7 @@ bool bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_b
     size_t springs = (size_t)scene->n_spring, bushings = (size_t)scene->n_bushing;
     size_t closures = (size_t)scene->n_closure, loads = (size_t)scene->n_load;
     size_t markers = (size_t)n_beam + 2 * (springs + bushings + closures) + loads +
-                     (size_t)scene->n_marker;
+                     (size_t)scene->n_marker + 1;
     link->marker = bough_arena_take(arena, markers * sizeof *link->marker);
     link->spring = bough_arena_take(arena, springs * sizeof *link->spring);
     link->bushing = bough_arena_take(arena, bushings * sizeof *link->bushing);
@@ -95,6 +95,11 @@ void bough_force_link_fill(const bough_scene *scene, bough_force_link *link) {
     for (int k = 0; k < scene->n_marker; k++) {
         const bough_scene_marker *from = &scene->marker[k];
         add_marker(link, from->name, from->body, from->point);
+    }
+    static const double origin[3];
+    link->hub = -1;
+    if (scene->aero.node != NULL && scene->aero.hub_drag_area > 0) {
+        link->hub = add_marker(link, "hub", scene->turbine.rotor, origin);
     }
 }
 

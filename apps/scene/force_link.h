@@ -9,6 +9,7 @@
 typedef struct bough_force_link {
     int n_marker;   // of the tree, those of the beams included
     int first_own;  // the first of those that the scene names
+    int hub;        // on which the hub's drag acts; −1: none
     bough_marker_def *marker;
     bough_spring_def *spring;
     bough_bushing_def *bushing;

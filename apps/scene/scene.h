@@ -413,6 +413,8 @@ typedef struct bough_scene_tower {
     double *height;           // (n_height) strictly increasing [m]
     double *diameter;         // (n_height) [m]
     double *drag;             // (n_drag) coefficient [-]
+    const char *body_name;    // NULL: no drag on the tower
+    int body;                 // index of a body with a rod
 } bough_scene_tower;
 
 typedef struct bough_scene_aero {
@@ -427,6 +429,7 @@ typedef struct bough_scene_aero {
     bough_scene_induction induction;
     bough_scene_tower tower;
     double hub_radius; // [m]
+    double hub_drag_area; // drag coefficient times area [m²]
     int dynamic_stall; // bough_scene_stall
     int interpolation; // bough_scene_interpolation
     int n_node;        // blade elements whose channels are recorded, of every blade

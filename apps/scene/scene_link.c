@@ -420,6 +420,21 @@ static void check_blade_lengths(bough_schema_reader *r, const bough_scene *s) {
     }
 }
 
+// The body on which the tower's drag acts.
+static void link_tower(bough_schema_reader *r, bough_scene *s) {
+    bough_scene_tower *tower = &s->aero.tower;
+    const bough_node *node = value_of(tower->node, "body");
+    tower->body = resolve(r, s, node, "tower.body", tower->body_name);
+    if (tower->body < 0) return;
+    bool blade = false;
+    for (int k = 0; k < s->turbine.n_blade; k++)
+        blade = blade || s->turbine.blade[k] == tower->body;
+    if (blade || bough_node_find(s->body[tower->body].node, "rod") == NULL) {
+        bough_schema_error(r, node, "tower.body", "'%s' must have a rod and be no blade",
+                           tower->body_name);
+    }
+}
+
 static void link_aero(bough_schema_reader *r, bough_scene *s) {
     if (s->aero.node == NULL) return;
     at(r, "aero");
@@ -434,6 +449,7 @@ static void link_aero(bough_schema_reader *r, bough_scene *s) {
                            "expected numbers from 1 to %d, got %g", s->aero.blade.n_station, node);
     }
     check_blade_lengths(r, s);
+    if (s->aero.tower.body_name != NULL) link_tower(r, s);
     link_polars(r, s);
 }
 

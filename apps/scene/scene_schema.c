@@ -624,7 +624,10 @@ static const bough_key tower_keys[] = {
      .count_offset = offsetof(bough_scene_tower, n_diameter), .help = "at each height"},
     {.name = "drag", .kind = BOUGH_KEY_NUMBERS, .range = ">= 0", .count = 1, .fallback = "[1]",
      AT(drag), .count_offset = offsetof(bough_scene_tower, n_drag),
-     .help = "drag coefficient for bak and powles: one for the whole tower, or one at each height"},
+     .help = "drag coefficient: one for the whole tower, or one at each height; for bak, powles and "
+             "the drag on a body"},
+    {.name = "body", .kind = BOUGH_KEY_TEXT, AT(body_name),
+     .help = "body with a rod on which the tower's drag acts; left out: no drag"},
 };
 #undef AT
 static const bough_schema tower_schema = {SCHEMA("a tower", bough_scene_tower, tower_keys),
@@ -651,6 +654,8 @@ static const bough_key aero_keys[] = {
      .help = "vertical tower in front of which the blades pass; left out: no influence"},
     {.name = "hub_radius", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = ">= 0",
      .required = true, AT(hub_radius), .help = "from the rotor axis to the blade roots"},
+    {.name = "hub_drag_area", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0",
+     AT(hub_drag_area), .help = "drag coefficient times area of the hub, in m2; drag on the rotor"},
     {.name = "dynamic_stall", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "hgm"),
      .fallback = "none", AT(dynamic_stall),
      .help = "how lift follows the angle of attack: at once, or by the Beddoes-Leishman model of "
