@@ -202,6 +202,14 @@ static void rods_that_carry_take_no_memory(void **context) {
     count_steps(*context, "apps/turbine/land.yaml", sets);
 }
 
+static void closed_loops_take_no_memory(void **context) {
+    if (!CAN_COUNT) skip();
+    const char *sets[] = {"simulation.macro_step=1 ms", NULL};
+    const char *radau[] = {"simulation.macro_step=1 ms", "simulation.master.solver=radau5", NULL};
+    count_steps(*context, "tests/scenes/closed.yaml", sets);
+    count_steps(*context, "tests/scenes/closed.yaml", radau);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_kind_of_allocation_is_counted),
@@ -217,6 +225,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(monolithic_steps_take_no_memory, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(two_threads_take_no_memory, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(closed_loops_take_no_memory, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(rods_that_carry_take_no_memory, scratch_make,
                                         scratch_remove),
     };

@@ -93,7 +93,8 @@ static const bough_key master_keys[] = {
     {.name = "solver", .kind = BOUGH_KEY_CHOICE, .fallback = "ida",
      .choices = CHOICES("ida", "radau5"), .offset = offsetof(bough_scene_solver, solver),
      .help = "time integrator: BDF of variable order, or Radau IIA of order 5, which input that "
-             "jumps does not slow; the monolithic scheme has its own, ida"},
+             "jumps does not slow, with dense algebra, for trees of up to some hundred states; the "
+             "monolithic scheme has its own, ida"},
     RTOL("1e-6"),
 };
 #define AT(field) .offset = offsetof(bough_scene_solver, field)
