@@ -337,9 +337,11 @@ modes() {
     has ../stdout '^rod blade3: .* turning at 12.1 rpm about (0.996195, 0, -0.0871557)'
     near ../stdout '^ *1 ' 2 0.7349 0.001
     missing turning/shapes.csv
-    expect 0 modes "$turbine" --set 'modes={count: 3, at: undeformed}' --out whole
+    expect 0 modes "$turbine" --set 'modes={count: 3, at: undeformed, shapes: true}' --out whole
     has ../stdout '^whole scene: .*, rotor at 4.77465 rpm, seen by an observer at rest; the air'
     has ../stdout '^ *1 .* blades .* flap .* backward '
+    has whole/shapes.csv '^body,mode,span (m),ux (m),'
+    [ "$(wc -l <whole/shapes.csv)" -eq 451 ] || fail "$said: shapes.csv has not 451 lines"
     has whole/modes.csv '^mode,frequency (Hz),.*,pattern,collective (-),forward (-),backward (-),tower'
     rm -r whole
     expect 0 modes "$beam" --set 'loads=[{body: beam, at: tip, force: [0, 0, -3 kN], frame: follower}]'

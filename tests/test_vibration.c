@@ -98,8 +98,8 @@ static void gyroscope_nutates_and_precesses(void **context) {
     bough_arena_destroy(f.arena);
 }
 
-// A nearly massless cantilever of length L with a body at its end, its centre a further: flexibility
-// D and mass M of the end's deflection and turn, 1/ω² are the eigenvalues of D M.
+// A nearly massless cantilever of length L with a body at its end, its centre a further:
+// flexibility D and mass M of the end's deflection and turn, 1/ω² are the eigenvalues of D M.
 static void body_on_a_rod_swings(void **context) {
     (void)context;
     const char *sets[] = {"gravity=[0, 0, 0]", "bodies[0].rod.mass=[1e-6, 0, 0, 1e-9, 1e-9, 0]",
@@ -182,6 +182,40 @@ static void whirl_is_split_by_the_rotation(void **context) {
     bough_arena_destroy(f.arena);
 }
 
+// What gravity does to a blade in a slow revolution averages out: its bending adds no stress.
+static void gravity_averages_out(void **context) {
+    (void)context;
+    const char *with[] = {HUB("{speed: 1e-3 rpm}"), "aero.ramp=[0, 1000]", "aero.wind.speed=0",
+                          "loads=[]", COARSE, "modes.shapes=true", NULL};
+    const char *without[] = {HUB("{angle: 0}"), CALM, COARSE, "modes.at=undeformed", NULL};
+    found a = modes_of(runup, with, 6), b = modes_of(runup, without, 6);
+    for (int k = 0; k < 6; k++) {
+        check_near(a.v.mode[k].frequency, b.v.mode[k].frequency, 1e-4, 0);
+    }
+    bough_arena_destroy(a.arena);
+    bough_arena_destroy(b.arena);
+}
+
+// The rows of a shape join: a rod's end and what hangs on it move alike; the largest is real and 1.
+static void shapes_join_the_bodies(void **context) {
+    (void)context;
+    const char *sets[] = {"modes.shapes=true", NULL};
+    found f = modes_of("tests/scenes/tip-weight.yaml", sets, 2);
+    assert_int_equal(f.v.n_row, 5 + 1);
+    const bough_shape_row *row = f.v.mode[0].shape, *end = row + 4, *weight = row + 5;
+    const double lever[3] = {0, 0.1 * end->motion[0][5], -0.1 * end->motion[0][4]}; // along x
+    double most = 0;
+    for (int c = 0; c < 6; c++) check_near(row->motion[0][c], 0, 0, 1e-9);
+    for (int c = 0; c < 3; c++) {
+        check_near(weight->motion[0][c], end->motion[0][c] + lever[c], 0, 1e-5);
+        check_near(weight->motion[0][3 + c], end->motion[0][3 + c], 1e-6, 1e-9);
+        most = fmax(most, fabs(weight->motion[0][c]));
+    }
+    check_near(most, 1, 0, 1e-9);
+    check_near(end->span, 2, 1e-12, 0);
+    bough_arena_destroy(f.arena);
+}
+
 // Reduced to their modes, the blades of a rotor on a rigid support keep patterns and frequencies.
 static void modal_blades_whirl_as_rods_do(void **context) {
     (void)context;
@@ -239,6 +273,8 @@ int main(void) {
         cmocka_unit_test(gyroscope_nutates_and_precesses),
         cmocka_unit_test(body_on_a_rod_swings),
         cmocka_unit_test(modal_blades_whirl_as_rods_do),
+        cmocka_unit_test(gravity_averages_out),
+        cmocka_unit_test(shapes_join_the_bodies),
         cmocka_unit_test(closed_loops_swing_as_one),
         cmocka_unit_test(propped_beam_vibrates_in_both_planes),
         cmocka_unit_test(parked_blades_have_their_own_frequencies),

@@ -76,15 +76,30 @@ static void write_modes(FILE *file, const bough_simulation *s, const bough_vibra
     }
 }
 
-static bough_status write_file(const char *folder, const bough_simulation *s,
-                               const bough_vibration *v) {
+static void write_shapes(FILE *file, const bough_simulation *s, const bough_vibration *v) {
+    fputs("body,mode,span (m),ux (m),uy (m),uz (m),rx (rad),ry (rad),rz (rad),imaginary ux (m),"
+          "imaginary uy (m),imaginary uz (m),imaginary rx (rad),imaginary ry (rad),"
+          "imaginary rz (rad)\n", file);
+    for (int k = 0; k < v->found; k++) {
+        for (int i = 0; i < v->n_row; i++) {
+            const bough_shape_row *row = &v->mode[k].shape[i];
+            fprintf(file, "%s,%d,%.10g", s->scene->body[row->body].name, k + 1, row->span);
+            for (int c = 0; c < 12; c++) fprintf(file, ",%.10g", row->motion[c / 6][c % 6]);
+            fputc('\n', file);
+        }
+    }
+}
+
+static bough_status write_file(const char *folder, const char *name, const bough_simulation *s,
+                               const bough_vibration *v,
+                               void (*write)(FILE *, const bough_simulation *,
+                                             const bough_vibration *)) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    bough_status status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_path(folder, "modes.csv", path);
+    bough_status status = bough_folder_path(folder, name, path);
     if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
     if (!bough_is_ok(&status)) return status;
-    write_modes(file, s, v);
+    write(file, s, v);
     return bough_folder_commit(path, file);
 }
 
@@ -99,7 +114,11 @@ bough_status bough_modes_whole(bough_arena *arena, const bough_options *options,
     bough_status status = bough_vibration_find(arena, s, s->scene->modes.count, &v);
     if (!bough_is_ok(&status)) return status;
     print_modes(s, &v);
-    status = write_file(folder, s, &v);
+    status = bough_folder_make(folder);
+    if (bough_is_ok(&status)) status = write_file(folder, "modes.csv", s, &v, write_modes);
+    if (bough_is_ok(&status) && s->scene->modes.shapes) {
+        status = write_file(folder, "shapes.csv", s, &v, write_shapes);
+    }
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }

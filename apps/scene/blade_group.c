@@ -64,7 +64,10 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
     group->speed = spin_of(s);
     group->blade = bough_arena_take(arena, (size_t)n * sizeof *group->blade);
     group->first = bough_arena_take(arena, (size_t)n * sizeof *group->first);
-    if (!group->blade || !group->first) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    group->first_input = bough_arena_take(arena, (size_t)n * sizeof *group->first_input);
+    if (!group->blade || !group->first || !group->first_input) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    }
     for (int k = 0; k < n; k++) insert(s, bough_simulation_beam(s, turbine->blade[k]), group);
     bool alike = n >= 3;
     for (int k = 0; k < n; k++) alike = alike && is_alike(s, group, k);
@@ -79,26 +82,76 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
     for (int k = 0; k < n; k++) {
         int member = group->blade[k]->port + 1, *row = group->row;
         group->first[k] = assembly->state_offset[member];
+        group->first_input[k] = assembly->input_offset[member];
         for (int j = 0; j < group->n_row; j++) row[k * group->n_row + j] = group->first[k] + j;
     }
     return bough_ok();
 }
 
-void bough_blade_group_average(const bough_blade_group *group, double *state) {
-    int n = group->n_row / BOUGH_ROD_STATES;
-    double *mean = state + group->first[0];
+// Position and rotation of a rod's vertex in its body's frame; the root is held.
+static void vertex_of(const bough_rod_model *m, const double *y, int i, bough_vec3 *x,
+                      bough_quaternion *p) {
+    int n = m->n, at = i - 1;
+    *x = m->position0[0];
+    *p = m->rotation0[0];
+    if (i == 0) return;
+    *x = bough_v3(y[at], y[n + at], y[2 * n + at]);
+    *p = bough_quaternion_normalised((bough_quaternion){
+        y[3 * n + at], y[4 * n + at], y[5 * n + at], y[6 * n + at]});
+}
+
+// The rotation halfway between two.
+static bough_mat3 middle(bough_quaternion p, bough_quaternion q) {
+    bough_quaternion step = bough_quaternion_product(bough_quaternion_conjugate(p), q);
+    bough_quaternion half =
+        bough_quaternion_exponential(bough_scale(0.5, bough_quaternion_logarithm(step)));
+    return bough_rotation_matrix(bough_quaternion_product(p, half));
+}
+
+// The chord from vertex i − 1 to i in the frame halfway, mean over the blades.
+static bough_vec3 mean_chord(const bough_blade_group *group, const bough_rod_model *m, int i,
+                             const double *state) {
+    bough_vec3 sum = {0, 0, 0}, x[2];
+    bough_quaternion p[2];
+    for (int k = 0; k < group->n; k++) {
+        for (int end = 0; end < 2; end++) {
+            vertex_of(m, state + group->first[k], i - 1 + end, &x[end], &p[end]);
+        }
+        bough_vec3 chord = bough_mat3_tmul(middle(p[0], p[1]), bough_sub(x[1], x[0]));
+        sum = bough_axpy(1.0 / group->n, chord, sum);
+    }
+    return sum;
+}
+
+// Mean rotations, and positions by the mean strains: mean positions of blades bent to either side
+// would be shorter than the rod and press it.
+static void average_rods(const bough_blade_group *group, const double *state, double *mean) {
+    const bough_rod_model *m = bough_beam_mesh(group->blade[0]);
+    int n = m->n;
+    for (int i = 1; i <= n; i++) {
+        bough_vec3 x;
+        bough_quaternion before, p;
+        double sum[4] = {0, 0, 0, 0};
+        for (int k = 0; k < group->n; k++) {
+            for (int c = 0; c < 4; c++) sum[c] += state[group->first[k] + (3 + c) * n + i - 1];
+        }
+        p = bough_quaternion_normalised((bough_quaternion){sum[0], sum[1], sum[2], sum[3]});
+        vertex_of(m, mean, i - 1, &x, &before);
+        x = bough_add(x, bough_mat3_mul(middle(before, p), mean_chord(group, m, i, state)));
+        const double values[7] = {x.x, x.y, x.z, p.w, p.x, p.y, p.z};
+        for (int c = 0; c < 7; c++) mean[c * n + i - 1] = values[c];
+    }
+}
+
+void bough_blade_group_average(const bough_blade_group *group, const double *input, double *mean,
+                               double *state) {
     for (int j = 0; j < group->n_row; j++) {
-        double sum = 0;
-        for (int k = 0; k < group->n; k++) sum += state[group->first[k] + j];
-        mean[j] = sum / group->n;
+        mean[j] = 0;
+        for (int k = 0; k < group->n; k++) mean[j] += state[group->first[k] + j] / group->n;
     }
-    for (int i = 0; i < n && group->blade[0]->rod != NULL; i++) {
-        double *p = mean + BOUGH_ROD_P * n + i;
-        bough_quaternion unit =
-            bough_quaternion_normalised((bough_quaternion){p[0], p[n], p[2 * n], p[3 * n]});
-        p[0] = unit.w, p[n] = unit.x, p[2 * n] = unit.y, p[3 * n] = unit.z;
-    }
-    for (int k = 1; k < group->n; k++) {
+    if (group->blade[0]->rod != NULL) average_rods(group, state, mean);
+    for (int k = 0; k < group->n; k++) {
         memcpy(state + group->first[k], mean, (size_t)group->n_row * sizeof *state);
+        bough_beam_ride(group->blade[k], input + group->first_input[k], state + group->first[k]);
     }
 }

@@ -7,8 +7,8 @@
 #ifndef BOUGH_APPS_SCENE_VIBRATION_H
 #define BOUGH_APPS_SCENE_VIBRATION_H
 
+#include "apps/scene/mode_shape.h"
 #include "apps/scene/settle.h"
-#include "core/eigen.h"
 #include "flexbody/rod_modes.h"
 
 // How the blades move against each other.
@@ -35,6 +35,7 @@ typedef struct bough_scene_mode {
                              // body 0..2 along the ground's axes, 3 turning
     bough_pattern pattern;   // of the blades
     double whirl[3];         // shares of the blades' motion: collective, forward, backward
+    bough_shape_row *shape;  // (n_row); NULL unless the scene's modes block asks for shapes
 } bough_scene_mode;
 
 typedef struct bough_vibration {
@@ -42,6 +43,7 @@ typedef struct bough_vibration {
     double spin;             // of the rotor [rad/s]
     bool frozen;             // it turns, but the blades allow no transform
     int n_blade;             // compared; 0: none
+    int n_row;               // of a shape
     int found;
     bough_scene_mode *mode;  // (found) by the distance of λ from a point near 0
     bough_eigen_pair *pair;  // (found)
@@ -52,8 +54,8 @@ extern const char *const bough_pattern_names[BOUGH_PATTERNS];
 // Whether the scene's modes block, or the scene without it, asks for modes of the whole.
 bool bough_vibration_wanted(const bough_simulation *s);
 
-// The `count` lowest modes, or fewer if there are not so many that can be told to 1e-9; free motions, whose eigenvalue is 0, are left
-// out. The simulation is left in the state they are about.
+// The `count` lowest modes, or fewer if there are not so many that can be told to 1e-9; free
+// motions, whose eigenvalue is 0, are left out. The simulation is left in the state they are about.
 bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count,
                                   bough_vibration *vibration);
 
