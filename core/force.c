@@ -16,7 +16,9 @@ typedef struct stretch {
     double length, tension;
 } stretch;
 
-static v3 velocity(const stretch *x, int end) { return bough_mat3_mul(x->r[end], x->v[end].linear); }
+static v3 velocity(const stretch *x, int end) {
+    return bough_mat3_mul(x->r[end], x->v[end].linear);
+}
 
 static stretch stretch_of(const bough_tree *tree, const bough_tree_data *d, int spring) {
     const bough_spring_def *s = &tree->springs[spring];

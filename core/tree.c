@@ -47,19 +47,23 @@ static int add_link(bough_tree *tree, int body, int parent, bough_joint joint) {
     return tree->n_links++;
 }
 
-// A universal joint has no constant motion subspace; two revolute ones have.
+// A universal joint has no constant motion subspace; two revolute ones have. A coordinate is driven
+// that has a link of its own.
 static int add_links(bough_tree *tree, const bough_body_def *b, int body, bough_frame parent) {
     bough_joint joint = {b->kind, bough_transform_compose(parent.placement, b->joint),
                          direction(b->axis), direction(b->second_axis)};
-    if (b->kind != BOUGH_JOINT_UNIVERSAL) {
+    bool universal = b->kind == BOUGH_JOINT_UNIVERSAL;
+    bool driven = b->motion.given || b->second_motion.given;
+    if (!universal && !(driven && b->kind == BOUGH_JOINT_CYLINDRICAL)) {
         int only = add_link(tree, body, parent.link, joint);
         tree->links[only].spring = b->spring;
         return only;
     }
-    joint.kind = BOUGH_JOINT_REVOLUTE;
+    joint.kind = universal ? BOUGH_JOINT_REVOLUTE : BOUGH_JOINT_PRISMATIC;
     int cross = add_link(tree, body, parent.link, joint);
+    joint.kind = BOUGH_JOINT_REVOLUTE;
     joint.placement = bough_transform_identity();
-    joint.axis = joint.second;
+    if (universal) joint.axis = joint.second;
     int link = add_link(tree, body, cross, joint);
     tree->links[link].part = 1;
     return link;
@@ -120,10 +124,11 @@ static bough_status create_motions(bough_arena *arena, const bough_tree_def *def
     for (int i = 0; i < tree->n_links; i++) {
         bough_link *link = &tree->links[i];
         const bough_body_def *b = &def->bodies[link->body];
-        if (!b->motion.given) continue;
+        const bough_motion_def *given = link->part == 0 ? &b->motion : &b->second_motion;
+        if (!given->given) continue;
         bough_motion *motion = NULL;
         bough_status status =
-            bough_motion_create(arena, &b->motion, b->coordinates[0], &motion);
+            bough_motion_create(arena, given, b->coordinates[link->part], &motion);
         if (status.code == BOUGH_INVALID) {
             return bough_fail(BOUGH_INVALID, "body '%s': %s", b->name, status.message);
         }

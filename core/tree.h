@@ -30,7 +30,9 @@ typedef struct bough_body_def {
     bough_vec3 axis;       // in joint axes, scaled to length 1; of those that have one
     bough_vec3 second_axis; // normal to it, scaled to length 1; universal and planar
     bough_joint_spring spring;  // of a revolute or prismatic joint; zero: none
-    bough_motion_def motion;    // of a revolute or prismatic joint; zero: moved by forces
+    bough_motion_def motion;        // of the first coordinate of a joint of one or two; zero: moved
+                                    // by forces
+    bough_motion_def second_motion; // of the second, of a universal or cylindrical joint
     double coordinates[BOUGH_JOINT_COORDINATES]; // initial, see joint.h [rad, m, –]
     double speeds[BOUGH_JOINT_SPEEDS];           // initial, see joint.h [rad/s, m/s]
     double mass;                                 // [kg]
@@ -139,8 +141,8 @@ typedef struct bough_tree_def {
 typedef struct bough_link {
     int parent;                          // link of smaller index, or BOUGH_GROUND
     int body;                            // the def's body whose joint moves it
-    int part;                            // 0; of a universal joint 0, then 1: it is two links,
-                                         // the first without a body
+    int part;                            // 0; of a universal joint, and of a driven cylindrical
+                                         // one, 0, then 1: two links, the first without a body
     bough_joint_spring spring;           // zero: none
     bough_motion *motion;                // NULL: moved by forces; changed by bough_tree_steer only
     bough_joint joint;                   // placed in the parent link's frame

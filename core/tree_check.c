@@ -79,11 +79,12 @@ static bough_status check_spring(const bough_body_def *b) {
 }
 
 static bough_status check_motion(const bough_body_def *b) {
-    bool axis = b->kind == BOUGH_JOINT_REVOLUTE || b->kind == BOUGH_JOINT_PRISMATIC;
-    if (!b->motion.given || axis) return bough_ok();
+    bool two = b->kind == BOUGH_JOINT_UNIVERSAL || b->kind == BOUGH_JOINT_CYLINDRICAL;
+    bool one = two || b->kind == BOUGH_JOINT_REVOLUTE || b->kind == BOUGH_JOINT_PRISMATIC;
+    if ((!b->motion.given || one) && (!b->second_motion.given || two)) return bough_ok();
     return bough_fail(BOUGH_INVALID,
-                      "body '%s': motion is prescribed of revolute and prismatic joints, not of a "
-                      "%s one",
+                      "body '%s': motion is prescribed of revolute, prismatic, cylindrical and "
+                      "universal joints, not of a %s one",
                       b->name, bough_joint_name(b->kind));
 }
 

@@ -155,7 +155,7 @@ checks() {
     expect 0 check "$scenes/springs.yaml"
     has ../stdout '^body slider: .* 1 degree of freedom, spring 50 N/m, damper 0.5 N s/m, stops 3000 N/m'
     expect 0 check "$scenes/motion.yaml"
-    has ../stdout '^body table: .* 1 degree of freedom, its angle prescribed'
+    has ../stdout '^body table: .* 1 degree of freedom, 1 of them prescribed'
     expect 0 check "$mechanisms/elastic-pendulum.yaml"
     has ../stdout '^springs: 1$'
     expect 0 check "$bar" --set 'simulation.coupling={scheme: extrapolated, order: 2}' \

@@ -257,13 +257,22 @@ static void scenes_drive_joints(void **state) {
     bough_simulation *s = scene_build(arena, "tests/scenes/motion.yaml", none);
     bough_channels list = bough_channels_start(arena);
     assert_int_equal(bough_simulation_channels(s, &list).code, BOUGH_OK);
-    assert_int_equal(s->master->n_event, 2 + 3);
-    check_near(s->master->event[1], 0.105, 1e-15, 0);
+    assert_int_equal(s->master->n_event, 2 + 3 + 2 + 2);
+    check_near(s->master->event[3], 0.105, 1e-15, 0);
     while (s->master->time < 1) scene_step(s);
     check_near(channel(s, &list, "tablePos"), 90, 1e-14, 0);
     check_near(channel(s, &list, "fanVel"), 12.1 * 6, 1e-14, 0);
     check_near(channel(s, &list, "fanPos"), 12.1 * 6, 1e-13, 0);
     check_near(channel(s, &list, "fanTrq"), 0, 0, 1e-12);
+    check_near(channel(s, &list, "ramPos"), 3, 1e-15, 0);
+    check_near(channel(s, &list, "ramAngPos") * pi / 180, 2, 1e-8, 0); // it spins on freely
+    check_near(channel(s, &list, "ramFrc"), 4 * 9.80665, 1e-12, 0);
+    check_near(channel(s, &list, "gimbalAng1Pos"), 30, 1e-14, 0);
+    check_near(channel(s, &list, "gimbalAng2Pos"), 90, 1e-14, 0);
+    // the mass stands up from the gimbal's x, leaned by 30 degrees: at (0, cos, sin) of them
+    double lean = pi / 6;
+    check_near(channel(s, &list, "gimbalTrq1"), 2 * 9.80665 * cos(lean), 1e-12, 0);
+    check_near(channel(s, &list, "gimbalTrq2"), 0, 0, 1e-12);
     // the lift stands still, held against 4 kg
     check_near(channel(s, &list, "liftVel"), 0, 0, 0);
     check_near(channel(s, &list, "liftFrc"), 4 * 9.80665, 1e-12, 0);

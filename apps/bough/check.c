@@ -62,10 +62,8 @@ static void print_joint(const bough_scene *scene, int body) {
     if (word != NULL) printf(" %s %c", word, "xyz"[joint->axis]);
     if (joint->kind == BOUGH_SCENE_UNIVERSAL) printf(" and %c", "xyz"[joint->second_axis]);
     printf(" on %s: %d degree%s of freedom", body_name(scene, joint->parent), n, plural(n));
-    if (joint->motion.node != NULL) {
-        const char *what = joint->kind == BOUGH_SCENE_REVOLUTE ? "angle" : "position";
-        printf(", its %s prescribed", joint->motion.speed ? "speed" : what);
-    }
+    int driven = (joint->motion.node != NULL) + (joint->second_motion.node != NULL);
+    if (driven > 0) printf(", %d of them prescribed", driven);
     print_spring(joint);
 }
 

@@ -54,14 +54,16 @@ static bough_mat3 tensor(const double j[6]) {
     return (bough_mat3){{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
 }
 
-static void set_motion(const bough_scene_motion *from, bough_body_def *to) {
+static void set_motion(const bough_scene_motion *from, bough_motion_def *to) {
     if (from->node == NULL) return;
-    to->motion = (bough_motion_def){true, from->speed, from->from, from->to, from->ramp[0],
-                                    from->ramp[1], from->n_time, from->times, from->values};
+    *to = (bough_motion_def){true, from->speed, from->from, from->to, from->ramp[0],
+                             from->ramp[1], from->n_time, from->times, from->values};
 }
 
 static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) {
     double *q = to->coordinates, *v = to->speeds;
+    set_motion(&joint->motion, &to->motion);
+    set_motion(&joint->second_motion, &to->second_motion);
     double c = cos(joint->angle), s = sin(joint->angle);
     switch (to->kind) {
     case BOUGH_JOINT_CYLINDRICAL:
@@ -81,7 +83,6 @@ static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) 
         q[0] = joint->position, v[0] = joint->speed;
         to->spring = (bough_joint_spring){joint->stiffness, joint->damping, joint->rest,
                                           joint->stop[0], joint->stop[1], joint->stop_stiffness};
-        set_motion(&joint->motion, to);
         break;
     }
 }
@@ -269,7 +270,10 @@ static void add_generator(builder *b) {
 }
 
 static void set_loads(builder *b) {
-    for (int k = 0; k < b->scene->n_body; k++) add_motion(b, &b->scene->body[k].joint.motion);
+    for (int k = 0; k < b->scene->n_body; k++) {
+        add_motion(b, &b->scene->body[k].joint.motion);
+        add_motion(b, &b->scene->body[k].joint.second_motion);
+    }
     for (int k = 0; k < b->scene->n_load; k++) {
         const bough_scene_load *load = &b->scene->load[k];
         add_ramp(b, load->ramp);
@@ -286,7 +290,10 @@ static void set_loads(builder *b) {
 static size_t count_corners(const bough_scene *scene) {
     size_t n = 2 * (size_t)scene->n_load + 2; // two per ramp, of loads and of the aerodynamics
     for (int k = 0; k < scene->n_load; k++) n += (size_t)scene->load[k].n_time;
-    for (int k = 0; k < scene->n_body; k++) n += 2 + (size_t)scene->body[k].joint.motion.n_time;
+    for (int k = 0; k < scene->n_body; k++) {
+        const bough_scene_joint *joint = &scene->body[k].joint;
+        n += 4 + (size_t)joint->motion.n_time + (size_t)joint->second_motion.n_time;
+    }
     return n;
 }
 

@@ -74,8 +74,9 @@ static void add_wrenches(const bough_scene *scene, bough_force_link *link) {
         if (load->body_name == NULL || scene->body[load->body].fidelity != BOUGH_SCENE_RIGID) {
             continue;
         }
+        int marker = add_marker(link, load->body_name, load->body, load->point);
         link->applied[link->n_applied++] =
-            (bough_applied_def){.marker = add_marker(link, load->body_name, load->body, load->point),
+            (bough_applied_def){.marker = marker,
                                 .wrench = {point(load->force), point(load->moment)},
                                 .ground = load->frame == BOUGH_SCENE_LOAD_GROUND,
                                 .start = load->ramp[0],

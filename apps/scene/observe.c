@@ -115,33 +115,45 @@ static bough_status add_rotor(bough_simulation *s, bough_channels *list) {
     return status;
 }
 
+// Whether coordinate k of a joint is prescribed
+static bool is_driven(const bough_scene_joint *joint, int k) {
+    return (k == 0 ? &joint->motion : &joint->second_motion)->node != NULL;
+}
+
 // What the joints with prescribed motion take, under the rods' present forces.
 static void sample_drives(void *self, double t, double *value) {
     const bough_simulation *s = self;
     bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
     for (int i = 0; i < s->scene->n_body; i++) {
-        int q, v;
-        if (s->scene->body[i].joint.motion.node == NULL) continue;
-        bough_tree_joint_rows(s->tree, i, &q, &v);
-        *value++ = s->view->drive[v - s->tree->n_q];
+        for (int k = 0, q, v; k < 2; k++) {
+            if (!is_driven(&s->scene->body[i].joint, k)) continue;
+            bough_tree_joint_rows(s->tree, i, &q, &v);
+            *value++ = s->view->drive[v - s->tree->n_q + k];
+        }
     }
 }
 
 static bool has_motion(const bough_scene *scene) {
     for (int i = 0; i < scene->n_body; i++) {
-        if (scene->body[i].joint.motion.node != NULL) return true;
+        if (is_driven(&scene->body[i].joint, 0) || is_driven(&scene->body[i].joint, 1)) return true;
     }
     return false;
 }
 
+static bough_status add_drive(const bough_scene_body *body, int k, bough_channels *list) {
+    int kind = body->joint.kind;
+    bool force = kind == BOUGH_SCENE_PRISMATIC || (kind == BOUGH_SCENE_CYLINDRICAL && k == 0);
+    if (kind == BOUGH_SCENE_UNIVERSAL) {
+        return bough_channels_add(list, "N-m", "%sTrq%d", body->name, k + 1);
+    }
+    return bough_channels_add(list, force ? "N" : "N-m", force ? "%sFrc" : "%sTrq", body->name);
+}
+
 static bough_status add_drives(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_drives, s);
-    for (int i = 0; i < s->scene->n_body && bough_is_ok(&status); i++) {
-        const bough_scene_body *body = &s->scene->body[i];
-        if (body->joint.motion.node == NULL) continue;
-        bool torque = body->joint.kind == BOUGH_SCENE_REVOLUTE;
-        status = bough_channels_add(list, torque ? "N-m" : "N", torque ? "%sTrq" : "%sFrc",
-                                    body->name);
+    for (int i = 0; i < 2 * s->scene->n_body && bough_is_ok(&status); i++) {
+        const bough_scene_body *body = &s->scene->body[i / 2];
+        if (is_driven(&body->joint, i % 2)) status = add_drive(body, i % 2, list);
     }
     return status;
 }

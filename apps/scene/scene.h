@@ -149,7 +149,8 @@ typedef struct bough_scene_joint {
     // Of revolute [rad, N m/rad, …] and prismatic [m, N/m, …]:
     double stiffness, damping, rest;
     double stop[2], stop_stiffness; // 0: no stops
-    bough_scene_motion motion;
+    bough_scene_motion motion;        // of the first coordinate
+    bough_scene_motion second_motion; // of the second of cylindrical (the angle) and universal
 } bough_scene_joint;
 
 // A section of a rod. Between stations everything is linear in span.

@@ -4,6 +4,16 @@
 #include <math.h>
 #include <string.h>
 
+// A cylindrical joint's, whose schema begins with the node of the first
+typedef struct motion_pair {
+    bough_scene_motion first, second;
+} motion_pair;
+
+typedef struct universal_pair {
+    const bough_node *node;
+    bough_scene_motion first, second;
+} universal_pair;
+
 // -- a table or a ramp ----------------------------------------------------------------------------
 
 typedef struct table {
@@ -119,39 +129,101 @@ static const bough_key prismatic_keys[] = {
 };
 #undef FORM
 
+static const bough_key cylindrical_keys[] = {
+    {.name = "speed", .kind = BOUGH_KEY_CUSTOM, .read = read_speed},
+    {.name = "position", .kind = BOUGH_KEY_CUSTOM, .read = read_position},
+    {.name = "angular_speed", .kind = BOUGH_KEY_CUSTOM, .read = read_angular_speed,
+     .offset = offsetof(motion_pair, second)},
+    {.name = "angle", .kind = BOUGH_KEY_CUSTOM, .read = read_angle,
+     .offset = offsetof(motion_pair, second)},
+};
+
+// One of a pair of keys at most, the speed first.
+static void check_one(bough_schema_reader *r, const bough_node *node, const char *speed,
+                      const char *place, bough_scene_motion *motion) {
+    bool of_speed = bough_node_find(node, speed) != NULL;
+    bool of_place = bough_node_find(node, place) != NULL;
+    motion->speed = of_speed;
+    motion->node = of_speed || of_place ? node : NULL;
+    if (of_speed && of_place) {
+        bough_schema_error(r, node, "", "expected either '%s' or '%s', got both", speed, place);
+    }
+}
+
 static void check_motion(bough_schema_reader *r, void *item) {
     bough_scene_motion *motion = item;
+    if (motion->node == NULL) return;
     motion->speed = bough_node_find(motion->node, "speed") != NULL;
     if (motion->node->n == 1) return;
     bough_schema_error(r, motion->node, "", "expected either the speed or where the joint is");
 }
 
-static const bough_schema revolute_motion = {.name = "the motion of a revolute joint",
-                                             .size = sizeof(bough_scene_motion),
-                                             .n_key = 2,
-                                             .key = revolute_keys,
-                                             .check = check_motion};
-static const bough_schema prismatic_motion = {.name = "the motion of a prismatic joint",
-                                              .size = sizeof(bough_scene_motion),
-                                              .n_key = 2,
-                                              .key = prismatic_keys,
-                                              .check = check_motion};
+static void check_pair(bough_schema_reader *r, void *item) {
+    motion_pair *pair = item;
+    const bough_node *node = pair->first.node;
+    check_one(r, node, "speed", "position", &pair->first);
+    check_one(r, node, "angular_speed", "angle", &pair->second);
+    if (node->n == 0) bough_schema_error(r, node, "", "expected what is prescribed");
+}
+
+#define MOTION(what, type, keys, checker)                                                          \
+    {.name = what, .size = sizeof(type), .n_key = (int)(sizeof keys / sizeof *keys),               \
+     .key = keys, .check = checker}
+static const bough_schema revolute_motion =
+    MOTION("the motion of a revolute joint", bough_scene_motion, revolute_keys, check_motion);
+static const bough_schema prismatic_motion =
+    MOTION("the motion of a prismatic joint", bough_scene_motion, prismatic_keys, check_motion);
+static const bough_schema cylindrical_motion =
+    MOTION("the motion of a cylindrical joint", motion_pair, cylindrical_keys, check_pair);
+static const bough_key universal_keys[] = {
+    {.name = "first", .kind = BOUGH_KEY_MAPPING, .of = &revolute_motion,
+     .offset = offsetof(universal_pair, first)},
+    {.name = "second", .kind = BOUGH_KEY_MAPPING, .of = &revolute_motion,
+     .offset = offsetof(universal_pair, second)},
+};
+static const bough_schema universal_motion =
+    MOTION("the motion of a universal joint", universal_pair, universal_keys, NULL);
 
 // field: the joint, whose kind is read before
 void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, void *field) {
     bough_scene_joint *joint = field;
-    bool revolute = joint->kind == BOUGH_SCENE_REVOLUTE;
-    bough_schema_read(r, revolute ? &revolute_motion : &prismatic_motion, node, &joint->motion);
+    motion_pair pair = {0};
+    universal_pair two = {0};
+    switch (joint->kind) {
+    case BOUGH_SCENE_REVOLUTE:
+        bough_schema_read(r, &revolute_motion, node, &joint->motion);
+        break;
+    case BOUGH_SCENE_PRISMATIC:
+        bough_schema_read(r, &prismatic_motion, node, &joint->motion);
+        break;
+    case BOUGH_SCENE_CYLINDRICAL:
+        bough_schema_read(r, &cylindrical_motion, node, &pair);
+        joint->motion = pair.first, joint->second_motion = pair.second;
+        break;
+    default:
+        bough_schema_read(r, &universal_motion, node, &two);
+        joint->motion = two.first, joint->second_motion = two.second;
+        break;
+    }
+}
+
+static void refuse(bough_schema_reader *r, const bough_scene_joint *joint, const char *key,
+                   bool follows) {
+    const bough_node *given = bough_node_find(joint->node, key);
+    if (given == NULL || !follows) return;
+    bough_schema_error(r, given, key, "follows from the joint's motion");
 }
 
 // The joint starts where and as fast as its motion says.
 void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint) {
-    const bough_node *motion = bough_node_find(joint->node, "motion");
-    if (motion == NULL) return;
-    static const char *const keys[] = {"speed", "angle", "position"};
-    for (int k = 0; k < 3; k++) {
-        const bough_node *given = bough_node_find(joint->node, keys[k]);
-        if (given == NULL || (k > 0 && joint->motion.speed)) continue;
-        bough_schema_error(r, given, keys[k], "follows from the joint's motion");
+    const bough_scene_motion *first = &joint->motion, *second = &joint->second_motion;
+    bool placed = first->node != NULL && !first->speed;
+    refuse(r, joint, "speed", first->node != NULL);
+    refuse(r, joint, "position", placed);
+    if (joint->kind != BOUGH_SCENE_CYLINDRICAL) {
+        refuse(r, joint, "angle", placed);
+        return;
     }
+    refuse(r, joint, "angular_speed", second->node != NULL);
+    refuse(r, joint, "angle", second->node != NULL && !second->speed);
 }

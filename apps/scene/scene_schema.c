@@ -167,9 +167,10 @@ static const bough_key joint_keys[] = {
      .when = "spherical|free", AT(angular_velocity),
      .help = "initial angular velocity in the joint's frame"},
     {.name = "motion", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_motion, .when_key = "kind",
-     .when = "revolute|prismatic", .offset = 0,
-     .form = "{speed: VALUES}, {angle: VALUES} or {position: VALUES}; VALUES a number, {from: 0, "
-             "to: ..., ramp: [...]} or {times: [...], values: [...]}",
+     .when = "revolute|prismatic|cylindrical|universal", .offset = 0,
+     .form = "{speed: VALUES}, {angle: VALUES} or {position: VALUES}, of cylindrical also "
+             "{angular_speed: VALUES}, of universal {first: {...}, second: {...}}; VALUES a number, "
+             "{from: 0, to: ..., ramp: [...]} or {times: [...], values: [...]}",
      .help = "makes the joint move so, whatever force that takes (channel Trq or Frc); a ramp is "
              "smooth to the second derivative, a table of speeds linear, of positions a cubic "
              "spline at rest at its ends"},
