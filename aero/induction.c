@@ -143,8 +143,8 @@ static bool changes_sign(const problem *p, balance a, balance b) {
     return (residual(p, a) > 0) != (residual(p, b) > 0);
 }
 
-// Where a windmill element with linear lift, no drag and no swirl would balance, if that is attached
-// flow: 4F φ (φ₀ − φ) = σ c_lα (φ − θ − α₀) for small angles, φ₀ the angle without induction.
+// Where a windmill element with linear lift, no drag and no swirl would balance, if that is
+// attached flow: 4F φ (φ₀ − φ) = σ c_lα (φ − θ − α₀) for small angles, φ₀ that without induction.
 static bool attached_angle(const problem *p, double phi0, double *phi) {
     const bough_element *e = p->element;
     if (p->sign_x < 0 || p->sign_y < 0 || e->polar->slope == 0) return false;

@@ -1,10 +1,10 @@
 // Blade element momentum at one station: the inflow angle at which blade forces and momentum
 // agree, by Ning's single residual, whose root is always bracketed.
 //
-// The solver keeps no memory: where a stalled polar gives several roots, a start from the last answer
-// would make the next depend on the past, and a repeated step would not repeat its loads. It starts
-// where linear lift would balance, which needs six evaluations instead of ten as the last answer would,
-// and takes the root of attached flow if there are others. Elsewhere it brackets as Ning does.
+// The solver keeps no memory: where a stalled polar gives several roots, a start from the last
+// answer would make the next depend on the past, and a repeated step would not repeat its loads. It
+// starts where linear lift would balance, which as the last answer would saves four evaluations of
+// ten, and takes the root of attached flow if there are others. Elsewhere it brackets as Ning does.
 //
 // S. A. Ning, "A simple solution method for the blade element momentum equations with guaranteed
 // convergence", Wind Energy 17 (2014).

@@ -1,7 +1,8 @@
 // Dynamic inflow: the induction follows a change of the rotor's loading with delay, because the
 // wake has to be convected away first. Øye's two first-order filters in series,
 //     w + τ₁ w' = q + k τ₁ q',   v + τ₂ v' = w,
-// from the induced velocity q of the momentum balance to the induced velocity v, with k = 0.6.
+// from the induced velocity q of the momentum balance to the induced velocity v, with k = 0.6. With q
+// linear between samples this is AeroDyn's discrete dynamic BEM: with τ₁ given its mode 1, else 2.
 //
 // S. Øye, in: H. Snel, J. G. Schepers (eds.), Joint investigation of dynamic inflow effects and
 // implementation of an engineering method, ECN-C--94-107 (1995).

@@ -99,7 +99,8 @@ static bough_status check_station(const bough_rotor_def *def, int j) {
     const int wanted[2] = {s->polar, s->share > 0 ? s->second : s->polar};
     for (int i = 0; i < 2; i++) {
         if (wanted[i] >= 0 && wanted[i] < def->n_polar) continue;
-        return bough_fail(BOUGH_INVALID, "Aero station %d: there is no polar %d.", j + 1, wanted[i]);
+        return bough_fail(BOUGH_INVALID, "Aero station %d: there is no polar %d.", j + 1,
+                          wanted[i]);
     }
     if (!(s->share >= 0 && s->share <= 1)) {
         return bough_fail(BOUGH_INVALID, "Aero station %d: a polar's share is from 0 to 1.", j + 1);

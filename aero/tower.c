@@ -21,7 +21,8 @@ static bough_status check(const bough_tower_def *def) {
         }
         if (def->drag && !(def->drag[i] >= 0)) {
             return bough_fail(BOUGH_INVALID,
-                              "Tower section %d: the drag coefficient must not be negative.", i + 1);
+                              "Tower section %d: the drag coefficient must not be negative.",
+                              i + 1);
         }
     }
     return bough_ok();

@@ -43,8 +43,8 @@ typedef struct bough_tower {
 
 bough_status bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tower *tower);
 
-// The drag on the tower at a place of its axis, unit vector `axis`, in air of that density [kg/m³] and
-// velocity against the tower [m/s]; only what blows across counts [N/m].
+// The drag on the tower at a place of its axis, unit vector `axis`, in air of that density [kg/m³]
+// and velocity against the tower [m/s]; only what blows across counts [N/m].
 bough_vec3 bough_tower_drag(const bough_tower *tower, double density, bough_vec3 position,
                             bough_vec3 axis, bough_vec3 inflow);
 

@@ -127,8 +127,8 @@ bough_vec3 bough_wind_hub_at(const bough_wind_hub *hub, bough_vec3 position, dou
     double across = position.y * c + position.x * s;
     double above = position.z - hub->reference_height;
     double share = power_share(position.z / hub->reference_height, r.exponent);
-    double linear = (r.horizontal_shear * across + r.vertical_shear * above) / hub->reference_length;
-    double speed = r.speed * (share + linear) + r.gust;
+    double sheared = r.horizontal_shear * across + r.vertical_shear * above;
+    double speed = r.speed * (share + sheared / hub->reference_length) + r.gust;
     double cu = cos(r.upflow), su = sin(r.upflow), along = speed * cu - r.vertical * su;
     return bough_v3(along * c, -along * s, speed * su + r.vertical * cu);
 }

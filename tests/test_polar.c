@@ -90,8 +90,9 @@ static void smooth_polars_are_monotone_and_smooth(void **state) {
             const double *r = def->row + 4 * i;
             double a = r[0] * degree, b = r[4] * degree, h = 1e-7;
             check_near(bough_polar_at(&polar, a).lift, r[1], 1e-11, 1e-11);
-            double left = (bough_polar_at(&polar, a).lift - bough_polar_at(&polar, a - h).lift) / h;
-            double right = (bough_polar_at(&polar, a + h).lift - bough_polar_at(&polar, a).lift) / h;
+            double at = bough_polar_at(&polar, a).lift;
+            double left = (at - bough_polar_at(&polar, a - h).lift) / h;
+            double right = (bough_polar_at(&polar, a + h).lift - at) / h;
             check_near(left, right, 1e-4, 1e-3);
             double low = fmin(r[1], r[5]), high = fmax(r[1], r[5]);
             for (int k = 1; k < 20; k++) {

@@ -169,7 +169,8 @@ static void drag_is_across_the_axis(void **state) {
     bough_tower tower;
     bough_status status = bough_tower_build(arena, &def, &tower);
     assert_int_equal(status.code, BOUGH_OK);
-    bough_vec3 axis = bough_v3(sin(0.1), 0, cos(0.1)), wind = bough_axpy(7, axis, bough_v3(0, 9, 0));
+    bough_vec3 axis = bough_v3(sin(0.1), 0, cos(0.1));
+    bough_vec3 wind = bough_axpy(7, axis, bough_v3(0, 9, 0));
     bough_vec3 f = bough_tower_drag(&tower, 1.2, bough_v3(1, 2, 60), axis, wind);
     check_near(f.y, 0.5 * 1.2 * 0.75 * 5 * 81, 1e-12, 0);
     check_near(hypot(f.x, f.z), 0, 0, 1e-9);

@@ -15,7 +15,8 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
 // The sampled load for the master's loop.
 bough_sampled_load bough_control_link_load(bough_control_link *link);
 
-// At the last sample: generator speed [rad/s], torque on the fast shaft [N m], electrical power [W].
+// At the last sample: generator speed [rad/s], torque on the fast shaft [N m] and electrical power
+// [W].
 void bough_control_link_generator(const bough_control_link *link, double *speed, double *torque,
                                   double *power);
 

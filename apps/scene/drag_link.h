@@ -1,5 +1,5 @@
-// Joins the drag of tower and hub to the bodies of a simulation, sampled with the aerodynamics; forces
-// go linearly to what was sampled and arrive one sample late.
+// Joins the drag of tower and hub to the bodies of a simulation, sampled with the aerodynamics;
+// forces go linearly to what was sampled and arrive one sample late.
 #ifndef BOUGH_APPS_SCENE_DRAG_LINK_H
 #define BOUGH_APPS_SCENE_DRAG_LINK_H
 

@@ -74,8 +74,8 @@ static void read_set(bough_schema_reader *r, const bough_node *node, void *field
 
 static const char quantity_form[] =
     "'tip x|y|z|ux|uy|uz|rx|ry|rz', 'frequency N', 'damping N', 'growth', 'CHANNEL at TIME', "
-    "'largest CHANNEL', 'smallest CHANNEL', 'mean CHANNEL from TIME', 'amplitude CHANNEL from TIME' "
-    "once per turn of the rotor, 'inflow states|failures|spread', 'drift of energy|momentum|"
+    "'largest CHANNEL', 'smallest CHANNEL', 'mean CHANNEL from TIME', 'amplitude CHANNEL from "
+    "TIME' once per turn of the rotor, 'inflow states|failures|spread', 'drift of energy|momentum|"
     "angular momentum|strain energy from TIME', 'evaluations per step'";
 
 static int word_index(const char *word, const char *const *words, int n) {
