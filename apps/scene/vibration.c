@@ -94,7 +94,9 @@ static bough_status describe(bough_arena *arena, const bough_simulation *s, cons
                  .group = &x->group,
                  .state = x->state};
     v->n_row = bough_mode_shape_rows(s);
-    if (!bough_mode_shape_take(arena, &one)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!bough_mode_shape_take(arena, &one)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    }
     for (int k = 0; k < v->found; k++) {
         one.pair = &v->pair[k];
         bough_mode_shape_set(&one);
