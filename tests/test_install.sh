@@ -1,0 +1,23 @@
+#!/bin/sh
+# Installs into a folder of its own and builds the example against it. test_install.sh BUILD SOURCE
+set -eu
+build=$1 source=$2
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cmake --install "$build" --prefix "$folder/usr" >/dev/null
+"$folder/usr/bin/bough" --version
+mkdir "$folder/project"
+cp "$source/apps/api/example.c" "$folder/project"
+cat >"$folder/project/CMakeLists.txt" <<'END'
+cmake_minimum_required(VERSION 3.20)
+project(example C)
+find_package(bough REQUIRED)
+add_executable(example example.c)
+target_link_libraries(example bough::api)
+END
+cmake -S "$folder/project" -B "$folder/b" -DCMAKE_PREFIX_PATH="$folder/usr" >/dev/null
+cmake --build "$folder/b" >/dev/null
+"$folder/b/example" "$source/apps/mechanisms/pendulum.yaml" bobX >"$folder/rows"
+[ "$(wc -l <"$folder/rows")" -ge 100 ]
+if "$folder/b/example" "$source/apps/mechanisms/pendulum.yaml" nothing 2>/dev/null; then exit 1; fi
+echo "installed and used"
