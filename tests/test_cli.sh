@@ -3,6 +3,7 @@
 # Every check that fails says so in one line; the exit code is the test's.
 set -u
 bough=$1
+folder=$2
 scenes=$2/tests/scenes
 bar=$2/apps/beams/rubber-bar.yaml
 mechanisms=$2/apps/mechanisms
@@ -386,6 +387,35 @@ shown() {
     refused 'holds no results' report .
 }
 
+# Two workers fill one folder, by themselves and as a Slurm array would start them.
+spread() {
+    cat >../spread.yaml <<END
+kind: stability
+scene: $bar
+reference: {simulation.coupling.scheme: monolithic, simulation.macro_step: 1 ms}
+grid:
+  bodies[0].rod.segments: [8, 12]
+  simulation.coupling.scheme: [monolithic]
+  simulation.macro_step: [1 ms, 2 ms]
+common: {simulation.duration: 4 ms, simulation.output.interval: 4 ms}
+measures:
+  - {name: tip, channels: [barTipX, barTipZ]}
+END
+    said="spread.sh"
+    BOUGH=$bough "$folder/apps/studies/spread.sh" ../spread.yaml 2 out >../stdout 2>../stderr ||
+        fail "spread.sh: $(cat ../stderr)"
+    has ../stdout '^4 of 4 held, 0 stopped'
+    [ "$(cat out/cells-*-of-2.csv | grep -c 'macro_step=')" -eq 4 ] || fail "$said: four cells"
+    rm -r out
+    for k in 1 2; do
+        SLURM_ARRAY_TASK_ID=$k BOUGH=$bough "$folder/apps/studies/spread.sh" ../spread.yaml 2 out \
+            >../stdout 2>../stderr || fail "spread.sh: $(cat ../stderr)"
+    done
+    has ../stdout ' 0 of 4 cells still missing'
+    rm -r out
+    refused 'expects K/N' study ../spread.yaml --part 3/2
+}
+
 usage
 help
 bad_scenes
@@ -398,5 +428,6 @@ interrupted_run
 bad_output
 threads
 shown
+spread
 [ $failures -eq 0 ] && echo "all checks passed"
 [ $failures -eq 0 ]

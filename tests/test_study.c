@@ -140,7 +140,7 @@ static void check_errors(const char *folder, const char *text, const char *expec
 static void bad_keys_are_told_all_at_once(void **state) {
     check_errors(*state,
                  "titel: x\nkind: work-precisoin\nscene: [a]\nreference: none\n"
-                 "grid: {a.b: 1, c: [[1], 2]}\ncommon: {d: [1]}\nrepeat: 0\n"
+                 "grid: {a.b: 1, c: [{e: 1}, 2]}\ncommon: {d: {e: 1}}\nrepeat: 0\n"
                  "measures:\n  - {name: x}\n  - {name: y, channels: [], norm: max}\n"
                  "  - {name: z, channel: c, scale: 2}\n",
                  "1:1 \n2:7 kind\n3:8 scene\n4:12 reference\n5:13 grid.a.b\n5:20 grid.c\n"

@@ -22,6 +22,8 @@ static const option_row rows[] = {
     {"out", "DIR", "folder for the results; default out/<name of the scene>", BOUGH_OPTION_OUT,
      false},
     {"threads", "N", "1 to 64, instead of what the scene says", BOUGH_OPTION_THREADS, false},
+    {"part", "K/N", "of a study of kind stability only the K-th of N shares of its runs",
+     BOUGH_OPTION_PART, false},
     {"quiet", NULL, "no progress line", BOUGH_OPTION_QUIET, false},
 };
 enum { N_ROW = sizeof rows / sizeof *rows };
@@ -79,11 +81,20 @@ static bough_status take_threads(const char *text, bough_options *options) {
     return bough_ok();
 }
 
+static bough_status take_part(const char *text, bough_options *options) {
+    char rest;
+    bool good = sscanf(text, "%d/%d%c", &options->part, &options->parts, &rest) == 2 &&
+                options->part >= 1 && options->part <= options->parts;
+    return good ? bough_ok()
+                : bough_fail(BOUGH_INVALID, "--part expects K/N such as 1/4, got '%.80s'", text);
+}
+
 static bough_status take_option(bough_option_flag flag, const char *text, bough_options *options) {
     switch (flag) {
     case BOUGH_OPTION_SET: options->set[options->n_set++] = text; break;
     case BOUGH_OPTION_OUT: options->out = text; break;
     case BOUGH_OPTION_THREADS: return take_threads(text, options);
+    case BOUGH_OPTION_PART: return take_part(text, options);
     case BOUGH_OPTION_QUIET: options->quiet = true; break;
     }
     return bough_ok();

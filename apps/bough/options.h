@@ -14,6 +14,7 @@ typedef enum bough_option_flag {
     BOUGH_OPTION_OUT = 1 << 1,
     BOUGH_OPTION_THREADS = 1 << 2,
     BOUGH_OPTION_QUIET = 1 << 3,
+    BOUGH_OPTION_PART = 1 << 4,
 } bough_option_flag;
 
 typedef enum bough_operand {
@@ -35,6 +36,7 @@ typedef struct bough_options {
     const char **set; // (n_set) replacements "key=value", in their order
     const char *out;  // NULL: named after the scene
     int threads;      // 0: as the scene says
+    int part, parts;  // of a study, from 1; 0: all of it
     bool quiet, help;
 } bough_options;
 

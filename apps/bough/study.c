@@ -16,6 +16,8 @@ bough_status bough_verb_study(bough_arena *arena, const bough_options *options) 
     }
     if (!bough_is_ok(&status)) return status;
     bough_study_options how = {.folder = bough_out_folder(arena, options),
+                               .part = options->part,
+                               .parts = options->parts,
                                .quiet = options->quiet,
                                .stop = bough_stop_requested,
                                .stream = stdout};

@@ -68,23 +68,29 @@ static bough_node *new_node(const replacement *s, bough_node_kind kind, const ch
 
 static bough_node *put(const replacement *s, const bough_node *node, const char *rest, int depth);
 
-// "[2]…": an item that exists.
+// "[2]…": an item that exists; "[2-4]…": several.
 static bough_node *put_item(const replacement *s, const bough_node *node, const char *rest,
                             int depth) {
     char *end, text[120];
-    long index = rest[1] >= '0' && rest[1] <= '9' ? strtol(rest + 1, &end, 10) : -1;
-    if (index < 0 || *end != ']') return refuse(s, "expected an index such as [0]");
+    long index = rest[1] >= '0' && rest[1] <= '9' ? strtol(rest + 1, &end, 10) : -1, last = index;
+    if (index >= 0 && *end == '-' && end[1] >= '0' && end[1] <= '9') {
+        last = strtol(end + 1, &end, 10);
+    }
+    if (index < 0 || *end != ']' || last < index) {
+        return refuse(s, "expected an index such as [0] or [0-2]");
+    }
     if (node == NULL || node->kind != BOUGH_SEQUENCE) {
         return refuse(s, "there is no list to take an index of");
     }
-    if (index >= node->n) {
+    if (last >= node->n) {
         snprintf(text, sizeof text, "index %.12s is beyond the last, [%d]", rest, node->n - 1);
         return refuse(s, text);
     }
     bough_node *copy = copy_container(s, node);
-    bough_node *value = put(s, node->value[index], end + 1, depth + 1);
-    if (copy == NULL || value == NULL) return NULL;
-    copy->value[index] = value;
+    for (; copy != NULL && index <= last; index++) {
+        copy->value[index] = put(s, node->value[index], end + 1, depth + 1);
+        if (copy->value[index] == NULL) return NULL;
+    }
     return copy;
 }
 

@@ -27,15 +27,38 @@ static const char *write_set(bough_arena *arena, const char *key, const bough_no
     return set;
 }
 
+// "[1, 2]" of a list of scalars; NULL when it is none.
+static const char *write_list(bough_arena *arena, const bough_node *value) {
+    size_t size = 3, used = 1;
+    for (int i = 0; i < value->n; i++) {
+        if (value->kind != BOUGH_SEQUENCE || value->value[i]->kind != BOUGH_SCALAR) return NULL;
+        size += strlen(value->value[i]->text) + 2;
+    }
+    char *text = bough_arena_take(arena, size);
+    if (!text) return NULL;
+    text[0] = '[';
+    for (int i = 0; i < value->n; i++) {
+        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "",
+                                 value->value[i]->text);
+    }
+    snprintf(text + used, size - used, "]");
+    return text;
+}
+
 static void read_setting(bough_schema_reader *r, const char *key, const bough_node *value,
                          bough_study_setting *setting) {
     char shown[64];
-    if (value->kind != BOUGH_SCALAR || value->text[0] == '\0') {
+    bough_node written = *value;
+    if (value->kind == BOUGH_SEQUENCE) {
+        written = (bough_node){.kind = BOUGH_SCALAR, .text = write_list(r->arena, value)};
+    }
+    if (written.kind != BOUGH_SCALAR || !written.text || written.text[0] == '\0') {
         bough_schema_error(r, value, key, "expected one value, got %s",
                            bough_node_shown(value, shown));
         return;
     }
-    *setting = (bough_study_setting){value, key, value->text, write_set(r->arena, key, value)};
+    *setting =
+        (bough_study_setting){value, key, written.text, write_set(r->arena, key, &written)};
 }
 
 static bool is_mapping(bough_schema_reader *r, const bough_node *node, const char *what) {
@@ -195,12 +218,13 @@ static const bough_key study_keys[] = {
      .help = "file of the scene, relative to the study"},
     {.name = "kind", .kind = BOUGH_KEY_CHOICE,
      .choices = CHOICES("work-precision", "verify", "two-mass", "added-mass", "timing",
-                        "rivals"),
+                        "rivals", "stability"),
      .required = true, AT(kind),
      .help = "work-precision: time and difference to the reference of every cell of the grid; "
              "rivals: one blade modelled in several ways; "
              "verify: cases against what they should give; two-mass, added-mass: coupling schemes on "
-             "masses and springs; timing: what the cells cost, in turns"},
+             "masses and springs; timing: what the cells cost, in turns; stability: map of errors and "
+             "diagnoses, each against a reference with its own model parameters"},
     {.name = "reference", .kind = BOUGH_KEY_CUSTOM, .read = read_settings, .required = true,
      .form = "{KEY: VALUE, ...}", AT(reference), .help = "replacements that make the reference"},
     {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = read_grid, .required = true,

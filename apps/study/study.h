@@ -21,6 +21,7 @@ typedef enum bough_study_kind {
     BOUGH_STUDY_ADDED_MASS,
     BOUGH_STUDY_TIMING,
     BOUGH_STUDY_RIVALS,
+    BOUGH_STUDY_STABILITY,
 } bough_study_kind;
 
 // A replacement in the scene.
@@ -79,6 +80,7 @@ typedef struct bough_study_cell {
     int index[BOUGH_STUDY_AXES]; // of its value on each axis; −1 for the reference
     int n_set;
     const char **set;     // (n_set) replacements in the scene
+    int reference;        // to compare with
     const char *settings; // those that tell it from the other cells, "scheme=ramp, macro_step=5 ms"
 } bough_study_cell;
 
@@ -101,7 +103,8 @@ typedef struct bough_study {
     struct bough_rivals *rivals;
 
     // by bough_study_expand
-    bough_study_cell *reference_cell;
+    int n_reference; // 1; of kind stability one for each combination of the model's parameters
+    bough_study_cell *reference_cell; // (n_reference)
     int n_cell;
     bough_study_cell *cell; // (n_cell), the last axis runs fastest
 

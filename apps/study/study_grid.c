@@ -50,15 +50,62 @@ static void make_cell(bough_arena *arena, const bough_study *s, int number,
     cell->settings = write_settings(arena, s, cell);
 }
 
-static bough_study_cell *make_reference(bough_arena *arena, const bough_study *s) {
-    bough_study_cell *cell = bough_arena_take(arena, sizeof *cell);
-    if (!cell || !take_sets(arena, s, s->reference.n, cell)) return NULL;
+// What is no setting of the simulation is a parameter of the model.
+static bool is_model(const bough_study *s, int axis) {
+    return s->kind == BOUGH_STUDY_STABILITY &&
+           strncmp(s->grid.axis[axis].key, "simulation.", strlen("simulation.")) != 0;
+}
+
+static int count_references(const bough_study *s) {
+    int n = 1;
+    for (int i = 0; i < s->grid.n; i++)
+        if (is_model(s, i)) n *= s->grid.axis[i].value.n;
+    return n;
+}
+
+// The number of the reference with a cell's parameters of the model.
+static int reference_of(const bough_study *s, const bough_study_cell *cell) {
+    int number = 0;
+    for (int i = 0; i < s->grid.n; i++)
+        if (is_model(s, i)) number = number * s->grid.axis[i].value.n + cell->index[i];
+    return number;
+}
+
+// "reference", or with the parameters "reference: damping=1e-3"
+static const char *name_reference(bough_arena *arena, const bough_study *s,
+                                  const bough_study_cell *cell) {
+    char text[1024] = "reference";
+    for (int i = 0; i < s->grid.n; i++) {
+        size_t used = strlen(text);
+        if (!is_model(s, i)) continue;
+        snprintf(text + used, sizeof text - used, "%s %s=%s", used > 9 ? "," : ":",
+                 s->grid.axis[i].label, bough_study_value(s, cell, i));
+    }
+    return bough_arena_string(arena, text);
+}
+
+static void make_reference(bough_arena *arena, const bough_study *s, int number,
+                           bough_study_cell *cell) {
+    if (!take_sets(arena, s, s->reference.n + s->grid.n, cell)) return;
     for (int i = 0; i < BOUGH_STUDY_AXES; i++)
         cell->index[i] = -1;
+    for (int i = s->grid.n - 1; i >= 0; i--) {
+        if (!is_model(s, i)) continue;
+        cell->index[i] = number % s->grid.axis[i].value.n;
+        number /= s->grid.axis[i].value.n;
+        add_set(cell, &s->grid.axis[i].value.item[cell->index[i]]);
+    }
     for (int i = 0; i < s->reference.n; i++)
         add_set(cell, &s->reference.item[i]);
-    cell->settings = "reference";
-    return cell;
+    cell->settings = name_reference(arena, s, cell);
+}
+
+static void make_references(bough_arena *arena, bough_study *s) {
+    s->n_reference = count_references(s);
+    s->reference_cell =
+        bough_arena_take(arena, (size_t)s->n_reference * sizeof *s->reference_cell);
+    for (int i = 0; i < s->n_reference && s->reference_cell; i++)
+        make_reference(arena, s, i, &s->reference_cell[i]);
 }
 
 void bough_study_expand(bough_arena *arena, bough_study *s, bough_errors *errors) {
@@ -68,12 +115,14 @@ void bough_study_expand(bough_arena *arena, bough_study *s, bough_errors *errors
                          "expected at most %d combinations", BOUGH_STUDY_CELLS);
         return;
     }
-    s->reference_cell = make_reference(arena, s);
+    make_references(arena, s);
     s->cell = bough_arena_take(arena, (size_t)n * sizeof *s->cell);
     if (!s->reference_cell || !s->cell) return;
     s->n_cell = n;
-    for (int i = 0; i < n; i++)
+    for (int i = 0; i < n; i++) {
         make_cell(arena, s, i, &s->cell[i]);
+        s->cell[i].reference = reference_of(s, &s->cell[i]);
+    }
 }
 
 static const char *find_value(const bough_study_settings *settings, const char *key) {

@@ -4,6 +4,7 @@
 #include "apps/study/study_plot.h"
 #include "apps/study/study_added_mass.h"
 #include "apps/study/study_rivals.h"
+#include "apps/study/study_stability.h"
 #include "apps/study/study_store.h"
 #include "apps/study/study_timing.h"
 #include "apps/study/study_two_mass.h"
@@ -128,9 +129,13 @@ static perform_function *const kinds[] = {[BOUGH_STUDY_WORK_PRECISION] = work_pr
                                           [BOUGH_STUDY_TWO_MASS] = bough_two_mass_perform,
                                           [BOUGH_STUDY_RIVALS] = bough_rivals_perform,
                                           [BOUGH_STUDY_ADDED_MASS] = bough_added_mass_perform,
-                                          [BOUGH_STUDY_TIMING] = bough_timing_perform};
+                                          [BOUGH_STUDY_TIMING] = bough_timing_perform,
+                                          [BOUGH_STUDY_STABILITY] = bough_stability_perform};
 
 bough_status bough_study_perform(bough_arena *arena, const bough_study *study,
                                  const bough_study_options *options) {
+    if (options->parts > 0 && study->kind != BOUGH_STUDY_STABILITY) {
+        return bough_fail(BOUGH_INVALID, "only studies of kind stability run in parts");
+    }
     return kinds[study->kind](arena, study, options);
 }

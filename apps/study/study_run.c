@@ -22,9 +22,11 @@ typedef struct run {
     double *gathered, *zero; // (n_channel) scratch
 } run;
 
-static double cpu_clock(void) {
+// Runs side by side have one thread each.
+static double cpu_clock(const bough_study *study) {
     struct timespec now;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    bool own = study->kind == BOUGH_STUDY_STABILITY;
+    clock_gettime(own ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID, &now);
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
@@ -139,7 +141,8 @@ static bough_status build(bough_arena *arena, const bough_study_cell *cell, run 
     bough_status status =
         bough_scene_read(arena, r->study->scene, cell->set, cell->n_set, &errors, &scene);
     if (!bough_is_ok(&status)) return status;
-    if (r->study->threads > 0) scene->simulation.threads = r->study->threads;
+    if (r->study->kind == BOUGH_STUDY_STABILITY) scene->simulation.threads = 1;
+    else if (r->study->threads > 0) scene->simulation.threads = r->study->threads;
     status = bough_simulation_build(arena, scene, &r->simulation);
     if (bough_is_ok(&status)) status = find_channels(arena, r);
     return status;
@@ -151,12 +154,13 @@ static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, run
     if (!bough_is_ok(&status)) return status;
     const bough_master *m = r->simulation->master;
     r->series->filled = 0;
-    double wall = bough_wall_clock(), cpu = cpu_clock();
+    double wall = bough_wall_clock(), cpu = cpu_clock(r->study);
     for (int i = 0; i < r->study->n_measure; i++) result->estimate[i] = m->estimate ? 0 : (double)NAN;
     status = step_all(r, result->estimate);
-    result->cpu = cpu_clock() - cpu;
+    result->cpu = cpu_clock(r->study) - cpu;
     result->wall = bough_wall_clock() - wall;
     result->time = m->time;
+    result->warned = m->verdict[0] != '\0';
     result->coupling = bough_monitor_report(m->monitor, m->coupling);
     assert(!bough_is_ok(&status) || r->series->filled == r->series->n_row);
     return status;

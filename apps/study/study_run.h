@@ -20,6 +20,7 @@ typedef struct bough_study_result {
     bough_coupling_report coupling;
     double error[BOUGH_STUDY_MEASURES]; // NaN when the run failed
     double estimate[BOUGH_STUDY_MEASURES]; // the run's own of the same; NaN where it has none
+    bool warned;                        // before the run
     bool done;                          // ended, well or not
 } bough_study_result;
 

@@ -2,16 +2,18 @@
 
 #include "apps/output/folder.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE = 8192, FIELDS = 13 };
+enum { LINE = 8192, FIELDS = 14 };
 
+static const char all_cells[] = "cells.csv";
 static const char head[] =
     "fingerprint,settings,code,time [s],wall [s],cpu [s],defect_max [1],defect_rms [1],"
-    "energy_residual [J],energy_exchanged [J],errors,estimates,diagnosis\n";
+    "energy_residual [J],energy_exchanged [J],errors,estimates,warned,diagnosis\n";
 
 static bough_status io_error(const bough_study_store *store, const char *what) {
     return bough_fail(BOUGH_IO, "cannot %s '%.200s': %s", what, store->path,
@@ -43,7 +45,7 @@ static void write_line(FILE *f, const bough_study *s, const bough_study_cell *ce
     fputc(',', f);
     for (int i = 0; i < s->n_measure; i++)
         fprintf(f, "%s%.17g", i ? " " : "", r->estimate[i]);
-    fputc(',', f);
+    fprintf(f, ",%d,", r->warned);
     bough_csv_text(f, bough_is_ok(&r->outcome) ? "" : r->outcome.message);
     fputc('\n', f);
 }
@@ -99,10 +101,11 @@ static void read_result(char *const field[FIELDS], int n_measure, bough_study_re
         .cpu = strtod(field[5], NULL),
         .coupling = {strtod(field[6], NULL), strtod(field[7], NULL), strtod(field[8], NULL),
                      strtod(field[9], NULL)},
+        .warned = atoi(field[12]) != 0,
         .done = true,
     };
     int code = atoi(field[2]);
-    if (code != BOUGH_OK) read.outcome = bough_fail((bough_code)code, "%s", field[12]);
+    if (code != BOUGH_OK) read.outcome = bough_fail((bough_code)code, "%s", field[13]);
     bool whole = read_errors(field[10], n_measure, read.error) &&
                  read_errors(field[11], n_measure, read.estimate);
     if (whole) *r = read;
@@ -113,8 +116,10 @@ static void read_line(const bough_study *s, char *line, bough_study_result *refe
     char *field[FIELDS], fingerprint[20];
     snprintf(fingerprint, sizeof fingerprint, "%016" PRIx64, s->fingerprint);
     if (split(line, field) != FIELDS || strcmp(field[0], fingerprint) != 0) return;
-    if (strcmp(field[1], s->reference_cell->settings) == 0) {
-        read_result(field, s->n_measure, reference);
+    for (int i = 0; i < s->n_reference; i++) {
+        if (strcmp(field[1], s->reference_cell[i].settings) == 0) {
+            read_result(field, s->n_measure, &reference[i]);
+        }
     }
     for (int i = 0; i < s->n_cell; i++) {
         if (strcmp(field[1], s->cell[i].settings) == 0) {
@@ -137,23 +142,55 @@ static bool read_lines(FILE *file, const bough_study *s, bough_study_result *ref
     return whole;
 }
 
-bough_status bough_study_store_open(bough_arena *arena, const char *folder,
-                                    const bough_study *study, bough_study_result *reference,
-                                    bough_study_result *result, bough_study_store *store) {
+// Reads one file of the folder, if it is there.
+static void read_file(const char *folder, const char *name, const bough_study *study,
+                      bough_study_result *reference, bough_study_result *result) {
     char path[BOUGH_PATH_MAX];
-    bough_status status = bough_folder_path(folder, "cells.csv", path);
+    bough_status status = bough_folder_path(folder, name, path);
+    FILE *file = bough_is_ok(&status) ? fopen(path, "r") : NULL;
+    if (!file) return;
+    read_lines(file, study, reference, result);
+    fclose(file);
+}
+
+// What parts of the study have left.
+static void read_parts(const char *folder, const bough_study *study, bough_study_result *reference,
+                       bough_study_result *result) {
+    DIR *directory = opendir(folder);
+    if (!directory) return;
+    for (const struct dirent *entry; (entry = readdir(directory)) != NULL;) {
+        if (strncmp(entry->d_name, "cells-", 6) == 0) {
+            read_file(folder, entry->d_name, study, reference, result);
+        }
+    }
+    closedir(directory);
+}
+
+bough_status bough_study_store_open_part(bough_arena *arena, const char *folder, const char *name,
+                                         const bough_study *study, bough_study_result *reference,
+                                         bough_study_result *result, bough_study_store *store) {
+    char path[BOUGH_PATH_MAX];
+    bough_status status = bough_folder_path(folder, name, path);
     if (!bough_is_ok(&status)) return status;
     *store = (bough_study_store){.study = study, .path = bough_arena_string(arena, path)};
     if (!store->path) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (strcmp(name, all_cells) != 0) read_file(folder, all_cells, study, reference, result);
+    read_parts(folder, study, reference, result);
     errno = 0;
     store->file = fopen(path, "a+");
     if (!store->file) return io_error(store, "open");
     rewind(store->file);
-    bool whole = read_lines(store->file, study, reference, result);
+    bool complete = read_lines(store->file, study, reference, result);
     bool good = fseek(store->file, 0, SEEK_END) == 0;
-    if (good && !whole) good = fputc('\n', store->file) != EOF;
+    if (good && !complete) good = fputc('\n', store->file) != EOF;
     if (good && ftell(store->file) == 0) good = fputs(head, store->file) >= 0;
     return good ? status : io_error(store, "write");
+}
+
+bough_status bough_study_store_open(bough_arena *arena, const char *folder,
+                                    const bough_study *study, bough_study_result *reference,
+                                    bough_study_result *result, bough_study_store *store) {
+    return bough_study_store_open_part(arena, folder, all_cells, study, reference, result, store);
 }
 
 void bough_study_store_close(bough_study_store *store) {
