@@ -23,6 +23,9 @@ typedef struct bough_modal_model {
 typedef struct bough_modal_chain {
     bough_modal_point *point; // (n_piece)
     double *load;             // on the body's vertices at the time of evaluation (6 × rod stride)
+    double *held;             // Φᵀf at held_from, and its rate (2 × stride of the one piece)
+    double held_from;         // [s]
+    bool holds;
     double *place;            // state and input of the last slopes (n_state + 9)
     double *place_load;       // and its loads (6 × rod stride)
     bool placed;              // they are those of an evaluation
@@ -44,6 +47,12 @@ void bough_modal_rest_state(const bough_modal_model *m, const double *input, dou
 void bough_modal_ride(const bough_modal_model *m, const double *input, bough_modal_chain *chain,
                       double *state);
 
+// Projects the loads for derivatives at times from t to t1, over which they are linear; of use to a
+// body of one piece. Until bough_modal_release_loads.
+void bough_modal_hold_loads(const bough_modal_model *m, const bough_rod_loads *loads, double t,
+                            double t1, bough_modal_chain *chain);
+void bough_modal_release_loads(bough_modal_chain *chain);
+
 // rate (n_state); false when a value is not finite. Loads are dead ones.
 bool bough_modal_derivative(const bough_modal_model *m, const bough_rod_loads *loads, double t,
                             const double *state, const double *input, bough_modal_chain *chain,
@@ -64,9 +73,10 @@ void bough_modal_tangent(const bough_modal_model *m, bough_modal_chain *chain,
                          const double *state_variation, const double *input_variation,
                          double *rate, double *wrench);
 
-// The vertices' state as a rod's (13 n), absolute velocities for the frame's twist in `input`.
+// The state of vertices from `first` on as a rod's (13 n), absolute velocities for the frame's
+// twist in `input`.
 void bough_modal_expand(const bough_modal_model *m, const double *state, const double *input,
-                        bough_modal_chain *chain, double *rod_state);
+                        int first, bough_modal_chain *chain, double *rod_state);
 
 // -- Newton's matrix: dense per piece, pieces eliminated from the tip to the root -----------------
 

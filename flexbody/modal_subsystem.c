@@ -91,8 +91,10 @@ static void newton_solve(void *self, double *x) {
 static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
     bough_modal_body *b = self;
     b->input = input;
+    bough_modal_hold_loads(b->model, &b->loads, b->time, t1, &b->chain);
     bough_status status =
         b->micro.advance(b->micro.self, b->time, t1, restart || b->moved, b->state);
+    bough_modal_release_loads(&b->chain);
     b->moved = !bough_is_ok(&status);
     b->time = t1;
     return status;
@@ -209,7 +211,7 @@ const bough_rod_model *bough_modal_body_rod(const bough_modal_body *body) {
 }
 
 const double *bough_modal_body_vertices(bough_modal_body *body, const double *state,
-                                        const double *input) {
-    bough_modal_expand(body->model, state, input, &body->chain, body->vertices);
+                                        const double *input, int first) {
+    bough_modal_expand(body->model, state, input, first, &body->chain, body->vertices);
     return body->vertices;
 }

@@ -102,10 +102,10 @@ static void compare(pair *p, double small, double *rates, double *wrenches) {
     bough_modal_derivative(p->modal, &p->loads, 0.5, y, swaying, &p->chain, rate);
     bough_modal_root_wrench(p->modal, &p->loads, 0.5, y, swaying, &p->chain, wrench);
     for (int k = 0; k < n; k++) ahead[k] = y[k] + step * rate[k];
-    bough_modal_expand(p->modal, ahead, swaying, &p->chain, next);
+    bough_modal_expand(p->modal, ahead, swaying, 1, &p->chain, next);
     for (int k = 0; k < n; k++) ahead[k] = y[k] - step * rate[k];
-    bough_modal_expand(p->modal, ahead, swaying, &p->chain, back);
-    bough_modal_expand(p->modal, y, swaying, &p->chain, state);
+    bough_modal_expand(p->modal, ahead, swaying, 1, &p->chain, back);
+    bough_modal_expand(p->modal, y, swaying, 1, &p->chain, state);
     bough_rod_derivative(p->rod, &p->loads, 0.5, state, swaying, &p->scratch, expected);
     bough_rod_root_wrench(p->rod, &p->loads, 0.5, state, swaying, &p->scratch, other);
     *rates = *wrenches = 0;
@@ -247,7 +247,7 @@ static double deflection_error(int pieces, double load, double *rod) {
     for (int i = 1; i <= SEGMENTS; i++) b.loads.value[i] = i < SEGMENTS ? load : load / 2;
     settle_rod(&b, at_rest);
     settle_modal(&b, at_rest);
-    bough_modal_expand(b.modal, b.state, at_rest, &b.newton.chain, vertices);
+    bough_modal_expand(b.modal, b.state, at_rest, 1, &b.newton.chain, vertices);
     *rod = b.vertices[SEGMENTS - 1];
     double error = vertices[SEGMENTS - 1] - *rod;
     bough_arena_destroy(b.arena);
@@ -323,13 +323,13 @@ static void lost(double small, double *force, double *moment) {
     bough_modal_root_wrench(m, &none, 0, y, swaying, &chain, root);
     for (int side = -1; side <= 1; side++) {
         for (int k = 0; k < m->n_state; k++) moved[k] = y[k] + side * step * rate[k];
-        bough_modal_expand(m, moved, swaying, &chain, vertices);
+        bough_modal_expand(m, moved, swaying, 1, &chain, vertices);
         momentum(m->rod, vertices, p[side + 1]);
     }
     bough_wrench held = bough_wrench_cross(bough_twist_load(swaying), bough_wrench_load(p[1]));
     bough_wrench left = bough_wrench_add(bough_wrench_load(root), held);
     bough_vec3 g = {swaying[6], swaying[7], swaying[8]};
-    bough_modal_expand(m, y, swaying, &chain, vertices);
+    bough_modal_expand(m, y, swaying, 1, &chain, vertices);
     for (int i = 0; i < N; i++) {
         bough_vec3 w = bough_scale(m->rod->vertex[i + 1].mass, g);
         bough_vec3 x = {vertices[i], vertices[N + i], vertices[2 * N + i]};

@@ -37,12 +37,12 @@ bough_rod_loads *bough_beam_loads(const bough_beam *beam) {
                              : bough_modal_body_loads(beam->modal);
 }
 
-const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam) {
+const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam, int first) {
     const double *state = s->rod[beam->port].state;
     if (beam->rod != NULL) return state;
     double input[BOUGH_ROD_INPUTS] = {0}; // gravity does not matter
     bough_twist_store(bough_tree_frame_twist(s->view, &s->tree->markers[beam->marker]), input);
-    return bough_modal_body_vertices(beam->modal, state, input);
+    return bough_modal_body_vertices(beam->modal, state, input, first);
 }
 
 void bough_beam_ride(const bough_beam *beam, const double *input, double *state) {

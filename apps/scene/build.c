@@ -608,7 +608,7 @@ bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam
     if (beam->port < 0) return beam->def.position[last];
     if (beam->end < 0) {
         stride = last;
-        x = bough_beam_state(s, beam) + last - 1;
+        x = bough_beam_state(s, beam, last) + last - 1;
     } else {
         x = s->trunk.state + s->tree->links[s->tree->ends[beam->end].link].first_coordinate;
     }
@@ -628,7 +628,7 @@ void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *b
     const bough_frame *frame = &s->tree->markers[beam->marker];
     bough_transform pose = bough_tree_frame_pose(s->view, frame);
     bough_twist twist = bough_tree_frame_twist(s->view, frame);
-    const double *state = beam->port < 0 ? NULL : bough_beam_state(s, beam);
+    const double *state = beam->port < 0 ? NULL : bough_beam_state(s, beam, 1);
     for (int i = 0; i <= beam->def.n_segment; i++) {
         vertex v = vertex_of(s, beam, state, i, twist);
         motion.position[i] = bough_add(pose.position, bough_mat3_mul(pose.rotation, v.position));

@@ -74,11 +74,11 @@ bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam
 bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_micro_options micro,
                               const double *input, bough_subsystem *subsystem);
 
-// Of a flexible beam: its mesh, its loads, and the state of its vertices at `view` as rod.h lays it
-// out, the latter valid until the next call for the same beam.
+// Of a flexible beam: its mesh, its loads, and the state of its vertices from `first` on at `view` as
+// rod.h lays it out, the latter valid until the next call for the same beam.
 const bough_rod_model *bough_beam_mesh(const bough_beam *beam);
 bough_rod_loads *bough_beam_loads(const bough_beam *beam);
-const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam);
+const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam, int first);
 
 // Sets the velocities of a flexible beam's own state to rest relative to its frame, whose twist is
 // in `input`.

@@ -36,7 +36,7 @@ static void expand(const bough_mode_shape *x, const bough_beam *beam, int part, 
         input[c] += step * change[c];
     for (int k = 0; k < n; k++)
         x->moved[k] = x->state[at + k] + step * bough_mode_shape_part(x, part)[at + k];
-    memcpy(to, bough_modal_body_vertices(beam->modal, x->moved, input),
+    memcpy(to, bough_modal_body_vertices(beam->modal, x->moved, input, 1),
            (size_t)BOUGH_ROD_STATES * bough_beam_mesh(beam)->n * sizeof *to);
 }
 

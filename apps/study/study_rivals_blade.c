@@ -78,7 +78,7 @@ static bough_status find_modal(bough_arena *arena, bough_simulation *s, const bo
                                          BOUGH_RIVALS_FREQUENCIES, frequency, &found);
     }
     if (bough_is_ok(&status)) {
-        set_shape(m->rod, bough_modal_body_vertices(beam->modal, state, input), blade);
+        set_shape(m->rod, bough_modal_body_vertices(beam->modal, state, input, 1), blade);
     }
     return status;
 }
