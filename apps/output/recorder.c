@@ -1,6 +1,7 @@
 #include "apps/output/recorder.h"
 
 #include "apps/output/folder.h"
+#include "apps/output/number.h"
 
 #include <assert.h>
 #include <errno.h>
@@ -115,9 +116,12 @@ bough_status bough_recorder_open(bough_arena *arena, const bough_recorder_def *d
 
 static void format_row(bough_recorder *r, double t) {
     char *end = r->line;
-    end += snprintf(end, COLUMN + 1, "%*.8E", COLUMN, t);
+    bough_number_write(end, COLUMN, t);
+    end += COLUMN;
     for (int i = 0; i < r->channels->count; i++) {
-        end += snprintf(end, COLUMN + 1, "\t%*.8E", COLUMN - 1, r->value[i]);
+        *end++ = '\t';
+        bough_number_write(end, COLUMN - 1, r->value[i]);
+        end += COLUMN - 1;
     }
     *end++ = '\n';
     assert(end - r->line == r->row_length);
