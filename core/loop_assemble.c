@@ -5,7 +5,8 @@
 
 #include <string.h>
 
-enum { MOST_ITERATIONS = 30 };
+enum { MOST_ITERATIONS = 60 };
+static const double longest = 0.05; // step of a coordinate [rad, m]: a shallow arch turns over else
 static const double near_enough = 0.1; // of the mechanism's extent, and in equations of directions
 static const double satisfied = 1e-10;
 
@@ -69,6 +70,11 @@ static bool approach(bough_tree *tree, bough_tree_data *d) {
         x[k] = l->row[k].value;
     bough_loops_solve(tree, l, x);
     bough_loops_spread(tree, l, x, l->correction);
+    double largest = 0;
+    for (int k = 0; k < tree->n_v; k++)
+        largest = fmax(largest, fabs(l->correction[k]));
+    for (int k = 0; k < tree->n_v && largest > longest; k++)
+        l->correction[k] *= longest / largest;
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         double *own = q + link->first_coordinate;

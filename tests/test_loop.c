@@ -375,8 +375,8 @@ static void closed_trees_fulfil_the_contract(void **state) {
     }
 }
 
-// A crank turned at 1 rad/s: the kinetic energy is constant, so the drive balances the weight of the
-// uprights at half their height and the coupler, 2 g cos φ.
+// A crank turned at 1 rad/s: the kinetic energy is constant, so the drive balances the weight of
+// the uprights at half their height and the coupler, 2 g cos φ.
 static void driven_cranks_take_the_torque_of_the_weights(void **state) {
     (void)state;
     windows w;
@@ -441,6 +441,43 @@ static void loops_are_assembled_from_near(void **state) {
     bough_arena_destroy(f.arena);
 }
 
+// A shallow arch of rods whose far end must move by much more than the joints' first step would
+// hit.
+static void arches_are_assembled(void **state) {
+    (void)state;
+    enum { RODS = 8 };
+    bough_body_def body[RODS];
+    for (int i = 0; i < RODS; i++) {
+        body[i] = rod("rod", i - 1, i > 0, 0);
+        body[i].mass_centre = bough_v3(0.5, 0, 0);
+        body[i].inertia = diagonal(0, 1.0 / 12, 1.0 / 12);
+        body[i].coordinates[0] = i == 0 ? 0.15 : -0.04;
+    }
+    bough_marker_def marker[2] = {{"end", RODS - 1, bough_transform_identity()},
+                                  {"wall", BOUGH_GROUND, bough_transform_identity()}};
+    marker[0].placement.position = bough_v3(1, 0, 0);
+    marker[1].placement.position = bough_v3(7.75, 0, 0);
+    const bough_closure_def closure = {"pin", BOUGH_JOINT_SPHERICAL, {0, 1}, {0, 0, 1}, {1, 0, 0}};
+    bough_tree_def def = {.gravity = down,
+                          .n_bodies = RODS,
+                          .bodies = body,
+                          .n_markers = 2,
+                          .markers = marker,
+                          .n_closures = 1,
+                          .closures = &closure};
+    fixture f = build(&def, BOUGH_TREE_RADAU, 1e-8);
+    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    check_closed(&f, 1e-9);
+    assert_int_equal(f.tree->closure_rank, 2);
+    bough_tree_sums start = bough_tree_sum(f.tree, f.data);
+    for (int k = 1; k <= 20; k++)
+        advance(&f, 0.01 * k, k == 1);
+    check_closed(&f, 1e-6);
+    bough_tree_sums end = bough_tree_sum(f.tree, f.data);
+    check_near(end.kinetic + end.potential, start.kinetic + start.potential, 0, 1e-5);
+    bough_arena_destroy(f.arena);
+}
+
 static void refused(const bough_tree_def *def, const char *what, const char *also) {
     bough_arena *arena = bough_arena_create();
     bough_tree *tree;
@@ -487,6 +524,7 @@ int main(void) {
         cmocka_unit_test(driven_cranks_take_the_torque_of_the_weights),
         cmocka_unit_test(violations_decay),
         cmocka_unit_test(loops_are_assembled_from_near),
+        cmocka_unit_test(arches_are_assembled),
         cmocka_unit_test(what_cannot_be_closed_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
