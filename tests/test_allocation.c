@@ -202,6 +202,13 @@ static void rods_that_carry_take_no_memory(void **context) {
     count_steps(*context, "apps/turbine/land.yaml", sets);
 }
 
+static void modal_bodies_take_no_memory(void **context) {
+    if (!CAN_COUNT) skip();
+    const char *sets[] = {"simulation.duration=2 s", "simulation.threads=1",
+                          "bodies[3].fidelity=modal", "bodies[4].fidelity=segmented-modal", NULL};
+    count_steps(*context, "apps/turbine/runup.yaml", sets);
+}
+
 static void closed_loops_take_no_memory(void **context) {
     if (!CAN_COUNT) skip();
     const char *sets[] = {"simulation.macro_step=1 ms", NULL};
@@ -225,6 +232,7 @@ int main(void) {
         cmocka_unit_test_setup_teardown(monolithic_steps_take_no_memory, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(two_threads_take_no_memory, scratch_make, scratch_remove),
+        cmocka_unit_test_setup_teardown(modal_bodies_take_no_memory, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(closed_loops_take_no_memory, scratch_make, scratch_remove),
         cmocka_unit_test_setup_teardown(rods_that_carry_take_no_memory, scratch_make,
                                         scratch_remove),
