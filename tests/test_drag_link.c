@@ -98,6 +98,27 @@ static void drag_runs_and_repeats(void **state) {
     bough_arena_destroy(arena);
 }
 
+// Held for an equilibrium the drag is constant, and the run's first sample begins anew.
+static void held_drag_is_constant(void **state) {
+    (void)state;
+    static const char *const sets[] = {FEW, DRAG, NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = sampled(arena, sets, 0);
+    bough_rod_loads *loads = bough_beam_loads(bough_simulation_beam(s, 0));
+    double sum = 0;
+    bough_drag_link_hold(s->drag, 0);
+    for (int i = 0; i <= 10; i++) {
+        sum += loads->value[i];
+        check_near(loads->rate[i], 0, 0, 0);
+    }
+    check_near(sum, whole_tower(s->scene), 1e-3, 0);
+    bough_sampled_load load = bough_drag_link_load(s->drag);
+    bool jumped;
+    load.sample(load.self, 0, 0.02, &jumped);
+    assert_true(jumped);
+    bough_arena_destroy(arena);
+}
+
 static void bad_bodies_are_refused(void **state) {
     (void)state;
     static const char *const bad[][2] = {{"aero.tower.body=nacelle", "must have a rod"},
@@ -120,6 +141,7 @@ int main(void) {
         cmocka_unit_test(tower_drag_is_the_integral),
         cmocka_unit_test(hub_drag_blows_downwind),
         cmocka_unit_test(drag_runs_and_repeats),
+        cmocka_unit_test(held_drag_is_constant),
         cmocka_unit_test(bad_bodies_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

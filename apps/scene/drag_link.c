@@ -138,6 +138,14 @@ bough_sampled_load bough_drag_link_load(bough_drag_link *link) {
     return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample};
 }
 
+void bough_drag_link_hold(bough_drag_link *link, double t) {
+    bool jumped;
+    double *started = link->memory + 2 * link->n + 1;
+    *started = 0;
+    sample(link, t, t + 1, &jumped); // constant: there is none before it
+    *started = 0;
+}
+
 int bough_drag_link_size(const bough_drag_link *link) { return 2 * link->n + 2; }
 
 void bough_drag_link_save(const bough_drag_link *link, double *to) {

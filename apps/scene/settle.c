@@ -1,6 +1,7 @@
 #include "apps/scene/settle.h"
 
 #include "apps/scene/aero_link.h"
+#include "apps/scene/drag_link.h"
 #include "cosim/equilibrium.h"
 #include "flexbody/rod_linear.h"
 
@@ -109,6 +110,7 @@ static bough_status settle_in_air(bough_arena *arena, bough_simulation *s, bough
     while (settling->samples < SAMPLES) {
         memcpy(before, state, (size_t)arrow->assembly->n_state * sizeof *state);
         bough_aero_link_hold(s->aero, def->time);
+        if (s->drag != NULL) bough_drag_link_hold(s->drag, def->time);
         settling->samples++;
         bough_status status = settle(arena, s, arrow, def, state, settling);
         if (!bough_is_ok(&status)) return status;
