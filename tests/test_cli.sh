@@ -307,6 +307,10 @@ statics() {
     has out/blade/static.csv '^rod,span (m),ux (m),'
     has out/blade/static.csv '^blade,61.5,7.6'
     rm -r out
+    expect 0 static "$blade" --set 'loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]' \
+        --set bodies[0].fidelity=segmented-modal --set bodies[0].modal.pieces=24 --out pieces
+    near ../stdout '^modal blade: tip moved by ' 6 7.68969 0.02
+    rm -r pieces
     expect 0 static "$turbine" --out turning
     has ../stdout '^whole scene: .* steps, .* samples of the air, loads at 20 s$'
     has ../stdout '^joint hub: revolute 0 deg, keeps its speed 0.5$'

@@ -168,6 +168,23 @@ static bough_status find_whole(bough_arena *arena, bough_simulation *s, bough_st
     return status;
 }
 
+// Where the tips of modal bodies settled.
+static void print_modal(bough_simulation *s) {
+    bough_simulation_update(s);
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        if (beam->modal == NULL) continue;
+        int n = beam->def.n_segment;
+        bough_quaternion p, undeformed = bough_quaternion_conjugate(beam->def.rotation[n]);
+        bough_vec3 x = bough_simulation_beam_tip(s, beam, &p);
+        bough_vec3 u = bough_sub(x, beam->def.position[n]);
+        bough_vec3 r = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
+        r = bough_scale(180 / BOUGH_PI, r);
+        printf("modal %s: tip moved by %.9g %.9g %.9g m, turned by %.9g %.9g %.9g deg\n",
+               beam->body->name, u.x, u.y, u.z, r.x, r.y, r.z);
+    }
+}
+
 bough_status bough_verb_static(bough_arena *arena, const bough_options *options) {
     bough_simulation *s;
     bough_status status = bough_open(arena, options, &s);
@@ -178,10 +195,12 @@ bough_status bough_verb_static(bough_arena *arena, const bough_options *options)
     const char *folder = bough_out_folder(arena, options);
     bough_steady *steady = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *steady);
     if (!steady || !folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    status = bough_settle_apart(s) ? find_apart(arena, s, steady) : find_whole(arena, s, steady);
-    if (!bough_is_ok(&status)) return status;
     int n = bough_steady_rods(s);
+    bool apart = bough_settle_apart(s) && n == s->n_rod; // a modal body settles with the whole
+    status = apart ? find_apart(arena, s, steady) : find_whole(arena, s, steady);
+    if (!bough_is_ok(&status)) return status;
     for (int k = 0; k < n; k++) print_rod(&steady[k]);
+    print_modal(s);
     status = write_file(folder, steady, n);
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
