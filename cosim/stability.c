@@ -345,7 +345,8 @@ static int descending(const void *a, const void *b) {
 }
 
 // The fastest growing oscillation among the eigenvalues. What grows by more than it turns is no
-// oscillation: a free rotation, whose double eigenvalue 1 splits by rounding, or a fall.
+// oscillation: a free rotation, whose double eigenvalue 1 splits by rounding, or a fall. But what
+// changes sign from step to step is the coupling's, however fast it grows.
 static bough_status choose(map *m, bough_stability *result) {
     ritz found[DIMENSION];
     int count = 0;
@@ -358,9 +359,9 @@ static bough_status choose(map *m, bough_stability *result) {
     *result = (bough_stability){.growth = -1 / (m->repeat * m->macro_step)};
     for (int k = 0; k < count; k++) {
         bough_status status = refine(m, &found[k], result);
-        if (!bough_is_ok(&status) || 2 * BOUGH_PI * result->frequency > result->growth) {
-            return status;
-        }
+        bool alternates = result->frequency * m->macro_step > 0.25; // no mechanics do within a step
+        bool turns = 2 * BOUGH_PI * result->frequency > result->growth;
+        if (!bough_is_ok(&status) || turns || alternates) return status;
     }
     return bough_ok();
 }

@@ -75,7 +75,10 @@ static void ramp_holds_on_a_light_interface_body(void **state) {
     build(&m, "ramp", .02);
     for (int k = 1; k <= 16; k *= 2) assert_true(judge(&m, &options, .005 * k).growth < 0);
     options.name = "gauss-seidel";
-    assert_true(judge(&m, &options, .02).growth > 10);
+    // a sweep turns the sign over and multiplies by more than e^pi
+    bough_stability wild = judge(&m, &options, .02);
+    assert_true(wild.growth > 3.14159 / .02);
+    check_near(wild.frequency, 25, .05, 0);
     options.name = "monolithic";
     bough_stability result;
     bough_status status = bough_stability_judge(m.master->assembly, &options, .02, &result);
