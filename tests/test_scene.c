@@ -1037,13 +1037,13 @@ static void help_covers_scene_and_files(void **state) {
     bough_scene_help(stream);
     fclose(stream);
     const char *const lines[] = {
-        "\n  macro_step: (number in s, > 0; required)\n",
-        "\n    scheme: (frozen|gauss-seidel|extrapolated|iterated|ramp|monolithic; default "
+        "\n  - macro_step: (number in s, > 0; required)\n",
+        "\n    - scheme: (frozen|gauss-seidel|extrapolated|iterated|ramp|monolithic; default "
         "ramp)\n",
-        "\n    axis: (x|y|z; required; with kind: revolute|prismatic|cylindrical|"
+        "\n    - axis: (x|y|z; required; with kind: revolute|prismatic|cylindrical|"
         "universal|planar)\n",
-        "\n        alpha: (number in rad; required)\n",
-        "\n        stiffness: (6 numbers, the diagonal, or 21, the upper triangle row by row; "
+        "\n        - alpha: (number in rad; required)\n",
+        "\n        - stiffness: (6 numbers, the diagonal, or 21, the upper triangle row by row; "
         "required)\n",
     };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {

@@ -512,12 +512,12 @@ static void help_names_every_key(void **state) {
     bough_schema_help(&thing_schema, 0, stream);
     fclose(stream);
     const char *const lines[] = {
-        "kind: (turning|sliding|fixed; required)\n      its kind\n",
+        "- kind: (turning|sliding|fixed; required)\n  its kind\n",
         "angle: (number in rad; default 90 deg; with kind: turning)\n",
         "count: (whole number, [0, 9]; default 4)\n",
         "share: (number or auto, [0.5, 1]; default auto)\n",
         "vector: (3 numbers in m; default [0, 0, 2 m])\n",
-        "parts: (list of mappings)\n      parts\n  length: (number in m, > 0; required)\n",
+        "parts: (list of mappings)\n  parts\n  - length: (number in m, > 0; required)\n",
         "sum: (numbers to add)\n",
     };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {

@@ -6,12 +6,6 @@
 
 #include <string.h>
 
-static void help_scene(FILE *stream) {
-    fprintf(stream, "A scene is a YAML file. Values are SI numbers or carry a unit: '12.1 rpm', "
-                    "'5 deg', '20 ms'.\nFiles that it names are relative to it.\n\n");
-    bough_scene_help(stream);
-}
-
 static void help_coupling(FILE *stream) {
     fprintf(stream, "simulation.coupling.scheme, the exchange between the tree and the flexible "
                     "bodies:\n");
@@ -26,7 +20,7 @@ typedef struct topic {
 } topic;
 
 static const topic topics[] = {
-    {"scene", "every key of a scene with unit, range and default", help_scene},
+    {"scene", "every key of a scene with unit, range and default", bough_scene_help},
     {"coupling", "the coupling schemes", help_coupling},
 };
 static const char *const topic_names[] = {"scene", "coupling", NULL};

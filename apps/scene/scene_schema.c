@@ -740,4 +740,30 @@ static const bough_key scene_keys[] = {
 // clang-format on
 const bough_schema bough_scene_schema = {SCHEMA("a scene", bough_scene, scene_keys)};
 
-void bough_scene_help(FILE *stream) { bough_schema_help(&bough_scene_schema, 0, stream); }
+static const char example[] =
+    "    title: A bar that swings from a bearing and bends\n"
+    "    simulation: {duration: 2 s, macro_step: 10 ms, output: {interval: 20 ms}}\n"
+    "    bodies:\n"
+    "      - name: hinge\n"
+    "        fidelity: rigid\n"
+    "        mass: 1 kg\n"
+    "        inertia: [0.1, 0.1, 0.1]\n"
+    "        joint: {kind: revolute, parent: ground, axis: y, angle: 90 deg}\n"
+    "      - name: bar\n"
+    "        fidelity: rod\n"
+    "        joint: {kind: fixed, parent: hinge}\n"
+    "        rod:\n"
+    "          length: 2 m\n"
+    "          segments: 8\n"
+    "          stiffness: [1e5, 1e5, 3e5, 20, 20, 15]\n"
+    "          mass: [0.8, 0, 0, 5e-5, 5e-5, 0]\n";
+
+void bough_scene_help(FILE *stream) {
+    fputs("# Scenes\n\nA scene is a YAML file. Files that it names are relative to it. Values are SI "
+          "numbers or carry a unit:\n\n", stream);
+    bough_schema_help_units(stream);
+    fputs("\n## An example\n\n", stream);
+    fputs(example, stream);
+    fputs("\n## Keys\n\n", stream);
+    bough_schema_help(&bough_scene_schema, 0, stream);
+}

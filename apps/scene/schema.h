@@ -114,7 +114,10 @@ const char *bough_nearest(const char *word, const char *const *candidates, int n
 // What a node holds, for messages: "'12 x'", "a list", "nothing".
 const char *bough_node_shown(const bough_node *node, char buffer[64]);
 
-// Writes every key below the schema, indented by `indent`.
+// Writes every key below the schema as a list in Markdown, indented by `indent`.
 void bough_schema_help(const bough_schema *schema, int indent, FILE *stream);
+
+// Writes the SI unit of every dimension and an example with another, as a list in Markdown.
+void bough_schema_help_units(FILE *stream);
 
 #endif

@@ -1,4 +1,4 @@
-// The help text of a schema: one line a key.
+// The help text of a schema: nested lists of keys, which are Markdown as they stand.
 #include "apps/scene/schema_parts.h"
 
 #include <string.h>
@@ -57,8 +57,8 @@ void bough_schema_help(const bough_schema *schema, int indent, FILE *stream) {
         char line[400] = "";
         describe_kind(key, line, sizeof line);
         describe_need(key, line, sizeof line);
-        fprintf(stream, "%*s%s: (%s)\n", indent, "", key->name, line);
-        fprintf(stream, "%*s%s\n", indent + 6, "", key->help);
+        fprintf(stream, "%*s- %s: (%s)\n", indent, "", key->name, line);
+        fprintf(stream, "%*s%s\n", indent + 2, "", key->help);
         if (key->of != NULL) bough_schema_help(key->of, indent + 2, stream);
     }
 }

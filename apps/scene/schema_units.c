@@ -76,6 +76,13 @@ void bough_dimension_expected(bough_dimension dimension, char text[96]) {
              dimensions[dimension].si, dimensions[dimension].example);
 }
 
+void bough_schema_help_units(FILE *stream) {
+    for (size_t i = 1; i < sizeof dimensions / sizeof dimensions[0]; i++) {
+        fprintf(stream, "- %s in %s: '%s'\n", dimensions[i].name, dimensions[i].si,
+                dimensions[i].example);
+    }
+}
+
 // -- units
 // ------------------------------------------------------------------------------------------
 
