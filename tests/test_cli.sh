@@ -391,6 +391,22 @@ shown() {
     refused 'holds no results' report .
 }
 
+# A foreign model as a scene, and what is told of a bad one.
+imported() {
+    expect 0 import openfast "$folder/tests/decks/main.fst" --out out
+    has ../stdout '^scene: out/scene.yaml$'
+    has out/import.txt '^left out:$'
+    expect 0 check out/scene.yaml
+    rm -r out
+    sed 's/CompHydro/CompHydra/; s/CompElast/CompPlast/' "$folder/tests/decks/main.fst" >../bad.fst
+    refused "bad.fst: no 'CompElast': expected a line" import openfast ../bad.fst --out out
+    refused "cannot read 'none.fst'" import openfast none.fst --out out
+    refused 'missing openfast MAIN.fst' import openfast
+    refused "unknown kind 'adams'" import adams main.cmd --out out
+    refused 'missing --out DIR' import openfast main.fst
+    refused 'unexpected argument' import openfast main.fst more --out out
+}
+
 # Two workers fill one folder, by themselves and as a Slurm array would start them.
 spread() {
     cat >../spread.yaml <<END
@@ -432,6 +448,7 @@ interrupted_run
 bad_output
 threads
 shown
+imported
 spread
 [ $failures -eq 0 ] && echo "all checks passed"
 [ $failures -eq 0 ]

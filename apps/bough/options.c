@@ -61,6 +61,10 @@ static bough_status missing(void) {
 
 static bough_status take_operand(const bough_syntax *syntax, const char *word,
                                  bough_options *options) {
+    if (syntax->operand == BOUGH_OPERAND_TWO && options->operand && !options->second) {
+        options->second = word;
+        return bough_ok();
+    }
     if (syntax->operand == BOUGH_OPERAND_NONE || options->operand) {
         return bough_fail(BOUGH_INVALID, "unexpected argument '%.200s'", word);
     }
@@ -137,8 +141,9 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
     for (; bough_is_ok(&status) && optind < argc; optind++) {
         status = take_operand(syntax, argv[optind], options); // after "--"
     }
-    if (bough_is_ok(&status) && syntax->operand == BOUGH_OPERAND_REQUIRED && !options->operand &&
-        !options->help) {
+    const char *last = syntax->operand == BOUGH_OPERAND_TWO ? options->second : options->operand;
+    bool needed = syntax->operand == BOUGH_OPERAND_REQUIRED || syntax->operand == BOUGH_OPERAND_TWO;
+    if (bough_is_ok(&status) && needed && !last && !options->help) {
         return bough_fail(BOUGH_INVALID, "%s: missing %s; see bough %s --help", argv[0],
                           syntax->operand_name, argv[0]);
     }
@@ -148,7 +153,8 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
 // -- help -----------------------------------------------------------------------------------------
 
 void bough_options_usage(const bough_syntax *syntax, FILE *stream) {
-    if (syntax->operand == BOUGH_OPERAND_REQUIRED) fprintf(stream, " %s", syntax->operand_name);
+    if (syntax->operand == BOUGH_OPERAND_REQUIRED || syntax->operand == BOUGH_OPERAND_TWO)
+        fprintf(stream, " %s", syntax->operand_name);
     if (syntax->operand == BOUGH_OPERAND_OPTIONAL) fprintf(stream, " [%s]", syntax->operand_name);
     for (int i = 0; i < N_ROW; i++) {
         if (!(syntax->options & rows[i].flag)) continue;

@@ -21,6 +21,7 @@ typedef enum bough_operand {
     BOUGH_OPERAND_NONE,
     BOUGH_OPERAND_OPTIONAL,
     BOUGH_OPERAND_REQUIRED,
+    BOUGH_OPERAND_TWO,
 } bough_operand;
 
 // What a command accepts.
@@ -32,6 +33,7 @@ typedef struct bough_syntax {
 
 typedef struct bough_options {
     const char *operand; // the scene or the topic; NULL: not given
+    const char *second;  // of two operands
     int n_set;
     const char **set; // (n_set) replacements "key=value", in their order
     const char *out;  // NULL: named after the scene

@@ -1,0 +1,334 @@
+#include "apps/import/deck.h"
+
+#include "apps/output/folder.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum { MOST_BYTES = 16 << 20, WORD = 1024, MOST_WORDS = 64 };
+
+void bough_deck_fail(const bough_deck *deck, int line, const char *format, ...) {
+    if (!bough_is_ok(deck->status)) return;
+    char text[300], at[24] = "";
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    if (line >= 0) snprintf(at, sizeof at, "%d:", line + 1);
+    *deck->status = bough_fail(BOUGH_INVALID, "%.150s:%s %s", deck->path, at, text);
+}
+
+// -- reading --------------------------------------------------------------------------------------
+
+static bough_status read_bytes(bough_arena *arena, const char *path, char **text) {
+    FILE *file = fopen(path, "rb");
+    if (!file) return bough_fail(BOUGH_INVALID, "cannot read '%.250s': %s", path, strerror(errno));
+    char *bytes = NULL;
+    size_t size = 0, got = 1;
+    bough_status status = bough_ok();
+    FILE *out = open_memstream(&bytes, &size);
+    char part[4096];
+    for (size_t sum = 0; out && got > 0 && sum <= MOST_BYTES; sum += got) {
+        got = fread(part, 1, sizeof part, file);
+        fwrite(part, 1, got, out);
+    }
+    if (ferror(file)) status = bough_fail(BOUGH_INVALID, "cannot read '%.250s'", path);
+    fclose(file);
+    if (!out || fclose(out) != 0) status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (bough_is_ok(&status) && (size > MOST_BYTES || memchr(bytes, 0, size))) {
+        status = bough_fail(BOUGH_INVALID, "'%.250s' is no text, or larger than 16 MB", path);
+    }
+    if (bough_is_ok(&status)) *text = bough_arena_string(arena, bytes);
+    free(bytes);
+    if (bough_is_ok(&status) && !*text) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    return status;
+}
+
+bough_deck *bough_deck_open(bough_arena *arena, const char *path, bough_status *status) {
+    if (!bough_is_ok(status)) return NULL;
+    char *text = NULL;
+    *status = read_bytes(arena, path, &text);
+    if (!bough_is_ok(status)) return NULL;
+    int n = 1;
+    for (const char *at = text; *at; at++)
+        n += *at == '\n';
+    bough_deck *deck = bough_arena_take(arena, sizeof *deck);
+    const char **line = bough_arena_take(arena, (size_t)n * sizeof *line);
+    const char *copy = bough_arena_string(arena, path);
+    if (!deck || !line || !copy) {
+        *status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+        return NULL;
+    }
+    *deck = (bough_deck){.path = copy, .line = line, .n = n, .arena = arena, .status = status};
+    for (int i = 0; i < n; i++) {
+        line[i] = text;
+        text += strcspn(text, "\n");
+        if (*text) *text++ = '\0';
+        char *end = strchr(line[i], '\r');
+        if (end) *end = '\0';
+    }
+    return deck;
+}
+
+// -- words ----------------------------------------------------------------------------------------
+
+// Takes the next word off *at, quotes removed; false at the end of the line.
+static bool next_word(const char **at, char word[WORD]) {
+    const char *p = *at + strspn(*at, " \t,");
+    if (*p == '\0') return false;
+    bool quoted = *p == '"' || *p == '\'';
+    size_t length = quoted ? strcspn(p + 1, *p == '"' ? "\"" : "'") : strcspn(p, " \t,");
+    const char *from = p + quoted;
+    *at = from + length + (quoted && from[length] != '\0');
+    if (length >= WORD) length = WORD - 1;
+    memcpy(word, from, length);
+    word[length] = '\0';
+    return true;
+}
+
+// Whether the word is one of "A|B".
+static bool is_one_of(const char *word, const char *names) {
+    size_t length = strlen(word);
+    for (const char *p = names;; p++) {
+        size_t n = strcspn(p, "|");
+        if (n == length && strncasecmp(p, word, n) == 0) return true;
+        p += n;
+        if (*p == '\0') return false;
+    }
+}
+
+static bool is_rule(const char *line) {
+    line += strspn(line, " \t");
+    return strncmp(line, "---", 3) == 0 || strncmp(line, "===", 3) == 0;
+}
+
+int bough_deck_line(const bough_deck *deck, const char *names) {
+    char word[WORD];
+    for (int i = 0; deck && i < deck->n; i++) {
+        const char *at = deck->line[i];
+        if (is_rule(at) || !next_word(&at, word)) continue;
+        if (next_word(&at, word) && is_one_of(word, names)) return i;
+    }
+    return -1;
+}
+
+int bough_deck_find(const bough_deck *deck, const char *words) {
+    for (int i = 0; i < deck->n; i++) {
+        for (const char *p = deck->line[i]; *p; p++) {
+            if (strncasecmp(p, words, strlen(words)) == 0) return i;
+        }
+    }
+    return -1;
+}
+
+// The first word of the line of that name; its line, -1 after a failure.
+static int value_of(const bough_deck *deck, const char *names, const char *what, char word[WORD]) {
+    if (!deck || !bough_is_ok(deck->status)) return -1;
+    int line = bough_deck_line(deck, names);
+    if (line < 0) {
+        bough_deck_fail(deck, -1, "no '%.*s': expected a line '%s  %.*s'", (int)strcspn(names, "|"),
+                        names, what, (int)strcspn(names, "|"), names);
+        return -1;
+    }
+    const char *at = deck->line[line];
+    next_word(&at, word);
+    return line;
+}
+
+static bool is_default(const bough_deck *deck, const char *names) {
+    char word[WORD];
+    int line = bough_deck_line(deck, names);
+    if (line < 0) return true;
+    const char *at = deck->line[line];
+    return next_word(&at, word) && strcasecmp(word, "default") == 0;
+}
+
+// -- values ---------------------------------------------------------------------------------------
+
+// Fortran's spelling, 1.5D+3, is known; hexadecimal, infinity and NaN are not.
+static bool read_number(const char *word, double *value) {
+    char copy[64], *end;
+    size_t length = strlen(word);
+    if (length == 0 || length >= sizeof copy) return false;
+    if (strspn(word, "+-.0123456789eEdD") != length) return false;
+    for (size_t i = 0; i <= length; i++)
+        copy[i] = word[i] == 'd' || word[i] == 'D' ? 'e' : word[i];
+    *value = strtod(copy, &end);
+    return *end == '\0' && isfinite(*value);
+}
+
+double bough_deck_number(const bough_deck *deck, const char *names) {
+    char word[WORD];
+    double value = 0;
+    int line = value_of(deck, names, "number", word);
+    if (line < 0 || read_number(word, &value)) return value;
+    bough_deck_fail(deck, line, "%.*s: expected a number, got '%.60s'", (int)strcspn(names, "|"),
+                    names, word);
+    return 0;
+}
+
+int bough_deck_whole(const bough_deck *deck, const char *names, int least, int most) {
+    double value = bough_deck_number(deck, names);
+    if (!deck || !bough_is_ok(deck->status)) return 0;
+    if (value == floor(value) && value >= least && value <= most) return (int)value;
+    bough_deck_fail(deck, bough_deck_line(deck, names),
+                    "%.*s: expected a whole number from %d to %d, got %g", (int)strcspn(names, "|"),
+                    names, least, most, value);
+    return 0;
+}
+
+bool bough_deck_flag(const bough_deck *deck, const char *names) {
+    char word[WORD];
+    int line = value_of(deck, names, "True", word);
+    if (line < 0) return false;
+    if (is_one_of(word, "true|t|.true.")) return true;
+    if (is_one_of(word, "false|f|.false.")) return false;
+    bough_deck_fail(deck, line, "%.*s: expected True or False, got '%.60s'",
+                    (int)strcspn(names, "|"), names, word);
+    return false;
+}
+
+const char *bough_deck_text(const bough_deck *deck, const char *names) {
+    char word[WORD];
+    if (value_of(deck, names, "\"text\"", word) < 0) return "";
+    const char *copy = bough_arena_string(deck->arena, word);
+    return copy ? copy : "";
+}
+
+double bough_deck_number_or(const bough_deck *deck, const char *names, double fallback) {
+    return is_default(deck, names) ? fallback : bough_deck_number(deck, names);
+}
+
+int bough_deck_whole_or(const bough_deck *deck, const char *names, int fallback) {
+    return is_default(deck, names) ? fallback : bough_deck_whole(deck, names, -1000, 1000000);
+}
+
+bool bough_deck_flag_or(const bough_deck *deck, const char *names, bool fallback) {
+    return is_default(deck, names) ? fallback : bough_deck_flag(deck, names);
+}
+
+// -- files ----------------------------------------------------------------------------------------
+
+const char *bough_deck_file_at(const bough_deck *deck, int line) {
+    char word[WORD];
+    const char *at = line >= 0 && line < deck->n ? deck->line[line] : "";
+    if (!bough_is_ok(deck->status)) return "";
+    if (!next_word(&at, word)) {
+        bough_deck_fail(deck, line, "expected the name of a file");
+        return "";
+    }
+    for (char *p = word; *p; p++) {
+        if (*p == '\\') *p = '/';
+    }
+    const char *slash = strrchr(deck->path, '/');
+    int folder = slash && word[0] != '/' ? (int)(slash - deck->path) + 1 : 0;
+    char path[BOUGH_PATH_MAX];
+    snprintf(path, sizeof path, "%.*s%s", folder, deck->path, word);
+    const char *copy = bough_arena_string(deck->arena, path);
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        bough_deck_fail(deck, line, "cannot read '%.150s': %s", path, strerror(errno));
+        return "";
+    }
+    fclose(file);
+    return copy ? copy : "";
+}
+
+const char *bough_deck_file(const bough_deck *deck, const char *names) {
+    char word[WORD];
+    int line = value_of(deck, names, "\"file\"", word);
+    return line < 0 ? "" : bough_deck_file_at(deck, line);
+}
+
+// -- tables ---------------------------------------------------------------------------------------
+
+// Where each column stands in a line; false when one that must be there is not.
+static bool find_columns(const char *line, const char *const *column, int n_column, int *place) {
+    char word[WORD];
+    for (int k = 0; k < n_column; k++)
+        place[k] = -1;
+    for (int i = 0; i < MOST_WORDS && next_word(&line, word); i++) {
+        for (int k = 0; k < n_column; k++) {
+            if (place[k] < 0 && is_one_of(word, column[k] + (column[k][0] == '?'))) place[k] = i;
+        }
+    }
+    for (int k = 0; k < n_column; k++) {
+        if (place[k] < 0 && column[k][0] != '?') return false;
+    }
+    return true;
+}
+
+static bool skipped(const char *line) {
+    line += strspn(line, " \t");
+    return *line == '\0' || *line == '!' || *line == '#' || *line == '(';
+}
+
+static void read_row(const bough_deck *deck, int line, const char *const *column, int n_column,
+                     const int *place, double *row) {
+    char word[WORD];
+    const char *at = line < deck->n ? deck->line[line] : "";
+    for (int k = 0; k < n_column; k++)
+        row[k] = (double)NAN;
+    for (int i = 0; i < MOST_WORDS && next_word(&at, word); i++) {
+        for (int k = 0; k < n_column; k++) {
+            if (place[k] == i && !read_number(word, &row[k])) {
+                bough_deck_fail(deck, line, "%s: expected a number, got '%.60s'",
+                                column[k] + (column[k][0] == '?'), word);
+            }
+        }
+    }
+    for (int k = 0; k < n_column; k++) {
+        if (place[k] >= 0 && isnan(row[k])) {
+            bough_deck_fail(deck, line, "%s: expected a number, the row has none",
+                            column[k] + (column[k][0] == '?'));
+        }
+    }
+}
+
+const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column,
+                               int n) {
+    int place[MOST_WORDS], line = 0;
+    if (!deck || !bough_is_ok(deck->status)) return NULL;
+    while (line < deck->n && !find_columns(deck->line[line], column, n_column, place))
+        line++;
+    if (line == deck->n) {
+        bough_deck_fail(deck, -1, "no table with the columns %s, %s, ...", column[0],
+                        n_column > 1 ? column[1] : "");
+        return NULL;
+    }
+    double *table = bough_arena_doubles(deck->arena, (size_t)n * n_column);
+    if (!table) *deck->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    for (int i = 0; table && i < n && bough_is_ok(deck->status); i++) {
+        do
+            line++;
+        while (line < deck->n && skipped(deck->line[line]));
+        if (line >= deck->n)
+            bough_deck_fail(deck, deck->n - 1, "%s: %d rows, expected %d", column[0], i, n);
+        read_row(deck, line, column, n_column, place, &table[i * n_column]);
+    }
+    return bough_is_ok(deck->status) ? table : NULL;
+}
+
+void bough_deck_numbers(const bough_deck *deck, int *line, const char *what, int count,
+                        double *to) {
+    char word[WORD];
+    for (int got = 0; got < count && bough_is_ok(deck->status); ++*line) {
+        if (*line >= deck->n) {
+            bough_deck_fail(deck, deck->n - 1, "%s: the file ends, expected %d more numbers", what,
+                            count - got);
+            return;
+        }
+        const char *at = deck->line[*line];
+        if (skipped(at)) continue;
+        while (got < count && next_word(&at, word)) {
+            if (read_number(word, &to[got++])) continue;
+            bough_deck_fail(deck, *line, "%s: expected a number, got '%.60s'", what, word);
+            return;
+        }
+    }
+}

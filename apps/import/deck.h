@@ -1,0 +1,63 @@
+// Input files of OpenFAST as lines "value  Name  - comment", in which values are found by name,
+// never by line number, and tables by the names of their columns, since lines come and go between
+// versions.
+//
+// The first failure is kept in *status, with file:line, name and what was expected; afterwards all
+// reads return 0, so that a reader may check once at its end.
+#ifndef BOUGH_IMPORT_DECK_H
+#define BOUGH_IMPORT_DECK_H
+
+#include "core/arena.h"
+#include "core/status.h"
+
+#include <stdbool.h>
+
+typedef struct bough_deck {
+    const char *path;
+    const char **line; // (n)
+    int n;
+    bough_arena *arena;
+    bough_status *status;
+} bough_deck;
+
+// The lines of a file; NULL after a failure. Refused: files above 16 MB, and those with NUL bytes.
+bough_deck *bough_deck_open(bough_arena *arena, const char *path, bough_status *status);
+
+// In what follows `names` is a name or several spellings of it, "WakeMod|Wake_Mod"; capitals do not
+// matter.
+
+// The line [from 0] that has the name behind its value; -1: none.
+int bough_deck_line(const bough_deck *deck, const char *names);
+
+// The value of that name.
+double bough_deck_number(const bough_deck *deck, const char *names);
+int bough_deck_whole(const bough_deck *deck, const char *names, int least, int most);
+bool bough_deck_flag(const bough_deck *deck, const char *names);
+const char *bough_deck_text(const bough_deck *deck, const char *names);
+
+// The same, `fallback` where there is no such line or it says "default".
+double bough_deck_number_or(const bough_deck *deck, const char *names, double fallback);
+int bough_deck_whole_or(const bough_deck *deck, const char *names, int fallback);
+bool bough_deck_flag_or(const bough_deck *deck, const char *names, bool fallback);
+
+// The path of a file that is named relative to this one, and the first word of a line as such.
+const char *bough_deck_file(const bough_deck *deck, const char *names);
+const char *bough_deck_file_at(const bough_deck *deck, int line);
+
+// A table of `n` rows below the line that names all columns, units below it skipped: (n ×
+// n_column), NULL after a failure. A column "?Name" need not be there: its entries are then NaN.
+const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column,
+                               int n);
+
+// Reads `count` numbers that stand from *line on, which moves behind the last one's; empty lines
+// and comments (! and #) are skipped. `what` names them in messages.
+void bough_deck_numbers(const bough_deck *deck, int *line, const char *what, int count, double *to);
+
+// The first line that has the words; -1: none.
+int bough_deck_find(const bough_deck *deck, const char *words);
+
+// Keeps a failure at a line [from 0; -1: the file], unless there was one.
+void bough_deck_fail(const bough_deck *deck, int line, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+#endif

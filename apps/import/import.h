@@ -1,0 +1,15 @@
+// Foreign models as scenes.
+#ifndef BOUGH_IMPORT_H
+#define BOUGH_IMPORT_H
+
+#include "core/status.h"
+
+#include <stdio.h>
+
+// Turns an OpenFAST model of a land-based turbine (the .fst file and those that it names) into
+// `folder`/scene.yaml with its tables, and import.txt, a list of what was taken, approximated and
+// left out, which `echo` also receives (NULL: nobody). Nothing is written unless the whole model
+// could be read. BOUGH_INVALID says file:line, the value's name and what was expected.
+bough_status bough_import_openfast(const char *path, const char *folder, FILE *echo);
+
+#endif

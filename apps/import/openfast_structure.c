@@ -1,0 +1,214 @@
+// ElastoDyn's blade and tower: mass and two bending stiffnesses along the span, and mode shapes,
+// from which the frequencies come that turn damping ratios into times.
+#include "apps/import/openfast.h"
+
+#include <math.h>
+
+enum { MOST = 1000, GRID = 400, FIRST = 2, COEFFICIENTS = 5 };
+
+// E/ρ [m²/s²] where the deck has no axial stiffness: of a blade's laminates, of steel with paint,
+// bolts and flanges counted as density.
+static const double laminate = 1e7, steel = 210e9 / 8500;
+
+typedef struct slender {
+    int n;
+    const double *row;        // (n × width): share of the span, then as below
+    int width, mass, bending; // columns
+    double mass_factor, bending_factor;
+    double length;       // [m]
+    double end_mass;     // [kg]
+    const double *shape; // (COEFFICIENTS) of x² to x⁶
+} slender;
+
+static double at(const slender *b, int column, double x) {
+    const double *r = b->row;
+    int w = b->width, i = 0;
+    while (i < b->n - 2 && r[(i + 1) * w] < x)
+        i++;
+    double s = (x - r[i * w]) / (r[(i + 1) * w] - r[i * w]);
+    return r[i * w + column] + s * (r[(i + 1) * w + column] - r[i * w + column]);
+}
+
+// The frequency of the mode by Rayleigh's quotient, ∫ E I φ''² / (∫ m φ² + M φ(L)²) [rad/s].
+static double frequency(const slender *b) {
+    double stiffness = 0, mass = 0, end = 0;
+    for (int i = 0; i <= GRID; i++) {
+        double x = (double)i / GRID, share = (i == 0 || i == GRID ? 0.5 : 1) * b->length / GRID;
+        double value = 0, curvature = 0;
+        for (int k = 0; k < COEFFICIENTS; k++) {
+            int power = FIRST + k;
+            value += b->shape[k] * pow(x, power);
+            curvature += b->shape[k] * power * (power - 1) * pow(x, power - 2);
+        }
+        curvature /= b->length * b->length;
+        stiffness += share * b->bending_factor * at(b, b->bending, x) * curvature * curvature;
+        mass += share * b->mass_factor * at(b, b->mass, x) * value * value;
+        end = value;
+    }
+    return sqrt(stiffness / (mass + b->end_mass * end * end));
+}
+
+// The damping time of a mode: 2 ζ/ω with its ratio ζ [%] and its shape `stem`(2) to (6) [s].
+static double damping(const bough_deck *deck, slender b, const char *ratio, const char *stem) {
+    double shape[COEFFICIENTS];
+    for (int k = 0; k < COEFFICIENTS; k++) {
+        char name[40];
+        snprintf(name, sizeof name, "%s(%d)", stem, FIRST + k);
+        shape[k] = bough_deck_number(deck, name);
+    }
+    b.shape = shape;
+    double zeta = bough_deck_number(deck, ratio) / 100;
+    if (!bough_is_ok(deck->status) || !(zeta > 0)) return 0;
+    double omega = frequency(&b);
+    return omega > 0 ? 2 * zeta / omega : 0;
+}
+
+static double total_mass(const slender *b) {
+    double sum = 0;
+    for (int i = 1; i < b->n; i++) {
+        const double *r = &b->row[(i - 1) * b->width];
+        sum += (r[b->width] - r[0]) * (r[b->mass] + r[b->width + b->mass]) / 2;
+    }
+    return sum * b->mass_factor * b->length;
+}
+
+static void check_rows(const bough_deck *deck, const slender *b, const char *count) {
+    int line = bough_deck_line(deck, count);
+    for (int i = 0; b->row && i < b->n; i++) {
+        const double *r = &b->row[i * b->width];
+        double want = i == 0 ? 0 : 1;
+        bool ends = (i > 0 && i < b->n - 1) || fabs(r[0] - want) < 1e-6;
+        if (ends && (i == 0 || r[0] > r[-b->width]) && r[b->mass] > 0 && r[b->bending] > 0)
+            continue;
+        bough_deck_fail(deck, line,
+                        "%s: row %d of its table: expected shares of the span that grow "
+                        "from 0 to 1, positive mass and stiffness",
+                        count, i + 1);
+    }
+}
+
+// One station, in the scene's order: shear x, shear y, axial, bend x, bend y, twist.
+typedef struct section {
+    double span, twist; // [m, deg]
+    double mass, axial, shear, bend_x, bend_y, torsion;
+} section;
+
+static void put_section(FILE *file, const section *s) {
+    const double stiffness[] = {s->shear, s->shear, s->axial, s->bend_x, s->bend_y, s->torsion};
+    double share = s->mass / s->axial; // of one material: inertia over stiffness
+    const double mass[] = {s->mass, 0, 0, s->bend_x * share, s->bend_y * share, 0};
+    fprintf(file, "    - [%.10g, %.10g, ", s->span, s->twist);
+    bough_import_list(file, stiffness, 6);
+    fputs(", ", file);
+    bough_import_list(file, mass, 6);
+    fputs("]\n", file);
+}
+
+static void put_head(FILE *file, double length, const double *time) {
+    fprintf(file, "length: %.10g\ndamping: ", length);
+    bough_import_list(file, time, 6);
+    fputs("  # s\nstations:\n  columns: [span, twist deg, stiffness, mass]\n  rows:\n", file);
+}
+
+// -- blade ----------------------------------------------------------------------------------------
+
+enum { FRACTION, TWIST, MASS, FLAP, EDGE, TORSION, AXIAL, N_BLADE_COLUMN };
+
+static void put_blade(bough_openfast *o, const bough_deck *deck, const slender *b, double edge) {
+    const double flap_time = damping(deck, *b, "BldFlDmp(1)|BldFlDmp1", "BldFl1Sh");
+    slender edgewise = *b;
+    edgewise.bending = EDGE;
+    edgewise.bending_factor = edge;
+    double edge_time = damping(deck, edgewise, "BldEdDmp(1)|BldEdDmp1", "BldEdgSh");
+    if (!bough_is_ok(o->status)) return;
+    const double time[] = {flap_time, edge_time, flap_time, edge_time, flap_time, flap_time};
+    FILE *file = o->file[BOUGH_IMPORT_BLADE];
+    put_head(file, b->length, time);
+    for (int i = 0; i < b->n; i++) {
+        const double *r = &b->row[i * b->width];
+        double mass = r[MASS] * b->mass_factor;
+        double axial = r[AXIAL] > 0 ? r[AXIAL] : laminate * mass;
+        double bend_x = r[EDGE] * edge, bend_y = r[FLAP] * b->bending_factor;
+        double torsion = r[TORSION] > 0 ? r[TORSION] : bend_x;
+        section s = {r[0] * b->length, r[TWIST], mass, axial, axial / 10, bend_x, bend_y, torsion};
+        put_section(file, &s);
+    }
+}
+
+void bough_openfast_blade(bough_openfast *o) {
+    bough_deck *deck = bough_openfast_open(o, o->elasto, "BldFile(1)|BldFile1");
+    const char *const column[] = {"BlFract", "StrcTwst", "BMassDen", "FlpStff",
+                                  "EdgStff", "?GJStff",  "?EAStff"};
+    int n = bough_deck_whole(deck, "NBlInpSt", 2, MOST);
+    slender b = {.n = n,
+                 .width = N_BLADE_COLUMN,
+                 .mass = MASS,
+                 .bending = FLAP,
+                 .row = bough_deck_table(deck, column, N_BLADE_COLUMN, n),
+                 .mass_factor = bough_deck_number_or(deck, "AdjBlMs", 1),
+                 .bending_factor = bough_deck_number_or(deck, "AdjFlSt", 1),
+                 .length = bough_deck_number(o->elasto, "TipRad") - o->hub_radius};
+    double edge = bough_deck_number_or(deck, "AdjEdSt", 1);
+    if (!bough_is_ok(o->status)) return;
+    check_rows(deck, &b, "NBlInpSt");
+    put_blade(o, deck, &b, edge);
+    o->blade_length = b.length;
+    o->blade_mass = total_mass(&b);
+    bough_openfast_note(o, BOUGH_TAKEN,
+                        "%d stations, mass times AdjBlMs %g: the blade weighs %.7g "
+                        "kg, without tip mass",
+                        n, b.mass_factor, o->blade_mass);
+    bough_openfast_note(o, BOUGH_APPROXIMATED,
+                        "blade: bends geometrically exactly, not in "
+                        "ElastoDyn's modes; its damping grows with the frequency from the first");
+    if (!(b.row[AXIAL] > 0)) {
+        bough_openfast_note(o, BOUGH_APPROXIMATED,
+                            "blade: axial stiffness mass x %.3g m2/s2, shear "
+                            "a tenth of it, sections' inertia as of one material",
+                            laminate);
+    }
+    if (!(b.row[TORSION] > 0)) {
+        bough_openfast_note(
+            o, BOUGH_APPROXIMATED,
+            "blade: ElastoDyn's has no torsion, this one the "
+            "edgewise stiffness, which is stiff; no offsets of mass and shear centre");
+    }
+}
+
+// -- tower ----------------------------------------------------------------------------------------
+
+enum { FORE = 2, SIDE, N_TOWER_COLUMN };
+
+void bough_openfast_tower(bough_openfast *o, double top_mass) {
+    bough_deck *deck = bough_openfast_open(o, o->elasto, "TwrFile");
+    const char *const column[] = {"HtFract", "TMassDen", "TwFAStif", "TwSSStif"};
+    int n = bough_deck_whole(deck, "NTwInpSt", 2, MOST);
+    slender b = {.n = n,
+                 .width = N_TOWER_COLUMN,
+                 .mass = 1,
+                 .bending = FORE,
+                 .row = bough_deck_table(deck, column, N_TOWER_COLUMN, n),
+                 .mass_factor = bough_deck_number_or(deck, "AdjTwMa", 1),
+                 .bending_factor = bough_deck_number_or(deck, "AdjFASt", 1),
+                 .length = o->tower_top - o->tower_base,
+                 .end_mass = top_mass};
+    double side = bough_deck_number_or(deck, "AdjSSSt", 1);
+    double time = damping(deck, b, "TwrFADmp(1)|TwrFADmp1", "TwFAM1Sh");
+    if (!bough_is_ok(o->status)) return;
+    check_rows(deck, &b, "NTwInpSt");
+    const double times[] = {time, time, time, time, time, time};
+    FILE *file = o->file[BOUGH_IMPORT_TOWER];
+    put_head(file, b.length, times);
+    for (int i = 0; i < n; i++) {
+        const double *r = &b.row[i * b.width];
+        double mass = r[1] * b.mass_factor, axial = steel * mass;
+        double x = r[SIDE] * side, y = r[FORE] * b.bending_factor, ratio = 80.8 / 210;
+        section s = {r[0] * b.length, 0, mass, axial, axial * ratio / 2, x, y, (x + y) * ratio};
+        put_section(file, &s);
+    }
+    bough_openfast_note(o, BOUGH_TAKEN, "%d stations of the tower, which weighs %.7g kg", n,
+                        total_mass(&b));
+    bough_openfast_note(o, BOUGH_APPROXIMATED,
+                        "tower: axial, shear and torsional stiffness of a thin "
+                        "steel tube; damping grows with the frequency from the first mode's ratio");
+}

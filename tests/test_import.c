@@ -1,0 +1,290 @@
+// Decks of OpenFAST as scenes: the numbers, by hand; what bad decks are told; that a scene runs.
+#include "tests/check.h"
+
+#include "apps/api/bough.h"
+#include "apps/import/import.h"
+#include "apps/output/folder.h"
+#include "apps/scene/text.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const char *const decks[] = {
+    "main.fst",        "parts/elasto.dat",     "parts/blade.dat",       "parts/tower.dat",
+    "parts/beam.dat",  "parts/beam-blade.dat", "parts/wind.dat",        "parts/aero.dat",
+    "parts/servo.dat", "parts/aero-blade.dat", "parts/foils/round.dat", "parts/foils/flat.dat",
+};
+enum { N_DECK = sizeof decks / sizeof *decks };
+
+typedef struct edit {
+    const char *file, *from, *to;
+} edit;
+
+typedef struct trial {
+    char folder[64], out[96];
+    bough_arena *arena;
+    bough_status status;
+} trial;
+
+// Replaces the first place of `from` in the text of that file.
+static void apply(const edit *change, const char *name, char text[8192]) {
+    if (!change || strcmp(change->file, name) != 0) return;
+    char *at = strstr(text, change->from), rest[8192];
+    assert_non_null(at);
+    strcpy(rest, at + strlen(change->from));
+    snprintf(at, (size_t)(text + 8192 - at), "%s%s", change->to, rest);
+}
+
+static void copy_deck(const char *folder, const char *name, const edit *one, const edit *two) {
+    char path[256], text[8192];
+    snprintf(path, sizeof path, "%s/tests/decks/%s", BOUGH_SOURCE_DIR, name);
+    FILE *in = fopen(path, "r");
+    assert_non_null(in);
+    text[fread(text, 1, sizeof text - 1, in)] = '\0';
+    fclose(in);
+    apply(one, name, text);
+    apply(two, name, text);
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fputs(text, out);
+    fclose(out);
+}
+
+// Imports the decks with two texts replaced (NULL: none).
+static trial import_with(const edit *one, const edit *two) {
+    trial t = {.arena = bough_arena_create()};
+    char path[128];
+    strcpy(t.folder, "/tmp/bough-import-XXXXXX");
+    assert_non_null(mkdtemp(t.folder));
+    snprintf(path, sizeof path, "%s/parts/foils", t.folder);
+    bough_status made = bough_folder_make(path);
+    assert_true(bough_is_ok(&made));
+    for (int i = 0; i < N_DECK; i++)
+        copy_deck(t.folder, decks[i], one, two);
+    snprintf(path, sizeof path, "%s/main.fst", t.folder);
+    snprintf(t.out, sizeof t.out, "%s/out", t.folder);
+    t.status = bough_import_openfast(path, t.out, NULL);
+    return t;
+}
+
+static trial import(const edit *change) { return import_with(change, NULL); }
+
+static void done(trial *t) {
+    char command[128];
+    bough_arena_destroy(t->arena);
+    snprintf(command, sizeof command, "rm -rf %s", t->folder);
+    assert_int_equal(system(command), 0);
+}
+
+static const bough_node *read_file(trial *t, const char *name) {
+    char path[160];
+    snprintf(path, sizeof path, "%s/%s", t->out, name);
+    bough_errors errors = {.arena = t->arena};
+    const bough_node *node = bough_text_read(t->arena, path, &errors);
+    assert_non_null(node);
+    return node;
+}
+
+// The node at "key.3.key": keys of mappings and places in sequences.
+static const bough_node *at(const bough_node *node, const char *path) {
+    char word[64];
+    while (*path) {
+        size_t n = strcspn(path, ".");
+        snprintf(word, sizeof word, "%.*s", (int)n, path);
+        node = node->kind == BOUGH_SEQUENCE ? node->value[atoi(word)] : bough_node_find(node, word);
+        if (!node) fail_msg("no '%s'", word);
+        path += n + (path[n] == '.');
+    }
+    return node;
+}
+
+static double number(const bough_node *node, const char *path) {
+    return strtod(at(node, path)->text, NULL);
+}
+
+static const char *text(const bough_node *node, const char *path) { return at(node, path)->text; }
+
+static bool list_says(trial *t, const char *words) {
+    char path[160], all[8192];
+    snprintf(path, sizeof path, "%s/import.txt", t->out);
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    all[fread(all, 1, sizeof all - 1, file)] = '\0';
+    fclose(file);
+    return strstr(all, words) != NULL;
+}
+
+// A reference line of 5 m along z and 5 m on a slope of 3 to 4; a station at 6.25 m of it.
+static void beamdyn_stations_keep_line_and_matrices(void **context) {
+    (void)context;
+    trial t = import(NULL);
+    assert_string_equal(t.status.message, "");
+    const bough_node *blade = read_file(&t, "blade-structure.yaml");
+    const bough_node *rows = at(blade, "stations.rows");
+    assert_int_equal(rows->n, 3);
+    check_near(number(blade, "length"), 9, 1e-9, 0);
+    check_near(number(blade, "damping.4"), 5e-3, 1e-9, 0);
+    check_near(number(rows, "1.0"), 6, 1e-9, 0);      // span
+    check_near(number(rows, "1.1"), 5, 1e-9, 0);      // twist
+    check_near(number(rows, "1.2.0"), 0.75, 1e-9, 0); // axis
+    assert_int_equal(at(rows, "0.3")->n, 21);
+    assert_int_equal(at(rows, "1.3")->n, 6);
+    check_near(number(rows, "0.3.15"), 9e6, 1e-9, 0); // bend about x …
+    check_near(number(rows, "0.3.17"), 1e5, 1e-9, 0); // … and its coupling with twist
+    const double mass[] = {40, 0.2, 0.1, 0.9, 2.5, -0.3, 3.4};
+    for (int i = 0; i < 7; i++) {
+        char path[16];
+        snprintf(path, sizeof path, "0.4.%d", i);
+        check_near(number(rows, path), mass[i], 1e-9, 0);
+    }
+    done(&t);
+}
+
+static void turbine_has_the_decks_values(void **context) {
+    (void)context;
+    trial t = import(NULL);
+    const bough_node *s = read_file(&t, "scene.yaml");
+    check_near(number(s, "gravity.2"), -9.81, 1e-9, 0);
+    check_near(number(s, "simulation.duration"), 3.02, 1e-9, 0); // whole macro steps
+    check_near(number(s, "bodies.1.joint.stiffness"), 5e7, 1e-9, 0);
+    check_near(number(s, "bodies.1.inertia.2"), 6000 - 8000 * 0.25, 1e-9, 0);
+    assert_string_equal(text(s, "bodies.2.joint.placement.1"), "rotate y 6 deg");
+    assert_string_equal(text(s, "bodies.2.joint.placement.2"), "move x -2.5 m");
+    assert_string_equal(text(s, "bodies.2.joint.speed"), "20 rpm");
+    check_near(number(s, "bodies.2.inertia.0"), 600 + 2 * 900, 1e-9, 0);
+    assert_string_equal(text(s, "bodies.4.joint.placement.0"), "rotate x 120 deg");
+    assert_string_equal(text(s, "bodies.5.pitch"), "5.5 deg");
+    assert_string_equal(text(s, "aero.wind.kind"), "power");
+    assert_string_equal(text(s, "aero.wind.direction"), "-15 deg");
+    check_near(number(s, "aero.air_density"), 1.2, 1e-9, 0);
+    assert_string_equal(text(s, "aero.induction.hub_loss"), "false");
+    assert_string_equal(text(s, "aero.induction.inflow_time"), "2.5 s");
+    assert_string_equal(text(s, "aero.dynamic_stall"), "hgm");
+    assert_string_equal(text(s, "aero.pitching_moment"), "false");
+    check_near(number(s, "aero.tower.drag.1"), 0.8, 1e-9, 0);
+    check_near(number(s, "control.law.optimal_gain"), 0.0004 * pow(30 / acos(-1.0), 2), 1e-9, 0);
+    assert_true(list_says(&t, "DrTrDOF: the drive train is rigid"));
+    done(&t);
+}
+
+static void air_tables_follow_their_headers(void **context) {
+    (void)context;
+    trial t = import(NULL);
+    const bough_node *blade = at(read_file(&t, "blade-aero.yaml"), "stations.rows");
+    check_near(number(blade, "1.4"), 1.0, 1e-9, 0); // the chord stands behind the airfoil
+    check_near(number(blade, "1.2"), -0.2, 1e-9, 0);
+    const bough_node *polars = at(read_file(&t, "airfoils.yaml"), "polars");
+    assert_int_equal(polars->n, 2);
+    assert_string_equal(text(blade, "2.5"), text(polars, "1.name"));
+    check_near(number(polars, "1.table.rows.2.0"), -10, 1e-9, 0);
+    check_near(number(polars, "1.table.rows.2.1"), -0.9, 1e-9, 0);
+    done(&t);
+}
+
+// With the shape x² of a uniform blade ω² = 20 E I/(m l⁴), with a mass M at the end of the tower
+// ω² = 4 E I/l³/(m l/5 + M).
+static void elastodyn_structure_is_scaled_and_damped(void **context) {
+    (void)context;
+    trial t = import(&(edit){"main.fst", "2    CompElast", "1    CompElast"});
+    assert_string_equal(t.status.message, "");
+    const bough_node *blade = read_file(&t, "blade-structure.yaml");
+    check_near(number(blade, "length"), 9, 1e-9, 0);
+    check_near(number(blade, "stations.rows.0.3.0"), 44, 1e-9, 0);
+    check_near(number(blade, "stations.rows.1.2.4"), 8e6, 1e-9, 0); // flap is about y
+    check_near(number(blade, "stations.rows.1.2.3"), 9e6, 1e-9, 0);
+    check_near(number(blade, "damping.4"), 2 * 0.015 / sqrt(20 * 8e6 / (44 * 6561.0)), 1e-4, 0);
+    check_near(number(blade, "damping.3"), 2 * 0.005 / sqrt(20 * 9e6 / (44 * 6561.0)), 1e-4, 0);
+    const bough_node *tower = read_file(&t, "tower-structure.yaml");
+    double top = 8000 + 2000 + 3 * 396, omega2 = 4 * 2e9 / 8000 / (500 * 20 / 5.0 + top);
+    check_near(number(tower, "damping.0"), 2 * 0.01 / sqrt(omega2), 1e-4, 0);
+    assert_true(list_says(&t, "no torsion"));
+    done(&t);
+}
+
+static void newer_names_are_known(void **context) {
+    (void)context;
+    trial t = import(&(edit){"parts/aero.dat", "2   WakeMod ", "0   Wake_Mod"});
+    assert_string_equal(t.status.message, "");
+    assert_true(list_says(&t, "WakeMod 0"));
+    done(&t);
+    t = import(&(edit){"parts/aero.dat", "2   SkewMod ", "0   Skew_Mod"});
+    assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.induction.skew"), "none");
+    done(&t);
+}
+
+static void a_scene_steps(const edit *one, const edit *two) {
+    trial t = import_with(one, two);
+    assert_string_equal(t.status.message, "");
+    char path[160];
+    snprintf(path, sizeof path, "%s/scene.yaml", t.out);
+    bough_session *s = bough_session_open(path, NULL, 0);
+    assert_string_equal(bough_session_error(s), "");
+    for (int i = 0; i < 4; i++)
+        assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
+    check_near(bough_session_read(s, bough_session_find(s, "RotSpeed")), 20, 0.1, 0);
+    bough_session_close(s);
+    done(&t);
+}
+
+static void scenes_step(void **context) {
+    (void)context;
+    const edit stiff = {"parts/elasto.dat", "True          TwFADOF1", "False         TwFADOF1"};
+    a_scene_steps(NULL, NULL);
+    a_scene_steps(&stiff, &(edit){"main.fst", "2    CompElast", "1    CompElast"});
+    a_scene_steps(&stiff, &(edit){"parts/servo.dat", "1   VSContrl", "0   VSContrl"});
+    a_scene_steps(&stiff, &(edit){"parts/elasto.dat", "T             GenDOF", "F    GenDOF"});
+    a_scene_steps(&stiff, &(edit){"main.fst", "2    CompAero", "0    CompAero"});
+}
+
+static void bad_decks_are_told_where(void **context) {
+    (void)context;
+    const struct {
+        edit change;
+        const char *says;
+    } bad[] = {
+        {{"parts/elasto.dat", "20    RotSpeed", "2x    RotSpeed"},
+         "elasto.dat:12: RotSpeed: expected a number, got '2x'"},
+        {{"parts/elasto.dat", "HubRad", "HubRat"}, "no 'HubRad': expected a line 'number  HubRad'"},
+        {{"parts/elasto.dat", "3    NumBl", "4    NumBl"},
+         "elasto.dat:13: NumBl: expected a whole"},
+        {{"parts/elasto.dat", "True          YawDOF", "Maybe         YawDOF"},
+         "elasto.dat:6: YawDOF: expected True or False, got 'Maybe'"},
+        {{"main.fst", "parts/wind.dat", "parts/wand.dat"}, "main.fst:17: cannot read"},
+        {{"main.fst", "0    CompHydro", "1    CompHydro"}, "main.fst:10: CompHydro: expected 0"},
+        {{"parts/wind.dat", "1    WindType", "4    WindType"}, "wind.dat:2: WindType: expected 1"},
+        {{"parts/beam.dat", "kp_zr", "kp_z"}, "beam.dat: no table with the columns kp_xr"},
+        {{"parts/beam.dat", "5.0     6.0", "nan     6.0"}, "beam.dat:9: kp_zr: expected a number"},
+        {{"parts/beam.dat", "5.0     6.0", "9.5     6.0"}, "kp_zr: expected points that go"},
+        {{"parts/beam-blade.dat", "  0.625", "  1.625"},
+         "beam-blade.dat:23: the station stands at 1.625"},
+        {{"parts/beam-blade.dat", "3   station_total", "4   station_total"}, "the file ends"},
+        {{"parts/aero-blade.dat", "6.0       2 ", "6.0       3 "}, "BlAFID: row 2: expected"},
+        {{"parts/aero-blade.dat", "  3   NumBlNds", "  4   NumBlNds"}, "3 rows, expected 4"},
+        {{"parts/foils/flat.dat", "180.0   0.02\n", "170.0   0.02\n"},
+         "flat.dat:5: alpha: expected"},
+        {{"parts/servo.dat", "400   VS_RtTq", "4   VS_RtTq"}, "servo.dat:6: VS_RtGnSp"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        trial t = import(&bad[i].change);
+        if (t.status.code != BOUGH_INVALID || !strstr(t.status.message, bad[i].says)) {
+            fail_msg("said '%s', not '%s'", t.status.message, bad[i].says);
+        }
+        assert_int_not_equal(access(t.out, F_OK), 0); // nothing was written
+        done(&t);
+    }
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(beamdyn_stations_keep_line_and_matrices),
+        cmocka_unit_test(turbine_has_the_decks_values),
+        cmocka_unit_test(air_tables_follow_their_headers),
+        cmocka_unit_test(elastodyn_structure_is_scaled_and_damped),
+        cmocka_unit_test(newer_names_are_known),
+        cmocka_unit_test(scenes_step),
+        cmocka_unit_test(bad_decks_are_told_where),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
