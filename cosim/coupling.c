@@ -218,3 +218,20 @@ void bough_coupling_exchange(bough_coupling *c) {
     memcpy(oldest, c->input, (size_t)a->n_input * sizeof(double));
     if (c->n_past < BOUGH_HISTORY) c->n_past++;
 }
+
+void bough_coupling_snapshot(bough_coupling *c, bough_snapshot *s) {
+    const bough_assembly *a = c->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_subsystem *member = a->member[i];
+        void *room = bough_snapshot_room(s, member->ops->save_size(member->self));
+        if (s->move == BOUGH_SNAPSHOT_SAVE) member->ops->save(member->self, room);
+        if (s->move == BOUGH_SNAPSHOT_RESTORE) member->ops->restore(member->self, room);
+    }
+    bough_snapshot_doubles(s, c->output, a->n_output);
+    bough_snapshot_doubles(s, c->input, a->n_input);
+    bough_snapshot_doubles(s, c->used, a->n_input);
+    if (c->owed) bough_snapshot_doubles(s, c->owed, a->n_input);
+    for (int p = 0; p < BOUGH_HISTORY; p++) bough_snapshot_doubles(s, c->past[p], a->n_input);
+    bough_snapshot_doubles(s, c->past_time, BOUGH_HISTORY);
+    bough_snapshot_take(s, &c->n_past, sizeof c->n_past);
+}

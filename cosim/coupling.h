@@ -2,6 +2,7 @@
 #ifndef BOUGH_COSIM_COUPLING_H
 #define BOUGH_COSIM_COUPLING_H
 
+#include "core/snapshot.h"
 #include "cosim/accelerate.h"
 #include "cosim/assembly.h"
 
@@ -106,6 +107,10 @@ double bough_coupling_curvature(const bough_coupling *c, int j, double end);
 
 // Outputs and inputs at t1, end values of the signals; the history moves on.
 void bough_coupling_exchange(bough_coupling *c);
+
+// All that a step changes and the next one needs: the members' states and what was exchanged. A
+// scheme's own memory is not in it.
+void bough_coupling_snapshot(bough_coupling *c, bough_snapshot *s);
 
 // A failure at t0 that names the member.
 bough_status bough_coupling_not_finite(const bough_coupling *c, int member);

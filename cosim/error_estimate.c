@@ -253,6 +253,23 @@ void bough_error_estimate_finish(bough_error_estimate *e, bough_coupling *c) {
     e->n_step = 0;
 }
 
+// Each batch makes its own factors.
+void bough_error_estimate_snapshot(bough_error_estimate *e, bough_snapshot *s) {
+    const bough_assembly *a = e->assembly;
+    bough_snapshot_take(s, &e->n_step, sizeof e->n_step);
+    bough_snapshot_doubles(s, e->start, BATCH);
+    bough_snapshot_doubles(s, e->end, BATCH);
+    bough_snapshot_doubles(s, e->defect, BATCH * 4 * a->n_input);
+    bough_snapshot_take(s, &e->batches, sizeof e->batches);
+    bough_snapshot_take(s, &e->lost, sizeof e->lost);
+    bough_snapshot_take(s, &e->n_point, sizeof e->n_point);
+    bough_snapshot_doubles(s, e->time, PAST);
+    for (int p = 0; p < PAST; p++) bough_snapshot_doubles(s, e->value[p], a->n_input);
+    bough_snapshot_doubles(s, e->size, a->n_input);
+    bough_snapshot_doubles(s, e->error, a->n_state);
+    bough_snapshot_doubles(s, e->input_worst, a->n_input);
+}
+
 // -- answers --------------------------------------------------------------------------------------
 
 long bough_error_estimate_batches(const bough_error_estimate *e) {

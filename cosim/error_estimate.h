@@ -35,6 +35,9 @@ void bough_error_estimate_step(bough_error_estimate *e, bough_coupling *c);
 // factors.
 void bough_error_estimate_finish(bough_error_estimate *e, bough_coupling *c);
 
+// The open batch, the error and what the inputs have been.
+void bough_error_estimate_snapshot(bough_error_estimate *e, bough_snapshot *s);
+
 // Batches ended so far: ε is new when it has changed.
 long bough_error_estimate_batches(const bough_error_estimate *e);
 

@@ -205,3 +205,23 @@ bough_status bough_step(bough_master *m) {
     if (m->estimate && bough_master_done(m)) bough_error_estimate_finish(m->estimate, c);
     return bough_ok();
 }
+
+void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
+    bough_coupling *c = m->coupling;
+    bough_snapshot_take(s, &m->time, sizeof m->time);
+    bough_snapshot_take(s, &m->steps, sizeof m->steps);
+    bough_snapshot_take(s, &m->next_event, sizeof m->next_event);
+    bough_snapshot_take(s, &m->grid_index, sizeof m->grid_index);
+    bough_snapshot_take(s, &m->at_event, sizeof m->at_event);
+    bough_coupling_snapshot(c, s);
+    bough_snapshot_take(s, &c->t0, sizeof c->t0);
+    bough_snapshot_take(s, &c->t1, sizeof c->t1);
+    bough_snapshot_take(s, &c->theta, sizeof c->theta);
+    bough_snapshot_take(s, &c->interface_ratio, sizeof c->interface_ratio);
+    bough_snapshot_take(s, &c->sweeps, sizeof c->sweeps);
+    if (m->scheme->snapshot) m->scheme->snapshot(c, s);
+    bough_monitor_snapshot(m->monitor, c, s);
+    if (m->estimate) bough_error_estimate_snapshot(m->estimate, s);
+    if (m->control) bough_step_control_snapshot(m->control, s);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) c->refactor = true;
+}

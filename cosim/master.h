@@ -66,6 +66,11 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
 // One macro step: sample loads, take the members over the step, exchange, judge.
 bough_status bough_step(bough_master *m);
 
+// All that later steps and the reports depend on, but for what the loads remember, at a time when
+// all loads are sampled. Restored, integrators and Newton factors start anew: a run that restores
+// the copy it has just saved goes on bit for bit as another process that restores it.
+void bough_master_snapshot(bough_master *m, bough_snapshot *s);
+
 // Whether the duration is reached.
 bool bough_master_done(const bough_master *m);
 

@@ -366,6 +366,17 @@ bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c) {
     return bough_is_ok(&status) ? judge_error(m, c) : status;
 }
 
+void bough_monitor_snapshot(bough_monitor *m, const bough_coupling *c, bough_snapshot *s) {
+    const bough_assembly *a = c->assembly;
+    bough_snapshot_take(s, m->group, (size_t)m->n_group * sizeof *m->group);
+    bough_snapshot_take(s, &m->steps, sizeof m->steps);
+    bough_snapshot_doubles(s, m->previous, a->n_input);
+    bough_snapshot_take(s, m->account, (size_t)a->n_interface * sizeof *m->account);
+    bough_snapshot_take(s, &m->window_steps, sizeof m->window_steps);
+    bough_snapshot_take(s, &m->window_time, sizeof m->window_time);
+    bough_snapshot_take(s, &m->unbalanced, sizeof m->unbalanced);
+}
+
 bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_coupling *c) {
     bough_coupling_report report = {0};
     for (int k = 0; k < m->n_group && m->steps > 0; k++) {

@@ -22,6 +22,9 @@ bough_status bough_monitor_create(bough_arena *arena, const bough_scheme *scheme
 // Judges the step just taken: BOUGH_FAILED with a diagnosis when the run has become meaningless.
 bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c);
 
+// Its windows, accounts and largest values so far.
+void bough_monitor_snapshot(bough_monitor *m, const bough_coupling *c, bough_snapshot *s);
+
 bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_coupling *c);
 
 // Energy at one interface over the run so far [J].

@@ -14,6 +14,8 @@ typedef struct bough_scheme {
     bough_status (*create)(bough_coupling *c, bough_arena *arena);
     // Takes all members from t0 to t1.
     bough_status (*step)(bough_coupling *c);
+    // What its own memory carries from step to step; factors are found anew. NULL: nothing.
+    void (*snapshot)(bough_coupling *c, bough_snapshot *s);
 } bough_scheme;
 
 // name "ramp", order 1, sequential, Hermite, theta automatic, rtol 1e-6; IQN-ILS from relaxation 1/2

@@ -248,10 +248,16 @@ static bough_status step(bough_coupling *c) {
     return status;
 }
 
+static void snapshot(bough_coupling *c, bough_snapshot *s) {
+    const iteration *it = c->scheme_data;
+    bough_snapshot_doubles(s, it->size, it->n);
+}
+
 const bough_scheme bough_scheme_iterated = {
     .name = "iterated",
     .summary = "the step repeated until the interface agrees; order 1 to 3 (degree + 1), implicit",
     .judged = true,
     .create = create,
     .step = step,
+    .snapshot = snapshot,
 };

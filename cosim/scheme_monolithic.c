@@ -104,9 +104,16 @@ static bough_status step(bough_coupling *c) {
     return bough_ok();
 }
 
+// The integrator hides its history: it starts anew from the members' states.
+static void snapshot(bough_coupling *c, bough_snapshot *s) {
+    monolith *m = c->scheme_data;
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) m->started = false;
+}
+
 const bough_scheme bough_scheme_monolithic = {
     .name = "monolithic",
     .summary = "all bodies in one implicit system: the reference, no coupling error",
     .create = create,
     .step = step,
+    .snapshot = snapshot,
 };

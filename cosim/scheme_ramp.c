@@ -552,10 +552,21 @@ static bough_status step(bough_coupling *c) {
     return bough_ok();
 }
 
+// The answers' age is not in it: `refactor` makes them anew.
+static void snapshot(bough_coupling *c, bough_snapshot *s) {
+    ramp *r = c->scheme_data;
+    bough_snapshot_take(s, &r->theta, sizeof r->theta);
+    bough_snapshot_take(s, &r->final, sizeof r->final);
+    bough_snapshot_take(s, &r->damped, sizeof r->damped);
+    bough_snapshot_take(s, &r->chosen, sizeof r->chosen);
+    bough_snapshot_take(s, &r->repays, sizeof r->repays);
+}
+
 const bough_scheme bough_scheme_ramp = {
     .name = "ramp",
     .summary = "forces ramp to a linearly implicit prediction; order 3 on heavy interface bodies, "
                "else 2; stable far beyond the explicit limit",
     .create = create,
     .step = step,
+    .snapshot = snapshot,
 };

@@ -21,15 +21,11 @@ typedef struct bough_step_control {
     long accepted, rejected;
     long forced;            // accepted above the tolerance, because it was the shortest
     double shortest;        // step accepted [s]
-    // copies at the start of the step
-    void **member;          // (n_member)
-    double *array;          // of the coupling
-    double past_time[BOUGH_HISTORY];
-    int n_past;
+    char *copy;             // of the coupling at the start of the step
 } bough_step_control;
 
-// `order`: of the defects in the macro step. Takes the memory for the copies from the arena.
-bough_status bough_step_control_create(bough_arena *arena, const bough_coupling *c,
+// `order`: of the defects in the macro step. Takes the memory for the copy from the arena.
+bough_status bough_step_control_create(bough_arena *arena, bough_coupling *c,
                                        const bough_step_control_def *def, double macro_step,
                                        int order, bough_step_control **control);
 
@@ -38,6 +34,9 @@ double bough_step_control_end(bough_step_control *s, double from, double to);
 
 void bough_step_control_save(bough_step_control *s, bough_coupling *c);
 void bough_step_control_restore(bough_step_control *s, bough_coupling *c);
+
+// What the control itself remembers.
+void bough_step_control_snapshot(bough_step_control *s, bough_snapshot *snapshot);
 
 // Whether the step of that length stands; if not, the next are shorter. A step that failed has an
 // infinite error and never stands.
