@@ -53,6 +53,16 @@ static inline void bough_statistics_add(bough_statistics *sum, const bough_stati
     sum->restarts += part->restarts;
 }
 
+static inline void bough_statistics_subtract(bough_statistics *from, const bough_statistics *part) {
+    from->steps -= part->steps;
+    from->failed_steps -= part->failed_steps;
+    from->derivatives -= part->derivatives;
+    from->jacobians -= part->jacobians;
+    from->factorisations -= part->factorisations;
+    from->iterations -= part->iterations;
+    from->restarts -= part->restarts;
+}
+
 typedef struct bough_subsystem_ops {
     // -- model exchange: no effect on the current time and state ------------------------------
 

@@ -131,7 +131,7 @@ static outlet open_outlet(bough_arena *arena, bough_simulation *s, const char *f
     assert_int_equal(status.code, BOUGH_OK);
     o.value = bough_arena_doubles(arena, (size_t)o.channels.count);
     assert_non_null(o.value);
-    bough_recorder_def def = {folder, "allocation", &o.channels};
+    bough_recorder_def def = {.folder = folder, .title = "allocation", .channels = &o.channels};
     status = bough_recorder_open(arena, &def, &o.recorder);
     assert_int_equal(status.code, BOUGH_OK);
     return o;

@@ -20,7 +20,8 @@ static void write_frames(const char *folder) {
     static const bough_polyline line[] = {{"first", 3}, {"second", 2}};
     double shift = 0;
     bough_arena *arena = bough_arena_create();
-    bough_frames_def def = {folder, 2, line, points, &shift};
+    bough_frames_def def = {
+        .folder = folder, .n_line = 2, .line = line, .points = points, .self = &shift};
     bough_frames *frames;
     bough_status status = bough_frames_open(arena, &def, &frames);
     assert_int_equal(status.code, BOUGH_OK);

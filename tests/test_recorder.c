@@ -27,7 +27,7 @@ static bough_status open_recorder(fixture *f, const char *folder) {
     bough_channels_group(&f->channels, sample, f);
     bough_channels_add(&f->channels, "rpm", "RotSpeed");
     bough_channels_add(&f->channels, "kN-m", "a_name_longer_than_its_column");
-    bough_recorder_def def = {folder, "scene.yaml", &f->channels};
+    bough_recorder_def def = {.folder = folder, .title = "scene.yaml", .channels = &f->channels};
     return bough_recorder_open(f->arena, &def, &f->recorder);
 }
 

@@ -10,7 +10,8 @@
 const bough_verb bough_verbs[] = {
     {"run",
      {BOUGH_OPERAND_REQUIRED, "SCENE",
-      BOUGH_OPTION_SET | BOUGH_OPTION_OUT | BOUGH_OPTION_THREADS | BOUGH_OPTION_QUIET},
+      BOUGH_OPTION_SET | BOUGH_OPTION_OUT | BOUGH_OPTION_THREADS | BOUGH_OPTION_CHECKPOINT |
+          BOUGH_OPTION_RESUME | BOUGH_OPTION_QUIET},
      "simulates a scene and writes its results",
      bough_verb_run},
     {"check",

@@ -24,6 +24,10 @@ static const option_row rows[] = {
     {"threads", "N", "1 to 64, instead of what the scene says", BOUGH_OPTION_THREADS, false},
     {"part", "K/N", "of a study of kind stability only the K-th of N shares of its runs",
      BOUGH_OPTION_PART, false},
+    {"checkpoint", "TIME", "stores what the run can go on from, every so many simulated seconds",
+     BOUGH_OPTION_CHECKPOINT, false},
+    {"resume", NULL, "goes on from the last checkpoint in the folder for the results",
+     BOUGH_OPTION_RESUME, false},
     {"quiet", NULL, "no progress line", BOUGH_OPTION_QUIET, false},
 };
 enum { N_ROW = sizeof rows / sizeof *rows };
@@ -99,6 +103,8 @@ static bough_status take_option(bough_option_flag flag, const char *text, bough_
     case BOUGH_OPTION_OUT: options->out = text; break;
     case BOUGH_OPTION_THREADS: return take_threads(text, options);
     case BOUGH_OPTION_PART: return take_part(text, options);
+    case BOUGH_OPTION_CHECKPOINT: options->checkpoint = text; break;
+    case BOUGH_OPTION_RESUME: options->resume = true; break;
     case BOUGH_OPTION_QUIET: options->quiet = true; break;
     }
     return bough_ok();

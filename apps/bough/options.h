@@ -15,6 +15,8 @@ typedef enum bough_option_flag {
     BOUGH_OPTION_THREADS = 1 << 2,
     BOUGH_OPTION_QUIET = 1 << 3,
     BOUGH_OPTION_PART = 1 << 4,
+    BOUGH_OPTION_CHECKPOINT = 1 << 5,
+    BOUGH_OPTION_RESUME = 1 << 6,
 } bough_option_flag;
 
 typedef enum bough_operand {
@@ -39,6 +41,8 @@ typedef struct bough_options {
     const char *out;  // NULL: named after the scene
     int threads;      // 0: as the scene says
     int part, parts;  // of a study, from 1; 0: all of it
+    const char *checkpoint; // simulated time between checkpoints; NULL: none
+    bool resume;            // from the last one
     bool quiet, help;
 } bough_options;
 

@@ -7,8 +7,6 @@
 #include "apps/output/folder.h"
 #include "apps/output/progress.h"
 
-#include <errno.h>
-#include <string.h>
 #include <time.h>
 
 static double cpu_clock(void) {
@@ -66,7 +64,8 @@ static bough_status step(bough_run *run) {
     bough_status status = bough_step(m);
     bough_error_probe_update(&run->probe);
     if (bough_is_ok(&status) && row_is_due(run)) status = record(run);
-    return bough_is_ok(&status) ? record_frame(run) : status;
+    if (bough_is_ok(&status)) status = record_frame(run);
+    return bough_is_ok(&status) ? bough_checkpoint_update(run) : status;
 }
 
 // After a numerical failure the state means nothing: only a run that could go on gets a last row.
@@ -77,33 +76,38 @@ static bough_status record_end(bough_run *run, bough_status status) {
     return bough_is_ok(&end) ? status : end;
 }
 
+void bough_run_settle_clock(bough_run *run) {
+    double wall = bough_wall_clock(), cpu = cpu_clock();
+    run->wall_s += wall - run->wall_from;
+    run->cpu_s += cpu - run->cpu_from;
+    run->wall_from = wall;
+    run->cpu_from = cpu;
+}
+
+static bough_status record_start(bough_run *run) {
+    if (run->options->resume) return bough_ok();
+    bough_status status = record(run);
+    return bough_is_ok(&status) ? record_frame(run) : status;
+}
+
 static bough_status step_all(bough_run *run) {
     const bough_master *m = run->simulation->master;
     if (m->verdict[0]) fprintf(stderr, "bough: warning: %s\n", m->verdict);
     bough_progress progress = bough_progress_start(m->time, m->duration, run->options->quiet);
-    double wall = bough_wall_clock(), cpu = cpu_clock();
-    bough_status status = record(run);
-    if (bough_is_ok(&status)) status = record_frame(run);
+    run->wall_from = bough_wall_clock();
+    run->cpu_from = cpu_clock();
+    bough_status status = record_start(run);
     while (bough_is_ok(&status) && !bough_master_done(m)) {
         status = step(run);
         bough_progress_show(&progress, m->time);
     }
     status = record_end(run, status);
-    run->wall_s = bough_wall_clock() - wall;
-    run->cpu_s = cpu_clock() - cpu;
+    bough_run_settle_clock(run);
     bough_progress_clear(&progress);
     return status;
 }
 
 // -- results --------------------------------------------------------------------------------------
-
-// An older summary must not stand beside the new run's channels.
-static bough_status remove_summary(const char *folder) {
-    char path[BOUGH_PATH_MAX];
-    bough_status status = bough_folder_path(folder, "summary.json", path);
-    if (!bough_is_ok(&status) || remove(path) == 0 || errno == ENOENT) return status;
-    return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", path, strerror(errno));
-}
 
 static bough_status open_frames(bough_run *run) {
     if (!(run->simulation->scene->simulation.output.frames > 0)) return bough_ok();
@@ -113,20 +117,27 @@ static bough_status open_frames(bough_run *run) {
                             .n_line = run->shape.n_line,
                             .line = run->shape.line,
                             .points = bough_shape_points,
-                            .self = &run->shape};
+                            .self = &run->shape,
+                            .kept = run->frames_kept};
     return bough_frames_open(run->arena, &def, &run->frames);
 }
 
+// An older summary or checkpoint must not stand beside the new run's channels.
 static bough_status open_results(bough_run *run) {
     run->folder = bough_out_folder(run->arena, run->options);
     if (!run->folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_status status = bough_folder_make(run->folder);
-    if (bough_is_ok(&status)) status = remove_summary(run->folder);
+    bough_status status = bough_checkpoint_open(run);
+    if (bough_is_ok(&status)) status = bough_folder_make(run->folder);
+    if (bough_is_ok(&status)) status = bough_folder_remove(run->folder, "summary.json");
+    if (bough_is_ok(&status) && !run->options->resume) {
+        status = bough_checkpoint_remove(run->folder);
+    }
     if (!bough_is_ok(&status)) return status;
     const bough_scene *scene = run->simulation->scene;
     bough_recorder_def def = {.folder = run->folder,
                               .title = scene->title ? scene->title : scene->file,
-                              .channels = &run->channels};
+                              .channels = &run->channels,
+                              .kept = run->rows};
     status = bough_recorder_open(run->arena, &def, &run->recorder);
     return bough_is_ok(&status) ? open_frames(run) : status;
 }
@@ -135,6 +146,9 @@ static bough_status build(bough_run *run) {
     double began = bough_wall_clock();
     bough_status status = bough_open(run->arena, run->options, &run->simulation);
     if (!bough_is_ok(&status)) return status;
+    size_t n = (size_t)run->simulation->master->assembly->n_member;
+    run->earlier = bough_arena_take(run->arena, n * sizeof *run->earlier);
+    if (!run->earlier) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     run->channels = bough_channels_start(run->arena);
     status = bough_simulation_channels(run->simulation, &run->channels);
     if (bough_is_ok(&status)) {
@@ -150,6 +164,9 @@ static bough_status close_results(bough_run *run) {
     if (bough_is_ok(&status) && run->frames) status = bough_frames_finish(run->frames);
     if (bough_is_ok(&run->outcome)) run->outcome = status;
     status = bough_run_summarise(run);
+    if (bough_is_ok(&run->outcome) && bough_is_ok(&status)) {
+        status = bough_checkpoint_remove(run->folder);
+    }
     return bough_is_ok(&run->outcome) ? status : run->outcome;
 }
 

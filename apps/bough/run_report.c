@@ -133,9 +133,17 @@ static void write_estimates(bough_summary *s, const bough_run *run) {
     bough_summary_end(s);
 }
 
-static void write_subsystem(bough_summary *s, const bough_subsystem *subsystem) {
+bough_statistics bough_run_statistics(const bough_run *run, int member) {
+    const bough_subsystem *subsystem = run->simulation->master->assembly->member[member];
     bough_statistics done = {0};
     subsystem->ops->statistics(subsystem->self, &done);
+    bough_statistics_add(&done, &run->earlier[member]);
+    return done;
+}
+
+static void write_subsystem(bough_summary *s, const bough_run *run, int member) {
+    const bough_subsystem *subsystem = run->simulation->master->assembly->member[member];
+    bough_statistics done = bough_run_statistics(run, member);
     bough_summary_object(s, NULL);
     bough_summary_text(s, "name", subsystem->name);
     bough_summary_text(s, "kind", subsystem->kind);
@@ -166,7 +174,7 @@ bough_status bough_run_summarise(const bough_run *run) {
     const bough_assembly *assembly = run->simulation->master->assembly;
     bough_summary_array(&s, "subsystems");
     for (int i = 0; i < assembly->n_member; i++)
-        write_subsystem(&s, assembly->member[i]);
+        write_subsystem(&s, run, i);
     bough_summary_end(&s);
     return bough_summary_close(&s);
 }

@@ -60,6 +60,43 @@ bough_status bough_folder_open_partial(const char *path, FILE **file) {
     return bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
 }
 
+bough_status bough_folder_keep(const char *path, FILE *file, long *bytes) {
+    errno = 0;
+    bool good = !ferror(file) && fflush(file) == 0 && fsync(fileno(file)) == 0;
+    *bytes = good ? ftell(file) : -1;
+    if (*bytes >= 0) return bough_ok();
+    return bough_fail(BOUGH_IO, "cannot write '%.200s.partial': %s", path,
+                      errno ? strerror(errno) : "an earlier write failed");
+}
+
+bough_status bough_folder_reopen_partial(const char *path, long bytes, FILE **file) {
+    char partial[BOUGH_PATH_MAX];
+    bough_status status = partial_path(path, partial);
+    if (!bough_is_ok(&status)) return status;
+    struct stat info;
+    if (stat(partial, &info) != 0 && errno == ENOENT) rename(path, partial);
+    if (stat(partial, &info) != 0 || info.st_size < bytes) {
+        return bough_fail(BOUGH_INVALID,
+                          "'%.200s' does not hold what the checkpoint counts on; without --resume "
+                          "the run starts anew",
+                          partial);
+    }
+    *file = fopen(partial, "r+");
+    if (*file && ftruncate(fileno(*file), bytes) == 0 && fseek(*file, bytes, SEEK_SET) == 0) {
+        return status;
+    }
+    status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
+    if (*file) fclose(*file);
+    return status;
+}
+
+bough_status bough_folder_remove(const char *folder, const char *name) {
+    char path[BOUGH_PATH_MAX];
+    bough_status status = bough_folder_path(folder, name, path);
+    if (!bough_is_ok(&status) || unlink(path) == 0 || errno == ENOENT) return status;
+    return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", path, strerror(errno));
+}
+
 bough_status bough_folder_commit(const char *path, FILE *file) {
     char partial[BOUGH_PATH_MAX];
     bough_status status = partial_path(path, partial);

@@ -19,6 +19,22 @@ bough_status bough_folder_path(const char *folder, const char *name, char *path)
 // Opens path.partial for writing.
 bough_status bough_folder_open_partial(const char *path, FILE **file);
 
+// What of a file is on the disk for good.
+typedef struct bough_kept {
+    long count; // rows or frames
+    long bytes;
+} bough_kept;
+
+// Brings path.partial to the disk: bytes = its length.
+bough_status bough_folder_keep(const char *path, FILE *file, long *bytes);
+
+// Opens path.partial again to go on behind its first `bytes`; the rest of it is cut off. A file
+// that has its final name becomes partial again. BOUGH_INVALID when there is less than that.
+bough_status bough_folder_reopen_partial(const char *path, long bytes, FILE **file);
+
+// Removes folder/name if there is one.
+bough_status bough_folder_remove(const char *folder, const char *name);
+
 // Closes the file (NULL is allowed) and gives path.partial its final name. A write error noticed
 // only now is reported, and the partial file is then left as it is.
 bough_status bough_folder_commit(const char *path, FILE *file);

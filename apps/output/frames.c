@@ -1,7 +1,5 @@
 #include "apps/output/frames.h"
 
-#include "apps/output/folder.h"
-
 #include <errno.h>
 #include <string.h>
 #include <unistd.h>
@@ -20,6 +18,22 @@ static void release(void *self) {
     f->list = NULL;
 }
 
+static bough_status reopen(bough_frames *f) {
+    f->n_frame = (int)f->def.kept.count;
+    return bough_folder_reopen_partial(f->list_path, f->def.kept.bytes, &f->list);
+}
+
+static bough_status create(bough_frames *f) {
+    if (unlink(f->list_path) != 0 && errno != ENOENT) {
+        return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", f->list_path, strerror(errno));
+    }
+    bough_status status = bough_folder_open_partial(f->list_path, &f->list);
+    if (!bough_is_ok(&status)) return status;
+    fprintf(f->list, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
+                     "<Collection>\n");
+    return status;
+}
+
 bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def,
                                bough_frames **frames) {
     bough_frames *f = bough_arena_take(arena, sizeof *f);
@@ -33,14 +47,8 @@ bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def,
     if (bough_is_ok(&status)) status = bough_folder_make(folder);
     if (bough_is_ok(&status)) status = bough_folder_path(def->folder, "frames.pvd", f->list_path);
     if (!bough_is_ok(&status)) return status;
-    if (unlink(f->list_path) != 0 && errno != ENOENT) {
-        return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", f->list_path, strerror(errno));
-    }
-    status = bough_folder_open_partial(f->list_path, &f->list);
-    if (!bough_is_ok(&status)) return status;
     bough_arena_on_destroy(arena, release, f);
-    fprintf(f->list, "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n"
-                     "<Collection>\n");
+    status = def->kept.count > 0 ? reopen(f) : create(f);
     *frames = f;
     return status;
 }
@@ -93,6 +101,11 @@ bough_status bough_frames_sample(bough_frames *f, double t) {
     fprintf(f->list, "<DataSet timestep=\"%.9g\" file=\"%s\"/>\n", t, name);
     f->n_frame++;
     return status;
+}
+
+bough_status bough_frames_keep(bough_frames *f, bough_kept *kept) {
+    kept->count = f->n_frame;
+    return bough_folder_keep(f->list_path, f->list, &kept->bytes);
 }
 
 bough_status bough_frames_finish(bough_frames *f) {

@@ -3,6 +3,7 @@
 #ifndef BOUGH_OUTPUT_FRAMES_H
 #define BOUGH_OUTPUT_FRAMES_H
 
+#include "apps/output/folder.h"
 #include "core/arena.h"
 #include "core/status.h"
 
@@ -20,6 +21,7 @@ typedef struct bough_frames_def {
     // Fills the points of all lines, in order (Σ n_point × 3), in ground axes [m].
     void (*points)(void *self, double *point);
     void *self;
+    bough_kept kept; // of an earlier process: the frames to go on behind; else 0
 } bough_frames_def;
 
 // Makes the folder for the frames and removes an older frames.pvd. All memory is taken here.
@@ -28,6 +30,9 @@ bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def,
 
 // Writes the frame of time t [s].
 bough_status bough_frames_sample(bough_frames *frames, double t);
+
+// Brings the list of the frames so far to the disk and tells how many they are.
+bough_status bough_frames_keep(bough_frames *frames, bough_kept *kept);
 
 // Writes frames.pvd. Frames of an earlier run that this one has not replaced are not listed.
 bough_status bough_frames_finish(bough_frames *frames);

@@ -1,6 +1,5 @@
 #include "apps/output/recorder.h"
 
-#include "apps/output/folder.h"
 #include "apps/output/number.h"
 
 #include <assert.h>
@@ -81,6 +80,29 @@ static bough_status write_head(bough_recorder *r, const char *title) {
     return bough_ok();
 }
 
+// The head is written again, for its outcome; the rows stay.
+static bough_status reopen(bough_recorder *r, const bough_recorder_def *def) {
+    bough_status status = bough_folder_reopen_partial(r->path, def->kept.bytes, &r->file);
+    if (!bough_is_ok(&status)) return status;
+    rewind(r->file);
+    status = write_head(r, def->title);
+    r->rows = def->kept.count;
+    if (!bough_is_ok(&status)) return status;
+    bool same = r->rows_at + r->rows * r->row_length == def->kept.bytes;
+    if (same && fseek(r->file, def->kept.bytes, SEEK_SET) == 0) return status;
+    return bough_fail(BOUGH_INVALID, "'%.200s.partial' has other channels", r->path);
+}
+
+static bough_status create(bough_recorder *r, const bough_recorder_def *def) {
+    bough_status status = bough_folder_open_partial(r->path, &r->file);
+    if (!bough_is_ok(&status)) return status;
+    if (unlink(r->path) != 0 && errno != ENOENT) {
+        return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", r->path, strerror(errno));
+    }
+    setvbuf(r->file, r->buffer, _IOFBF, BUFFER);
+    return write_head(r, def->title);
+}
+
 static bool take_memory(bough_recorder *r, bough_arena *arena) {
     size_t count = (size_t)r->channels->count;
     r->buffer = bough_arena_take(arena, BUFFER);
@@ -103,15 +125,9 @@ bough_status bough_recorder_open(bough_arena *arena, const bough_recorder_def *d
         return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory to record %d channels",
                           def->channels->count);
     }
-    status = bough_folder_open_partial(path, &r->file);
-    if (!bough_is_ok(&status)) return status;
-    setvbuf(r->file, r->buffer, _IOFBF, BUFFER);
     bough_arena_on_destroy(arena, release, r);
-    if (unlink(path) != 0 && errno != ENOENT) {
-        return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", path, strerror(errno));
-    }
     *recorder = r;
-    return write_head(r, def->title);
+    return def->kept.count > 0 ? reopen(r, def) : create(r, def);
 }
 
 static void format_row(bough_recorder *r, double t) {
@@ -135,6 +151,11 @@ bough_status bough_recorder_sample(bough_recorder *r, double t) {
     if (fwrite(r->line, 1, length, r->file) != length) return write_error(r);
     r->rows++;
     return bough_ok();
+}
+
+bough_status bough_recorder_keep(bough_recorder *r, bough_kept *kept) {
+    kept->count = r->rows;
+    return bough_folder_keep(r->path, r->file, &kept->bytes);
 }
 
 // Where the device was full, readers would stumble over half a row.

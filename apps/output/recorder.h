@@ -8,6 +8,7 @@
 #define BOUGH_OUTPUT_RECORDER_H
 
 #include "apps/output/channels.h"
+#include "apps/output/folder.h"
 #include "core/arena.h"
 #include "core/status.h"
 
@@ -17,6 +18,7 @@ typedef struct bough_recorder_def {
     const char *folder;             // an existing folder
     const char *title;              // one line: what was run
     const bough_channels *channels; // outlive the recorder
+    bough_kept kept;                // of an earlier process: the rows to go on behind; else 0
 } bough_recorder_def;
 
 // Opens the file, writes its head and removes an older result of this name. All memory is taken
@@ -26,6 +28,9 @@ bough_status bough_recorder_open(bough_arena *arena, const bough_recorder_def *d
 
 // Asks the channels for their values at t [s] and appends a row.
 bough_status bough_recorder_sample(bough_recorder *recorder, double t);
+
+// Brings the rows so far to the disk and tells how many they are.
+bough_status bough_recorder_keep(bough_recorder *recorder, bough_kept *kept);
 
 // Ends the file with the run's outcome; the rows of a failed run are kept and marked INCOMPLETE.
 // Returns BOUGH_IO when the file could not be written to its end, and then leaves the partial.

@@ -57,6 +57,9 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
 // Brings `view` to the current synchronisation point; queries and channels read it.
 void bough_simulation_update(bough_simulation *s);
 
+// All that a run goes on from, at a time when its loads are sampled: see bough_master_snapshot.
+void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot);
+
 // How many bodies hang on a joint that moves.
 int bough_simulation_n_joints(const bough_simulation *s);
 

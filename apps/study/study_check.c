@@ -4,6 +4,7 @@
 #include "apps/study/study_parts.h"
 
 #include "apps/scene/build.h"
+#include "apps/scene/fingerprint.h"
 #include "apps/scene/schema.h"
 
 #include <assert.h>
@@ -13,63 +14,34 @@
 
 // -- fingerprint ----------------------------------------------------------------------------------
 
-// FNV-1a: a fingerprint against mistakes, not against malice.
-static void mix(uint64_t *hash, const char *bytes, size_t n) {
-    for (size_t i = 0; i < n; i++)
-        *hash = (*hash ^ (unsigned char)bytes[i]) * UINT64_C(1099511628211);
-}
-
-static void mix_text(uint64_t *hash, const char *text) { mix(hash, text, strlen(text) + 1); }
-
-static void mix_file(uint64_t *hash, const char *path) {
-    char block[4096];
-    FILE *file = fopen(path, "rb");
-    if (!file) return;
-    for (size_t n; (n = fread(block, 1, sizeof block, file)) > 0;)
-        mix(hash, block, n);
-    fclose(file);
-}
-
-static void mix_node_file(uint64_t *hash, const bough_node *node) {
-    if (node) mix_file(hash, node->file);
-}
-
-static void mix_scene(uint64_t *hash, const bough_scene *scene) {
-    mix_file(hash, scene->file);
-    for (int i = 0; i < scene->n_body; i++)
-        mix_node_file(hash, scene->body[i].rod.structure.node);
-    mix_node_file(hash, scene->aero.blade.node);
-    mix_node_file(hash, scene->aero.polars.node);
-}
-
 static void mix_measure(uint64_t *hash, const bough_study_measure *m) {
     char numbers[80];
     for (int i = 0; i < m->channels.n; i++) {
         for (int k = 0; k < m->channels.item[i].n; k++)
-            mix_text(hash, m->channels.item[i].channel[k]);
-        mix_text(hash, "");
+            bough_mix_text(hash, m->channels.item[i].channel[k]);
+        bough_mix_text(hash, "");
     }
     snprintf(numbers, sizeof numbers, "%d %.17g", m->norm, m->scale);
-    mix_text(hash, numbers);
+    bough_mix_text(hash, numbers);
 }
 
 // The title and the grid's values are not in it: a grid may grow and keeps what was run. The
 // program is, where the system shows it: results of another one are not to be mixed in.
 static uint64_t fingerprint(const bough_study *s, const bough_scene *scene) {
-    uint64_t hash = UINT64_C(14695981039346656037);
+    uint64_t hash = BOUGH_FINGERPRINT_START;
     char numbers[80];
-    mix_file(&hash, "/proc/self/exe");
-    mix_scene(&hash, scene);
+    bough_mix_program(&hash);
+    bough_mix_scene(&hash, scene);
     for (int i = 0; i < s->reference_cell->n_set; i++)
-        mix_text(&hash, s->reference_cell->set[i]);
+        bough_mix_text(&hash, s->reference_cell->set[i]);
     for (int i = 0; i < s->common.n; i++)
-        mix_text(&hash, s->common.item[i].set);
+        bough_mix_text(&hash, s->common.item[i].set);
     for (int i = 0; i < s->grid.n; i++)
-        mix_text(&hash, s->grid.axis[i].key);
+        bough_mix_text(&hash, s->grid.axis[i].key);
     for (int i = 0; i < s->n_measure; i++)
         mix_measure(&hash, &s->measure[i]);
     snprintf(numbers, sizeof numbers, "%d %d", s->repeat, s->threads);
-    mix_text(&hash, numbers);
+    bough_mix_text(&hash, numbers);
     return hash;
 }
 

@@ -69,7 +69,8 @@ static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, tim
     bough_status status = build(arena, cell, t);
     run->build = bough_wall_clock() - began;
     if (bough_is_ok(&status) && parts) status = bough_clock_create(arena, t->simulation, &t->clock);
-    bough_recorder_def def = {t->options->folder, t->study->title, &t->channels};
+    bough_recorder_def def = {
+        .folder = t->options->folder, .title = t->study->title, .channels = &t->channels};
     if (bough_is_ok(&status)) status = bough_recorder_open(arena, &def, &t->recorder);
     if (!bough_is_ok(&status)) return status;
     double wall = bough_wall_clock(), cpu = cpu_clock();

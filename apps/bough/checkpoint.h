@@ -1,0 +1,36 @@
+// Checkpoints of a run: DIR/checkpoint.bin holds all that the run goes on from. It is replaced,
+// never overwritten, so that whenever the process dies the last one is whole.
+//
+// Integrators hide their histories, so they start anew at each checkpoint, in the run that writes
+// it as in the one that goes on from it: a continued run is bitwise equal to an uninterrupted one
+// with the same interval.
+#ifndef BOUGH_APPS_BOUGH_CHECKPOINT_H
+#define BOUGH_APPS_BOUGH_CHECKPOINT_H
+
+#include "core/status.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+struct bough_run;
+
+typedef struct bough_checkpoint {
+    double interval;           // [s]; 0: none are written
+    uint64_t program, input;   // fingerprints
+    size_t size;               // of a copy [bytes]
+    char *copy;                // (size)
+} bough_checkpoint;
+
+// Reads the options and, to resume, the checkpoint in the run's folder; the simulation is then at
+// its time. BOUGH_INVALID where the interval does not suit the scene, there is no checkpoint, it is
+// damaged or of another program, scene or setting.
+bough_status bough_checkpoint_open(struct bough_run *run);
+
+// After a step: writes a checkpoint where one is due and goes on from it.
+bough_status bough_checkpoint_update(struct bough_run *run);
+
+// Removes that of an earlier run, or of one that is complete.
+bough_status bough_checkpoint_remove(const char *folder);
+
+#endif

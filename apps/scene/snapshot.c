@@ -1,0 +1,30 @@
+// What the parts of a simulation remember, in order.
+#include "apps/scene/aero_link.h"
+#include "apps/scene/build.h"
+#include "apps/scene/control_link.h"
+#include "apps/scene/drag_link.h"
+
+static void take_aero(bough_aero_link *link, bough_snapshot *s) {
+    double *room = bough_snapshot_room(s, (size_t)bough_aero_link_size(link) * sizeof *room);
+    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_aero_link_save(link, room);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_aero_link_restore(link, room);
+}
+
+static void take_drag(bough_drag_link *link, bough_snapshot *s) {
+    double *room = bough_snapshot_room(s, (size_t)bough_drag_link_size(link) * sizeof *room);
+    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_drag_link_save(link, room);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_drag_link_restore(link, room);
+}
+
+static void take_control(bough_control_link *link, bough_snapshot *s) {
+    double *room = bough_snapshot_room(s, (size_t)bough_control_link_size(link) * sizeof *room);
+    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_control_link_save(link, room);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_control_link_restore(link, room);
+}
+
+void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot) {
+    bough_master_snapshot(s->master, snapshot);
+    if (s->aero) take_aero(s->aero, snapshot);
+    if (s->drag) take_drag(s->drag, snapshot);
+    if (s->control) take_control(s->control, snapshot);
+}

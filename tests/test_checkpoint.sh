@@ -1,0 +1,174 @@
+#!/bin/sh
+# A run that is killed and resumed, as a user meets it: test_checkpoint.sh PROGRAM SOURCE_FOLDER
+set -u
+bough=$1
+bar=$2/apps/beams/rubber-bar.yaml
+turbine=$2/apps/turbine/runup.yaml
+failures=0
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+cd "$scratch" || exit 1
+
+fail() {
+    echo "FAILED: $*"
+    failures=$((failures + 1))
+}
+
+# expect CODE ARGUMENT...: runs the program; its output is then in stdout and stderr.
+expect() {
+    code=$1
+    shift
+    said="bough $*"
+    "$bough" "$@" >stdout 2>stderr </dev/null
+    got=$?
+    [ "$got" -eq "$code" ] && return
+    fail "$said: exit code $got, expected $code"
+    cat stderr
+}
+
+has() { grep -q -e "$2" "$1" || fail "$said: no '$2' in $1: $(head -n 3 "$1")"; }
+
+# Waits for a checkpoint that is not the one of `seen`; false when the process ends before.
+await() {
+    while kill -0 "$1" 2>/dev/null; do
+        now=$(cksum cut/checkpoint.bin 2>/dev/null)
+        [ -n "$now" ] && [ "$now" != "$seen" ] && seen=$now && return 0
+        sleep 0.02
+    done
+    return 1
+}
+
+# killed SCENE INTERVAL ARGUMENT...: whole/ without a break, cut/ killed again and again, each time
+# somewhere behind another checkpoint, and resumed with other numbers of threads.
+killed() {
+    scene=$1
+    interval=$2
+    shift 2
+    rm -rf whole cut
+    expect 0 run "$scene" "$@" --checkpoint "$interval" --out whole --quiet
+    [ ! -e whole/checkpoint.bin ] || fail "$said: a complete run leaves no checkpoint"
+    seen=
+    deaths=0
+    first="--checkpoint $interval"
+    for pause in 0 0.03 0.01 0.07; do
+        # shellcheck disable=SC2086 # two words
+        "$bough" run "$scene" "$@" $first --out cut --quiet >stdout 2>stderr </dev/null &
+        process=$!
+        await $process && sleep $pause && kill -s KILL $process 2>/dev/null && deaths=$((deaths + 1))
+        wait $process 2>/dev/null
+        [ -e cut/checkpoint.bin ] || break
+        first="--resume --threads $((deaths + 1))"
+    done
+    [ -e cut/checkpoint.bin ] && expect 0 run "$scene" "$@" --resume --out cut --quiet
+    [ $deaths -ge 1 ] || fail "$said: it was never killed"
+    cmp whole/channels.out cut/channels.out || fail "$scene: the continued run differs"
+    diff -r whole/frames cut/frames >stdout || fail "$scene: frames differ: $(head -n 3 stdout)"
+    cmp whole/frames.pvd cut/frames.pvd || fail "$scene: the list of frames differs"
+    for key in defect_max energy_residual macro_steps rows largest derivatives; do
+        grep "\"$key\"" whole/summary.json >one
+        grep "\"$key\"" cut/summary.json | cmp - one || fail "$scene: $key differs"
+    done
+}
+
+# One checkpoint of a run that was killed, in kept/.
+keep_one() {
+    rm -rf cut kept
+    seen=
+    said="bough run, killed"
+    "$bough" run "$bar" --set 'simulation.duration=1000 s' --checkpoint 10ms --out cut --quiet &
+    process=$!
+    await $process || fail "$said: no checkpoint"
+    kill -s KILL $process
+    wait $process 2>/dev/null
+    mv cut kept
+}
+
+# refused MESSAGE ARGUMENT...: resuming kept/ is refused and leaves it as it was.
+refused() {
+    message=$1
+    shift
+    cksum kept/* >before
+    expect 2 run "$@" --resume --out kept --quiet
+    has stderr "$message"
+    cksum kept/* | cmp - before || fail "$said: changed the results"
+}
+
+# Byte N of the checkpoint becomes another one.
+damage() {
+    cp checkpoint.bin kept/checkpoint.bin
+    old=$(od -An -tu1 -j "$1" -N1 kept/checkpoint.bin | tr -d ' ')
+    # shellcheck disable=SC2059 # the format is the byte
+    printf "\\$(printf %03o $(((old + 1) % 256)))" |
+        dd of=kept/checkpoint.bin bs=1 seek="$1" conv=notrunc 2>dd.txt
+}
+
+wrong_checkpoints() {
+    keep_one
+    long='simulation.duration=1000 s'
+    cp kept/checkpoint.bin checkpoint.bin
+    size=$(wc -c <checkpoint.bin)
+    for at in 16 24 32 40 48 56 $((size / 2)) $((size - 1)); do
+        damage "$at"
+        refused 'is damaged\|is of another' "$bar" --set "$long"
+    done
+    damage $((size / 2))
+    refused "checkpoint 'kept/checkpoint.bin' is damaged" "$bar" --set "$long"
+    damage 3
+    refused 'no checkpoint of this version' "$bar" --set "$long"
+    head -c $((size - 9)) checkpoint.bin >kept/checkpoint.bin
+    refused 'is damaged' "$bar" --set "$long"
+    : >kept/checkpoint.bin
+    refused 'is damaged' "$bar" --set "$long"
+    cp checkpoint.bin kept/checkpoint.bin
+    refused 'is of another scene or other settings' "$bar"
+    refused 'is of another scene or other settings' "$turbine" --set "$long"
+    refused 'has --checkpoint 0.01 s, not 0.02 s' "$bar" --set "$long" --checkpoint 20ms
+    cp kept/channels.out.partial rows
+    head -c 100 rows >kept/channels.out.partial
+    refused 'does not hold what the checkpoint counts on' "$bar" --set "$long"
+    cp rows kept/channels.out.partial
+    rm kept/checkpoint.bin
+    refused "nothing to resume: there is no 'kept/checkpoint.bin'" "$bar" --set "$long"
+}
+
+wrong_intervals() {
+    rm -rf kept
+    expect 2 run "$bar" --checkpoint 0.5ms --out kept
+    has stderr 'not a multiple of the macro step 0.001 s'
+    expect 2 run "$turbine" --set 'simulation.macro_step=10 ms' --checkpoint 30ms --out kept
+    has stderr 'not a multiple of the 0.02 s between the samples'
+    for time in 5kg -1s 0 s ''; do
+        expect 2 run "$bar" --checkpoint "$time" --out kept
+        has stderr '^bough: error: --checkpoint expects a time such as 5s'
+    done
+    [ ! -e kept ] || fail 'a refused run wrote something'
+}
+
+# A new run in the same folder forgets the checkpoint of the old one; an interrupted one goes on.
+other_ends() {
+    keep_one
+    expect 0 run "$bar" --set 'simulation.duration=10 ms' --out kept --quiet
+    [ ! -e kept/checkpoint.bin ] || fail "$said: the old checkpoint is still there"
+    set -- --set 'simulation.duration=1 s' --set 'simulation.output.interval=7 ms'
+    expect 0 run "$bar" "$@" --checkpoint '20 ms' --out whole --quiet
+    rm -rf cut
+    seen=
+    "$bough" run "$bar" "$@" --checkpoint 20ms --out cut --quiet >stdout 2>stderr &
+    process=$!
+    await $process
+    kill -s TERM $process
+    wait $process
+    [ $? -eq 130 ] || fail "SIGTERM: exit code should be 130"
+    expect 0 run "$bar" "$@" --resume --out cut --quiet
+    cmp whole/channels.out cut/channels.out || fail 'the run continued after SIGTERM differs'
+}
+
+killed "$bar" 20ms --set 'simulation.duration=1.5 s' --set 'simulation.output.interval=7 ms' \
+    --set 'simulation.output.frames=50 ms'
+killed "$turbine" 40ms --set 'simulation.duration=1 s' --set 'simulation.macro_step=2.5 ms' \
+    --set 'simulation.output.interval=15 ms' --set 'simulation.output.frames=0.2 s'
+wrong_checkpoints
+wrong_intervals
+other_ends
+[ $failures -eq 0 ]
