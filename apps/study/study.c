@@ -27,21 +27,24 @@ static const char *write_set(bough_arena *arena, const char *key, const bough_no
     return set;
 }
 
-// "[1, 2]" of a list of scalars; NULL when it is none.
-static const char *write_list(bough_arena *arena, const bough_node *value) {
-    size_t size = 3, used = 1;
+// "[1, 2]" of a list of scalars, "{a: 1, b: 2}" of a mapping to scalars; NULL when it is neither.
+static const char *write_flow(bough_arena *arena, const bough_node *value) {
+    bool mapping = value->kind == BOUGH_MAPPING;
+    size_t size = 3, used = 0;
     for (int i = 0; i < value->n; i++) {
-        if (value->kind != BOUGH_SEQUENCE || value->value[i]->kind != BOUGH_SCALAR) return NULL;
+        if (value->value[i]->kind != BOUGH_SCALAR) return NULL;
         size += strlen(value->value[i]->text) + 2;
+        if (mapping) size += strlen(value->key[i]->text) + 2;
     }
     char *text = bough_arena_take(arena, size);
     if (!text) return NULL;
-    text[0] = '[';
+    text[used++] = mapping ? '{' : '[';
     for (int i = 0; i < value->n; i++) {
-        used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "",
+        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s", i ? ", " : "",
+                                 mapping ? value->key[i]->text : "", mapping ? ": " : "",
                                  value->value[i]->text);
     }
-    snprintf(text + used, size - used, "]");
+    text[used++] = mapping ? '}' : ']';
     return text;
 }
 
@@ -49,8 +52,8 @@ static void read_setting(bough_schema_reader *r, const char *key, const bough_no
                          bough_study_setting *setting) {
     char shown[64];
     bough_node written = *value;
-    if (value->kind == BOUGH_SEQUENCE) {
-        written = (bough_node){.kind = BOUGH_SCALAR, .text = write_list(r->arena, value)};
+    if (value->kind != BOUGH_SCALAR) {
+        written = (bough_node){.kind = BOUGH_SCALAR, .text = write_flow(r->arena, value)};
     }
     if (written.kind != BOUGH_SCALAR || !written.text || written.text[0] == '\0') {
         bough_schema_error(r, value, key, "expected one value, got %s",
