@@ -120,6 +120,18 @@ static void labels_are_unique_and_quotes_are_kept(void **state) {
     close_study(&f);
 }
 
+// A cell may replace a whole block of keys at once.
+static void a_mapping_is_a_value(void **state) {
+    fixture f;
+    bough_status status = open_study(
+        &f, *state,
+        HEAD REFERENCE "grid: {simulation.micro: [{solver: rosenbrock, step: 2 ms}]}\n" MEASURES);
+    assert_true(bough_is_ok(&status));
+    assert_string_equal(f.study->cell[0].set[0],
+                        "simulation.micro={solver: rosenbrock, step: 2 ms}");
+    close_study(&f);
+}
+
 // "line:column path" of every error, one a line.
 static void check_errors(const char *folder, const char *text, const char *expected) {
     fixture f;
@@ -140,7 +152,7 @@ static void check_errors(const char *folder, const char *text, const char *expec
 static void bad_keys_are_told_all_at_once(void **state) {
     check_errors(*state,
                  "titel: x\nkind: work-precisoin\nscene: [a]\nreference: none\n"
-                 "grid: {a.b: 1, c: [{e: 1}, 2]}\ncommon: {d: {e: 1}}\nrepeat: 0\n"
+                 "grid: {a.b: 1, c: [{e: [1]}, 2]}\ncommon: {d: {e: {f: 1}}}\nrepeat: 0\n"
                  "measures:\n  - {name: x}\n  - {name: y, channels: [], norm: max}\n"
                  "  - {name: z, channel: c, scale: 2}\n",
                  "1:1 \n2:7 kind\n3:8 scene\n4:12 reference\n5:13 grid.a.b\n5:20 grid.c\n"
@@ -328,6 +340,7 @@ static void csv_text_is_quoted_where_needed(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         SCRATCH(grid_is_the_product_of_its_values),
+        SCRATCH(a_mapping_is_a_value),
         SCRATCH(labels_are_unique_and_quotes_are_kept),
         SCRATCH(bad_keys_are_told_all_at_once),
         SCRATCH(replacements_are_checked_where_the_study_gives_them),
