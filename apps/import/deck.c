@@ -214,8 +214,9 @@ bool bough_deck_flag_or(const bough_deck *deck, const char *names, bool fallback
 
 // -- files ----------------------------------------------------------------------------------------
 
-const char *bough_deck_file_at(const bough_deck *deck, int line) {
-    char word[WORD];
+// The first word of a line as a path relative to the deck.
+static const char *path_at(const bough_deck *deck, int line) {
+    char word[WORD], path[BOUGH_PATH_MAX];
     const char *at = line >= 0 && line < deck->n ? deck->line[line] : "";
     if (!bough_is_ok(deck->status)) return "";
     if (!next_word(&at, word)) {
@@ -227,22 +228,33 @@ const char *bough_deck_file_at(const bough_deck *deck, int line) {
     }
     const char *slash = strrchr(deck->path, '/');
     int folder = slash && word[0] != '/' ? (int)(slash - deck->path) + 1 : 0;
-    char path[BOUGH_PATH_MAX];
     snprintf(path, sizeof path, "%.*s%s", folder, deck->path, word);
     const char *copy = bough_arena_string(deck->arena, path);
+    return copy ? copy : "";
+}
+
+const char *bough_deck_file_at(const bough_deck *deck, int line) {
+    const char *path = path_at(deck, line);
+    if (!bough_is_ok(deck->status)) return "";
     FILE *file = fopen(path, "rb");
     if (!file) {
         bough_deck_fail(deck, line, "cannot read '%.150s': %s", path, strerror(errno));
         return "";
     }
     fclose(file);
-    return copy ? copy : "";
+    return path;
 }
 
 const char *bough_deck_file(const bough_deck *deck, const char *names) {
     char word[WORD];
     int line = value_of(deck, names, "\"file\"", word);
     return line < 0 ? "" : bough_deck_file_at(deck, line);
+}
+
+const char *bough_deck_path(const bough_deck *deck, const char *names) {
+    char word[WORD];
+    int line = value_of(deck, names, "\"file\"", word);
+    return line < 0 ? "" : path_at(deck, line);
 }
 
 // -- tables ---------------------------------------------------------------------------------------

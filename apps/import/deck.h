@@ -40,7 +40,9 @@ double bough_deck_number_or(const bough_deck *deck, const char *names, double fa
 int bough_deck_whole_or(const bough_deck *deck, const char *names, int fallback);
 bool bough_deck_flag_or(const bough_deck *deck, const char *names, bool fallback);
 
-// The path of a file that is named relative to this one, and the first word of a line as such.
+// The path of a file that is named relative to this one, whether it is there or not; refused unless
+// it can be read; and the first word of a line as such.
+const char *bough_deck_path(const bough_deck *deck, const char *names);
 const char *bough_deck_file(const bough_deck *deck, const char *names);
 const char *bough_deck_file_at(const bough_deck *deck, int line);
 

@@ -31,6 +31,22 @@ void bough_import_list(FILE *file, const double *value, int n) {
     fputc(']', file);
 }
 
+void bough_import_quoted(FILE *file, const char *text) {
+    fputc('"', file);
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\') fputc('\\', file);
+        if ((unsigned char)*text >= ' ') fputc(*text, file);
+    }
+    fputc('"', file);
+}
+
+void bough_import_path(FILE *file, const char *path) {
+    char here[BOUGH_PATH_MAX], whole[2 * BOUGH_PATH_MAX];
+    bool relative = path[0] != '/' && getcwd(here, sizeof here);
+    snprintf(whole, sizeof whole, "%s%s%s", relative ? here : "", relative ? "/" : "", path);
+    bough_import_quoted(file, whole);
+}
+
 bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names) {
     const char *path = bough_deck_file(from, names);
     bough_deck *deck = bough_deck_open(o->arena, path, o->status);
@@ -58,6 +74,8 @@ static void open_modules(bough_openfast *o) {
     o->elasto = bough_openfast_open(o, o->main, "EDFile");
     if (bough_deck_whole(o->main, "CompInflow", 0, 2) == 1) {
         o->inflow = bough_openfast_open(o, o->main, "InflowFile");
+    } else if (air != 0) {
+        bough_openfast_note(o, BOUGH_APPROXIMATED, "without InflowWind the air is still");
     }
     if (air == 2) o->aero = bough_openfast_open(o, o->main, "AeroFile");
     if (air == 1 || air == 3) {
@@ -104,11 +122,10 @@ static void put_head(bough_openfast *o, const char *path) {
     const char *slash = strrchr(path, '/');
     fprintf(file, "# Imported from an OpenFAST model: import.txt tells what was taken.\n"
                   "# Ground axes: x downwind, z up. The rotor turns positive about the shaft's x.\n"
-                  "title: \"");
-    for (const char *p = slash ? slash + 1 : path; *p; p++)
-        if (*p != '"' && *p != '\\') fputc(*p, file);
+                  "title: ");
+    bough_import_quoted(file, slash ? slash + 1 : path);
     fprintf(file,
-            "\"\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
+            "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
             "  macro_step: %g s\n  coupling: {scheme: ramp, theta: auto}\n"
             "  master: {solver: ida, rtol: 1e-6}\n"
             "  micro: {solver: rosenbrock, step: 10 ms, rtol: 1e-3}\n  threads: 2\n",
@@ -136,6 +153,7 @@ static void write_scene(bough_openfast *o, const char *path) {
         bough_openfast_beamdyn(o);
     else
         bough_openfast_blade(o);
+    bough_openfast_library(o);
     bough_openfast_bodies(o);
     bough_openfast_aero_tables(o);
     bough_openfast_aero(o);

@@ -37,6 +37,7 @@ typedef struct bough_openfast {
     int n_blade;
     bool beamdyn; // blades by BeamDyn, else by ElastoDyn
     bool rigid_blade, rigid_tower;
+    const char *library;          // of a controller in the style of Bladed; NULL: none
     double hub_radius;            // [m]
     double blade_length;          // [m]
     double blade_mass;            // [kg]
@@ -53,6 +54,10 @@ bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const
 // "[1, 2, 3]" in the scene's spelling.
 void bough_import_list(FILE *file, const double *value, int n);
 
+// A text in double quotes; a path as an absolute one, so, for what the scene leaves in its place.
+void bough_import_quoted(FILE *file, const char *text);
+void bough_import_path(FILE *file, const char *path);
+
 // Tables of blade and tower; with `top_mass` [kg] on the tower.
 void bough_openfast_beamdyn(bough_openfast *o);
 void bough_openfast_blade(bough_openfast *o);
@@ -62,11 +67,14 @@ void bough_openfast_tower(bough_openfast *o, double top_mass);
 void bough_openfast_aero_tables(bough_openfast *o);
 void bough_openfast_aero(bough_openfast *o);
 
+// Looks for the controller's library.
+void bough_openfast_library(bough_openfast *o);
+
 // The parts `bodies` and `turbine` of the scene; `control` and `loads`.
 void bough_openfast_bodies(bough_openfast *o);
 void bough_openfast_control(bough_openfast *o);
 
-// Whether a generator's torque acts by ServoDyn's simple law.
+// Whether a controller steers the generator's torque: ServoDyn's simple law or a library.
 bool bough_openfast_controlled(const bough_openfast *o);
 
 #endif

@@ -1,12 +1,9 @@
 // InflowWind and AeroDyn 15: wind, airfoils, blade elements, what the theory counts.
 #include "apps/import/openfast.h"
 
-#include "apps/output/folder.h"
-
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { MOST_ROWS = 2000, MOST_AIRFOILS = 200, MOST_COLUMNS = 20, NAME = 64 };
 
@@ -123,10 +120,8 @@ void bough_openfast_aero_tables(bough_openfast *o) {
 // A wind file stays where it is.
 static void put_wind_file(bough_openfast *o, const char *kind, const char *names) {
     const char *path = bough_deck_file(o->inflow, names);
-    char here[BOUGH_PATH_MAX] = "";
-    if (path[0] != '/' && !getcwd(here, sizeof here)) here[0] = '\0';
-    fprintf(o->file[BOUGH_IMPORT_SCENE], "  wind: {kind: %s, file: \"%s%s%s\"", kind, here,
-            path[0] == '/' ? "" : "/", path);
+    fprintf(o->file[BOUGH_IMPORT_SCENE], "  wind: {kind: %s, file: ", kind);
+    bough_import_path(o->file[BOUGH_IMPORT_SCENE], path);
     bough_openfast_note(o, BOUGH_TAKEN, "wind of %s, by its path", path);
 }
 

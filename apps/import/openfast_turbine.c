@@ -2,6 +2,7 @@
 #include "apps/import/openfast.h"
 
 #include <math.h>
+#include <unistd.h>
 
 // -- tower and nacelle ----------------------------------------------------------------------------
 
@@ -120,18 +121,38 @@ static void put_blade(bough_openfast *o, int k) {
     snprintf(cone, sizeof cone, "PreCone(%d)|PreCone%d", k, k);
     snprintf(mass, sizeof mass, "TipMass(%d)|TipMass%d", k, k);
     fprintf(o->file[BOUGH_IMPORT_SCENE],
-            "  - name: blade%d\n    fidelity: %s\n    joint: {kind: fixed, parent: hub, placement: "
+            "  - name: blade%d\n    fidelity: %s\n    joint: {%s, parent: hub, placement: "
             "[rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n    pitch: %.10g deg\n"
             "    rod: {table: %s, segments: 48}\n",
-            k, o->rigid_blade ? "rigid" : "rod", 360.0 * (k - 1) / o->n_blade,
-            bough_deck_number(o->elasto, cone), o->hub_radius, bough_deck_number(o->elasto, pitch),
-            bough_import_name[BOUGH_IMPORT_BLADE]);
+            k, o->rigid_blade ? "rigid" : "rod",
+            o->library ? "kind: revolute, axis: z, motion: {angle: 0 deg}" : "kind: fixed",
+            360.0 * (k - 1) / o->n_blade, bough_deck_number(o->elasto, cone), o->hub_radius,
+            bough_deck_number(o->elasto, pitch), bough_import_name[BOUGH_IMPORT_BLADE]);
     if (bough_deck_number_or(o->elasto, mass, 0) != 0) {
         bough_openfast_note(o, BOUGH_LEFT_OUT, "TipMass(%d)", k);
     }
 }
 
+void bough_openfast_library(bough_openfast *o) {
+    if (!bough_is_ok(o->status) || !o->servo) return;
+    int torque = bough_deck_whole_or(o->servo, "VSContrl", 0);
+    int pitch = bough_deck_whole_or(o->servo, "PCMode", 0);
+    if (torque != 5 && pitch != 5) return;
+    const char *path = bough_deck_path(o->servo, "DLL_FileName");
+    if (!bough_is_ok(o->status)) return;
+    if (access(path, R_OK) != 0 || !bough_deck_flag_or(o->elasto, "GenDOF", true)) {
+        bough_openfast_note(o, BOUGH_LEFT_OUT, "DLL_FileName: no library %s", path);
+        return;
+    }
+    o->library = path;
+    bough_openfast_note(o, BOUGH_TAKEN, "controller: %s, by its path", path);
+    if (torque != pitch) {
+        bough_openfast_note(o, BOUGH_APPROXIMATED, "the library steers both torque and pitch");
+    }
+}
+
 bool bough_openfast_controlled(const bough_openfast *o) {
+    if (o->library) return true;
     return o->servo && bough_deck_flag_or(o->elasto, "GenDOF", true) &&
            bough_deck_whole_or(o->servo, "VSContrl", 0) == 1;
 }
@@ -188,6 +209,22 @@ void bough_openfast_bodies(bough_openfast *o) {
 
 // -- control --------------------------------------------------------------------------------------
 
+static void put_library(bough_openfast *o) {
+    FILE *file = o->file[BOUGH_IMPORT_SCENE];
+    fprintf(file,
+            "control:\n  kind: bladed\n  rate: 50 Hz\n  gear_ratio: %.10g\n"
+            "  efficiency: %.10g\n  library: ",
+            bough_deck_number(o->elasto, "GBRatio"),
+            bough_deck_number_or(o->servo, "GenEff", 100) / 100);
+    bough_import_path(file, o->library);
+    if (bough_deck_line(o->servo, "DLL_InFile") >= 0) {
+        const char *input = bough_deck_path(o->servo, "DLL_InFile");
+        fputs("\n  input: ", file);
+        bough_import_path(file, input);
+    }
+    fputc('\n', file);
+}
+
 static void put_law(bough_openfast *o) {
     const bough_deck *s = o->servo;
     double rpm = acos(-1.0) / 30, rated = bough_deck_number(s, "VS_RtGnSp") * rpm;
@@ -217,7 +254,9 @@ void bough_openfast_control(bough_openfast *o) {
     if (!bough_is_ok(o->status) || !o->servo) return;
     int torque = bough_deck_whole_or(o->servo, "VSContrl", 0);
     int pitch = bough_deck_whole_or(o->servo, "PCMode", 0);
-    if (bough_openfast_controlled(o)) {
+    if (o->library) {
+        put_library(o);
+    } else if (bough_openfast_controlled(o)) {
         put_law(o);
     } else if (torque != 0) {
         bough_openfast_note(o, BOUGH_LEFT_OUT, "VSContrl %d: no torque acts on the generator",
@@ -226,7 +265,8 @@ void bough_openfast_control(bough_openfast *o) {
         bough_openfast_note(o, BOUGH_LEFT_OUT, "GenModel %d: no torque acts on the generator",
                             bough_deck_whole_or(o->servo, "GenModel", 0));
     }
-    if (pitch != 0) bough_openfast_note(o, BOUGH_LEFT_OUT, "PCMode %d: the pitch is held", pitch);
+    if (pitch != 0 && !o->library)
+        bough_openfast_note(o, BOUGH_LEFT_OUT, "PCMode %d: the pitch is held", pitch);
     if (bough_deck_whole_or(o->servo, "YCMode", 0) != 0) {
         bough_openfast_note(o, BOUGH_LEFT_OUT, "YCMode: yaw control");
     }
