@@ -149,8 +149,8 @@ static place time_of(const bough_wind_box *box, double x, double t) {
     double start = box->periodic ? 0 : box->half_width;
     double k = (t + (start - x) / box->mean) / box->dt;
     if (!box->periodic) return place_of(k, box->n_time);
-    k -= box->n_time * floor(k / box->n_time);
-    int low = k < box->n_time ? (int)k : 0;
+    k -= box->n_time * floor(k / box->n_time); // rounded, of huge k anything
+    int low = k >= 0 && k < box->n_time ? (int)k : 0;
     return (place){low, (low + 1) % box->n_time, bough_clamp(k - low, 0, 1)};
 }
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE = 1024, LEAST = 8, MOST = 9 };
+enum { LINE = 1024, LEAST = 8, MOST = 9, MOST_ROWS = 1000000 };
 
 // The numbers of a line, at most MOST of them; −1 if it has another word.
 static int parse(const char *line, double *value) {
@@ -47,8 +47,9 @@ static bough_status read_row(const char *path, const char *line, int number,
     return bough_ok();
 }
 
-// Counts the rows, and with `row` fills them.
-static bough_status scan(FILE *stream, const char *path, int *n, bough_wind_hub_row *row) {
+// Counts the rows, and with `row` fills at most `room` of them.
+static bough_status scan(FILE *stream, const char *path, int room, int *n,
+                         bough_wind_hub_row *row) {
     char line[LINE];
     *n = 0;
     rewind(stream);
@@ -57,6 +58,9 @@ static bough_status scan(FILE *stream, const char *path, int *n, bough_wind_hub_
             return bough_fail(BOUGH_INVALID, "%s:%d: the line is too long.", path, number);
         }
         if (is_comment(line)) continue;
+        if (*n == room) {
+            return bough_fail(BOUGH_INVALID, "%s:%d: more than %d rows.", path, number, room);
+        }
         if (row) {
             bough_status status =
                 read_row(path, line, number, *n > 0 ? row + *n - 1 : NULL, row + *n);
@@ -72,10 +76,10 @@ bough_status bough_wind_hub_read(bough_arena *arena, const char *path, bough_win
     FILE *stream = fopen(path, "r");
     if (!stream) return bough_fail(BOUGH_INVALID, "cannot open the wind file %s.", path);
     bough_wind_hub_row *row = NULL;
-    bough_status status = scan(stream, path, &hub->n, NULL);
+    bough_status status = scan(stream, path, MOST_ROWS, &hub->n, NULL);
     if (bough_is_ok(&status)) {
         row = bough_arena_take(arena, (size_t)hub->n * sizeof *row);
-        status = row ? scan(stream, path, &hub->n, row)
+        status = row ? scan(stream, path, hub->n, &hub->n, row)
                      : bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
     }
     fclose(stream);

@@ -2,10 +2,11 @@
 #include "apps/report/report.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { FREE_LINES = 6, MOST_ROWS = 4000 };
+enum { FREE_LINES = 6, MOST_ROWS = 4000, MOST_BYTES = 1 << 20 };
 
 static bough_status damaged(const char *folder, long line) {
     return bough_fail(BOUGH_INVALID, "%.200s/channels.out:%ld: not a row of its columns", folder,
@@ -34,23 +35,28 @@ static bool put_row(const char *line, int n, FILE *out) {
     fputc('[', out);
     for (int k = 0; k < n; k++, line = end) {
         double value = strtod(line, &end);
-        if (end == line) return false;
+        if (end == line || !isfinite(value)) return false;
         fprintf(out, k > 0 ? ",%.6g" : "%.9g", value);
     }
     fputs("],\n", out);
     return true;
 }
 
+// The number of lines; −1 if one is longer than any row of channels.
 static long count_lines(FILE *file) {
-    long n = 0;
-    for (int byte; (byte = fgetc(file)) != EOF;) n += byte == '\n';
+    long n = 0, length = 0;
+    for (int byte; (byte = fgetc(file)) != EOF && length < MOST_BYTES;) {
+        length = byte == '\n' ? 0 : length + 1;
+        n += byte == '\n';
+    }
     rewind(file);
-    return n;
+    return length < MOST_BYTES ? n : -1;
 }
 
 static bough_status put_rows(const char *folder, FILE *file, char **line, size_t *room, FILE *out) {
-    long stride = 1 + (count_lines(file) - FREE_LINES - 2) / MOST_ROWS, at = 0;
+    long lines = count_lines(file), stride = 1 + (lines - FREE_LINES - 2) / MOST_ROWS, at = 0;
     int n = 0;
+    if (lines < 0) return damaged(folder, 1);
     for (; getline(line, room, file) >= 0; at++) {
         if (at == FREE_LINES) {
             fputs("{names: ", out);

@@ -3,6 +3,7 @@
 
 #include "apps/output/folder.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -27,6 +28,7 @@ static bool put_points(FILE *file, FILE *out) {
     while (fgets(line, LINE, file) && line[0] != '<') {
         double x, y, z;
         if (sscanf(line, "%lf %lf %lf", &x, &y, &z) != 3) return false;
+        if (!isfinite(x + y + z)) return false;
         fprintf(out, ",%.5g,%.5g,%.5g", x, y, z);
     }
     return true;
@@ -73,7 +75,7 @@ bough_status bough_report_frames(const char *folder, FILE *out, bool *found) {
     fputs("{frames: [\n", out);
     while (bough_is_ok(&status) && fgets(line, LINE, list)) {
         int n = sscanf(line, "<DataSet timestep=\"%lf\" file=\"%63[a-z0-9/.]\"/>", &t, name);
-        if (n != 2) continue;
+        if (n != 2 || !isfinite(t)) continue;
         status = put_frame(folder, name, t, out);
         memcpy(last, name, sizeof last);
     }

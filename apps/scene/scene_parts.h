@@ -48,7 +48,7 @@ void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scen
                                  const bough_scene_load *load);
 
 // Makes single bodies of those in a row.
-void bough_scene_repeat(bough_arena *arena, bough_scene *scene);
+void bough_scene_repeat(bough_schema_reader *reader, bough_scene *scene);
 
 // Resolves names and checks what spans several parts of the scene.
 void bough_scene_link(bough_schema_reader *r, bough_scene *scene);

@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { MOST_BODIES = 100000, MOST_SEGMENTS = 1000000 };
+
 static const char *numbered(bough_arena *arena, const char *name, int number) {
     char text[160];
     if (name == NULL) return NULL;
@@ -13,12 +15,27 @@ static const char *numbered(bough_arena *arena, const char *name, int number) {
     return bough_arena_string(arena, text);
 }
 
-void bough_scene_repeat(bough_arena *arena, bough_scene *s) {
+// Bodies after repetition; 0 after an error: a few lines must not ask for any amount of memory.
+static size_t count_bodies(bough_schema_reader *r, const bough_scene *s) {
+    size_t bodies = 0, segments = 0;
+    for (int i = 0; i < s->n_body; i++) {
+        bodies += (size_t)s->body[i].repeat;
+        segments += (size_t)s->body[i].repeat * (size_t)s->body[i].rod.n_segment;
+    }
+    if (bodies > MOST_BODIES || segments > MOST_SEGMENTS) {
+        bough_schema_error(r, s->node, "bodies", "expected at most %d bodies and %d segments of "
+                           "rods in all, got %zu and %zu", MOST_BODIES, MOST_SEGMENTS, bodies,
+                           segments);
+        return 0;
+    }
+    return bodies;
+}
+
+void bough_scene_repeat(bough_schema_reader *r, bough_scene *s) {
+    bough_arena *arena = r->arena;
     int n = s->n_body, next = n;
-    size_t total = (size_t)n;
-    for (int i = 0; i < n; i++)
-        total += (size_t)s->body[i].repeat - 1;
-    bough_scene_body *body = bough_arena_take(arena, total * sizeof *body);
+    size_t total = count_bodies(r, s);
+    bough_scene_body *body = total ? bough_arena_take(arena, total * sizeof *body) : NULL;
     if (body == NULL) return;
     memcpy(body, s->body, (size_t)n * sizeof *body);
     for (int i = 0; i < n; i++) {

@@ -1,0 +1,40 @@
+// What a fuzz target is given and must give; the same for libFuzzer and for tests/fuzz/driver.c.
+#ifndef BOUGH_TESTS_FUZZ_FUZZ_H
+#define BOUGH_TESTS_FUZZ_FUZZ_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+// Reads one input; must end, whatever it holds. Returns 0.
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
+
+// A condition that every input must meet.
+static inline void fuzz_demand(int met, const char *what) {
+    if (met) return;
+    fprintf(stderr, "broken promise: %s\n", what);
+    abort();
+}
+
+// A folder of this process for parsers that read files; made by the first call, kept.
+static inline const char *fuzz_folder(void) {
+    static char folder[] = "/tmp/bough-fuzz-XXXXXX";
+    static int made;
+    if (!made) fuzz_demand(mkdtemp(folder) != NULL, "a folder in /tmp");
+    made = 1;
+    return folder;
+}
+
+// Writes the folder's file of that name; its path.
+static inline const char *fuzz_file(const char *name, const void *data, size_t size) {
+    static char path[128];
+    snprintf(path, sizeof path, "%s/%s", fuzz_folder(), name);
+    remove(path); // emptying a file instead makes some file systems write it to the disk
+    FILE *file = fopen(path, "wb");
+    fuzz_demand(file && fwrite(data, 1, size, file) == size, "a file in /tmp");
+    fclose(file);
+    return path;
+}
+
+#endif
