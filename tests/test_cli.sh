@@ -403,7 +403,6 @@ imported() {
     refused "cannot read 'none.fst'" import openfast none.fst --out out
     refused 'missing openfast MAIN.fst' import openfast
     refused "unknown kind 'adams'" import adams main.cmd --out out
-    refused 'missing --out DIR' import openfast main.fst
     refused 'unexpected argument' import openfast main.fst more --out out
 }
 

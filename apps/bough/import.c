@@ -1,18 +1,21 @@
 // bough import: a foreign model as a scene.
 #include "apps/import/import.h"
 
+#include "apps/bough/open.h"
 #include "apps/bough/verb.h"
 
 #include <string.h>
 
 bough_status bough_verb_import(bough_arena *arena, const bough_options *options) {
-    (void)arena;
     if (strcmp(options->operand, "openfast") != 0) {
         return bough_fail(BOUGH_INVALID, "import: unknown kind '%.80s'; known: openfast",
                           options->operand);
     }
-    if (!options->out) return bough_fail(BOUGH_INVALID, "import: missing --out DIR");
-    bough_status status = bough_import_openfast(options->second, options->out, stdout);
-    if (bough_is_ok(&status)) printf("scene: %s/scene.yaml\n", options->out);
+    bough_options named = *options; // the folder's name comes from the model's
+    named.operand = options->second;
+    const char *folder = bough_out_folder(arena, &named);
+    if (!folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_status status = bough_import_openfast(options->second, folder, stdout);
+    if (bough_is_ok(&status)) printf("scene: %s/scene.yaml\n", folder);
     return status;
 }

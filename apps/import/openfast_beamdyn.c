@@ -9,25 +9,24 @@ typedef struct line_point {
     double x, y, z, twist; // [m, deg]
 } line_point;
 
+static double distance(line_point a, line_point b) {
+    double x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
+    return sqrt(x * x + y * y + z * z);
+}
+
 // The reference line at a share of its arc length [0 to 1].
 static line_point at_share(const line_point *p, int n, double share) {
-    double whole = 0, sum = 0;
-    for (int pass = 0; pass < 2; pass++) {
-        for (int i = 1; i < n; i++) {
-            double dx = p[i].x - p[i - 1].x, dy = p[i].y - p[i - 1].y, dz = p[i].z - p[i - 1].z;
-            double part = sqrt(dx * dx + dy * dy + dz * dz);
-            if (pass == 0) {
-                whole += part;
-            } else if (sum + part >= share * whole || i == n - 1) {
-                double s = fmin((share * whole - sum) / part, 1);
-                return (line_point){p[i - 1].x + s * dx, p[i - 1].y + s * dy, p[i - 1].z + s * dz,
-                                    p[i - 1].twist + s * (p[i].twist - p[i - 1].twist)};
-            } else {
-                sum += part;
-            }
-        }
-    }
-    return p[n - 1];
+    double length = 0;
+    for (int i = 1; i < n; i++)
+        length += distance(p[i - 1], p[i]);
+    double left = share * length;
+    int i = 1;
+    for (; i < n - 1 && left > distance(p[i - 1], p[i]); i++)
+        left -= distance(p[i - 1], p[i]);
+    line_point a = p[i - 1], b = p[i];
+    double s = fmin(left / distance(a, b), 1);
+    return (line_point){a.x + s * (b.x - a.x), a.y + s * (b.y - a.y), a.z + s * (b.z - a.z),
+                        a.twist + s * (b.twist - a.twist)};
 }
 
 static const line_point *read_line(bough_openfast *o, const bough_deck *deck, int *n) {
