@@ -88,6 +88,19 @@ wind 'must begin with 7 or 8' bts large.yaml
 head -c 200 "$source/tests/fuzz/corpus/wind/plain.bts" >cut.bts
 wind 'is damaged' bts cut.bts
 
+# A model of OpenFAST.
+for file in large.yaml nul.yaml keys.yaml line.yaml; do
+    refused . import openfast $file --out imported
+done
+cp -r "$source/tests/decks" model
+refused . import openfast model/parts/blade.dat --out imported
+head -c 300 "$source/tests/decks/parts/elasto.dat" >model/parts/elasto.dat
+refused 'elasto.dat' import openfast model/main.fst --out imported
+cp large.yaml model/parts/beam-blade.dat
+cp "$source/tests/decks/parts/elasto.dat" model/parts
+refused 'beam-blade.dat' import openfast model/main.fst --out imported
+[ ! -e imported ] || { echo 'FAILED: a scene was written'; failures=1; }
+
 # A results folder.
 mkdir results
 cp large.yaml results/channels.out

@@ -100,7 +100,7 @@ static void add(fuzzer *f, const char *path) {
     for (int i = 0; i < n; i++) {
         char name[512];
         snprintf(name, sizeof name, "%s/%s", path, entry[i]->d_name);
-        if (entry[i]->d_name[0] != '.') add_file(f, name);
+        if (stat(name, &about) == 0 && S_ISREG(about.st_mode)) add_file(f, name);
         free(entry[i]);
     }
     if (n >= 0) free(entry);

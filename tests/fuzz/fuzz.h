@@ -17,12 +17,22 @@ static inline void fuzz_demand(int met, const char *what) {
     abort();
 }
 
-// A folder of this process for parsers that read files; made by the first call, kept.
+static inline const char *fuzz_folder(void);
+
+static inline void fuzz_clean(void) {
+    char command[64];
+    snprintf(command, sizeof command, "rm -rf %s", fuzz_folder());
+    if (system(command) != 0) fputs("files are left in /tmp\n", stderr);
+}
+
+// A folder of this process for parsers that read files, until it ends.
 static inline const char *fuzz_folder(void) {
     static char folder[] = "/tmp/bough-fuzz-XXXXXX";
     static int made;
-    if (!made) fuzz_demand(mkdtemp(folder) != NULL, "a folder in /tmp");
+    if (made) return folder;
+    fuzz_demand(mkdtemp(folder) != NULL, "a folder in /tmp");
     made = 1;
+    atexit(fuzz_clean);
     return folder;
 }
 

@@ -1,0 +1,73 @@
+#include "apps/import/import.h"
+#include "tests/fuzz/fuzz.h"
+
+#include <string.h>
+#include <sys/stat.h>
+
+static const char *const decks[] = {
+    "main.fst", "parts/elasto.dat", "parts/blade.dat", "parts/tower.dat", "parts/aero.dat",
+    "parts/aero-blade.dat", "parts/foils/flat.dat", "parts/servo.dat", "parts/wind.dat",
+    "parts/beam.dat", "parts/beam-blade.dat", "parts/foils/round.dat",
+};
+enum { DECKS = sizeof decks / sizeof *decks, ROOM = 1 << 16 };
+
+typedef struct deck {
+    char text[ROOM];
+    size_t size;
+} deck;
+
+static deck original[DECKS];
+
+static void load(int i) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/tests/decks/%s", BOUGH_SOURCE_DIR, decks[i]);
+    FILE *file = fopen(path, "rb");
+    fuzz_demand(file != NULL, path);
+    original[i].size = fread(original[i].text, 1, ROOM, file);
+    fclose(file);
+    fuzz_file(decks[i], original[i].text, original[i].size);
+}
+
+static void make(const char *name) {
+    char path[128];
+    snprintf(path, sizeof path, "%s/%s", fuzz_folder(), name);
+    mkdir(path, 0700);
+}
+
+static void start(void) {
+    static int started;
+    if (started) return;
+    started = 1;
+    make("parts");
+    make("parts/foils");
+    for (int i = 0; i < DECKS; i++)
+        load(i);
+}
+
+// The deck that begins most like the input.
+static int likest(const uint8_t *data, size_t size) {
+    int best = 0;
+    size_t most = 0;
+    for (int i = 0; i < DECKS; i++) {
+        const deck *d = &original[i];
+        size_t same = 0;
+        while (same < size && same < d->size && data[same] == (uint8_t)d->text[same]) same++;
+        if (same > most) best = i;
+        if (same > most) most = same;
+    }
+    return best;
+}
+
+// Any bytes as a file of a model that is good otherwise.
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+    char path[128], out[128];
+    start();
+    snprintf(path, sizeof path, "%s/main.fst", fuzz_folder());
+    snprintf(out, sizeof out, "%s/out", fuzz_folder());
+    int i = likest(data, size);
+    fuzz_file(decks[i], data, size);
+    bough_status status = bough_import_openfast(path, out, NULL);
+    fuzz_demand(bough_is_ok(&status) || status.message[0], "a reason");
+    fuzz_file(decks[i], original[i].text, original[i].size);
+    return 0;
+}
