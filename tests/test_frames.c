@@ -73,7 +73,7 @@ static void page_carries_all_data(void **context) {
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
     char *page = scratch_read(folder, "report.html");
     has(page, "<!DOCTYPE html>");
-    has(page, "data.summary = {\"title\": \"a \\u003c/script> trap\"}");
+    has(page, "data.summary = \"{\\\"title\\\": \\\"a \\u003c/script> trap\\\"}\\n\";");
     has(page, "{names: [\"Time\",\"RotSpeed\"], units: [\"s\",\"rpm\"], rows: [\n[0,1.25],\n"
               "[0.1,-2.5],\n]};");
     has(page, "[0.1,0.25,-0,2,1.25,-0.5,2,");

@@ -24,10 +24,6 @@ static void put(int byte, FILE *out) {
     }
 }
 
-void bough_report_copy(FILE *in, FILE *out) {
-    for (int byte; (byte = fgetc(in)) != EOF;) put(byte, out);
-}
-
 void bough_report_quote(FILE *in, FILE *out) {
     fputc('"', out);
     for (int byte; (byte = fgetc(in)) != EOF;) {
@@ -41,14 +37,14 @@ void bough_report_quote(FILE *in, FILE *out) {
     fputc('"', out);
 }
 
-// A file as a field of the data, in quotes or as it is.
-static bough_status add_file(const char *folder, const char *name, const char *field,
-                             void (*copy)(FILE *, FILE *), FILE *out, bool *any) {
+// A file's text as a field of the data: never as a program, whoever has written it.
+static bough_status add_file(const char *folder, const char *name, const char *field, FILE *out,
+                             bool *any) {
     FILE *file;
     bough_status status = bough_report_open(folder, name, &file);
     if (!bough_is_ok(&status) || !file) return status;
     fprintf(out, "data.%s = ", field);
-    copy(file, out);
+    bough_report_quote(file, out);
     fputs(";\n", out);
     fclose(file);
     *any = true;
@@ -69,13 +65,9 @@ static bough_status add_part(const char *folder, const char *field,
 static bough_status add_data(const char *folder, FILE *out) {
     bool any = false;
     fputs("const data = {};\n", out);
-    bough_status status = add_file(folder, "summary.json", "summary", bough_report_copy, out, &any);
-    if (bough_is_ok(&status)) {
-        status = add_file(folder, "table.txt", "table", bough_report_quote, out, &any);
-    }
-    if (bough_is_ok(&status)) {
-        status = add_file(folder, "plot.svg", "plot", bough_report_quote, out, &any);
-    }
+    bough_status status = add_file(folder, "summary.json", "summary", out, &any);
+    if (bough_is_ok(&status)) status = add_file(folder, "table.txt", "table", out, &any);
+    if (bough_is_ok(&status)) status = add_file(folder, "plot.svg", "plot", out, &any);
     if (bough_is_ok(&status)) {
         status = add_part(folder, "channels", bough_report_channels, out, &any);
     }

@@ -26,8 +26,7 @@ bough_status bough_report_frames(const char *folder, FILE *out, bool *found);
 // Opens folder/name; NULL when it does not exist.
 bough_status bough_report_open(const char *folder, const char *name, FILE **file);
 
-// Copies text so that it can stand in a page's script: as a string in quotes, or as it is.
+// Copies text as a string of the page's script, in quotes.
 void bough_report_quote(FILE *in, FILE *out);
-void bough_report_copy(FILE *in, FILE *out);
 
 #endif
