@@ -23,7 +23,7 @@ find_package(bough REQUIRED)
 add_executable(example example.c)
 target_link_libraries(example bough::api)
 END
-cmake -S "$folder/project" -B "$folder/b" -DCMAKE_PREFIX_PATH="$folder/usr" >/dev/null
+cmake -G Ninja -S "$folder/project" -B "$folder/b" -DCMAKE_PREFIX_PATH="$folder/usr" >/dev/null
 cmake --build "$folder/b" >/dev/null
 "$folder/b/example" "$source/apps/mechanisms/pendulum.yaml" bobX >"$folder/rows"
 [ "$(wc -l <"$folder/rows")" -ge 100 ]
