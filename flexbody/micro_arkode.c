@@ -45,7 +45,6 @@ static bool configure(bough_micro_arkode *micro) {
     // ARKODE carries the convergence rate of exact factors over to steps of another length and
     // then stops after one iteration: a wrong stiff state without a sign. Factors are cheap.
     bad |= ARKStepSetDeltaGammaMax(arkode, 1e-9);
-    bad |= ARKStepSetNonlinCRDown(arkode, 1);
     return bad == 0;
 }
 

@@ -142,4 +142,93 @@ static double error_at(const double *y, double t) {
     return largest;
 }
 
+// -- what every sub-solver must hold; the test says which it is -----------------------------------
+
+static problem *create(double rtol);
+static const char *solver(void); // as its messages name it
+
+// From a state that was changed outside, as the exact solution of the same modes started there.
+static void restart_takes_up_a_changed_state(void **context) {
+    (void)context;
+    problem *p = create(1e-7);
+    double y[N], moved[N];
+    exact(0, y);
+    advance(p, 0, 0.4, false, y); // the first call starts in any case
+    exact(0, moved);
+    advance(p, 0, 0.4, true, moved);
+    for (int i = 0; i < N; i++) check_near(moved[i], y[i], 0, 0);
+    assert_int_equal(counts(p).restarts, 1);
+    exact(3, y);
+    advance(p, 3, 3.7, true, y);
+    assert_true(error_at(y, 3.7) < 3e-6);
+    destroy(p);
+}
+
+static void check_failure(const bough_status *status, const char *time, const char *why) {
+    assert_int_equal(status->code, BOUGH_FAILED);
+    const char *parts[] = {"stiff", solver(), time, why};
+    for (int k = 0; k < 4; k++) {
+        if (strstr(status->message, parts[k]) == NULL) {
+            fail_msg("\"%s\" does not name \"%s\"", status->message, parts[k]);
+        }
+    }
+}
+
+static void failure_names_body_time_and_solver(void **context) {
+    (void)context;
+    problem *p = create(1e-6);
+    double y[N];
+    exact(0, y);
+    advance(p, 0, 0.2, true, y);
+    p->wall = 0.5;
+    bough_status status = try_advance(p, 0.2, 1, false, y);
+    check_failure(&status, "t = 0.5 s", "no finite forces"); // ever smaller ones up to the wall
+    exact(0.2, y);
+    p->wall = 0.3;
+    p->lasting = true;
+    status = try_advance(p, 0.2, 1, true, y);
+    check_failure(&status, "t = 0.2", "finite");
+    p->broken = false;
+    p->wall = 0;
+    exact(0.25, y);
+    status = try_advance(p, 0.25, 1, true, y);
+    check_failure(&status, "t = 0.25 s", "finite");
+    p->broken = false;
+    p->wall = INFINITY;
+    p->singular = true;
+    status = try_advance(p, 0.25, 1, true, y);
+    check_failure(&status, "t = 0.25 s", "Newton");
+    p->singular = false; // and a restart brings it back
+    exact(0.25, y);
+    advance(p, 0.25, 1, true, y);
+    assert_true(error_at(y, 1) < 2e-5);
+    destroy(p);
+}
+
+static void statistics_add_up_over_restarts(void **context) {
+    (void)context;
+    problem *p = create(1e-6);
+    double y[N];
+    bough_statistics sum = counts(p);
+    assert_int_equal(sum.steps + sum.derivatives + sum.restarts, 0);
+    exact(0, y);
+    for (int k = 0; k < 12; k++) {
+        bough_statistics before = counts(p);
+        advance(p, 0.1 * k, 0.1 * (k + 1), k % 4 == 0, y);
+        assert_true(counts(p).steps > before.steps);
+    }
+    sum = counts(p);
+    assert_int_equal(sum.derivatives, p->derivatives);
+    assert_int_equal(sum.jacobians, p->linearisations);
+    assert_int_equal(sum.factorisations, p->factorisations);
+    assert_int_equal(sum.iterations, p->solutions);
+    assert_int_equal(sum.restarts, 2);
+    bough_statistics twice = sum; // counts are added to what is there
+    add_counts(p, &twice);
+    assert_int_equal(twice.steps, 2 * sum.steps);
+    assert_int_equal(twice.failed_steps, 2 * sum.failed_steps);
+    assert_int_equal(twice.restarts, 4);
+    destroy(p);
+}
+
 #endif
