@@ -45,6 +45,7 @@ killed() {
     scene=$1
     interval=$2
     shift 2
+    set -- "$@" --set simulation.output.binary=true
     rm -rf whole cut
     expect 0 run "$scene" "$@" --checkpoint "$interval" --out whole --quiet
     [ ! -e whole/checkpoint.bin ] || fail "$said: a complete run leaves no checkpoint"
@@ -64,6 +65,7 @@ killed() {
     [ $deaths -ge 1 ] || fail "$said: it was never killed"
     cmp whole/channels.out cut/channels.out || fail "$scene: the continued run differs"
     diff -r whole/frames cut/frames >stdout || fail "$scene: frames differ: $(head -n 3 stdout)"
+    cmp whole/channels.outb cut/channels.outb || fail "$scene: the binary rows differ"
     cmp whole/frames.pvd cut/frames.pvd || fail "$scene: the list of frames differs"
     for key in defect_max energy_residual macro_steps rows largest derivatives; do
         grep "\"$key\"" whole/summary.json >one

@@ -206,6 +206,11 @@ complete_run() {
     expect 0 run "$bar" --set 'simulation.duration=20 ms' --set 'simulation.output.interval=10 ms'
     row_times $out/channels.out >../times
     has ../times '^0 10 20 $'
+    missing $out/channels.outb
+    expect 0 run "$bar" --set 'simulation.duration=20 ms' --set simulation.output.binary=true
+    [ "$(od -A n -t d2 -N 2 $out/channels.outb)" -eq 4 ] || fail "$said: format 4"
+    expect 0 run "$bar" --set 'simulation.duration=20 ms'
+    missing $out/channels.outb # an older one does not stand beside new rows
     rm -r out
 }
 

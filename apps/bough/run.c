@@ -4,6 +4,7 @@
 #include "apps/bough/open.h"
 #include "apps/bough/stop.h"
 #include "apps/bough/verb.h"
+#include "apps/output/binary.h"
 #include "apps/output/folder.h"
 #include "apps/output/progress.h"
 
@@ -122,6 +123,11 @@ static bough_status open_frames(bough_run *run) {
     return bough_frames_open(run->arena, &def, &run->frames);
 }
 
+static const char *title(const bough_run *run) {
+    const bough_scene *scene = run->simulation->scene;
+    return scene->title ? scene->title : scene->file;
+}
+
 // An older summary or checkpoint must not stand beside the new run's channels.
 static bough_status open_results(bough_run *run) {
     run->folder = bough_out_folder(run->arena, run->options);
@@ -129,13 +135,13 @@ static bough_status open_results(bough_run *run) {
     bough_status status = bough_checkpoint_open(run);
     if (bough_is_ok(&status)) status = bough_folder_make(run->folder);
     if (bough_is_ok(&status)) status = bough_folder_remove(run->folder, "summary.json");
+    if (bough_is_ok(&status)) status = bough_folder_remove(run->folder, "channels.outb");
     if (bough_is_ok(&status) && !run->options->resume) {
         status = bough_checkpoint_remove(run->folder);
     }
     if (!bough_is_ok(&status)) return status;
-    const bough_scene *scene = run->simulation->scene;
     bough_recorder_def def = {.folder = run->folder,
-                              .title = scene->title ? scene->title : scene->file,
+                              .title = title(run),
                               .channels = &run->channels,
                               .kept = run->rows};
     status = bough_recorder_open(run->arena, &def, &run->recorder);
@@ -158,10 +164,20 @@ static bough_status build(bough_run *run) {
     return status;
 }
 
-// Ends both files; the first thing that went wrong is the outcome that they tell.
+static bough_status write_binary(const bough_run *run) {
+    const bough_scene_output *output = &run->simulation->scene->simulation.output;
+    if (!output->binary || !bough_is_ok(&run->outcome)) return bough_ok();
+    return bough_binary_write(&(bough_binary_def){.folder = run->folder,
+                                                  .title = title(run),
+                                                  .channels = &run->channels,
+                                                  .interval = output->interval});
+}
+
+// Ends the files; the first thing that went wrong is the outcome that they tell.
 static bough_status close_results(bough_run *run) {
     bough_status status = bough_recorder_finish(run->recorder, &run->outcome);
     if (bough_is_ok(&status) && run->frames) status = bough_frames_finish(run->frames);
+    if (bough_is_ok(&status)) status = write_binary(run);
     if (bough_is_ok(&run->outcome)) run->outcome = status;
     status = bough_run_summarise(run);
     if (bough_is_ok(&run->outcome) && bough_is_ok(&status)) {

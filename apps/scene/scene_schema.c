@@ -286,6 +286,9 @@ static const bough_key output_keys[] = {
     {.name = "frames", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .offset = offsetof(bough_scene_output, frames),
      .help = "between shapes stored for ParaView and `bough report`; default none"},
+    {.name = "binary", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false",
+     .offset = offsetof(bough_scene_output, binary),
+     .help = "at the end also channels.outb, OpenFAST's binary form: one scale and 16 bits a channel"},
 };
 static const bough_schema output_schema = {SCHEMA("the output", bough_scene_output, output_keys)};
 
