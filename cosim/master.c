@@ -138,15 +138,27 @@ static bough_status sample_loads(bough_master *m, bool *jumped) {
     return bough_ok();
 }
 
-static void set_time(bough_master *m, double t) {
-    double eps = resolution(m);
-    m->time = t;
-    m->at_event = false;
-    if (t >= (double)(m->grid_index + 1) * m->macro_step - eps) m->grid_index++;
-    while (m->next_event < m->n_event && m->event[m->next_event] <= t + eps) {
-        m->at_event = m->at_event || m->event[m->next_event] >= t - eps;
-        m->next_event++;
+bool bough_master_sampled(const bough_master *m) {
+    for (int i = 0; i < m->n_load; i++) {
+        if (!on_grid(m) || m->grid_index % m->load_every[i] != 0) return false;
     }
+    return true;
+}
+
+// Passes the events up to the present; whether the last of them is now.
+static bool pass_events(bough_master *m) {
+    double eps = resolution(m);
+    bool now = false;
+    for (; m->next_event < m->n_event && m->event[m->next_event] <= m->time + eps; m->next_event++) {
+        now = m->event[m->next_event] >= m->time - eps;
+    }
+    return now;
+}
+
+static void set_time(bough_master *m, double t) {
+    m->time = t;
+    if (t >= (double)(m->grid_index + 1) * m->macro_step - resolution(m)) m->grid_index++;
+    m->at_event = pass_events(m);
 }
 
 // Adds to a failed member's message what the coupling was doing.
@@ -210,7 +222,6 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_coupling *c = m->coupling;
     bough_snapshot_take(s, &m->time, sizeof m->time);
     bough_snapshot_take(s, &m->steps, sizeof m->steps);
-    bough_snapshot_take(s, &m->next_event, sizeof m->next_event);
     bough_snapshot_take(s, &m->grid_index, sizeof m->grid_index);
     bough_snapshot_take(s, &m->at_event, sizeof m->at_event);
     bough_coupling_snapshot(c, s);
@@ -223,5 +234,8 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_monitor_snapshot(m->monitor, c, s);
     if (m->estimate) bough_error_estimate_snapshot(m->estimate, s);
     if (m->control) bough_step_control_snapshot(m->control, s);
-    if (s->move == BOUGH_SNAPSHOT_RESTORE) c->refactor = true;
+    if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
+    m->next_event = 0;
+    pass_events(m);
+    c->refactor = true;
 }

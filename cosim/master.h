@@ -71,6 +71,9 @@ bough_status bough_step(bough_master *m);
 // the copy it has just saved goes on bit for bit as another process that restores it.
 void bough_master_snapshot(bough_master *m, bough_snapshot *s);
 
+// Whether all loads are sampled at `time`: only then a snapshot is whole.
+bool bough_master_sampled(const bough_master *m);
+
 // Whether the duration is reached.
 bool bough_master_done(const bough_master *m);
 

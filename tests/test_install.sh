@@ -6,6 +6,14 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cmake --install "$build" --prefix "$folder/usr" >/dev/null
 "$folder/usr/bin/bough" --version
+library=$(find "$folder/usr" -name 'libbough.so.0')
+declared=$(grep -o 'bough_session_[a-z]*(' "$source/apps/api/bough.h" | tr -d '(' | sort -u)
+[ "$(nm -D --defined-only "$library" | sed 's/.* //' | sort)" = "$declared" ]
+if python=$(command -v python3); then
+    PYTHONPATH=$(dirname "$library")/bough PYTHONDONTWRITEBYTECODE=1 "$python" -c "
+import bough
+print('python:', len(bough.Session('$source/apps/mechanisms/pendulum.yaml').names), 'channels')"
+fi
 grep -q '^\.SS study' "$folder/usr/share/man/man1/bough.1"
 completed=$(bash -c '. "$1/usr/share/bash-completion/completions/bough"
     complete_words() { COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _bough "$bough"; echo "${COMPREPLY[*]}"; }

@@ -3,6 +3,7 @@
 
 #include "apps/api/bough.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const char pendulum[] = BOUGH_SOURCE_DIR "/apps/mechanisms/pendulum.yaml";
@@ -64,11 +65,136 @@ static void sessions_live_side_by_side(void **context) {
     bough_session_close(b);
 }
 
+// -- copies ---------------------------------------------------------------------------------------
+
+static const char runup[] = BOUGH_SOURCE_DIR "/apps/turbine/runup.yaml";
+static const char few[] = "bodies[3-5].rod.segments=8";
+
+static void *save(bough_session *s) {
+    void *copy = malloc(bough_session_size(s));
+    assert_non_null(copy);
+    assert_int_equal(bough_session_save(s, copy), BOUGH_SESSION_OK);
+    return copy;
+}
+
+static void check_same(bough_session *a, bough_session *b) {
+    assert_true(bough_session_time(a) == bough_session_time(b));
+    size_t bytes = (size_t)bough_session_count(a) * sizeof(double);
+    assert_memory_equal(bough_session_values(a), bough_session_values(b), bytes);
+}
+
+// A run that goes on, the same taken back later, and another session that starts there.
+static void check_goes_on(const char *scene, const char *const *set, int n_set) {
+    enum { BEFORE = 25, AFTER = 30 };
+    bough_session *run = bough_session_open(scene, set, n_set);
+    bough_session *again = bough_session_open(scene, set, n_set);
+    bough_session *other = bough_session_open(scene, set, n_set);
+    for (int k = 0; k < BEFORE; k++) {
+        bough_session_step(run);
+        bough_session_step(again);
+    }
+    void *copy = save(run), *same = save(again);
+    for (int k = 0; k < AFTER; k++) bough_session_step(again);
+    assert_int_equal(bough_session_restore(again, same), BOUGH_SESSION_OK);
+    assert_int_equal(bough_session_restore(other, copy), BOUGH_SESSION_OK);
+    assert_true(bough_session_time(run) > 0);
+    for (int k = 0; k < AFTER; k++) {
+        check_same(run, again);
+        check_same(run, other);
+        assert_int_equal(bough_session_step(run), BOUGH_SESSION_OK);
+        bough_session_step(again);
+        bough_session_step(other);
+    }
+    check_same(run, again);
+    check_same(run, other);
+    free(copy);
+    free(same);
+    bough_session_close(run);
+    bough_session_close(again);
+    bough_session_close(other);
+}
+
+static void restored_runs_go_on_to_the_same_bits(void **context) {
+    (void)context;
+    const char *const set[] = {few, "aero.dynamic_stall=hgm", "aero.induction.inflow=oye"};
+    check_goes_on(pendulum, NULL, 0);
+    check_goes_on(runup, set, 3);
+    check_goes_on(BOUGH_SOURCE_DIR "/apps/turbine/power.yaml", set, 1);
+}
+
+// From the same moment, one with another wind: nothing differs until the air is sampled again.
+static void another_wind_makes_a_what_if(void **context) {
+    (void)context;
+    const char *const set[] = {few, "aero.wind.speed=30 m/s"};
+    bough_session *run = bough_session_open(runup, set, 1);
+    bough_session *gust = bough_session_open(runup, set, 2);
+    int thrust = bough_session_find(run, "RtAeroFxh");
+    while (bough_session_time(run) < 1.99) bough_session_step(run);
+    void *copy = save(run);
+    assert_int_equal(bough_session_restore(gust, copy), BOUGH_SESSION_OK);
+    check_same(run, gust);
+    while (bough_session_time(run) < 2.49) {
+        bough_session_step(run);
+        bough_session_step(gust);
+    }
+    assert_true(bough_session_read(gust, thrust) > 1.3 * bough_session_read(run, thrust));
+    free(copy);
+    bough_session_close(run);
+    bough_session_close(gust);
+}
+
+static void a_failed_session_is_restored(void **context) {
+    (void)context;
+    const char *const set[] = {"simulation.coupling.scheme=frozen", few, "bodies[2].mass=1",
+                               "bodies[2].inertia=[10, 10, 10, 0, 0, 0]"};
+    bough_session *s = bough_session_open(runup, set, 4);
+    void *copy = save(s);
+    double end[2];
+    for (int k = 0; k < 2; k++) {
+        int code = BOUGH_SESSION_OK;
+        while (code == BOUGH_SESSION_OK) code = bough_session_step(s);
+        assert_int_equal(code, BOUGH_SESSION_FAILED);
+        assert_null(bough_session_values(s));
+        end[k] = bough_session_time(s);
+        assert_int_equal(bough_session_save(s, copy), BOUGH_SESSION_FAILED);
+        assert_int_equal(bough_session_restore(s, copy), BOUGH_SESSION_OK);
+        assert_string_equal(bough_session_error(s), "");
+    }
+    assert_true(end[0] == end[1]);
+    free(copy);
+    bough_session_close(s);
+}
+
+static void unfit_copies_are_refused(void **context) {
+    (void)context;
+    const char *const often[] = {few, "simulation.macro_step=5 ms"};
+    bough_session *a = bough_session_open(pendulum, NULL, 0);
+    bough_session *b = bough_session_open(runup, often, 2);
+    void *copy = save(a);
+    assert_int_equal(bough_session_restore(b, copy), BOUGH_SESSION_INVALID);
+    assert_non_null(strstr(bough_session_error(b), "other parts"));
+    assert_int_equal(bough_session_step(b), BOUGH_SESSION_OK); // nothing has happened to it
+    void *between = malloc(bough_session_size(b));
+    assert_int_equal(bough_session_save(b, between), BOUGH_SESSION_INVALID);
+    assert_non_null(strstr(bough_session_error(b), "between two samples"));
+    ((char *)copy)[0] = 'x';
+    assert_int_equal(bough_session_restore(a, copy), BOUGH_SESSION_INVALID);
+    assert_int_equal(bough_session_step(a), BOUGH_SESSION_OK);
+    free(copy);
+    free(between);
+    bough_session_close(a);
+    bough_session_close(b);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_to_the_end_and_reads),
         cmocka_unit_test(errors_are_told),
         cmocka_unit_test(sessions_live_side_by_side),
+        cmocka_unit_test(restored_runs_go_on_to_the_same_bits),
+        cmocka_unit_test(another_wind_makes_a_what_if),
+        cmocka_unit_test(a_failed_session_is_restored),
+        cmocka_unit_test(unfit_copies_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,7 +1,1 @@
-include(CMakeFindDependencyMacro)
-find_dependency(SUNDIALS 6.4 CONFIG COMPONENTS arkode cvode ida)
-find_dependency(LAPACK)
-find_dependency(OpenMP)
-find_dependency(PkgConfig)
-pkg_check_modules(YAML REQUIRED IMPORTED_TARGET yaml-0.1)
 include(${CMAKE_CURRENT_LIST_DIR}/bough-targets.cmake)

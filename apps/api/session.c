@@ -1,6 +1,7 @@
 #include "apps/api/bough.h"
 
 #include "apps/scene/build.h"
+#include "apps/scene/fingerprint.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -14,15 +15,17 @@ struct bough_session {
     bough_channels channels;
     double *value; // (channels.count)
     bool sampled;  // value belongs to the current time
+    bool failed;   // a step did; the state means nothing
+    uint64_t kind; // fingerprint of what its copies hold
+    size_t size;   // of a copy [bytes]
     int code;
     char error[ERROR_TEXT];
 };
 
 static int settle(bough_session *s, bough_status status) {
-    s->code = bough_is_ok(&status) ? BOUGH_SESSION_OK : bough_exit_code(status.code);
-    if (!bough_is_ok(&status) && status.message[0]) {
-        snprintf(s->error, sizeof s->error, "%s", status.message);
-    }
+    bool good = bough_is_ok(&status);
+    s->code = good ? BOUGH_SESSION_OK : bough_exit_code(status.code);
+    if (good || status.message[0]) snprintf(s->error, sizeof s->error, "%s", status.message);
     return s->code;
 }
 
@@ -35,6 +38,87 @@ static void keep_errors(bough_session *s, const bough_errors *errors) {
     s->error[sizeof s->error - 1] = '\0';
 }
 
+// -- copies ---------------------------------------------------------------------------------------
+
+// What every copy begins with.
+typedef struct head {
+    char magic[16];
+    uint64_t kind;
+} head;
+
+static const char magic[sizeof((head *)0)->magic] = "bough session 1";
+
+static void take(bough_session *s, bough_snapshot *snapshot) {
+    head h = {.kind = s->kind};
+    memcpy(h.magic, magic, sizeof magic);
+    bough_snapshot_take(snapshot, &h, sizeof h);
+    bough_snapshot_doubles(snapshot, s->value, s->channels.count);
+    bough_simulation_snapshot(s->simulation, snapshot);
+}
+
+// Two sessions understand each other's copies when the same numbers stand at the same places.
+static void describe_copy(bough_session *s) {
+    const bough_master *m = s->simulation->master;
+    const bough_assembly *a = m->assembly;
+    bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
+    take(s, &measure);
+    s->size = measure.used;
+    s->kind = BOUGH_FINGERPRINT_START;
+    bough_mix(&s->kind, &s->size, sizeof s->size);
+    bough_mix_text(&s->kind, m->scheme->name);
+    bough_mix(&s->kind, &m->macro_step, sizeof m->macro_step);
+    for (int i = 0; i < a->n_member; i++) {
+        size_t size = a->member[i]->ops->save_size(a->member[i]->self);
+        bough_mix_text(&s->kind, a->member[i]->name);
+        bough_mix(&s->kind, &size, sizeof size);
+    }
+    for (int i = 0; i < s->channels.count; i++) {
+        bough_mix_text(&s->kind, s->channels.channel[i].name);
+    }
+}
+
+static bough_status check_save(const bough_session *s) {
+    const bough_master *m = s->simulation->master;
+    if (bough_master_sampled(m)) return bough_simulation_storable(s->simulation);
+    return bough_fail(BOUGH_INVALID,
+                      "at %.9g s the air or the control is between two samples, whose past is in no "
+                      "copy: step on",
+                      m->time);
+}
+
+static bough_status check_copy(const bough_session *s, const void *copy) {
+    head h;
+    memcpy(&h, copy, sizeof h);
+    if (memcmp(h.magic, magic, sizeof magic) != 0) {
+        return bough_fail(BOUGH_INVALID, "this is no copy of a session");
+    }
+    if (h.kind == s->kind) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "the copy is of a scene with other parts, coupling or steps");
+}
+
+size_t bough_session_size(const bough_session *s) { return s->size; }
+
+int bough_session_save(bough_session *s, void *copy) {
+    if (!s->simulation || s->failed) return s->code;
+    bough_status status = check_save(s);
+    if (!bough_is_ok(&status)) return settle(s, status);
+    bough_session_values(s);
+    take(s, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0});
+    return bough_session_restore(s, copy);
+}
+
+int bough_session_restore(bough_session *s, const void *copy) {
+    if (!s->simulation) return s->code;
+    bough_status status = check_copy(s, copy);
+    if (!bough_is_ok(&status)) return settle(s, status);
+    take(s, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, (char *)(uintptr_t)copy, 0});
+    s->sampled = true;
+    s->failed = false;
+    return settle(s, bough_ok());
+}
+
+// -- opening and stepping -------------------------------------------------------------------------
+
 static bough_status build(bough_session *s, const char *path, const char *const *set, int count) {
     bough_errors errors = {.arena = s->arena};
     bough_scene *scene = NULL;
@@ -44,14 +128,17 @@ static bough_status build(bough_session *s, const char *path, const char *const 
         if (errors.n > 0) status.message[0] = '\0';
         return status;
     }
-    status = bough_simulation_build(s->arena, scene, &s->simulation);
-    if (!bough_is_ok(&status)) s->simulation = NULL;
+    bough_simulation *simulation = NULL;
+    status = bough_simulation_build(s->arena, scene, &simulation);
     if (!bough_is_ok(&status)) return status;
     s->channels = bough_channels_start(s->arena);
-    status = bough_simulation_channels(s->simulation, &s->channels);
+    status = bough_simulation_channels(simulation, &s->channels);
+    if (!bough_is_ok(&status)) return status;
     s->value = bough_arena_doubles(s->arena, (size_t)s->channels.count + 1);
-    if (s->value) return status;
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!s->value) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    s->simulation = simulation;
+    describe_copy(s);
+    return status;
 }
 
 bough_session *bough_session_open(const char *scene, const char *const *set, int count) {
@@ -72,10 +159,12 @@ const char *bough_session_warning(const bough_session *s) {
 }
 
 int bough_session_step(bough_session *s) {
-    if (s->code != BOUGH_SESSION_OK) return s->code;
+    if (!s->simulation || s->failed) return s->code;
     if (bough_master_done(s->simulation->master)) return BOUGH_SESSION_DONE;
     s->sampled = false;
-    return settle(s, bough_step(s->simulation->master));
+    bough_status status = bough_step(s->simulation->master);
+    s->failed = !bough_is_ok(&status);
+    return settle(s, status);
 }
 
 double bough_session_time(const bough_session *s) {
@@ -104,14 +193,19 @@ int bough_session_find(const bough_session *s, const char *name) {
     return s->channels.count > 0 ? bough_channels_find(&s->channels, name) : -1;
 }
 
-double bough_session_read(bough_session *s, int channel) {
-    if (!known(s, channel) || s->code == BOUGH_SESSION_FAILED) return (double)NAN;
+const double *bough_session_values(bough_session *s) {
+    if (!s->simulation || s->failed || s->channels.count == 0) return NULL;
     if (!s->sampled) {
         bough_simulation_update(s->simulation);
         bough_channels_sample(&s->channels, s->simulation->master->time, s->value);
         s->sampled = true;
     }
-    return s->value[channel];
+    return s->value;
+}
+
+double bough_session_read(bough_session *s, int channel) {
+    const double *value = known(s, channel) ? bough_session_values(s) : NULL;
+    return value ? value[channel] : (double)NAN;
 }
 
 void bough_session_close(bough_session *s) {

@@ -88,13 +88,8 @@ static bough_status read_interval(const char *text, double *interval) {
 // Between samples a load has a past that is not in the copy.
 static bough_status check_interval(const bough_run *run, double interval) {
     const bough_master *m = run->simulation->master;
-    const bough_scene *scene = run->simulation->scene;
-    if (scene->control.node && scene->control.kind != BOUGH_SCENE_VARIABLE_SPEED) {
-        return bough_fail(BOUGH_INVALID,
-                          "--checkpoint: the controller %.200s keeps a memory of its own, which "
-                          "cannot be stored",
-                          scene->control.library);
-    }
+    bough_status status = bough_simulation_storable(run->simulation);
+    if (!bough_is_ok(&status)) return status;
     if (bough_master_multiple(interval, m->macro_step) == 0) {
         return bough_fail(BOUGH_INVALID,
                           "--checkpoint %.9g s is not a multiple of the macro step %.9g s",

@@ -60,6 +60,9 @@ void bough_simulation_update(bough_simulation *s);
 // All that a run goes on from, at a time when its loads are sampled: see bough_master_snapshot.
 void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot);
 
+// BOUGH_INVALID where the scene has a part that cannot be stored.
+bough_status bough_simulation_storable(const bough_simulation *s);
+
 // How many bodies hang on a joint that moves.
 int bough_simulation_n_joints(const bough_simulation *s);
 

@@ -28,3 +28,11 @@ void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot) {
     if (s->drag) take_drag(s->drag, snapshot);
     if (s->control) take_control(s->control, snapshot);
 }
+
+bough_status bough_simulation_storable(const bough_simulation *s) {
+    const bough_scene_control *control = &s->scene->control;
+    if (!control->node || control->kind == BOUGH_SCENE_VARIABLE_SPEED) return bough_ok();
+    return bough_fail(BOUGH_INVALID,
+                      "the controller %.200s keeps a memory of its own, which cannot be stored",
+                      control->library);
+}

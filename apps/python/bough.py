@@ -1,0 +1,170 @@
+"""bough from Python: opens a scene, steps it, reads its channels, keeps copies of its state.
+
+    import bough
+    with bough.Session("runup.yaml", "simulation.duration=5 s") as run:
+        rows = run.advance(2.0, ["RotSpeed"])
+    print(rows["Time"][-1], rows["RotSpeed"][-1])
+
+Needs nothing beyond Python 3.8; where numpy is installed, values and rows are its arrays, on the
+same memory. The library is the one that BOUGH_LIBRARY names, else the one in the folder above this
+file's, where `cmake --install` puts it, else one that the system finds.
+"""
+import array
+import ctypes
+import os
+
+try:
+    import numpy
+except ImportError:
+    numpy = None
+
+OK, DONE, INVALID, FAILED, OTHER = 0, -1, 2, 3, 1
+
+
+class Error(Exception):
+    """What bough says of a scene, a step or a copy; `code` is INVALID, FAILED or OTHER."""
+
+    def __init__(self, code, text):
+        super().__init__(text)
+        self.code = code
+
+
+def _load():
+    beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "libbough.so.0")
+    path = os.environ.get("BOUGH_LIBRARY") or (beside if os.path.exists(beside) else None)
+    library = ctypes.CDLL(path or "libbough.so.0")
+    session, text, real = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_double
+    for name, result, *arguments in (
+        ("open", session, text, ctypes.POINTER(text), ctypes.c_int),
+        ("code", ctypes.c_int, session),
+        ("error", text, session),
+        ("warning", text, session),
+        ("step", ctypes.c_int, session),
+        ("time", real, session),
+        ("duration", real, session),
+        ("count", ctypes.c_int, session),
+        ("name", text, session, ctypes.c_int),
+        ("unit", text, session, ctypes.c_int),
+        ("values", ctypes.c_void_p, session),
+        ("size", ctypes.c_size_t, session),
+        ("save", ctypes.c_int, session, ctypes.c_void_p),
+        ("restore", ctypes.c_int, session, ctypes.c_void_p),
+        ("close", None, session),
+    ):
+        function = getattr(library, "bough_session_" + name)
+        function.restype, function.argtypes = result, arguments
+    return library
+
+
+_library = _load()
+
+
+def _view(doubles):
+    """numpy's array on the memory of the doubles, where there is numpy."""
+    return numpy.frombuffer(doubles) if numpy else doubles
+
+
+class _Handle:
+    """The session in C: lives as long as its session in Python or a view of its values."""
+
+    def __init__(self, scene, settings):
+        words = (ctypes.c_char_p * len(settings))(*(os.fsencode(s) for s in settings))
+        self.pointer = _library.bough_session_open(os.fsencode(scene), words, len(settings))
+        if not self.pointer:
+            raise MemoryError
+
+    def __del__(self):
+        if getattr(self, "pointer", None):
+            _library.bough_session_close(self.pointer)
+
+
+class Session:
+    """A scene that runs: Session("runup.yaml", "aero.wind.speed=12 m/s", ...)."""
+
+    def __init__(self, scene, *settings):
+        self._handle = _Handle(scene, settings)
+        self._check(self._call("code"))
+        text = {"names": "name", "units": "unit"}
+        for attribute, call in text.items():
+            words = [self._call(call, i).decode() for i in range(self._call("count"))]
+            setattr(self, attribute, words)
+        self._index = {name: i for i, name in enumerate(self.names)}
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def close(self):
+        self._handle = None
+
+    def _call(self, name, *arguments):
+        if self._handle is None:
+            raise ValueError("the session is closed")
+        return getattr(_library, "bough_session_" + name)(self._handle.pointer, *arguments)
+
+    def _check(self, code):
+        if code not in (OK, DONE):
+            raise Error(code, self._call("error").decode().rstrip())
+        return code
+
+    @property
+    def time(self):
+        """Now [s]."""
+        return self._call("time")
+
+    @property
+    def duration(self):
+        """The time at which the scene ends [s]."""
+        return self._call("duration")
+
+    @property
+    def warning(self):
+        """What was found about the stability of the coupling, or ""."""
+        return self._call("warning").decode()
+
+    def step(self):
+        """Takes one macro step; False at the scene's end, where nothing is done."""
+        return self._check(self._call("step")) == OK
+
+    @property
+    def values(self):
+        """All channels now, in the order of `names`: a view for reading. Later reads change it."""
+        address = self._call("values")
+        if not address:
+            raise Error(FAILED, "there are no values: no channels, or a step has failed")
+        doubles = (ctypes.c_double * len(self.names)).from_address(address)
+        doubles.handle = self._handle
+        return _view(memoryview(doubles).cast("B").cast("d").toreadonly())
+
+    def __getitem__(self, name):
+        """A channel now: session["RotSpeed"]."""
+        return float(self.values[self._index[name]])
+
+    def advance(self, until=None, channels=None):
+        """Steps to a time [s] or the end; a row per step of the channels, None for all, and one of
+        the start: a dictionary of columns, "Time" the first."""
+        until = self.duration if until is None else until
+        names = self.names if channels is None else channels
+        columns = {name: array.array("d") for name in ["Time", *names]}
+        index = [self._index[name] for name in names]
+        while True:
+            now, values = self.time, self.values
+            columns["Time"].append(now)
+            for name, i in zip(names, index):
+                columns[name].append(values[i])
+            if now >= until - 1e-9 or not self.step():
+                return {name: _view(column) for name, column in columns.items()}
+
+    def save(self):
+        """A copy of all that the run goes on from. See bough.h for what restores where."""
+        copy = (ctypes.c_double * (self._call("size") // 8))()
+        self._check(self._call("save", ctypes.addressof(copy)))
+        return copy
+
+    def restore(self, copy):
+        """Takes the session to where the copy was made, be it of this or of a like session."""
+        if ctypes.sizeof(copy) != self._call("size"):
+            raise Error(INVALID, "the copy is of a scene with other parts, coupling or steps")
+        self._check(self._call("restore", ctypes.addressof(copy)))
