@@ -1,12 +1,11 @@
 // All members of an assembly as one system ẏ = F(t, y), the inputs found from the outputs: its
-// rate, and solutions of (I − γ ∂F/∂y) x = r. That matrix is an arrow, solved by static
-// condensation onto the inputs,
+// rate, and solutions of (I − γ ∂F/∂y) x = r. That matrix is an arrow, solved by static condensation,
 //     (I − γJ_i) x_i = r_i + γ B_i δu_i,   δo_i = C_i x_i + D_i δu_i,   δu = P δo,
-// so each member is factored by itself and the interface system has the size of all inputs.
+// so each member is factored by itself and the interface system is that of condense.h.
 #ifndef BOUGH_COSIM_ARROW_H
 #define BOUGH_COSIM_ARROW_H
 
-#include "cosim/assembly.h"
+#include "cosim/condense.h"
 
 typedef struct bough_arrow {
     const bough_assembly *assembly;
@@ -24,13 +23,10 @@ typedef struct bough_arrow {
     double setup_time;
     double *setup_state;  // (n_state) where the matrix was taken
     double *setup_input;  // (n_input)
-    double *column;   // of each member (n_input × n_state): (I − γJ)⁻¹ γB, member after member
-    double *response; // of each member (n_input × n_output): its outputs' change with its inputs
-    size_t *column_offset, *response_offset; // (n_member) where they begin
-    double *matrix;   // (n_input × n_input, column-major) interface
-    int *pivot;       // (n_input)
-    double *unit, *change; // (n_input) increments of the inputs
-    double *output_change; // (n_output)
+    bough_condensed *interface;
+    const double *outside; // (n_input) of the solution in progress; NULL: 0
+    double *change;        // (n_input) of the inputs with the last solution
+    double *output_change; // (n_output) of each member by itself
 
     // states that are held
     int n_held;
