@@ -319,7 +319,7 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
                                     bough_rotor_data *data) {
     size_t n_blade = (size_t)rotor->n_blade, n_station = (size_t)rotor->n_station;
     size_t n_vertex = (size_t)rotor->n_vertex;
-    *data = (bough_rotor_data){.threads = 1};
+    *data = (bough_rotor_data){0};
     data->force = bough_arena_take(arena, n_blade * n_vertex * sizeof *data->force);
     data->moment = bough_arena_take(arena, n_blade * n_vertex * sizeof *data->moment);
     data->station = bough_arena_take(arena, n_blade * n_station * sizeof *data->station);
@@ -514,38 +514,49 @@ static void sum_rotor(const bough_rotor *rotor, const bough_rotor_motion *motion
     }
 }
 
-// A parallel region of one thread would take memory.
-static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *motion,
-                          bough_rotor_data *data) {
-    int n = rotor->n_blade * rotor->n_station;
-    if (data->threads > 1) {
-#pragma omp parallel for schedule(static) num_threads(data->threads)
-        for (int k = 0; k < n; k++) move_station(rotor, motion, k, data);
-    } else {
-        for (int k = 0; k < n; k++) move_station(rotor, motion, k, data);
+// -- stations, shared out in runs ------------------------------------------------------------------
+
+enum { RUN = 4 }; // stations of a task
+
+typedef struct sample_work {
+    const bough_rotor *rotor;
+    const bough_rotor_motion *motion;
+    const disk *disk;
+    bough_rotor_data *data;
+} sample_work;
+
+static int run_end(const bough_rotor *rotor, int run) {
+    int n = rotor->n_blade * rotor->n_station, end = (run + 1) * RUN;
+    return end < n ? end : n;
+}
+
+static void move_run(void *self, int run) {
+    const sample_work *w = self;
+    for (int k = run * RUN; k < run_end(w->rotor, run); k++) {
+        move_station(w->rotor, w->motion, k, w->data);
     }
 }
 
-static void load_stations(const bough_rotor *rotor, const disk *d, bough_rotor_data *data) {
-    int n = rotor->n_blade * rotor->n_station;
-    if (data->threads > 1) {
-#pragma omp parallel for schedule(static) num_threads(data->threads)
-        for (int k = 0; k < n; k++) load_station(rotor, d, k, data);
-    } else {
-        for (int k = 0; k < n; k++) load_station(rotor, d, k, data);
+static void load_run(void *self, int run) {
+    const sample_work *w = self;
+    for (int k = run * RUN; k < run_end(w->rotor, run); k++) {
+        load_station(w->rotor, w->disk, k, w->data);
     }
 }
 
 void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
                         bough_rotor_data *data) {
-    move_stations(rotor, motion, data);
+    sample_work w = {rotor, motion, NULL, data};
+    int n_run = (rotor->n_blade * rotor->n_station + RUN - 1) / RUN;
+    bough_pool_run(data->pool, n_run, move_run, &w);
     disk d = survey_disk(rotor, motion, data);
     if (data->memory.clock) bough_rotor_resume(motion, data);
     d.memory = data->memory.station;
     d.stall = data->memory.stall;
     if (data->memory.clock) d.step = data->memory.clock->step;
     d.first = data->station;
-    load_stations(rotor, &d, data);
+    w.disk = &d;
+    bough_pool_run(data->pool, n_run, load_run, &w);
     for (int b = 0; b < rotor->n_blade; b++)
         spread(rotor, b, data);
     sum_rotor(rotor, motion, data);

@@ -15,6 +15,7 @@
 #include "aero/tower.h"
 #include "aero/wind.h"
 #include "core/arena.h"
+#include "core/pool.h"
 #include "core/status.h"
 #include "core/vec3.h"
 
@@ -94,7 +95,7 @@ typedef struct bough_rotor_memory {
 
 typedef struct bough_rotor_data {
     bough_rotor_memory memory; // advanced by bough_rotor_sample
-    int threads;               // for the stations, which are independent; set by the user, 1
+    bough_pool *pool;          // shares out the stations; set by the user, NULL: one thread
     // computed by bough_rotor_sample
     bough_vec3 *force;      // (n_blade × n_vertex) on each vertex, ground axes [N]
     bough_vec3 *moment;     // (n_blade × n_vertex) about each vertex, ground axes [N m]

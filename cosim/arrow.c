@@ -6,22 +6,24 @@
 
 enum { FOLLOWERS, LEADERS, ALL };
 
-static void run_one(bough_arrow *a, int whom, int i, void (*work)(bough_arrow *a, int member)) {
+typedef struct member_work {
+    bough_arrow *arrow;
+    int whom;
+    void (*work)(bough_arrow *arrow, int member);
+} member_work;
+
+static void run_member(void *data, int i) {
+    const member_work *w = data;
+    bough_arrow *a = w->arrow;
     a->status[i].code = BOUGH_OK;
-    if (whom == ALL || a->interface->of[i].leads == (whom == LEADERS)) work(a, i);
+    if (w->whom == ALL || a->interface->of[i].leads == (w->whom == LEADERS)) w->work(a, i);
 }
 
 // work(arrow, member) for every one of them, in parallel; the first failure in member order.
 static bough_status each(bough_arrow *a, int whom, void (*work)(bough_arrow *a, int member)) {
     int n = a->assembly->n_member;
-    if (a->threads > 1) {
-#pragma omp parallel for schedule(dynamic, 1) num_threads(a->threads)
-        for (int i = 0; i < n; i++)
-            run_one(a, whom, i, work);
-    } else {
-        for (int i = 0; i < n; i++)
-            run_one(a, whom, i, work);
-    }
+    member_work w = {a, whom, work};
+    bough_pool_run(a->pool, n, run_member, &w);
     for (int i = 0; i < n; i++) {
         if (!bough_is_ok(&a->status[i])) return a->status[i];
     }
@@ -215,12 +217,12 @@ static bool take(bough_arrow *arrow, bough_arena *arena) {
     return !bough_arena_exhausted(arena);
 }
 
-bough_status bough_arrow_create(bough_arena *arena, const bough_assembly *assembly, int threads,
-                                bough_arrow **arrow) {
+bough_status bough_arrow_create(bough_arena *arena, const bough_assembly *assembly,
+                                bough_pool *pool, bough_arrow **arrow) {
     bough_arrow *a = bough_arena_take(arena, sizeof *a);
     if (!a) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     a->assembly = assembly;
-    a->threads = threads;
+    a->pool = pool;
     if (!take(a, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     *arrow = a;
     return bough_condensed_create(arena, assembly, &a->interface);

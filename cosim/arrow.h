@@ -5,11 +5,12 @@
 #ifndef BOUGH_COSIM_ARROW_H
 #define BOUGH_COSIM_ARROW_H
 
+#include "core/pool.h"
 #include "cosim/condense.h"
 
 typedef struct bough_arrow {
     const bough_assembly *assembly;
-    int threads;
+    bough_pool *pool;       // NULL: one thread
     double *output, *input; // (n_output), (n_input) of the last bough_arrow_inputs
     bough_status *status;   // (n_member) of the last work on each
 
@@ -37,9 +38,9 @@ typedef struct bough_arrow {
     int *held_pivot;    // (n_held)
 } bough_arrow;
 
-// Builds the memory in the arena; members are worked on by `threads` threads.
-bough_status bough_arrow_create(bough_arena *arena, const bough_assembly *assembly, int threads,
-                                bough_arrow **arrow);
+// Builds the memory in the arena; members are shared out by the pool.
+bough_status bough_arrow_create(bough_arena *arena, const bough_assembly *assembly,
+                                bough_pool *pool, bough_arrow **arrow);
 
 // From now on solutions keep these states (n, borrowed): x is 0 there, whatever force that takes.
 bough_status bough_arrow_hold(bough_arena *arena, bough_arrow *arrow, int n, const int *held);

@@ -29,13 +29,13 @@ static bool take(bough_coupling *c, bough_arena *arena) {
 }
 
 bough_status bough_coupling_create(bough_arena *arena, const bough_assembly *assembly,
-                                   const bough_scheme_options *options, int threads,
+                                   const bough_scheme_options *options, bough_pool *pool,
                                    bough_coupling **coupling) {
     bough_coupling *c = bough_arena_take(arena, sizeof *c);
     if (!c) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     c->assembly = assembly;
     c->options = *options;
-    c->threads = threads;
+    c->pool = pool;
     c->failed_member = -1;
     if (!take(c, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     c->t0 = c->t1 = *assembly->member[0]->time;
@@ -52,20 +52,23 @@ static bool in_stage(const bough_coupling *c, int stage, int member) {
     return stage == BOUGH_ALL_STAGES || c->assembly->stage[member] == stage;
 }
 
-static void run_one(bough_coupling *c, int stage, int i, void (*work)(bough_coupling *, int)) {
-    c->status[i].code = BOUGH_OK;
-    if (in_stage(c, stage, i)) work(c, i);
+typedef struct member_work {
+    bough_coupling *coupling;
+    int stage;
+    void (*work)(bough_coupling *c, int member);
+} member_work;
+
+static void run_member(void *data, int i) {
+    const member_work *w = data;
+    w->coupling->status[i].code = BOUGH_OK;
+    if (in_stage(w->coupling, w->stage, i)) w->work(w->coupling, i);
 }
 
 bough_status bough_coupling_each(bough_coupling *c, int stage,
                                  void (*work)(bough_coupling *c, int member)) {
     int n = c->assembly->n_member;
-    if (c->threads > 1) {
-#pragma omp parallel for schedule(dynamic, 1) num_threads(c->threads)
-        for (int i = 0; i < n; i++) run_one(c, stage, i, work);
-    } else {
-        for (int i = 0; i < n; i++) run_one(c, stage, i, work);
-    }
+    member_work w = {c, stage, work};
+    bough_pool_run(c->pool, n, run_member, &w);
     for (int i = 0; i < n; i++) {
         if (bough_is_ok(&c->status[i])) continue;
         c->failed_member = i;

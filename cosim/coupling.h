@@ -2,6 +2,7 @@
 #ifndef BOUGH_COSIM_COUPLING_H
 #define BOUGH_COSIM_COUPLING_H
 
+#include "core/pool.h"
 #include "core/snapshot.h"
 #include "cosim/accelerate.h"
 #include "cosim/assembly.h"
@@ -32,7 +33,7 @@ enum { BOUGH_HISTORY = 3 };
 typedef struct bough_coupling {
     const bough_assembly *assembly;
     bough_scheme_options options;
-    int threads;
+    bough_pool *pool;  // NULL: one thread
     void *scheme_data; // what the scheme created
 
     // the step to take, set by the master
@@ -72,14 +73,14 @@ typedef struct bough_coupling {
 
 // Builds the working data and evaluates the outputs at the members' current states.
 bough_status bough_coupling_create(bough_arena *arena, const bough_assembly *assembly,
-                                   const bough_scheme_options *options, int threads,
+                                   const bough_scheme_options *options, bough_pool *pool,
                                    bough_coupling **coupling);
 
 // -- moves --------------------------------------------------------------------------------------
 
 enum { BOUGH_ALL_STAGES = -1 };
 
-// Runs work(c, member) for every member of a stage, in parallel when threads > 1, and returns the
+// Runs work(c, member) for every member of a stage, shared out by the pool, and returns the
 // first failure in member order that the work left in c->status.
 bough_status bough_coupling_each(bough_coupling *c, int stage,
                                  void (*work)(bough_coupling *c, int member));

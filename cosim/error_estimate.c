@@ -81,7 +81,7 @@ bough_status bough_error_estimate_create(bough_arena *arena, const bough_couplin
     e->time[0] = c->t1;
     memcpy(e->value[0], c->input, (size_t)c->assembly->n_input * sizeof(double));
     *estimate = e;
-    return bough_arrow_create(arena, c->assembly, c->threads, &e->arrow);
+    return bough_arrow_create(arena, c->assembly, c->pool, &e->arrow);
 }
 
 // -- defects --------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@
 #include <string.h>
 
 bough_master_def bough_master_def_default(void) {
-    return (bough_master_def){.scheme = bough_scheme_options_default(), .threads = 1};
+    return (bough_master_def){.scheme = bough_scheme_options_default()};
 }
 
 long bough_master_multiple(double period, double macro_step) {
@@ -81,7 +81,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     if (!bough_is_ok(&status)) return status;
     status = bough_assembly_build(arena, &def->assembly, &m->assembly);
     if (!bough_is_ok(&status)) return status;
-    status = bough_coupling_create(arena, m->assembly, &def->scheme, def->threads, &m->coupling);
+    status = bough_coupling_create(arena, m->assembly, &def->scheme, def->pool, &m->coupling);
     if (!bough_is_ok(&status)) return status;
     if (m->scheme->create) status = m->scheme->create(m->coupling, arena);
     if (bough_is_ok(&status)) {

@@ -27,7 +27,7 @@ typedef struct bough_master_def {
     const bough_sampled_load *load; // (n_load), copied
     int n_event;
     const double *event; // (n_event) times where loads have corners [s], any order, copied
-    int threads;         // 1 or more
+    bough_pool *pool;    // borrowed; NULL: one thread
 } bough_master_def;
 
 // ramp, one thread, no loads, no events; assembly, macro_step and duration are the caller's.

@@ -56,7 +56,7 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     }
     c->scheme_data = m;
-    bough_status status = bough_arrow_create(arena, a, c->threads, &m->arrow);
+    bough_status status = bough_arrow_create(arena, a, c->pool, &m->arrow);
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < a->n_member; i++) {
         size_t size = (size_t)a->member[i]->n_state * sizeof(double);

@@ -90,7 +90,7 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     bough_status status = build_shadows(m, a, input);
     if (!bough_is_ok(&status)) return status;
     bough_coupling *c = NULL;
-    status = bough_coupling_create(m->arena, &m->assembly, &judged, 1, &c);
+    status = bough_coupling_create(m->arena, &m->assembly, &judged, NULL, &c);
     if (!bough_is_ok(&status) || !c) return status;
     m->coupling = c;
     m->scheme = bough_scheme_find(options->name);

@@ -4,12 +4,15 @@
 enum { N = 4 };
 
 static void build(bough_two_mass *m, bough_arrow **arrow, int threads) {
+    bough_pool *pool;
     *m = bough_two_mass_default();
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(m, def);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-    status = bough_arrow_create(m->arena, m->master->assembly, threads, arrow);
+    status = bough_pool_create(m->arena, threads, &pool);
+    assert_true(bough_is_ok(&status));
+    status = bough_arrow_create(m->arena, m->master->assembly, pool, arrow);
     assert_true(bough_is_ok(&status));
 }
 

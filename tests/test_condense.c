@@ -122,7 +122,7 @@ static void check(const plan *p) {
     bough_assembly *a;
     bough_arrow *arrow;
     bough_status status = bough_assembly_build(arena, &def, &a);
-    if (bough_is_ok(&status)) status = bough_arrow_create(arena, a, 1, &arrow);
+    if (bough_is_ok(&status)) status = bough_arrow_create(arena, a, NULL, &arrow);
     if (!bough_is_ok(&status)) fail_msg("%s: %s", p->what, status.message);
     assert_int_equal(arrow->interface->n, p->unknowns);
 

@@ -15,7 +15,7 @@ static void build(setup *s) {
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(&s->m, def);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-    status = bough_arrow_create(s->m.arena, s->m.master->assembly, 1, &s->arrow);
+    status = bough_arrow_create(s->m.arena, s->m.master->assembly, NULL, &s->arrow);
     assert_true(bough_is_ok(&status));
     memcpy(s->y, s->m.y0, sizeof s->y);
 }

@@ -8,7 +8,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 cp "$source"/tests/scenes/example-*.yaml "$scratch"
 cd "$scratch" || exit 1
-export OPENBLAS_NUM_THREADS=1 GOMP_SPINCOUNT=0
+export OPENBLAS_NUM_THREADS=1
 
 # A sanitizer reserves more addresses than any bound; it counts pages itself.
 memory=400000

@@ -21,7 +21,7 @@ static void build(setup *s, bough_two_mass masses) {
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(&s->m, def);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-    status = bough_arrow_create(s->m.arena, s->m.master->assembly, 1, &s->arrow);
+    status = bough_arrow_create(s->m.arena, s->m.master->assembly, NULL, &s->arrow);
     assert_true(bough_is_ok(&status));
     bough_arrow_inputs(s->arrow, 0, s->m.y0);
     s->def = (bough_modes_def){.state = s->m.y0, .input = s->arrow->input, .point = 1};

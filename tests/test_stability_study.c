@@ -4,6 +4,7 @@
 #include "tests/check.h"
 #include "tests/scratch.h"
 
+#include <stdatomic.h>
 #include <string.h>
 
 static const char text[] =
@@ -21,12 +22,10 @@ static const char text[] =
 
 enum { CELLS = 12, REFERENCES = 2 };
 
-static int steps_left; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+static atomic_int steps_left; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 static bool stop(void) {
-#pragma omp atomic
-    steps_left--;
-    return steps_left < 0;
+    return atomic_fetch_sub(&steps_left, 1) <= 0;
 }
 
 static bough_status perform(const char *folder, int part, int parts, int steps, char shown[8192]) {

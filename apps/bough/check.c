@@ -174,7 +174,7 @@ static void print_coupling(const bough_simulation *s) {
     printf("duration: %.9g s\n", m->duration);
     printf("macro_step: %.9g s\n", m->macro_step);
     printf("macro_steps: %ld\n", count_steps(m));
-    printf("threads: %d\n", m->coupling->threads);
+    printf("threads: %d\n", bough_pool_threads(m->coupling->pool));
 }
 
 // -- aerodynamics ---------------------------------------------------------------------------------

@@ -68,16 +68,11 @@ static bough_status end_output(bough_status status) {
                       errno ? strerror(errno) : "an earlier write failed");
 }
 
-// Two libraries read from the environment, before main begins, how their threads wait; so the
-// program sets what the user has not and starts itself once more. GNU OpenMP's threads spin for up
-// to 15 ms, a hundred macro steps: on a busy machine a run on two threads took ten times as long as
-// on one. OpenBLAS starts threads that we never use and that spin at first.
+// OpenBLAS starts threads that we never use and that spin at first, unless the environment forbids it
+// before main begins; so where the user has not, the program does and starts itself once more.
 static void quiet_threads(char **argv) {
-    bool openmp = !getenv("GOMP_SPINCOUNT") && !getenv("OMP_WAIT_POLICY");
-    bool blas = !getenv("OPENBLAS_NUM_THREADS");
-    if (openmp && setenv("GOMP_SPINCOUNT", "10000", 1) != 0) return;
-    if (blas && setenv("OPENBLAS_NUM_THREADS", "1", 1) != 0) return;
-    if (openmp || blas) execv("/proc/self/exe", argv);
+    if (getenv("OPENBLAS_NUM_THREADS") || setenv("OPENBLAS_NUM_THREADS", "1", 1) != 0) return;
+    execv("/proc/self/exe", argv);
 }
 
 int main(int argc, char **argv) {

@@ -221,7 +221,7 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
     status = bough_rotor_build(arena, &def, &l->rotor);
     if (bough_is_ok(&status)) status = check_reach(l);
     if (bough_is_ok(&status)) status = bough_rotor_data_build(arena, l->rotor, &l->data);
-    l->data.threads = simulation->scene->simulation.threads;
+    l->data.pool = simulation->pool;
     if (bough_is_ok(&status)) *link = l;
     return status;
 }

@@ -463,7 +463,7 @@ static bough_status build_master(builder *b) {
     def.duration = sim->duration;
     def.event = b->event;
     def.n_event = b->n_event;
-    def.threads = sim->threads;
+    def.pool = s->pool;
     if (s->aero != NULL) {
         load[def.n_load++] = bough_aero_link_load(s->aero);
     }
@@ -501,7 +501,8 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
                                     bough_simulation **simulation) {
     builder b = {.arena = arena, .scene = scene};
     if (!take_arrays(&b)) return out_of_memory();
-    bough_status status = set_bodies(&b);
+    bough_status status = bough_pool_create(arena, scene->simulation.threads, &b.s->pool);
+    if (bough_is_ok(&status)) status = set_bodies(&b);
     set_loads(&b);
     if (bough_is_ok(&status)) status = build_tree(&b);
     if (bough_is_ok(&status)) status = build_rods(&b);

@@ -41,6 +41,7 @@ typedef struct bough_simulation {
     struct bough_drag_link *drag; // NULL without drag of tower and hub
     struct bough_control_link *control; // NULL without a control block
     bough_master *master;
+    bough_pool *pool; // NULL: one thread
     // the rods in a row that carry the rotor, NULL without; undeformed top in the frame of the foot
     const bough_beam *tower_foot, *tower_top;
     bough_transform tower_rest;

@@ -168,7 +168,7 @@ static bough_status settle_members(bough_arena *arena, bough_simulation *s,
     double *state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
     int *row = bough_arena_take(arena, ((size_t)s->trunk.n_state + 1) * sizeof *row);
     if (!state || !row) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_status status = bough_arrow_create(arena, assembly, 1, &arrow);
+    bough_status status = bough_arrow_create(arena, assembly, NULL, &arrow);
     if (!bough_is_ok(&status)) return status;
     def.time = time;
     status = bough_arrow_hold(arena, arrow, bough_settle_held(s->tree, true, row), row);

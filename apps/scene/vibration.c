@@ -61,7 +61,7 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, solution *x
     x->held = bough_arena_take(arena, ((size_t)s->trunk.n_state + 1) * sizeof *x->held);
     if (!x->state || !x->mean || !x->held) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_settle_state(a, x->state);
-    bough_status status = bough_arrow_create(arena, a, 1, &x->arrow);
+    bough_status status = bough_arrow_create(arena, a, NULL, &x->arrow);
     if (!bough_is_ok(&status)) return status;
     int n_held = bough_settle_held(s->tree, false, x->held);
     status = bough_arrow_hold(arena, x->arrow, n_held, x->held);

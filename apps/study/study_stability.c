@@ -4,11 +4,13 @@
 #include "apps/study/study_map.h"
 #include "apps/study/study_store.h"
 #include "apps/study/study_table.h"
+#include "core/pool.h"
 
 #include <math.h>
-#include <omp.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 typedef struct stability {
     const bough_study *study;
@@ -17,6 +19,8 @@ typedef struct stability {
     bough_study_result *result;    // (n_cell)
     bough_study_store store;
     int done, to_do; // cells, in this call
+    bough_status worst; // of the groups
+    pthread_mutex_t mutex; // of store, done and worst
 } stability;
 
 // -- running --------------------------------------------------------------------------------------
@@ -34,13 +38,11 @@ static int count_missing(const stability *x, int group) {
 
 static bough_status keep(stability *x, const bough_study_cell *cell,
                          const bough_study_result *result) {
-    bough_status status;
-#pragma omp critical(bough_stability_store)
-    {
-        status = bough_study_store_add(&x->store, cell, result);
-        x->done++;
-        if (!x->options->quiet) fprintf(stderr, "\r%d of %d runs", x->done, x->to_do);
-    }
+    pthread_mutex_lock(&x->mutex);
+    bough_status status = bough_study_store_add(&x->store, cell, result);
+    x->done++;
+    if (!x->options->quiet) fprintf(stderr, "\r%d of %d runs", x->done, x->to_do);
+    pthread_mutex_unlock(&x->mutex);
     return status;
 }
 
@@ -80,19 +82,27 @@ static bough_status run_group(stability *x, int group) {
     return status;
 }
 
-static bough_status run_groups(stability *x) {
-    bough_status worst = bough_ok();
-    int threads = x->study->threads > 0 ? x->study->threads : omp_get_num_procs();
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-    for (int group = 0; group < x->study->n_reference; group++) {
-        if (!is_mine(x, group) || count_missing(x, group) == 0) continue;
-        bough_status status = run_group(x, group);
-        if (bough_is_ok(&status)) continue;
-#pragma omp critical(bough_stability_status)
-        worst = status;
-    }
+static void perform_group(void *self, int group) {
+    stability *x = self;
+    if (!is_mine(x, group) || count_missing(x, group) == 0) return;
+    bough_status status = run_group(x, group);
+    if (bough_is_ok(&status)) return;
+    pthread_mutex_lock(&x->mutex);
+    x->worst = status;
+    pthread_mutex_unlock(&x->mutex);
+}
+
+static bough_status run_groups(bough_arena *arena, stability *x) {
+    long threads = x->study->threads > 0 ? x->study->threads : sysconf(_SC_NPROCESSORS_ONLN);
+    bough_pool *pool;
+    bough_status status = bough_pool_create(arena, (int)threads, &pool);
+    if (!bough_is_ok(&status)) return status;
+    x->worst.code = BOUGH_OK;
+    pthread_mutex_init(&x->mutex, NULL);
+    bough_pool_run(pool, x->study->n_reference, perform_group, x);
+    pthread_mutex_destroy(&x->mutex);
     if (!x->options->quiet && x->done > 0) fputc('\n', stderr);
-    if (worst.code != BOUGH_INTERRUPTED) return worst;
+    if (x->worst.code != BOUGH_INTERRUPTED) return x->worst;
     return bough_fail(BOUGH_INTERRUPTED,
                       "interrupted after %d of %d runs, which are kept in %.150s; the same command "
                       "goes on from there",
@@ -235,7 +245,7 @@ bough_status bough_stability_perform(bough_arena *arena, const bough_study *stud
                                      const bough_study_options *options) {
     stability x = {.study = study, .options = options};
     bough_status status = start(arena, &x);
-    if (bough_is_ok(&status)) status = run_groups(&x);
+    if (bough_is_ok(&status)) status = run_groups(arena, &x);
     bough_study_store_close(&x.store);
     return bough_is_ok(&status) ? report(arena, &x) : status;
 }

@@ -1,0 +1,32 @@
+// Threads that share out lists of short tasks: a few microseconds each, many lists per step.
+//
+// A list is worked through in order: whoever is free takes its next task. So a task may wait for an
+// earlier one, which somebody has in hand; and the caller, who takes tasks too, never waits for a
+// thread that does not run. Results do not depend on who takes what as long as no sum crosses tasks.
+//
+// Who waits looks again for some 50 µs and then sleeps: at once where there are more threads than
+// processors. Threads are not bound to processors: two runs side by side would bind to the same.
+#ifndef BOUGH_CORE_POOL_H
+#define BOUGH_CORE_POOL_H
+
+#include "core/arena.h"
+#include "core/status.h"
+
+typedef struct bough_pool bough_pool;
+
+typedef void (*bough_task)(void *data, int task);
+
+// Starts threads − 1 threads, which end with the arena. For one thread the pool is NULL, allowed
+// below: it takes the tasks of a list one after the other, without memory or cost.
+bough_status bough_pool_create(bough_arena *arena, int threads, bough_pool **pool);
+
+// The caller included.
+int bough_pool_threads(const bough_pool *pool);
+
+// Does task(data, 0 … n − 1) and returns when all are done. One list at a time; no task may call it.
+void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data);
+
+// Inside a task: returns when the earlier task `earlier` of the list is done.
+void bough_pool_await(bough_pool *pool, int earlier);
+
+#endif

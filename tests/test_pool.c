@@ -1,0 +1,125 @@
+// Lists of tasks on threads: each task once, in order where it is asked for, however late a thread
+// comes and however often it sleeps.
+#include "core/pool.h"
+#include "tests/check.h"
+
+#include <stdatomic.h>
+#include <time.h>
+
+enum { MOST = 3000 };
+
+typedef struct list {
+    bough_pool *pool;
+    atomic_int count[MOST];
+    int sum[MOST]; // of the tasks up to each, where they wait for the one before
+} list;
+
+static bough_arena *make(int threads, list *l) {
+    bough_arena *arena = bough_arena_create();
+    bough_status status = bough_pool_create(arena, threads, &l->pool);
+    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    assert_int_equal(bough_pool_threads(l->pool), threads);
+    return arena;
+}
+
+static void reset(list *l) {
+    for (int k = 0; k < MOST; k++) atomic_store(&l->count[k], 0);
+}
+
+static void count(void *data, int k) {
+    list *l = data;
+    atomic_fetch_add(&l->count[k], 1);
+}
+
+static void each_task_is_done_once(void **state) {
+    (void)state;
+    static const int sizes[] = {0, 1, 2, 3, 57, MOST};
+    list l;
+    for (int threads = 1; threads <= 8; threads *= 2) {
+        bough_arena *arena = make(threads, &l);
+        for (int repeat = 0; repeat < 60; repeat++) {
+            int n = sizes[repeat % 6];
+            reset(&l);
+            bough_pool_run(l.pool, n, count, &l);
+            for (int k = 0; k < MOST; k++) assert_int_equal(atomic_load(&l.count[k]), k < n);
+        }
+        bough_arena_destroy(arena);
+    }
+}
+
+static void add_to_the_one_before(void *data, int k) {
+    list *l = data;
+    if (k > 0) bough_pool_await(l->pool, k - 1);
+    l->sum[k] = k == 0 ? 0 : l->sum[k - 1] + k; // plain numbers: waiting makes them visible
+}
+
+static void tasks_wait_for_earlier_ones(void **state) {
+    (void)state;
+    list l;
+    for (int threads = 1; threads <= 8; threads *= 2) {
+        bough_arena *arena = make(threads, &l);
+        for (int repeat = 0; repeat < 3; repeat++) {
+            bough_pool_run(l.pool, MOST, add_to_the_one_before, &l);
+            for (int k = 0; k < MOST; k++) assert_int_equal(l.sum[k], k * (k + 1) / 2);
+        }
+        bough_arena_destroy(arena);
+    }
+}
+
+static void nap(long ns) {
+    nanosleep(&(struct timespec){.tv_nsec = ns}, NULL);
+}
+
+// The first task is slow, so that its waiters and the caller sleep.
+static void wait_for_the_first(void *data, int k) {
+    list *l = data;
+    if (k == 0) nap(2000000);
+    if (k > 0) bough_pool_await(l->pool, 0);
+    l->sum[k] = k == 0 ? 7 : l->sum[0];
+}
+
+static void sleepers_wake(void **state) {
+    (void)state;
+    list l;
+    for (int threads = 2; threads <= 8; threads *= 2) {
+        bough_arena *arena = make(threads, &l);
+        for (int repeat = 0; repeat < 10; repeat++) {
+            nap(1000000); // longer than the threads look for work
+            l.sum[0] = 0;
+            bough_pool_run(l.pool, 9, wait_for_the_first, &l);
+            for (int k = 0; k < 9; k++) assert_int_equal(l.sum[k], 7);
+        }
+        bough_arena_destroy(arena);
+    }
+}
+
+// Lists that follow at once: a thread that comes late finds another list.
+static void lists_follow_at_once(void **state) {
+    (void)state;
+    list l;
+    bough_arena *arena = make(4, &l);
+    reset(&l);
+    for (int repeat = 0; repeat < 5000; repeat++) bough_pool_run(l.pool, 3, count, &l);
+    for (int k = 0; k < MOST; k++) assert_int_equal(atomic_load(&l.count[k]), k < 3 ? 5000 : 0);
+    bough_arena_destroy(arena);
+}
+
+static void one_thread_takes_no_memory(void **state) {
+    (void)state;
+    list l;
+    bough_arena *arena = make(1, &l);
+    assert_null(l.pool);
+    assert_int_equal(bough_arena_bytes(arena), 0);
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(each_task_is_done_once),
+        cmocka_unit_test(tasks_wait_for_earlier_ones),
+        cmocka_unit_test(sleepers_wake),
+        cmocka_unit_test(lists_follow_at_once),
+        cmocka_unit_test(one_thread_takes_no_memory),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
