@@ -50,12 +50,29 @@ typedef struct bough_induction {
     double axial, tangential; // a in [−1, 1.5], a' in [−1, 1]; both 0 where no balance exists [-]
     double loss;              // Prandtl's factor there [-]
     int evaluations;          // of the residual
-    bool fixed;               // at the very tip or root, where the loss leaves a = 1, a' = 0
 } bough_induction;
 
 // The induction at an element; finite for any finite element.
 bough_induction bough_induction_solve(const bough_induction_options *options,
                                       const bough_element *element);
+
+// Whether an element is at the very tip or root, where the loss leaves a = 1, a' = 0.
+static inline bool bough_induction_is_fixed(const bough_induction_options *options,
+                                            double tip_factor, double hub_factor) {
+    return (options->tip_loss && tip_factor < 1e-9) || (options->hub_loss && hub_factor < 1e-9);
+}
+
+// Elements in structures of arrays.
+typedef struct bough_elements {
+    int n;                           // a multiple of BOUGH_LANES
+    const bough_polar *const *polar; // (n), and so all that follow; each as in bough_element
+    const double *solidity, *tip_factor, *hub_factor, *cone, *twist, *inflow_x, *inflow_y;
+} bough_elements;
+
+// The same for all elements, side by side in vector lanes: `axial`, `tangential`, `loss` (n each).
+void bough_induction_solve_all(const bough_induction_options *options,
+                               const bough_elements *elements, double *axial, double *tangential,
+                               double *loss);
 
 // The inflow angle in (−π, π] with that induction [rad].
 double bough_induction_angle(const bough_element *element, double axial, double tangential);

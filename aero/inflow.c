@@ -46,19 +46,15 @@ void bough_inflow_advance(bough_inflow_state *state, const double sought[2], dou
 // Slower than this an induced velocity cannot be said as a share of the inflow [m/s].
 static const double slow = 1e-3;
 
-bough_induction bough_inflow_solve(const bough_induction_options *options,
-                                   const bough_element *element, bough_inflow_station *station) {
-    bough_induction i = bough_induction_solve(options, element);
-    if (!station || i.fixed) return i;
-    double vx = element->inflow_x, vy = element->inflow_y;
-    const double sought[2] = {i.axial * vx, i.tangential * vy};
+void bough_inflow_follow(const bough_inflow_clock *clock, double step, const double inflow[2],
+                         double *axial, double *tangential, bough_inflow_station *station) {
+    const double sought[2] = {*axial * inflow[0], *tangential * inflow[1]};
     bough_inflow_state *state = &station->state;
-    if (!station->clock->started) {
+    if (!clock->started) {
         bough_inflow_start(state, sought);
-        return i;
+        return;
     }
-    bough_inflow_advance(state, sought, station->clock->step, station->clock->tau, station->share);
-    i.axial = fabs(vx) < slow ? 0 : bough_clamp(state->reached[0] / vx, -1, 1.5);
-    i.tangential = fabs(vy) < slow ? 0 : bough_clamp(state->reached[1] / vy, -1, 1);
-    return i;
+    bough_inflow_advance(state, sought, step, clock->tau, station->share);
+    *axial = fabs(inflow[0]) < slow ? 0 : bough_clamp(state->reached[0] / inflow[0], -1, 1.5);
+    *tangential = fabs(inflow[1]) < slow ? 0 : bough_clamp(state->reached[1] / inflow[1], -1, 1);
 }

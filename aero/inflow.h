@@ -43,19 +43,17 @@ void bough_inflow_advance(bough_inflow_state *state, const double sought[2], dou
 typedef struct bough_inflow_clock {
     bool started; // there was a sample before
     double time;  // of the last sample [s]
-    double step;  // from the sample before to the one under way [s]
     double tau;   // τ₁ at the last sample [s]
 } bough_inflow_clock;
 
 typedef struct bough_inflow_station {
     bough_inflow_state state;
     double share; // radius over the rotor's
-    const bough_inflow_clock *clock;
 } bough_inflow_station;
 
-// The induction at an element: the momentum balance's, and with a station to remember it, what
-// Øye's delay leaves of that. The first sample is in equilibrium.
-bough_induction bough_inflow_solve(const bough_induction_options *options,
-                                   const bough_element *element, bough_inflow_station *station);
+// Puts what Øye's delay leaves of them in place of the momentum balance's inductions, a `step` after
+// the last sample; the first sample is in equilibrium. `inflow`: normal and tangential [m/s].
+void bough_inflow_follow(const bough_inflow_clock *clock, double step, const double inflow[2],
+                         double *axial, double *tangential, bough_inflow_station *station);
 
 #endif

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { ROW = 8 }; // doubles per knot: one cache line
+enum { ROW = BOUGH_POLAR_ROW };
 
 static const double turn = 2 * BOUGH_PI;
 
@@ -53,7 +53,9 @@ static void fill_bins(bough_polar *polar, int *bin) {
         while (knot + 2 < polar->n && polar->row[ROW * (knot + 1)] <= start)
             knot++;
         bin[j] = knot;
+        if (j > 0 && knot - bin[j - 1] > polar->most) polar->most = knot - bin[j - 1];
     }
+    if (polar->n - 1 - knot > polar->most) polar->most = polar->n - 1 - knot;
 }
 
 // -- attached flow --------------------------------------------------------------------------------
@@ -110,33 +112,16 @@ bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, b
     int n = closed ? def->n : def->n + 1;
     // Bins of half a degree: at most two knots to pass in the tables of the field.
     enum { N_BIN = 720 };
-    double *row = bough_arena_doubles(arena, (size_t)(ROW * n));
+    double *row = bough_arena_doubles(arena, (size_t)(ROW * (n + 1)));
     int *bin = bough_arena_take(arena, N_BIN * sizeof *bin);
     if (!row || !bin) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for a polar.");
     fill_rows(def, n, row);
+    row[ROW * n] = INFINITY;
     *polar =
         (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / turn, .bin = bin};
     fill_bins(polar, bin);
     fit_attached(polar);
     return bough_ok();
-}
-
-bough_coefficients bough_polar_at(const bough_polar *polar, double alpha) {
-    double x = alpha - polar->row[0];
-    if (x < 0 || x >= turn) x -= turn * floor(x / turn);
-    int j = (int)(x * polar->bin_per_rad);
-    int knot = polar->bin[j < polar->n_bin ? j : polar->n_bin - 1];
-    x += polar->row[0];
-    while (knot + 2 < polar->n && polar->row[ROW * (knot + 1)] <= x)
-        knot++;
-    const double *r = polar->row + ROW * knot;
-    double d = x - r[0];
-    bough_coefficients k = {r[1] + d * r[4], r[2] + d * r[5], r[3] + d * r[6]};
-    if (!polar->curve) return k;
-    const double *c = polar->curve + 6 * knot;
-    return (bough_coefficients){k.lift + d * d * (c[0] + d * c[1]),
-                                k.drag + d * d * (c[2] + d * c[3]),
-                                k.moment + d * d * (c[4] + d * c[5])};
 }
 
 // -- blending and smoothing -----------------------------------------------------------------------

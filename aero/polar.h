@@ -4,7 +4,10 @@
 #define BOUGH_AERO_POLAR_H
 
 #include "core/arena.h"
+#include "core/base.h"
 #include "core/status.h"
+
+#include <math.h>
 
 // Rows of (α [deg], Cl, Cd, Cm) with α strictly increasing over at most 360°. Between the last
 // row and the first, one turn later, the interpolation goes on.
@@ -18,13 +21,16 @@ typedef struct bough_coefficients {
     double lift, drag, moment; // Cl, Cd, Cm about the aerodynamic centre, positive nose up [-]
 } bough_coefficients;
 
+enum { BOUGH_POLAR_ROW = 8 }; // doubles per knot: one cache line
+
 typedef struct bough_polar {
-    int n;             // knots, both ends of the turn included
-    double *row; // (n × 8): α [rad], Cl, Cd, Cm, their slopes to the next knot, unused
+    int n;       // knots, both ends of the turn included
+    double *row; // (n + 1 × 8): α [rad], Cl, Cd, Cm, their slopes to the next knot, unused; ∞ ends
     const double *curve; // (n × 6) of each: quadratic and cubic coefficient; NULL: linear
     int n_bin;
     double bin_per_rad;
     const int *bin; // (n_bin): last knot at or below the bin's start
+    int most;       // knots within a bin
     // Of attached flow; slope 0: no lift to speak of.
     double slope;     // the steepest line through zero lift that touches the polar [1/rad]
     double zero_lift; // where the lift grows through zero, nearest to no angle [rad]
@@ -40,7 +46,31 @@ bough_status bough_polar_blend(bough_arena *arena, const bough_polar *a, const b
 // F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984).
 bough_status bough_polar_smoothen(bough_arena *arena, bough_polar *polar);
 
+// The last knot at or below an angle; `alpha` moves into the table's turn. No branch depends on it
+// but that into the turn, for the next is not to be foretold.
+static inline int bough_polar_knot(const bough_polar *polar, double *alpha) {
+    const double turn = 2 * BOUGH_PI;
+    double x = *alpha - polar->row[0];
+    if (x < 0 || x >= turn) x -= turn * floor(x / turn);
+    int j = (int)(x * polar->bin_per_rad);
+    int knot = polar->bin[j < polar->n_bin ? j : polar->n_bin - 1];
+    *alpha = x + polar->row[0];
+    for (int k = 0; k < polar->most; k++)
+        knot += polar->row[BOUGH_POLAR_ROW * (knot + 1)] <= *alpha;
+    return knot;
+}
+
 // The coefficients at any finite angle of attack [rad].
-bough_coefficients bough_polar_at(const bough_polar *polar, double alpha);
+static inline bough_coefficients bough_polar_at(const bough_polar *polar, double alpha) {
+    int knot = bough_polar_knot(polar, &alpha);
+    const double *r = polar->row + BOUGH_POLAR_ROW * knot;
+    double d = alpha - r[0];
+    bough_coefficients k = {r[1] + d * r[4], r[2] + d * r[5], r[3] + d * r[6]};
+    if (!polar->curve) return k;
+    const double *c = polar->curve + 6 * knot;
+    return (bough_coefficients){k.lift + d * d * (c[0] + d * c[1]),
+                                k.drag + d * d * (c[2] + d * c[3]),
+                                k.moment + d * d * (c[4] + d * c[5])};
+}
 
 #endif

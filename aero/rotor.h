@@ -15,9 +15,8 @@
 #include "aero/tower.h"
 #include "aero/wind.h"
 #include "core/arena.h"
-#include "core/pool.h"
+#include "core/spatial.h"
 #include "core/status.h"
-#include "core/vec3.h"
 
 // One row of the aerodynamic blade table (undeformed blade).
 typedef struct bough_station_def {
@@ -61,15 +60,27 @@ typedef struct bough_rotor_def {
 // tables left empty.
 bough_rotor_def bough_rotor_def_default(void);
 
-// The motion at a sample, in ground axes. Blade b's vertex i is at index b·n_vertex + i.
+// One blade's vertices in the axes of a frame that moves with it, as rows of n_vertex numbers: a
+// state of rods.
+enum {
+    BOUGH_BLADE_POSITION = 0,  // [m]
+    BOUGH_BLADE_ROTATION = 3,  // quaternion of the section axes, of about unit length
+    BOUGH_BLADE_VELOCITY = 7,  // absolute [m/s]
+    BOUGH_BLADE_SPIN = 10,     // absolute angular velocity, in section axes [rad/s]
+    BOUGH_BLADE_ROWS = 13,
+};
+
+typedef struct bough_blade_motion {
+    bough_transform frame; // in ground axes
+    const double *vertex;  // (BOUGH_BLADE_ROWS × n_vertex)
+} bough_blade_motion;
+
+// The motion at a sample.
 typedef struct bough_rotor_motion {
-    double time;                        // [s]
-    bough_vec3 hub;                     // where the blade-root axes meet the shaft [m]
-    bough_vec3 shaft;                   // unit vector, downwind
-    const bough_vec3 *position;         // (n_blade × n_vertex) [m]
-    const bough_mat3 *rotation;         // (n_blade × n_vertex) columns: section axes
-    const bough_vec3 *velocity;         // (n_blade × n_vertex) [m/s]
-    const bough_vec3 *angular_velocity; // (n_blade × n_vertex) [rad/s]
+    double time;                     // [s]
+    bough_vec3 hub;                  // where the blade-root axes meet the shaft, ground axes [m]
+    bough_vec3 shaft;                // unit vector, downwind, ground axes
+    const bough_blade_motion *blade; // (n_blade)
 } bough_rotor_motion;
 
 // What a station reports. y is tangential, against the rotation; x normal to the deformed blade in
@@ -95,14 +106,12 @@ typedef struct bough_rotor_memory {
 
 typedef struct bough_rotor_data {
     bough_rotor_memory memory; // advanced by bough_rotor_sample
-    bough_pool *pool;          // shares out the stations; set by the user, NULL: one thread
     // computed by bough_rotor_sample
-    bough_vec3 *force;      // (n_blade × n_vertex) on each vertex, ground axes [N]
-    bough_vec3 *moment;     // (n_blade × n_vertex) about each vertex, ground axes [N m]
-    bough_station *station; // (n_blade × n_station)
-    double thrust;          // along the shaft [N]
-    double torque;          // about the shaft [N m]
-    bough_vec3 disk_wind;   // mean of the disturbed wind over all stations [m/s]
+    double *load; // (n_blade × 6 × n_vertex) force on each vertex, moment about it, in the axes of
+                  // the blade's frame [N, N m]
+    double thrust;        // along the shaft [N]
+    double torque;        // about the shaft [N m]
+    bough_vec3 disk_wind; // mean of the disturbed wind over all stations [m/s]
     struct bough_rotor_scratch *scratch;
 } bough_rotor_data;
 
@@ -120,6 +129,25 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
 // motion.
 void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
                         bough_rotor_data *data);
+
+// The same in four stages, each after the one before it for all blades. Within the first and the
+// third, blades are independent and may be given to different threads.
+//   approach: where the blade's stations are, the wind they meet and the induction there; almost all
+//             of the work; reads only what `motion` tells of the blade, and hub and shaft
+//   survey:   what the whole rotor tells each station
+//   load:     the loads on the blade's vertices
+//   conclude: the rotor's sums, the memory's clock
+void bough_rotor_approach(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
+                          bough_rotor_data *data);
+void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *motion,
+                        bough_rotor_data *data);
+void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
+                      bough_rotor_data *data);
+void bough_rotor_conclude(const bough_rotor *rotor, const bough_rotor_motion *motion,
+                          bough_rotor_data *data);
+
+// What a station of a blade reports of the last sample.
+bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int station);
 
 // Makes the next sample the first.
 void bough_rotor_forget(const bough_rotor *rotor, bough_rotor_data *data);

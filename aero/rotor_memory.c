@@ -1,16 +1,18 @@
 #include "aero/rotor_memory.h"
 
+#include "aero/rotor_model.h"
+
 #include <math.h>
 #include <string.h>
 
 // The equilibrium induction, mean over the disk's area, as a share of the wind along the shaft.
 static double mean_induction(const bough_rotor *rotor, const bough_rotor_data *data, double wind) {
     double induced = 0, area = 0;
-    int n = bough_rotor_n_station(rotor);
-    for (int b = 0; b < bough_rotor_n_blade(rotor); b++) {
+    int n = rotor->n_station;
+    for (int b = 0; b < rotor->n_blade; b++) {
         for (int j = 1; j + 1 < n; j++) { // at the ends the loss factor leaves no load
-            const bough_station *s = data->station + b * n + j;
-            double share = s->radius * (s[1].radius - s[-1].radius);
+            const double *radius = data->scratch->blade[b].radius + j;
+            double share = radius[0] * (radius[1] - radius[-1]);
             induced += share * data->memory.station[b * n + j].state.sought[0];
             area += share;
         }
@@ -18,26 +20,21 @@ static double mean_induction(const bough_rotor *rotor, const bough_rotor_data *d
     return area > 0 && fabs(wind) > 1e-3 ? induced / area / wind : 0;
 }
 
-void bough_rotor_resume(const bough_rotor_motion *motion, bough_rotor_data *data) {
-    bough_inflow_clock *clock = data->memory.clock;
-    clock->step = motion->time - clock->time;
-}
-
 void bough_rotor_remember(const bough_rotor *rotor, const bough_rotor_motion *motion,
                           bough_rotor_data *data) {
     bough_inflow_clock *clock = data->memory.clock;
     if (data->memory.station) {
         double wind = bough_dot(data->disk_wind, motion->shaft);
-        double radius = fmax(data->station[bough_rotor_n_station(rotor) - 1].radius, 1e-3);
+        double radius = fmax(data->scratch->blade[0].radius[rotor->n_station - 1], 1e-3);
         double axial = mean_induction(rotor, data, wind);
-        clock->tau = bough_inflow_time(bough_rotor_inflow(rotor), axial, radius, wind);
+        clock->tau = bough_inflow_time(&rotor->inflow, axial, radius, wind);
     }
     clock->time = motion->time;
     clock->started = true;
 }
 
 static int n_section(const bough_rotor *rotor) {
-    return bough_rotor_n_blade(rotor) * bough_rotor_n_station(rotor);
+    return rotor->n_blade * rotor->n_station;
 }
 
 void bough_rotor_forget(const bough_rotor *rotor, bough_rotor_data *data) {
@@ -57,12 +54,12 @@ enum {
 };
 
 static bool has_inflow(const bough_rotor *rotor) {
-    return bough_rotor_inflow(rotor)->kind != BOUGH_INFLOW_EQUILIBRIUM;
+    return rotor->inflow.kind != BOUGH_INFLOW_EQUILIBRIUM;
 }
 
 int bough_rotor_memory_size(const bough_rotor *rotor) {
     int per_section =
-        (has_inflow(rotor) ? INFLOW : 0) + (bough_rotor_has_stall(rotor) ? STALL : 0);
+        (has_inflow(rotor) ? INFLOW : 0) + (rotor->airfoil ? STALL : 0);
     return per_section == 0 ? 0 : SCALARS + per_section * n_section(rotor);
 }
 

@@ -4,12 +4,8 @@
 
 #include "aero/rotor.h"
 
-// Before and after the stations of a sample are solved.
-void bough_rotor_resume(const bough_rotor_motion *motion, bough_rotor_data *data);
+// After the stations of a sample are solved.
 void bough_rotor_remember(const bough_rotor *rotor, const bough_rotor_motion *motion,
                           bough_rotor_data *data);
-
-const bough_inflow_def *bough_rotor_inflow(const bough_rotor *rotor);
-bool bough_rotor_has_stall(const bough_rotor *rotor);
 
 #endif

@@ -105,8 +105,10 @@ static double shadow(double drag, double x, double y) {
 
 bough_vec3 bough_tower_disturbed(const bough_tower *tower, bough_vec3 position, bough_vec3 wind) {
     bough_vec3 d = bough_sub(position, tower->base);
-    double radius = radius_at(tower, d.z), speed = hypot(wind.x, wind.y);
-    if (radius == 0 || speed == 0) return wind;
+    double radius = radius_at(tower, d.z);
+    if (radius == 0) return wind;
+    double speed = sqrt(wind.x * wind.x + wind.y * wind.y);
+    if (speed == 0) return wind;
     double cx = wind.x / speed, cy = wind.y / speed;
     double x = (cx * d.x + cy * d.y) / radius, y = (cx * d.y - cy * d.x) / radius;
     double r2 = x * x + y * y;

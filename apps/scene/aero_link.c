@@ -18,10 +18,10 @@ struct bough_aero_link {
     const bough_rotor *rotor;
     bough_rotor_data data;
     bough_rotor_motion motion;
-    bough_beam_motion beam_motion; // of all blades, one after the other
+    bough_blade_motion *moving; // (n_blade), what `motion` points to …
+    double *vertex;             // (n_blade × BOUGH_BLADE_ROWS × n_vertex) … and these
     int n_blade, n_vertex;
     blade_loads *blade; // (n_blade)
-    double *fresh;      // (6 × vertices) work
     double factor;      // of the ramp at the last sample
     double start;       // of the signals, the last sample's time [s]
     bool started;
@@ -58,16 +58,12 @@ static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
 }
 
 static void take_motion(bough_arena *arena, bough_aero_link *l) {
-    size_t n = (size_t)l->n_blade * l->n_vertex;
-    l->beam_motion.position = bough_arena_take(arena, n * sizeof(bough_vec3));
-    l->beam_motion.velocity = bough_arena_take(arena, n * sizeof(bough_vec3));
-    l->beam_motion.angular_velocity = bough_arena_take(arena, n * sizeof(bough_vec3));
-    l->beam_motion.rotation = bough_arena_take(arena, n * sizeof(bough_mat3));
-    l->fresh = bough_arena_doubles(arena, 6 * (size_t)l->n_vertex);
-    l->motion.position = l->beam_motion.position;
-    l->motion.velocity = l->beam_motion.velocity;
-    l->motion.angular_velocity = l->beam_motion.angular_velocity;
-    l->motion.rotation = l->beam_motion.rotation;
+    size_t n = (size_t)l->n_vertex * BOUGH_BLADE_ROWS;
+    l->moving = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->moving);
+    l->vertex = bough_arena_doubles(arena, (size_t)l->n_blade * n);
+    l->motion.blade = l->moving;
+    for (int b = 0; l->moving && l->vertex && b < l->n_blade; b++)
+        l->moving[b].vertex = l->vertex + (size_t)b * n;
 }
 
 // Tables of the scene in the rotor's form.
@@ -221,14 +217,13 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
     status = bough_rotor_build(arena, &def, &l->rotor);
     if (bough_is_ok(&status)) status = check_reach(l);
     if (bough_is_ok(&status)) status = bough_rotor_data_build(arena, l->rotor, &l->data);
-    l->data.pool = simulation->pool;
     if (bough_is_ok(&status)) *link = l;
     return status;
 }
 
 // -- sample ---------------------------------------------------------------------------------------
 
-static void gather_motion(bough_aero_link *l, double t) {
+static void gather_rotor(bough_aero_link *l, double t) {
     bough_simulation *s = l->simulation;
     const bough_scene_turbine *turbine = &s->scene->turbine;
     bough_simulation_update(s);
@@ -237,13 +232,13 @@ static void gather_motion(bough_aero_link *l, double t) {
     l->motion.time = t;
     l->motion.hub = rotor.position;
     l->motion.shaft = axes[s->scene->body[turbine->rotor].joint.axis];
-    for (int b = 0; b < l->n_blade; b++) {
-        size_t at = (size_t)b * l->n_vertex;
-        bough_beam_motion part = {l->beam_motion.position + at, l->beam_motion.velocity + at,
-                                  l->beam_motion.angular_velocity + at,
-                                  l->beam_motion.rotation + at};
-        bough_simulation_beam_motion(s, l->blade[b].beam, part);
-    }
+}
+
+static void gather_blade(bough_aero_link *l, int b) {
+    bough_simulation *s = l->simulation;
+    const bough_beam *beam = l->blade[b].beam;
+    l->moving[b].frame = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
+    bough_simulation_beam_rows(s, beam, l->vertex + b * BOUGH_BLADE_ROWS * l->n_vertex);
 }
 
 static double ramp_factor(const double ramp[2], double t) {
@@ -251,41 +246,22 @@ static double ramp_factor(const double ramp[2], double t) {
     return bough_clamp((t - ramp[0]) / (ramp[1] - ramp[0]), 0, 1);
 }
 
-// The blade's sampled loads in the body's axes, times the ramp's factor: l->fresh (blade->n).
-static void blade_fresh(bough_aero_link *l, int b) {
-    const bough_beam *beam = l->blade[b].beam;
-    const bough_frame *frame = &l->simulation->tree->markers[beam->marker];
-    bough_transform pose = bough_tree_frame_pose(l->simulation->view, frame);
-    int n = l->n_vertex;
-    if (beam->port < 0) memset(l->fresh, 0, 6 * sizeof *l->fresh);
-    for (int i = 0; i < n; i++) {
-        size_t at = (size_t)b * n + i;
-        bough_vec3 f = bough_scale(l->factor, bough_mat3_tmul(pose.rotation, l->data.force[at]));
-        bough_vec3 m = bough_scale(l->factor, bough_mat3_tmul(pose.rotation, l->data.moment[at]));
-        if (beam->port < 0) {
-            m = bough_add(m, bough_cross(beam->def.position[i], f));
-            const double values[6] = {f.x, f.y, f.z, m.x, m.y, m.z};
-            for (int c = 0; c < 6; c++) l->fresh[c] += values[c];
-        } else {
-            const double values[6] = {f.x, f.y, f.z, m.x, m.y, m.z};
-            for (int c = 0; c < 6; c++) l->fresh[c * n + i] = values[c];
-        }
+// Value at `start` and rate until `span` later of the signal of fresh loads. Linear: from what was
+// reached to the value extrapolated from the last two samples, so that loads are continuous and not
+// late.
+static void follow(const bough_aero_link *l, const double *restrict fresh, double span,
+                   blade_loads *blade) {
+    bool held = l->simulation->scene->aero.hold == BOUGH_SCENE_CONSTANT || !l->started;
+    double *restrict value = blade->value, *restrict rate = blade->rate;
+    double *restrict reached = blade->reached, *restrict sampled = blade->sampled;
+    double factor = l->factor;
+    for (int k = 0; k < blade->n; k++) {
+        double now = factor * fresh[k];
+        value[k] = held ? now : reached[k];
+        rate[k] = held ? 0 : (2 * now - sampled[k] - value[k]) / span;
+        reached[k] = value[k] + span * rate[k];
+        sampled[k] = now;
     }
-}
-
-// Value at t and rate of the load signal until t_next. Linear: from what was reached to the value
-// extrapolated from the last two samples, so that loads are continuous and not late.
-static void load_signal(const bough_aero_link *l, const blade_loads *blade, int k, double span,
-                        double *value, double *rate) {
-    bool held = l->simulation->scene->aero.hold == BOUGH_SCENE_CONSTANT;
-    double fresh = l->fresh[k];
-    if (held || !l->started) {
-        *value = fresh;
-        *rate = 0;
-        return;
-    }
-    *value = blade->reached[k];
-    *rate = (2 * fresh - blade->sampled[k] - *value) / span;
 }
 
 // Hands a blade's signal to its body.
@@ -297,39 +273,67 @@ static void put(bough_aero_link *l, int b) {
         return;
     }
     bough_rod_loads *rod = bough_beam_loads(blade->beam);
-    int stride = bough_beam_mesh(blade->beam)->stride;
-    for (int k = 0; k < blade->n; k++) {
-        int at = k / l->n_vertex * stride + k % l->n_vertex;
-        rod->value[at] = blade->value[k];
-        rod->rate[at] = blade->rate[k];
+    size_t stride = (size_t)bough_beam_mesh(blade->beam)->stride, n = (size_t)l->n_vertex;
+    for (size_t c = 0; c < 6; c++) {
+        memcpy(rod->value + c * stride, blade->value + c * n, n * sizeof(double));
+        memcpy(rod->rate + c * stride, blade->rate + c * n, n * sizeof(double));
     }
     rod->start = l->start;
 }
 
-static void apply(bough_aero_link *l, int b, double span) {
-    blade_loads *blade = &l->blade[b];
-    for (int k = 0; k < blade->n; k++) {
-        double value, rate;
-        load_signal(l, blade, k, span, &value, &rate);
-        blade->value[k] = value;
-        blade->rate[k] = rate;
-        blade->reached[k] = value + span * rate;
-        blade->sampled[k] = l->fresh[k];
+// The resultant of the loads on a rigid blade's vertices.
+static void sum_loads(const bough_aero_link *l, int b, double sum[6]) {
+    const double *load = l->data.load + 6 * b * l->n_vertex;
+    bough_wrench total = {{0, 0, 0}, {0, 0, 0}};
+    for (int i = 0; i < l->n_vertex; i++) {
+        double here[6];
+        for (int c = 0; c < 6; c++) here[c] = load[c * l->n_vertex + i];
+        bough_transform at = {l->blade[b].beam->def.position[i], bough_mat3_identity()};
+        total = bough_wrench_add(total, bough_wrench_to_parent(&at, bough_wrench_load(here)));
     }
+    bough_wrench_store(total, sum);
+}
+
+static void apply(bough_aero_link *l, int b, double span) {
+    double resultant[6];
+    const double *fresh = l->data.load + 6 * b * l->n_vertex;
+    if (l->blade[b].beam->port < 0) {
+        sum_loads(l, b, resultant);
+        fresh = resultant;
+    }
+    follow(l, fresh, span, &l->blade[b]);
     put(l, b);
+}
+
+// Tasks, a blade each.
+typedef struct sample_work {
+    bough_aero_link *link;
+    double span; // until the next sample [s]
+} sample_work;
+
+static void approach_blade(void *self, int b) {
+    bough_aero_link *l = ((const sample_work *)self)->link;
+    gather_blade(l, b);
+    bough_rotor_approach(l->rotor, &l->motion, b, &l->data);
+}
+
+static void load_blade(void *self, int b) {
+    const sample_work *w = self;
+    bough_rotor_load(w->link->rotor, &w->link->motion, b, &w->link->data);
+    apply(w->link, b, w->span);
 }
 
 static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     bough_aero_link *l = self;
     const bough_scene_aero *aero = &l->simulation->scene->aero;
-    gather_motion(l, t);
-    bough_rotor_sample(l->rotor, &l->motion, &l->data);
+    sample_work w = {l, t_next - t};
     l->factor = ramp_factor(aero->ramp, t);
     l->start = t;
-    for (int b = 0; b < l->n_blade; b++) {
-        blade_fresh(l, b);
-        apply(l, b, t_next - t);
-    }
+    gather_rotor(l, t);
+    bough_pool_run(l->simulation->pool, l->n_blade, approach_blade, &w);
+    bough_rotor_survey(l->rotor, &l->motion, &l->data);
+    bough_pool_run(l->simulation->pool, l->n_blade, load_blade, &w);
+    bough_rotor_conclude(l->rotor, &l->motion, &l->data);
     *jumped = !l->started || aero->hold == BOUGH_SCENE_CONSTANT;
     l->started = true;
     return bough_ok();

@@ -638,3 +638,29 @@ void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *b
         motion.angular_velocity[i] = bough_mat3_mul(pose.rotation, v.angular);
     }
 }
+
+static void put_vertex(vertex v, bough_quaternion p, int i, int n, double *rows) {
+    bough_vec3 w = bough_mat3_tmul(v.rotation, v.angular);
+    const double values[BOUGH_BLADE_ROWS] = {v.position.x, v.position.y, v.position.z, p.w, p.x,
+                                             p.y, p.z, v.velocity.x, v.velocity.y, v.velocity.z,
+                                             w.x, w.y, w.z};
+    for (int c = 0; c < BOUGH_BLADE_ROWS; c++) rows[c * n + i] = values[c];
+}
+
+void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *beam, double *rows) {
+    bough_twist twist = bough_tree_frame_twist(s->view, &s->tree->markers[beam->marker]);
+    int n = beam->def.n_segment + 1, inner = 0;
+    if (beam->port >= 0) {
+        const double *state = bough_beam_state(s, beam, 1);
+        inner = bough_beam_mesh(beam)->n;
+        for (int c = 0; c < BOUGH_BLADE_ROWS; c++)
+            memcpy(rows + c * n + 1, state + c * inner, (size_t)inner * sizeof *rows);
+    }
+    put_vertex(rigid_vertex(beam, 0, twist), beam->def.rotation[0], 0, n, rows);
+    for (int i = inner + 1; i < n; i++) {
+        bough_quaternion p = beam->def.rotation[i];
+        if (beam->port >= 0) bough_simulation_beam_tip(s, beam, &p);
+        put_vertex(beam->port >= 0 ? end_vertex(s, beam) : rigid_vertex(beam, i, twist), p, i, n,
+                   rows);
+    }
+}

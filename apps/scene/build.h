@@ -107,4 +107,7 @@ typedef struct bough_beam_motion {
 void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *beam,
                                   bough_beam_motion motion);
 
+// The same in the body's axes, as rows of n_segment + 1 numbers that a blade's motion has: see rotor.h.
+void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *beam, double *rows);
+
 #endif

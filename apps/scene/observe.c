@@ -417,11 +417,11 @@ static void sample_nodes(void *self, double t, double *value) {
     const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
     for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++, value += NODE_CHANNELS) {
         int node = (int)aero->nodes[k % aero->n_node] - 1;
-        const bough_station *x = data->station + k / aero->n_node * aero->blade.n_station + node;
+        bough_station x = bough_rotor_station(data, k / aero->n_node, node);
         const double values[NODE_CHANNELS] = {
-            x->speed, x->alpha / DEGREE, x->phi / DEGREE, x->axial, x->tangential,
-            x->coefficients.lift, x->coefficients.drag, x->coefficients.moment,
-            factor * x->force_x, factor * x->force_y};
+            x.speed, x.alpha / DEGREE, x.phi / DEGREE, x.axial, x.tangential,
+            x.coefficients.lift, x.coefficients.drag, x.coefficients.moment,
+            factor * x.force_x, factor * x.force_y};
         memcpy(value, values, sizeof values);
     }
 }

@@ -1,0 +1,178 @@
+// Ning's residual multiplied by sin φ, in which it has no pole:
+//     f(φ) = sin²φ/(1 − a) − |Vx/Vy| (sin φ cos φ − σ ct/(4F)),
+// written for the quadrant of positive inflow, to which mirroring brings every other. Without
+// branches but those of the options, so that it runs in vector lanes; for induction*.c only.
+#ifndef BOUGH_AERO_INDUCTION_BALANCE_H
+#define BOUGH_AERO_INDUCTION_BALANCE_H
+
+#include "aero/induction.h"
+#include "aero/lanes.h"
+
+// Both ends of an interval keep this distance from φ = 0 and π, where no wake exists [rad].
+static const double clearance = 1e-6;
+// Of the inflow angle [rad].
+static const double precision = 1e-12;
+// Slower than this there is no wake to speak of [m/s].
+static const double slow = 1e-3;
+// Least loss factor.
+static const double least_loss = 1e-4;
+// a beyond which the smooth parabola replaces momentum theory.
+static const double critical = 0.35;
+
+typedef struct problem {
+    double sign_x, sign_y;         // of the inflow
+    double slope;                  // |Vx / Vy|
+    double density, cone;          // σ/4, cos² of the cone
+    double tip_factor, hub_factor; // 1e3, which loses nothing, when the loss is off
+    double twist;
+} problem;
+
+// Where the polar is asked.
+typedef struct flow {
+    double s, c;  // of the inflow angle
+    double loss;  // F
+    double alpha; // angle of attack [rad]
+} flow;
+
+typedef struct balance {
+    double residual;
+    double axial; // sin²φ/(1 − a)
+    double swirl; // sin φ cos φ/(1 + a')
+} balance;
+
+// Options as factors, 0 or 1.
+typedef struct weights {
+    double tip_loss, hub_loss, axial_drag, tangential_drag, swirl;
+} weights;
+
+static inline weights weights_of(const bough_induction_options *o) {
+    return (weights){o->tip_loss, o->hub_loss, o->axial_drag, o->tangential_drag, o->tangential};
+}
+
+static inline problem problem_of(weights o, double solidity, double cone, double tip_factor,
+                                 double hub_factor, double twist, double vx, double vy) {
+    return (problem){.sign_x = copysign(1, vx),
+                     .sign_y = copysign(1, vy),
+                     .slope = fabs(vx / vy),
+                     .density = solidity / 4,
+                     .cone = cone,
+                     .tip_factor = o.tip_loss * tip_factor + (1 - o.tip_loss) * 1e3,
+                     .hub_factor = o.hub_loss * hub_factor + (1 - o.hub_loss) * 1e3,
+                     .twist = twist};
+}
+
+// Whether the loss leaves a momentum balance, and the inflow a wake.
+static inline bool is_balanced(problem p, double vx, double vy) {
+    double least_factor = p.tip_factor < p.hub_factor ? p.tip_factor : p.hub_factor;
+    double least_speed = fabs(vx) < fabs(vy) ? fabs(vx) : fabs(vy);
+    return least_factor >= 1e-9 && least_speed >= slow;
+}
+
+// (2/π) acos exp(−x); beyond x = 37 that is 1 to the last digit.
+static inline double prandtl(double x) {
+    double e = lane_exp(-(x < 40 ? x : 40)), near_one = e > 0.5 ? 1 : 0;
+    double angle = lane_arc_sine(near_one > 0 ? sqrt((1 - e) / 2) : e);
+    return near_one > 0 ? 4 / BOUGH_PI * angle : 1 - 2 / BOUGH_PI * angle;
+}
+
+static inline double loss_at(problem p, double s) {
+    double inverse = 1 / s, f = prandtl(p.tip_factor * inverse) * prandtl(p.hub_factor * inverse);
+    return f > least_loss ? f : least_loss;
+}
+
+static inline flow flow_at(problem p, double phi) {
+    sine_cosine k = lane_sine_cosine(phi);
+    double angle = p.sign_x * (p.sign_y > 0 ? phi : BOUGH_PI - phi);
+    return (flow){k.sine, k.cosine, loss_at(p, fabs(k.sine)), angle - p.twist};
+}
+
+// sin²φ/(1 − a) for the loading c = σ cn/(4F) = k sin²φ by Buhl's parabola beyond k = 2/3, whose
+// root written as 1 − a = 1/(√g₂ + 5/3 − F) has no singular case.
+static inline double axial_buhl(double c, double s, double f, bool brake) {
+    double s2 = s * s;
+    if (brake) return s2 - c;
+    double square = s2 * (2 * f * c - (4. / 3 - f) * f * s2);
+    double beyond = sqrt(square > 0 ? square : 0) + (5. / 3 - f) * s2;
+    return 3 * c <= 2 * s2 ? s2 + c : beyond;
+}
+
+// The same by the parabola CT = d₀ + d₁ x + d₂ x² of x = 1 − a that leaves 4 F a (1 − a) smoothly
+// at a = 0.35. Its other root, a > 1, belongs to φ < 0.
+static inline double axial_smooth(double c, double s, double f) {
+    const double xc = 1 - critical, d0 = 2;
+    double s2 = s * s;
+    double value = 4 * f * critical * xc, slope = 4 * f * (1 - 2 * critical);
+    double d2 = (d0 - slope * xc - value) * (1 / (xc * xc)), d1 = -slope - 2 * d2 * xc;
+    double square = d1 * d1 * s2 + 4 * d0 * (4 * f * c - d2 * s2);
+    double root = sqrt(square > 0 ? square : 0);
+    return xc * c <= critical * s2 ? s2 + c : (s * root - d1 * s2) / (2 * d0);
+}
+
+// The momentum share of the thrust, a/(k |1 − a|), with which the swirl fades beyond a = 0.35.
+static inline double swirl_share(double c, double s, double axial) {
+    double s2 = s * s, share = fabs(axial - s2) / c; // a = 1 − sin²φ/axial
+    return (1 - critical) * c <= critical * s2 ? 1 : share;
+}
+
+// `high_thrust`, `brake`: known where this is inlined into a loop.
+static inline balance balance_of(bough_high_thrust high_thrust, bool brake, weights o, problem p,
+                                 flow w, double lift, double drag) {
+    double flow_s = p.sign_x * w.s, flow_c = p.sign_y * w.c;
+    double normal = lift * flow_c + o.axial_drag * drag * flow_s;
+    double tangent = lift * flow_s - o.tangential_drag * drag * flow_c;
+    double density = p.density / w.loss, loading = density * p.cone * p.sign_x * normal;
+    double swirl = o.swirl * density * p.sign_y * tangent, axial;
+    if (high_thrust == BOUGH_HIGH_THRUST_BUHL) {
+        axial = axial_buhl(loading, w.s, w.loss, brake);
+    } else {
+        axial = axial_smooth(loading, w.s, w.loss);
+        swirl *= swirl_share(loading, w.s, axial);
+    }
+    double left = w.s * w.c - swirl;
+    return (balance){axial - p.slope * left, axial, left};
+}
+
+// The inflow angle without induction.
+static inline double free_angle(problem p) {
+    return lane_clamp(lane_angle(p.slope, 1), 2 * clearance, BOUGH_PI / 2 - clearance);
+}
+
+// Where a windmill element with linear lift, no drag and no swirl would balance: 4F φ (φ₀ − φ) =
+// σ c_lα (φ − θ − α₀) for small angles, φ₀ that without induction; 0 unless in (0, φ₀) and attached.
+static inline double attached_angle(problem p, double lift_slope, double zero_lift, double phi0) {
+    double zero = p.twist + zero_lift;
+    double k = p.density * p.cone * lift_slope / loss_at(p, lane_sine_cosine(0.7 * phi0).sine);
+    double h = (phi0 - k) / 2, square = h * h + k * zero;
+    double phi = h + sqrt(square > 0 ? square : 0), off = fabs(phi - zero);
+    double windmill = p.sign_x + p.sign_y > 1 ? lift_slope : 0;
+    return windmill * square > 0 && off < 0.2 && phi > 1e-3 && phi < phi0 ? phi : 0;
+}
+
+// Further on from a, towards smaller angles where the residual is positive, but not past φ₀.
+static inline double further(double a, double residual, double share, double phi0) {
+    double next = residual > 0 ? (1 - share) * a : (1 + share) * a;
+    return next < phi0 ? next : phi0;
+}
+
+// Of the way from the bracket's first guess to its other end, and how much further the next is.
+static const double first_share = 0.04, second_share = 0.2;
+
+// One step of Chandrupatla's method: inverse quadratic interpolation through (a, fa), (b, fb),
+// (c, fc) where it is known to converge, else bisection; the fraction of the way from a to b.
+static inline double root_fraction(double a, double fa, double b, double fb, double c, double fc) {
+    double ab = fabs(a - b), cb = fabs(c - b), fab = fa - fb, fca = fc - fa, fcb = fc - fb;
+    double low = ab * fcb * fcb - cb * fab * fab, high = (cb - ab) * fcb * fcb - cb * fca * fca;
+    double t = fa * fc / (fab * fcb) + (c - a) * fa * fb / ((b - a) * fca * fcb);
+    double fits = low > 0 ? 1 : 0;
+    fits = high > 0 ? fits : 0;
+    return fits > 0 ? t : 0.5;
+}
+
+static inline bough_induction induction_of(const bough_induction_options *o, flow w, balance b) {
+    double swirl = b.swirl != 0 ? w.s * w.c / b.swirl - 1 : -1;
+    return (bough_induction){.axial = lane_clamp(1 - w.s * w.s / b.axial, -1, 1.5),
+                             .tangential = o->tangential ? lane_clamp(swirl, -1, 1) : 0,
+                             .loss = w.loss};
+}
+
+#endif

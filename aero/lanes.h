@@ -1,0 +1,122 @@
+// Elementary functions without branches, so that loops over sections run in vector lanes, with
+// errors of a few units in the last place. Polynomials of sine, cosine, arc sine and arc tangent are
+// those of fdlibm (Sun Microsystems, 1993).
+#ifndef BOUGH_AERO_LANES_H
+#define BOUGH_AERO_LANES_H
+
+#include "core/base.h"
+#include "core/vec3.h"
+
+#include <stdint.h>
+#include <string.h>
+
+// The nearest integer, for |x| < 2⁵¹.
+static inline double lane_round(double x) {
+    const double big = 0x1.8p52;
+    return (x + big) - big;
+}
+
+static inline double lane_clamp(double x, double low, double high) {
+    x = x > low ? x : low;
+    return x < high ? x : high;
+}
+
+typedef struct sine_cosine {
+    double sine, cosine;
+} sine_cosine;
+
+// For |x| ≤ π.
+static inline sine_cosine lane_sine_cosine(double x) {
+    double n = lane_round(x * (2 / BOUGH_PI));
+    double r = (x - n * 1.5707963267948966) - n * 6.123233995736766e-17, z = r * r;
+    double s = 1.58969099521155010221e-10;
+    s = -2.50507602534068634195e-08 + z * s;
+    s = 2.75573137070700676789e-06 + z * s;
+    s = -1.98412698298579493134e-04 + z * s;
+    s = 8.33333333332248946124e-03 + z * s;
+    s = r + r * z * (-1.66666666666666324348e-01 + z * s);
+    double c = -1.13596475577881948265e-11;
+    c = 2.08757232129817482790e-09 + z * c;
+    c = -2.75573143513906633035e-07 + z * c;
+    c = 2.48015872894767294178e-05 + z * c;
+    c = -1.38888888888741095749e-03 + z * c;
+    c = 1 - 0.5 * z + z * z * (4.16666666666666019037e-02 + z * c);
+    double half = n * n > 2 ? -1 : 1, quarter = n * n == 1 ? 1 : 0;
+    double sine = quarter > 0 ? n * c : half * s, cosine = quarter > 0 ? -n * s : half * c;
+    return (sine_cosine){sine, cosine};
+}
+
+// For −700 ≤ x ≤ 0.
+static inline double lane_exp(double x) {
+    const double big = 0x1.8p52;
+    double shifted = x * 1.4426950408889634 + big, n = shifted - big;
+    double r = (x - n * 6.93147180369123816490e-01) - n * 1.90821492927058770002e-10;
+    double p = 1. / 6227020800;
+    p = 1. / 479001600 + r * p;
+    p = 1. / 39916800 + r * p;
+    p = 1. / 3628800 + r * p;
+    p = 1. / 362880 + r * p;
+    p = 1. / 40320 + r * p;
+    p = 1. / 5040 + r * p;
+    p = 1. / 720 + r * p;
+    p = 1. / 120 + r * p;
+    p = 1. / 24 + r * p;
+    p = 1. / 6 + r * p;
+    p = 1 + r * (1 + r * (0.5 + r * p));
+    // The low bits of `shifted` are n; moved into the exponent they make 2ⁿ.
+    uint64_t bits;
+    memcpy(&bits, &shifted, sizeof bits);
+    bits = (bits + 1023) << 52;
+    double scale;
+    memcpy(&scale, &bits, sizeof scale);
+    return p * scale;
+}
+
+// For |t| ≤ ½.
+static inline double lane_arc_sine(double t) {
+    double z = t * t, p = 3.47933107596021167570e-05, q = 7.70381505559019352791e-02;
+    p = 7.91534994289814532176e-04 + z * p;
+    p = -4.00555345006794114027e-02 + z * p;
+    p = 2.01212532134862925881e-01 + z * p;
+    p = -3.25565818622400915405e-01 + z * p;
+    p = z * (1.66666666666666657415e-01 + z * p);
+    q = -6.88283971605453293030e-01 + z * q;
+    q = 2.02094576023350569471e+00 + z * q;
+    q = 1 + z * (-2.40339491173441421878e+00 + z * q);
+    return t + t * (p / q);
+}
+
+// atan2(y, x); 0 for both 0.
+static inline double lane_angle(double y, double x) {
+    double ax = fabs(x), ay = fabs(y);
+    double low = ax < ay ? ax : ay, high = ax < ay ? ay : ax;
+    double wide = low > 0.4142135623730951 * high ? 1 : 0;
+    double over = low - wide * high, under = high + wide * low;
+    double t = over / (under > 1e-300 ? under : 1), z = t * t, p = 1.62858201153657823623e-02;
+    p = -3.65315727442169155270e-02 + z * p;
+    p = 4.97687799461593236017e-02 + z * p;
+    p = -5.83357013379057348645e-02 + z * p;
+    p = 6.66107313738753120669e-02 + z * p;
+    p = -7.69187620504482999495e-02 + z * p;
+    p = 9.09088713343650656196e-02 + z * p;
+    p = -1.11111104054623557880e-01 + z * p;
+    p = 1.42857142725034663711e-01 + z * p;
+    p = -1.99999999998764832476e-01 + z * p;
+    p = 3.33333333333329318027e-01 + z * p;
+    double angle = wide * (BOUGH_PI / 4) + (t - t * z * p);
+    angle = ax < ay ? BOUGH_PI / 2 - angle : angle;
+    angle = x < 0 ? BOUGH_PI - angle : angle;
+    return copysign(angle, y);
+}
+
+static inline bough_vec3 lane_load(const double *restrict a, int stride, int i) {
+    return (bough_vec3){a[i], a[stride + i], a[2 * stride + i]};
+}
+
+static inline void lane_store(double *restrict a, int stride, int i, bough_vec3 v) {
+    a[i] = v.x;
+    a[stride + i] = v.y;
+    a[2 * stride + i] = v.z;
+}
+
+#endif

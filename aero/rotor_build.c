@@ -1,0 +1,305 @@
+// Builds a rotor: places the stations in the structural mesh and the line loads on its vertices.
+#include "aero/rotor_model.h"
+
+#include "core/base.h"
+#include "core/rotation.h"
+
+#include <string.h>
+
+// Loads are piecewise linear between stations, the deformed reference axis piecewise linear
+// between vertices. With the vertices' hat functions as weights, force and moment of the line
+// load are then conserved exactly, and the weights are constants of the model.
+
+bough_rotor_def bough_rotor_def_default(void) {
+    return (bough_rotor_def){.n_blade = 3,
+                             .density = 1.225,
+                             .pitching_moment = true,
+                             .skew = true,
+                             .induction = bough_induction_options_default(),
+                             .wind = bough_wind_def_default()};
+}
+
+int bough_rotor_n_blade(const bough_rotor *rotor) { return rotor->n_blade; }
+int bough_rotor_n_station(const bough_rotor *rotor) { return rotor->n_station; }
+int bough_rotor_n_vertex(const bough_rotor *rotor) { return rotor->n_vertex; }
+
+// -- build ----------------------------------------------------------------------------------------
+
+static bough_status check_station(const bough_rotor_def *def, int j) {
+    const bough_station_def *s = def->station + j;
+    double length = def->vertex_span[def->n_vertex - 1];
+    if (j > 0 && !(s->span > s[-1].span)) {
+        return bough_fail(BOUGH_INVALID, "Aero station %d: spans must increase.", j + 1);
+    }
+    if (s->span < def->vertex_span[0] - 1e-6 * length || s->span > length * (1 + 1e-6)) {
+        return bough_fail(BOUGH_INVALID, "Aero station %d: span %g m is not on the blade (%g m).",
+                          j + 1, s->span, length);
+    }
+    if (!(s->chord > 0)) {
+        return bough_fail(BOUGH_INVALID, "Aero station %d: the chord must be positive.", j + 1);
+    }
+    const int wanted[2] = {s->polar, s->share > 0 ? s->second : s->polar};
+    for (int i = 0; i < 2; i++) {
+        if (wanted[i] >= 0 && wanted[i] < def->n_polar) continue;
+        return bough_fail(BOUGH_INVALID, "Aero station %d: there is no polar %d.", j + 1,
+                          wanted[i]);
+    }
+    if (!(s->share >= 0 && s->share <= 1)) {
+        return bough_fail(BOUGH_INVALID, "Aero station %d: a polar's share is from 0 to 1.", j + 1);
+    }
+    return bough_ok();
+}
+
+static bough_status check(const bough_rotor_def *def) {
+    if (def->n_blade < 1) return bough_fail(BOUGH_INVALID, "The rotor needs a blade.");
+    if (def->n_station < 2) return bough_fail(BOUGH_INVALID, "A blade needs two aero stations.");
+    if (def->n_vertex < 2) return bough_fail(BOUGH_INVALID, "A blade needs two vertices.");
+    if (!(def->density > 0)) return bough_fail(BOUGH_INVALID, "The air density must be positive.");
+    if (!(def->hub_radius > 0)) {
+        return bough_fail(BOUGH_INVALID, "The hub radius must be positive.");
+    }
+    for (int i = 1; i < def->n_vertex; i++) {
+        if (!(def->vertex_span[i] > def->vertex_span[i - 1])) {
+            return bough_fail(BOUGH_INVALID, "Vertex %d: spans must increase.", i + 1);
+        }
+    }
+    for (int j = 0; j < def->n_station; j++) {
+        bough_status status = check_station(def, j);
+        if (!bough_is_ok(&status)) return status;
+    }
+    return bough_ok();
+}
+
+// Section axes turned by the aero twist from blade-root axes: leading edge into the wind.
+static bough_mat3 twisted(double twist) {
+    double c = cos(twist), s = sin(twist);
+    return (bough_mat3){{c, -s, 0}, {s, c, 0}, {0, 0, 1}};
+}
+
+static void place_station(const bough_rotor_def *def, const bough_station_def *from, int j,
+                          bough_rotor *rotor) {
+    int i = 0;
+    while (i < def->n_vertex - 2 && from->span > def->vertex_span[i + 1])
+        i++;
+    double start = def->vertex_span[i], end = def->vertex_span[i + 1];
+    double w = bough_clamp((from->span - start) / (end - start), 0, 1);
+    bough_mat3 structure =
+        rotation_between(bough_quaternion_of_matrix(def->vertex_rotation[i]),
+                         bough_quaternion_of_matrix(def->vertex_rotation[i + 1]), w);
+    bough_vec3 axis = vector_between(def->vertex_position[i], def->vertex_position[i + 1], w);
+    bough_vec3 arm = bough_v3(from->centre_x - axis.x, from->centre_y - axis.y, 0);
+    bough_mat3 section = bough_mat3_product(bough_mat3_transpose(structure), twisted(from->twist));
+    double radius = def->hub_radius + from->span;
+    double tip = def->hub_radius + def->station[def->n_station - 1].span;
+    station_rows *to = &rotor->station;
+    to->vertex[j] = i;
+    to->weight[j] = w;
+    store_matrix(to->section, rotor->stride, j, section);
+    lane_store(to->centre, rotor->stride, j, bough_mat3_tmul(structure, arm));
+    to->chord[j] = from->chord;
+    to->tip_factor[j] = def->n_blade * (tip - radius) / (2 * radius);
+    to->hub_factor[j] = def->n_blade * from->span / (2 * def->hub_radius);
+    bool fixed = bough_induction_is_fixed(&def->induction, to->tip_factor[j], to->hub_factor[j]);
+    to->free[j] = fixed ? 0 : 1;
+}
+
+static bool take_stations(bough_arena *arena, int stride, station_rows *rows) {
+    size_t n = (size_t)stride;
+    rows->polar = bough_arena_take(arena, n * sizeof *rows->polar);
+    rows->vertex = bough_arena_take(arena, n * sizeof *rows->vertex);
+    rows->weight = bough_arena_doubles(arena, n);
+    rows->section = bough_arena_doubles(arena, 9 * n);
+    rows->centre = bough_arena_doubles(arena, 3 * n);
+    rows->chord = bough_arena_doubles(arena, n);
+    rows->tip_factor = bough_arena_doubles(arena, n);
+    rows->hub_factor = bough_arena_doubles(arena, n);
+    rows->free = bough_arena_doubles(arena, n);
+    return !bough_arena_exhausted(arena);
+}
+
+static void place_stations(const bough_rotor_def *def, const bough_polar *polar,
+                           bough_rotor *rotor) {
+    for (int j = 0; j < rotor->stride; j++) {
+        int k = j < def->n_station ? j : def->n_station - 1;
+        const bough_station_def *from = def->station + k;
+        place_station(def, from, j, rotor);
+        rotor->station.polar[j] = polar + (from->share > 0 ? def->n_polar + k : from->polar);
+    }
+}
+
+// Adds ∫ hat_i N_j ds over [a, b], on which all are linear; by Simpson's rule, exact for products.
+static void add_interval(const bough_rotor_def *def, double a, double b, int vertex, int station,
+                         double *dense) {
+    const double *x = def->vertex_span;
+    double x0 = x[vertex], dx = x[vertex + 1] - x0;
+    double y0 = def->station[station].span, dy = def->station[station + 1].span - y0;
+    const double point[3] = {a, (a + b) / 2, b}, weight[3] = {1. / 6, 4. / 6, 1. / 6};
+    for (int k = 0; k < 3; k++) {
+        double hat = bough_clamp((point[k] - x0) / dx, 0, 1), load = (point[k] - y0) / dy;
+        double w = weight[k] * (b - a);
+        double *here = dense + vertex * def->n_station + station, *next = here + def->n_station;
+        here[0] += w * (1 - hat) * (1 - load);
+        here[1] += w * (1 - hat) * load;
+        next[0] += w * hat * (1 - load);
+        next[1] += w * hat * load;
+    }
+}
+
+// dense (n_vertex × n_station): what each vertex takes of each station's line load [m].
+static void fill_mapping(const bough_rotor_def *def, double *dense) {
+    int vertex = 0, last = def->n_vertex - 2;
+    for (int j = 0; j + 1 < def->n_station; j++) {
+        double a = def->station[j].span, end = def->station[j + 1].span;
+        while (a < end) {
+            while (vertex < last && def->vertex_span[vertex + 1] <= a)
+                vertex++;
+            double b = vertex < last ? fmin(end, def->vertex_span[vertex + 1]) : end;
+            add_interval(def, a, b, vertex, j, dense);
+            a = b;
+        }
+    }
+}
+
+// Keeps of each dense row the stretch from its first to its last entry.
+static void compress_rows(const bough_rotor *rotor, const double *dense) {
+    for (int i = 0; i < rotor->n_vertex; i++) {
+        const double *d = dense + i * rotor->n_station;
+        int first = 0, end = rotor->n_station;
+        while (first < end && d[first] == 0)
+            first++;
+        while (end > first && d[end - 1] == 0)
+            end--;
+        rotor->row[i] = (vertex_row){first, end - first, d + first};
+    }
+}
+
+// The def's polars and, after them, one for each station that has a mixture.
+static bough_status build_polars(bough_arena *arena, const bough_rotor_def *def,
+                                 const bough_polar **polars) {
+    int most = def->n_polar + def->n_station;
+    bough_polar *polar = bough_arena_take(arena, (size_t)most * sizeof *polar);
+    if (!polar) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the polars.");
+    *polars = polar;
+    bough_status status = bough_ok();
+    for (int i = 0; i < most && bough_is_ok(&status); i++) {
+        if (i < def->n_polar) {
+            status = bough_polar_build(arena, def->polar + i, polar + i);
+            continue;
+        }
+        const bough_station_def *s = def->station + i - def->n_polar;
+        if (s->share > 0) {
+            status = bough_polar_blend(arena, polar + s->polar, polar + s->second, s->share,
+                                       polar + i);
+        }
+    }
+    for (int i = 0; i < most && def->smooth_polars && bough_is_ok(&status); i++)
+        if (polar[i].n > 0) status = bough_polar_smoothen(arena, polar + i);
+    return status;
+}
+
+static bough_status prepare_stall(bough_arena *arena, bough_rotor *rotor) {
+    size_t n = (size_t)rotor->n_station;
+    bough_stall_airfoil *airfoil = bough_arena_take(arena, n * sizeof *airfoil);
+    if (!airfoil) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the dynamic stall.");
+    for (size_t j = 0; j < n; j++)
+        airfoil[j] = bough_stall_airfoil_of(rotor->station.polar[j]);
+    rotor->airfoil = airfoil;
+    return bough_ok();
+}
+
+bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
+                               const bough_rotor **result) {
+    *result = NULL;
+    bough_status status = check(def);
+    if (!bough_is_ok(&status)) return status;
+    size_t n_station = (size_t)def->n_station, n_vertex = (size_t)def->n_vertex;
+    bough_rotor *rotor = bough_arena_take(arena, sizeof *rotor);
+    vertex_row *row = bough_arena_take(arena, n_vertex * sizeof *row);
+    double *dense = bough_arena_doubles(arena, n_vertex * n_station);
+    if (!rotor || !row || !dense) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's aerodynamics.");
+    }
+    *rotor = (bough_rotor){.n_blade = def->n_blade,
+                           .n_station = def->n_station,
+                           .n_vertex = def->n_vertex,
+                           .stride = bough_padded(def->n_station),
+                           .density = def->density,
+                           .pitching_moment = def->pitching_moment,
+                           .skew = def->skew,
+                           .induction = def->induction,
+                           .inflow = def->inflow,
+                           .row = row};
+    if (!take_stations(arena, rotor->stride, &rotor->station)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's stations.");
+    }
+    const bough_polar *polar = NULL;
+    status = build_polars(arena, def, &polar);
+    if (bough_is_ok(&status)) status = bough_wind_build(arena, &def->wind, &rotor->wind);
+    if (bough_is_ok(&status)) status = bough_tower_build(arena, &def->tower, &rotor->tower);
+    if (!bough_is_ok(&status)) return status;
+    place_stations(def, polar, rotor);
+    fill_mapping(def, dense);
+    compress_rows(rotor, dense);
+    if (def->stall != BOUGH_STALL_NONE) status = prepare_stall(arena, rotor);
+    if (bough_is_ok(&status)) *result = rotor;
+    return status;
+}
+
+// Stations keep their place on the radius of the undeformed rotor, as the loss factors do.
+static void take_inflow(bough_arena *arena, const bough_rotor *rotor, bough_rotor_memory *memory) {
+    int n = rotor->n_blade * rotor->n_station;
+    memory->station = bough_arena_take(arena, (size_t)n * sizeof *memory->station);
+    if (!memory->station) return;
+    for (int k = 0; k < n; k++) {
+        double tip_factor = rotor->station.tip_factor[k % rotor->n_station];
+        double share = 1 / (1 + 2 * tip_factor / rotor->n_blade); // of B (R − r)/(2 r)
+        memory->station[k] = (bough_inflow_station){.share = share};
+    }
+}
+
+static void take_memory(bough_arena *arena, const bough_rotor *rotor, bough_rotor_memory *memory) {
+    size_t n = (size_t)rotor->n_blade * rotor->n_station;
+    bool delayed = rotor->inflow.kind != BOUGH_INFLOW_EQUILIBRIUM;
+    if (!delayed && !rotor->airfoil) return;
+    memory->clock = bough_arena_take(arena, sizeof *memory->clock);
+    if (delayed) take_inflow(arena, rotor, memory);
+    if (rotor->airfoil) memory->stall = bough_arena_take(arena, n * sizeof *memory->stall);
+}
+
+static void take_rows(bough_arena *arena, int stride, blade_rows *rows) {
+    double **const vectors[] = {&rows->arm, &rows->x, &rows->y, &rows->z, &rows->velocity,
+                                &rows->wind, &rows->place};
+    double **const scalars[] = {&rows->radius, &rows->twist, &rows->turning, &rows->solidity,
+                                &rows->cone, &rows->inflow_x, &rows->inflow_y, &rows->axial,
+                                &rows->tangential, &rows->loss, &rows->phi, &rows->alpha,
+                                &rows->speed, &rows->lift, &rows->drag, &rows->moment,
+                                &rows->force_x, &rows->force_y};
+    size_t n = (size_t)stride;
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+        *vectors[i] = bough_arena_doubles(arena, 3 * n);
+    for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++)
+        *scalars[i] = bough_arena_doubles(arena, n);
+    rows->load = bough_arena_doubles(arena, LOAD * n);
+}
+
+bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor,
+                                    bough_rotor_data *data) {
+    size_t n_blade = (size_t)rotor->n_blade;
+    *data = (bough_rotor_data){0};
+    data->load = bough_arena_doubles(arena, 6 * n_blade * (size_t)rotor->n_vertex);
+    struct bough_rotor_scratch *s = bough_arena_take(arena, sizeof *s);
+    data->scratch = s;
+    if (s) {
+        s->blade = bough_arena_take(arena, n_blade * sizeof *s->blade);
+        s->wind = bough_arena_take(arena, n_blade * sizeof *s->wind);
+        s->thrust = bough_arena_doubles(arena, n_blade);
+        s->torque = bough_arena_doubles(arena, n_blade);
+    }
+    for (int b = 0; s && s->blade && b < rotor->n_blade; b++)
+        take_rows(arena, rotor->stride, s->blade + b);
+    take_memory(arena, rotor, &data->memory);
+    if (bough_arena_exhausted(arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's loads.");
+    }
+    return bough_ok();
+}
