@@ -1037,14 +1037,14 @@ static void help_covers_scene_and_files(void **state) {
     bough_scene_help(stream);
     fclose(stream);
     const char *const lines[] = {
-        "\n  - macro_step: (number in s, > 0; required)\n",
+        "\n  - macro_step: (number in s, > 0; required; e.g. 20 ms)\n",
         "\n    - scheme: (frozen|gauss-seidel|extrapolated|iterated|ramp|monolithic; default "
-        "ramp)\n",
+        "ramp; e.g. frozen)\n",
         "\n    - axis: (x|y|z; required; with kind: revolute|prismatic|cylindrical|"
-        "universal|planar)\n",
-        "\n        - alpha: (number in rad; required)\n",
+        "universal|planar; e.g. x)\n",
+        "\n        - alpha: (number in rad; required; e.g. 8 deg)\n",
         "\n        - stiffness: (6 numbers, the diagonal, or 21, the upper triangle row by row; "
-        "required)\n",
+        "required; e.g. [1e9, 1e9, 9.7e9, 1.8e10, 1.8e10, 5.6e9])\n",
     };
     for (size_t i = 0; i < sizeof lines / sizeof lines[0]; i++) {
         if (strstr(text, lines[i]) == NULL) fail_msg("not in the help: %s", lines[i]);

@@ -512,7 +512,7 @@ static void help_names_every_key(void **state) {
     bough_schema_help(&thing_schema, 0, stream);
     fclose(stream);
     const char *const lines[] = {
-        "- kind: (turning|sliding|fixed; required)\n  its kind\n",
+        "- kind: (turning|sliding|fixed; required; e.g. turning)\n  its kind\n",
         "angle: (number in rad; default 90 deg; with kind: turning)\n",
         "count: (whole number, [0, 9]; default 4)\n",
         "share: (number or auto, [0.5, 1]; default auto)\n",

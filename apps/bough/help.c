@@ -20,7 +20,7 @@ typedef struct topic {
 } topic;
 
 static const topic topics[] = {
-    {"scene", "every key of a scene with unit, range and default", bough_scene_help},
+    {"scene", "every key of a scene with unit, range, default and example", bough_scene_help},
     {"coupling", "the coupling schemes", help_coupling},
 };
 static const char *const topic_names[] = {"scene", "coupling", NULL};

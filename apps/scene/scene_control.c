@@ -1,34 +1,36 @@
 // The keys of a turbine's controller.
-#include "apps/scene/scene_parts.h"
-
-#include <stddef.h>
+#include "apps/scene/scene_tables.h"
 
 // clang-format off
-#define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
-#define CHOICES(...) (const char *const[]){__VA_ARGS__, NULL}
 
 // The constants of the law with those of the NREL 5 MW turbine.
-#define LAW(key_name, unit, given, what)                                                           \
+#define LAW(key_name, unit, given, shown, what)                                                    \
     {.name = #key_name, .kind = BOUGH_KEY_NUMBER, .dimension = unit, .fallback = given,            \
-     .offset = offsetof(bough_controller_def, key_name), .help = what}
+     .example = shown, .offset = offsetof(bough_controller_def, key_name), .help = what}
 static const bough_key law_keys[] = {
-    LAW(corner, BOUGH_ANGULAR_SPEED, "1.570796", "of the low-pass filter of the generator's speed"),
-    LAW(cut_in, BOUGH_ANGULAR_SPEED, "70.16224", "no torque below this generator speed"),
-    LAW(optimal_from, BOUGH_ANGULAR_SPEED, "91.21091", "from here torque is optimal_gain speed^2"),
-    LAW(optimal_gain, BOUGH_PURE_NUMBER, "2.332287", "in N m s^2/rad^2"),
-    LAW(rated_speed, BOUGH_ANGULAR_SPEED, "121.6805", "constant power from this generator speed"),
-    LAW(rated_power, BOUGH_PURE_NUMBER, "5296610", "mechanical, in W"),
-    LAW(slip, BOUGH_PURE_NUMBER, "0.1", "of the line from the optimal to the rated torque"),
-    LAW(most_torque, BOUGH_MOMENT, "47402.91", "of the generator"),
-    LAW(torque_rate, BOUGH_PURE_NUMBER, "15000", "the most, in N m/s"),
-    LAW(power_pitch, BOUGH_ANGLE, "0.01745329", "beyond this pitch power is constant at any speed"),
-    LAW(reference_speed, BOUGH_ANGULAR_SPEED, "122.9096", "generator speed that the pitch holds"),
-    LAW(proportional, BOUGH_PURE_NUMBER, "0.01882681", "gain of the pitch at no pitch, in s"),
-    LAW(integral, BOUGH_PURE_NUMBER, "0.008068634", "gain of the pitch at no pitch"),
-    LAW(halving_pitch, BOUGH_ANGLE, "0.1099965", "where both gains are halved"),
-    LAW(least_pitch, BOUGH_ANGLE, "0", "limit of the pitch"),
-    LAW(most_pitch, BOUGH_ANGLE, "1.570796", "limit of the pitch"),
-    LAW(pitch_rate, BOUGH_ANGULAR_SPEED, "0.1396263", "the most, of any controller"),
+    LAW(corner, BOUGH_ANGULAR_SPEED, "1.570796", "2 rad/s",
+        "of the low-pass filter of the generator's speed"),
+    LAW(cut_in, BOUGH_ANGULAR_SPEED, "70.16224", "670 rpm", "no torque below this generator speed"),
+    LAW(optimal_from, BOUGH_ANGULAR_SPEED, "91.21091", "871 rpm",
+        "from here torque is optimal_gain speed^2"),
+    LAW(optimal_gain, BOUGH_PURE_NUMBER, "2.332287", "2.4", "in N m s^2/rad^2"),
+    LAW(rated_speed, BOUGH_ANGULAR_SPEED, "121.6805", "1162 rpm",
+        "constant power from this generator speed"),
+    LAW(rated_power, BOUGH_PURE_NUMBER, "5296610", "5.3e6", "mechanical, in W"),
+    LAW(slip, BOUGH_PURE_NUMBER, "0.1", "0.05", "of the line from the optimal to the rated torque"),
+    LAW(most_torque, BOUGH_MOMENT, "47402.91", "47.4 kN m", "of the generator"),
+    LAW(torque_rate, BOUGH_PURE_NUMBER, "15000", "12e3", "the most, in N m/s"),
+    LAW(power_pitch, BOUGH_ANGLE, "0.01745329", "1 deg",
+        "beyond this pitch power is constant at any speed"),
+    LAW(reference_speed, BOUGH_ANGULAR_SPEED, "122.9096", "1174 rpm",
+        "generator speed that the pitch holds"),
+    LAW(proportional, BOUGH_PURE_NUMBER, "0.01882681", "0.02",
+        "gain of the pitch at no pitch, in s"),
+    LAW(integral, BOUGH_PURE_NUMBER, "0.008068634", "0.01", "gain of the pitch at no pitch"),
+    LAW(halving_pitch, BOUGH_ANGLE, "0.1099965", "6.3 deg", "where both gains are halved"),
+    LAW(least_pitch, BOUGH_ANGLE, "0", "-1 deg", "limit of the pitch"),
+    LAW(most_pitch, BOUGH_ANGLE, "1.570796", "85 deg", "limit of the pitch"),
+    LAW(pitch_rate, BOUGH_ANGULAR_SPEED, "0.1396263", "7 deg/s", "the most, of any controller"),
 };
 static const bough_schema law_schema = {.name = "the law's constants",
     .size = sizeof(bough_controller_def), .n_key = COUNT(law_keys), .key = law_keys};
@@ -40,15 +42,19 @@ static const bough_key control_keys[] = {
      .help = "the baseline law of the NREL 5 MW turbine, or a shared library with the function "
              "DISCON in the style of Bladed"},
     {.name = "rate", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_FREQUENCY, .range = "> 0",
-     .fallback = "50", AT(rate), .help = "samples; their period is a multiple of the macro step"},
+     .fallback = "50", AT(rate), .example = "80 Hz",
+     .help = "samples; their period is a multiple of the macro step"},
     {.name = "gear_ratio", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .fallback = "97",
-     AT(gear_ratio), .help = "generator speed over rotor speed"},
+     AT(gear_ratio), .example = "105", .help = "generator speed over rotor speed"},
     {.name = "efficiency", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.944",
-     AT(efficiency), .help = "electrical power over the generator's mechanical one"},
+     AT(efficiency), .example = "0.965",
+     .help = "electrical power over the generator's mechanical one"},
     {.name = "library", .kind = BOUGH_KEY_TEXT, .required = true, .when_key = "kind",
-     .when = "bladed", AT(library), .help = "file relative to the scene"},
+     .when = "bladed", AT(library), .example = "libdiscon.so",
+     .help = "file relative to the scene"},
     {.name = "input", .kind = BOUGH_KEY_TEXT, .when_key = "kind",
-     .when = "bladed", AT(input), .help = "the controller's own input file, relative to the scene"},
+     .when = "bladed", AT(input), .example = "DISCON.IN",
+     .help = "the controller's own input file, relative to the scene"},
     {.name = "law", .kind = BOUGH_KEY_MAPPING, .of = &law_schema, AT(law),
      .help = "constants; those of the NREL 5 MW turbine where left out"},
 };

@@ -8,6 +8,12 @@
 // The table of a whole scene; fills a bough_scene.
 extern const bough_schema bough_scene_schema;
 
+// Those of its parts.
+extern const bough_schema bough_scene_micro_schema, bough_scene_body_schema,
+    bough_scene_load_schema, bough_scene_spring_schema, bough_scene_bushing_schema, bough_scene_closure_schema,
+    bough_scene_marker_schema, bough_scene_turbine_schema, bough_scene_aero_schema,
+    bough_scene_control_schema;
+
 // Readers of values that are lists of their own kind. `field` is named in the body.
 void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_steps(bough_schema_reader *r, const bough_node *node, void *field);
@@ -21,8 +27,6 @@ void bough_scene_read_load_torque(bough_schema_reader *r, const bough_node *node
 void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_factor(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
-
-extern const bough_schema bough_scene_control_schema;
 
 // Checks within one mapping or file; `item` is the struct that was read.
 void bough_scene_check_structure(bough_schema_reader *r, void *item);

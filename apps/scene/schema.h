@@ -62,6 +62,7 @@ typedef struct bough_key {
     void (*read)(bough_schema_reader *reader, const bough_node *node, void *field);
     size_t offset, count_offset; // of the field in the struct
     const char *form;            // of a custom key, for the help
+    const char *example;         // as it would be written; not of choices: bough_key_example
     const char *help;
 } bough_key;
 
@@ -113,6 +114,10 @@ const char *bough_nearest(const char *word, const char *const *candidates, int n
 
 // What a node holds, for messages: "'12 x'", "a list", "nothing".
 const char *bough_node_shown(const bough_node *node, char buffer[64]);
+
+// How the key's value may be written, other than its default; "" of a mapping or a list of
+// mappings, whose keys have their own.
+const char *bough_key_example(const bough_key *key);
 
 // Writes every key below the schema as a list in Markdown, indented by `indent`.
 void bough_schema_help(const bough_schema *schema, int indent, FILE *stream);

@@ -42,6 +42,15 @@ static void describe_kind(const bough_key *key, char *line, size_t size) {
     if (key->range != NULL) append(line, size, ", ", key->range);
 }
 
+const char *bough_key_example(const bough_key *key) {
+    bool no = key->fallback != NULL && strcmp(key->fallback, "true") == 0;
+    if (key->example != NULL) return key->example;
+    if (key->kind == BOUGH_KEY_BOOLEAN) return no ? "false" : "true";
+    if (key->choices == NULL) return "";
+    bool is_default = key->fallback != NULL && strcmp(key->fallback, key->choices[0]) == 0;
+    return key->choices[is_default ? 1 : 0];
+}
+
 static void describe_need(const bough_key *key, char *line, size_t size) {
     if (key->required) append(line, size, "; required", "");
     if (key->fallback != NULL) append(line, size, "; default ", key->fallback);
@@ -49,12 +58,13 @@ static void describe_need(const bough_key *key, char *line, size_t size) {
         append(line, size, "; with ", key->when_key);
         append(line, size, ": ", key->when);
     }
+    if (bough_key_example(key)[0] != '\0') append(line, size, "; e.g. ", bough_key_example(key));
 }
 
 void bough_schema_help(const bough_schema *schema, int indent, FILE *stream) {
     for (int i = 0; i < schema->n_key; i++) {
         const bough_key *key = &schema->key[i];
-        char line[400] = "";
+        char line[600] = "";
         describe_kind(key, line, sizeof line);
         describe_need(key, line, sizeof line);
         fprintf(stream, "%*s- %s: (%s)\n", indent, "", key->name, line);

@@ -1,0 +1,237 @@
+// The keys of wind, airfoils, blade elements and tower.
+#include "apps/scene/scene_tables.h"
+
+// One line a key would become one line a field:
+// clang-format off
+
+#define AT(member) .offset = offsetof(bough_scene_aero_station, member)
+static const bough_key aero_station_keys[] = {
+    {.name = "span", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .required = true,
+     AT(span), .example = "20.5 m", .help = "along z from the root"},
+    {.name = "ac_x", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .fallback = "0",
+     AT(ac[0]), .example = "0.1 m",
+     .help = "aerodynamic centre from the pitch axis, blade-root x (flapwise)"},
+    {.name = "ac_y", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .fallback = "0",
+     AT(ac[1]), .example = "-0.5 m",
+     .help = "aerodynamic centre from the pitch axis, blade-root y (edgewise)"},
+    {.name = "twist", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
+     AT(twist), .example = "9 deg", .help = "the airfoil is turned by -twist about z, like pitch"},
+    {.name = "chord", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = "> 0",
+     .required = true, AT(chord), .example = "4.2 m", .help = "chord"},
+    {.name = "polar", .kind = BOUGH_KEY_TEXT, .required = true, AT(polar_name),
+     .example = "DU25", .help = "name of a polar in the polars file"},
+    {.name = "blend", .kind = BOUGH_KEY_TEXT, AT(second_name),
+     .example = "DU21", .help = "name of a second polar, with which the first is mixed"},
+    {.name = "share", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0", AT(share),
+     .example = "0.4",
+     .help = "of the second polar, as by the place or the thickness between two airfoils"},
+};
+#undef AT
+static const bough_schema aero_station_schema = {
+    SCHEMA("a station", bough_scene_aero_station, aero_station_keys)};
+
+#define AT(member) .offset = offsetof(bough_scene_aero_blade, member)
+static const bough_key aero_blade_keys[] = {
+    {.name = "source", .kind = BOUGH_KEY_TEXT, AT(source),
+     .example = "Jonkman et al. 2009, NREL/TP-500-38060",
+     .help = "where the data come from"},
+    {.name = "stations", .kind = BOUGH_KEY_LIST, .of = &aero_station_schema, .count = 2,
+     .required = true, AT(station), .count_offset = offsetof(bough_scene_aero_blade, n_station),
+     .help = "blade elements, from the root to the tip"},
+};
+#undef AT
+static const bough_schema aero_blade_schema = {
+    SCHEMA("an aerodynamic blade", bough_scene_aero_blade, aero_blade_keys),
+    .check = bough_scene_check_aero_blade};
+
+#define ROW(key_name, shown, what)                                                                 \
+    {.name = #key_name, .kind = BOUGH_KEY_NUMBER, .required = true,                                \
+     .offset = offsetof(bough_scene_polar_row, key_name), .example = shown, .help = what}
+static const bough_key polar_row_keys[] = {
+    {.name = "alpha", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .required = true,
+     .offset = offsetof(bough_scene_polar_row, alpha), .example = "8 deg",
+     .help = "angle of attack"},
+    ROW(cl, "1.05", "lift coefficient"),
+    ROW(cd, "0.012", "drag coefficient"),
+    ROW(cm, "-0.11", "moment coefficient about the aerodynamic centre, nose up"),
+};
+static const bough_schema polar_row_schema = {
+    SCHEMA("a row", bough_scene_polar_row, polar_row_keys)};
+
+#define AT(member) .offset = offsetof(bough_scene_polar, member)
+static const bough_key polar_keys[] = {
+    {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name), .example = "DU25",
+     .help = "unique"},
+    {.name = "table", .kind = BOUGH_KEY_LIST, .of = &polar_row_schema, .count = 2,
+     .required = true, AT(row), .count_offset = offsetof(bough_scene_polar, n_row),
+     .help = "from -180 deg to 180 deg, linear between"},
+};
+#undef AT
+static const bough_schema polar_schema = {SCHEMA("a polar", bough_scene_polar, polar_keys),
+                                          .check = bough_scene_check_polar};
+
+#define AT(member) .offset = offsetof(bough_scene_polars, member)
+static const bough_key polars_keys[] = {
+    {.name = "source", .kind = BOUGH_KEY_TEXT, AT(source),
+     .example = "Jonkman et al. 2009, NREL/TP-500-38060",
+     .help = "where the data come from"},
+    {.name = "polars", .kind = BOUGH_KEY_LIST, .of = &polar_schema, .count = 1, .required = true,
+     AT(polar), .count_offset = offsetof(bough_scene_polars, n_polar), .help = "airfoils"},
+};
+#undef AT
+static const bough_schema polars_schema = {
+    SCHEMA("a set of polars", bough_scene_polars, polars_keys), .check = bough_scene_check_polars};
+
+#define AT(member) .offset = offsetof(bough_scene_wind_table, member)
+static const bough_key wind_table_keys[] = {
+    {.name = "times", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_TIME, .count = 2,
+     .required = true, AT(time), .count_offset = offsetof(bough_scene_wind_table, n_time),
+     .example = "[0, 10 s, 12 s]", .help = "strictly increasing"},
+    {.name = "speeds", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_SPEED, .range = ">= 0",
+     .count = 2, .required = true, AT(speed),
+     .count_offset = offsetof(bough_scene_wind_table, n_speed),
+     .example = "[8, 8, 12 m/s]",
+     .help = "at each time, linear between, constant before and after"},
+};
+#undef AT
+static const bough_schema wind_table_schema = {
+    SCHEMA("a table of wind speeds", bough_scene_wind_table, wind_table_keys),
+    .check = bough_scene_check_wind_table};
+
+#define AT(member) .offset = offsetof(bough_scene_wind, member)
+static const bough_key wind_keys[] = {
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE,
+     .choices = CHOICES("uniform", "power", "log", "wnd", "bts"),
+     .fallback = "uniform", AT(kind),
+     .help = "how the speed grows with the height: not, by a power or a logarithmic law; or from a "
+             "file: uniform (hub height) or TurbSim's box"},
+    {.name = "file", .kind = BOUGH_KEY_TEXT, .required = true, .when_key = "kind",
+     .when = "wnd|bts", AT(file), .example = "turbulence.bts", .help = "relative to the scene"},
+    {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .range = ">= 0",
+     AT(speed), .example = "11.4 m/s",
+     .help = "horizontal, at the reference height; required without table and file"},
+    {.name = "table", .kind = BOUGH_KEY_MAPPING, .of = &wind_table_schema, AT(table),
+     .help = "in place of speed: the speed over time, for gusts and ramps"},
+    {.name = "exponent", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.2",
+     .when_key = "kind", .when = "power", AT(exponent), .example = "0.14",
+     .help = "speed grows with height^exponent"},
+    {.name = "roughness", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = "> 0",
+     .fallback = "0.03", .when_key = "kind", .when = "log", AT(roughness),
+     .example = "0.01 m", .help = "length z0: speed grows with ln(height/z0)"},
+    {.name = "reference_height", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH,
+     .range = "> 0", .required = true, .when_key = "kind", .when = "power|log|wnd",
+     AT(reference_height), .example = "90 m", .help = "above ground z = 0"},
+    {.name = "reference_length", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH,
+     .range = "> 0", .required = true, .when_key = "kind", .when = "wnd", AT(reference_length),
+     .example = "126 m",
+     .help = "over which the file's linear shears are told: the rotor's diameter"},
+    {.name = "direction", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
+     AT(direction), .example = "15 deg", .help = "where the wind blows to, from ground x about z"},
+    {.name = "vertical", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .fallback = "0",
+     AT(vertical), .example = "0.5 m/s", .help = "upwards, at every height and time"},
+};
+#undef AT
+static const bough_schema wind_schema = {SCHEMA("the wind", bough_scene_wind, wind_keys),
+                                         .check = bough_scene_check_wind};
+
+#define SWITCH(member, what)                                                                       \
+    {.name = #member, .kind = BOUGH_KEY_BOOLEAN, .fallback = "true",                               \
+     .offset = offsetof(bough_scene_induction, member), .help = what}
+static const bough_key induction_keys[] = {
+    SWITCH(tip_loss, "Prandtl's loss factor at the tip"),
+    SWITCH(hub_loss, "Prandtl's loss factor at the hub"),
+    SWITCH(tangential, "tangential induction"),
+    SWITCH(drag, "drag counts in the induction"),
+    {.name = "high_thrust", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("smooth", "buhl"),
+     .fallback = "smooth", .offset = offsetof(bough_scene_induction, high_thrust),
+     .help = "how thrust grows beyond momentum theory: as AeroDyn's newer formulation or by Buhl's "
+             "parabola"},
+    {.name = "skew", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "pitt-peters"),
+     .fallback = "pitt-peters", .offset = offsetof(bough_scene_induction, skew),
+     .help = "correction for oblique inflow"},
+    {.name = "inflow", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("equilibrium", "oye"),
+     .fallback = "equilibrium", .offset = offsetof(bough_scene_induction, inflow),
+     .help = "how the induction follows a change of load: at once, or by Oye's dynamic inflow"},
+    {.name = "inflow_time", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .word = "auto",
+     .range = "> 0", .fallback = "auto", .when_key = "inflow", .when = "oye",
+     .offset = offsetof(bough_scene_induction, inflow_time),
+     .example = "5 s", .help = "its slow time constant; auto: 1.1/(1 - 1.3 a) R/U"},
+};
+static const bough_schema induction_schema = {
+    SCHEMA("the induction", bough_scene_induction, induction_keys)};
+
+#define AT(member) .offset = offsetof(bough_scene_tower, member)
+static const bough_key tower_keys[] = {
+    {.name = "influence", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("potential", "bak"),
+     .fallback = "potential", AT(influence),
+     .help = "how the tower changes the wind: potential flow about a cylinder, or with Bak's "
+             "correction for its drag"},
+    {.name = "shadow", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "powles"),
+     .fallback = "none", AT(shadow), .help = "wake behind the tower"},
+    {.name = "height", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_LENGTH, .range = ">= 0",
+     .count = 2, .required = true, AT(height),
+     .count_offset = offsetof(bough_scene_tower, n_height), .example = "[0, 45 m, 87.6 m]",
+     .help = "above the ground's origin"},
+    {.name = "diameter", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_LENGTH, .range = "> 0",
+     .count = 2, .required = true, AT(diameter),
+     .count_offset = offsetof(bough_scene_tower, n_diameter), .example = "[6, 4.9 m, 3.87 m]",
+     .help = "at each height"},
+    {.name = "drag", .kind = BOUGH_KEY_NUMBERS, .range = ">= 0", .count = 1, .fallback = "[1]",
+     AT(drag), .count_offset = offsetof(bough_scene_tower, n_drag),
+     .example = "[0.5]",
+     .help = "drag coefficient: one for the whole tower, or one at each height; for bak, powles "
+             "and "
+             "the drag on a body"},
+    {.name = "body", .kind = BOUGH_KEY_TEXT, AT(body_name),
+     .example = "tower",
+     .help = "body with a rod on which the tower's drag acts; left out: no drag"},
+};
+#undef AT
+static const bough_schema tower_schema = {SCHEMA("a tower", bough_scene_tower, tower_keys),
+                                          .check = bough_scene_check_tower};
+
+#define AT(member) .offset = offsetof(bough_scene_aero, member)
+static const bough_key aero_keys[] = {
+    {.name = "rate", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_FREQUENCY, .range = "> 0",
+     .required = true, AT(rate), .example = "50 Hz",
+     .help = "samples; their period is a multiple of the macro step"},
+    {.name = "air_density", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_DENSITY, .range = "> 0",
+     .fallback = "1.225", AT(air_density), .example = "1.2", .help = "density of the air"},
+    {.name = "wind", .kind = BOUGH_KEY_MAPPING, .of = &wind_schema, .required = true, AT(wind),
+     .help = "the undisturbed wind"},
+    RAMP(bough_scene_aero),
+    {.name = "hold", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("linear", "constant"),
+     .fallback = "linear", AT(hold), .help = "how loads go between samples"},
+    {.name = "blade", .kind = BOUGH_KEY_FILE, .of = &aero_blade_schema, .required = true,
+     AT(blade), .example = "blade-aero.yaml",
+     .help = "file with the blade elements, relative to the scene"},
+    {.name = "polars", .kind = BOUGH_KEY_FILE, .of = &polars_schema, .required = true, AT(polars),
+     .example = "airfoils.yaml", .help = "file with the polars, relative to the scene"},
+    {.name = "induction", .kind = BOUGH_KEY_MAPPING, .of = &induction_schema, AT(induction),
+     .help = "parts of the blade element momentum theory"},
+    {.name = "tower", .kind = BOUGH_KEY_MAPPING, .of = &tower_schema, AT(tower),
+     .help = "vertical tower in front of which the blades pass; left out: no influence"},
+    {.name = "hub_radius", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = ">= 0",
+     .required = true, AT(hub_radius), .example = "1.5 m",
+     .help = "from the rotor axis to the blade roots"},
+    {.name = "hub_drag_area", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0",
+     AT(hub_drag_area), .example = "5",
+     .help = "drag coefficient times area of the hub, in m2; drag on the rotor"},
+    {.name = "dynamic_stall", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "hgm"),
+     .fallback = "none", AT(dynamic_stall),
+     .help = "how lift follows the angle of attack: at once, or by the Beddoes-Leishman model of "
+             "Hansen, Gaunaa and Madsen"},
+    {.name = "interpolation", .kind = BOUGH_KEY_CHOICE,
+     .choices = CHOICES("linear", "monotone-cubic"), .fallback = "linear", AT(interpolation),
+     .help = "of the polars between their rows"},
+    {.name = "pitching_moment", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(pitching_moment),
+     .help = "the sections' moment coefficients count"},
+    {.name = "nodes", .kind = BOUGH_KEY_NUMBERS, .range = ">= 1", .count = 1, AT(nodes),
+     .count_offset = offsetof(bough_scene_aero, n_node),
+     .example = "[9, 15]",
+     .help = "numbers of blade elements, from 1 at the root, whose flow is recorded"},
+};
+#undef AT
+const bough_schema bough_scene_aero_schema = {
+    SCHEMA("the aerodynamics", bough_scene_aero, aero_keys)};
+// clang-format on
