@@ -4,35 +4,12 @@
 #define BOUGH_IMPORT_OPENFAST_H
 
 #include "apps/import/deck.h"
-
-#include <stdio.h>
-
-typedef enum bough_import_note {
-    BOUGH_TAKEN,
-    BOUGH_APPROXIMATED,
-    BOUGH_LEFT_OUT,
-    BOUGH_N_NOTE
-} bough_import_note;
-
-typedef enum bough_import_file {
-    BOUGH_IMPORT_SCENE,
-    BOUGH_IMPORT_BLADE,
-    BOUGH_IMPORT_TOWER,
-    BOUGH_IMPORT_AERO,
-    BOUGH_IMPORT_POLARS,
-    BOUGH_IMPORT_LIST,
-    BOUGH_N_IMPORT_FILE,
-} bough_import_file;
-
-extern const char *const bough_import_name[BOUGH_N_IMPORT_FILE];
+#include "apps/import/draft.h"
 
 enum { BOUGH_IMPORT_BLADES = 3 };
 
 typedef struct bough_openfast {
-    bough_arena *arena;
-    bough_status *status;
-    FILE *note[BOUGH_N_NOTE];        // lines of the list
-    FILE *file[BOUGH_N_IMPORT_FILE]; // texts of the files; one left empty is not written
+    bough_draft draft;
     bough_deck *main, *elasto, *tower, *servo, *inflow, *aero; // NULL: the model has none
     int n_blade;
     bool beamdyn; // blades by BeamDyn, else by ElastoDyn
@@ -44,19 +21,8 @@ typedef struct bough_openfast {
     double tower_base, tower_top; // above ground [m]
 } bough_openfast;
 
-// A line of the list.
-void bough_openfast_note(bough_openfast *o, bough_import_note kind, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-
 // A whole file on the list: which, from where.
 bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names);
-
-// "[1, 2, 3]" in the scene's spelling.
-void bough_import_list(FILE *file, const double *value, int n);
-
-// A text in double quotes; a path as an absolute one, so, for what the scene leaves in its place.
-void bough_import_quoted(FILE *file, const char *text);
-void bough_import_path(FILE *file, const char *path);
 
 // Tables of blade and tower; with `top_mass` [kg] on the tower.
 void bough_openfast_beamdyn(bough_openfast *o);

@@ -1,7 +1,6 @@
 // InflowWind and AeroDyn 15: wind, airfoils, blade elements, what the theory counts.
 #include "apps/import/openfast.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -14,7 +13,7 @@ static void airfoil_name(const char *path, int number, char name[NAME]) {
     const char *slash = strrchr(path, '/');
     int n = snprintf(name, NAME, "%d-", number);
     for (const char *p = slash ? slash + 1 : path; *p && *p != '.' && n < NAME - 1; p++)
-        name[n++] = (char)(isalnum((unsigned char)*p) || *p == '-' ? *p : '_');
+        name[n++] = bough_import_letter(*p);
     name[n] = '\0';
 }
 
@@ -27,11 +26,11 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
     int first = bough_deck_line(deck, "NumAlf"), line = first + 1;
     for (int k = 0; k < 4; k++)
         width = column[k] > width ? column[k] : width;
-    FILE *file = o->file[BOUGH_IMPORT_POLARS];
+    FILE *file = o->draft.file[BOUGH_IMPORT_POLARS];
     fprintf(file, "  - name: %s\n    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n",
             name);
     double row[MOST_COLUMNS] = {0}, last = 0;
-    for (int i = 0; i < n && bough_is_ok(o->status); i++) {
+    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
         bough_deck_numbers(deck, &line, "a row of the polar", width, row);
         double value[4];
         for (int k = 0; k < 4; k++)
@@ -49,10 +48,10 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
         fputc('\n', file);
     }
     if (bough_deck_whole_or(deck, "NumTabs", 1) > 1) {
-        bough_openfast_note(o, BOUGH_APPROXIMATED,
-                            "%s: the first of its tables, whatever the "
-                            "Reynolds number",
-                            name);
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "%s: the first of its tables, whatever the "
+                         "Reynolds number",
+                         name);
     }
 }
 
@@ -60,15 +59,15 @@ static int put_polars(bough_openfast *o, char (*name)[NAME]) {
     int n = bough_deck_whole(o->aero, "NumAFfiles", 1, MOST_AIRFOILS);
     int line = bough_deck_line(o->aero, "AFNames");
     if (line < 0) bough_deck_fail(o->aero, -1, "no 'AFNames': expected a line '\"file\"  AFNames'");
-    fputs("polars:\n", o->file[BOUGH_IMPORT_POLARS]);
-    for (int i = 0; i < n && bough_is_ok(o->status); i++) {
+    fputs("polars:\n", o->draft.file[BOUGH_IMPORT_POLARS]);
+    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
         const char *path = bough_deck_file_at(o->aero, line + i);
-        bough_deck *deck = bough_deck_open(o->arena, path, o->status);
+        bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
         if (!deck) return 0;
         airfoil_name(path, i + 1, name[i]);
         put_polar(o, deck, name[i]);
     }
-    bough_openfast_note(o, BOUGH_TAKEN, "%d airfoils: lift, drag, moment", n);
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "%d airfoils: lift, drag, moment", n);
     return n;
 }
 
@@ -82,7 +81,7 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
                                   "BlTwist", "BlChord", "BlAFID"};
     int n = bough_deck_whole(deck, "NumBlNds", 2, MOST_ROWS);
     const double *row = bough_deck_table(deck, column, N_COLUMN, n);
-    FILE *file = o->file[BOUGH_IMPORT_AERO];
+    FILE *file = o->draft.file[BOUGH_IMPORT_AERO];
     fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar]\n  rows:\n", file);
     double angle = 0;
     for (int i = 0; row && i < n; i++, row += N_COLUMN) {
@@ -97,22 +96,22 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
         fprintf(file, "    - [%.10g, %.10g, %.10g, %.10g, %.10g, %s]\n", row[SPAN], row[CURVE],
                 row[SWEEP], row[TWIST], row[CHORD], name[id - 1]);
     }
-    bough_openfast_note(o, BOUGH_TAKEN, "%d blade elements", n);
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "%d blade elements", n);
     if (angle > 0) {
-        bough_openfast_note(o, BOUGH_LEFT_OUT,
-                            "BlCrvAng, up to %g deg: elements stand across the "
-                            "structure's axis",
-                            angle);
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
+                         "BlCrvAng, up to %g deg: elements stand across the "
+                         "structure's axis",
+                         angle);
     }
 }
 
 void bough_openfast_aero_tables(bough_openfast *o) {
-    if (!o->aero || !bough_is_ok(o->status)) return;
-    char(*name)[NAME] = bough_arena_take(o->arena, MOST_AIRFOILS * sizeof *name);
-    if (!name) *o->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!o->aero || !bough_is_ok(o->draft.status)) return;
+    char(*name)[NAME] = bough_arena_take(o->draft.arena, MOST_AIRFOILS * sizeof *name);
+    if (!name) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     int n = name ? put_polars(o, name) : 0;
     bough_deck *deck = bough_openfast_open(o, o->aero, "ADBlFile(1)|ADBlFile1");
-    if (bough_is_ok(o->status)) put_elements(o, deck, name, n);
+    if (bough_is_ok(o->draft.status)) put_elements(o, deck, name, n);
 }
 
 // -- wind -----------------------------------------------------------------------------------------
@@ -120,15 +119,15 @@ void bough_openfast_aero_tables(bough_openfast *o) {
 // A wind file stays where it is.
 static void put_wind_file(bough_openfast *o, const char *kind, const char *names) {
     const char *path = bough_deck_file(o->inflow, names);
-    fprintf(o->file[BOUGH_IMPORT_SCENE], "  wind: {kind: %s, file: ", kind);
-    bough_import_path(o->file[BOUGH_IMPORT_SCENE], path);
-    bough_openfast_note(o, BOUGH_TAKEN, "wind of %s, by its path", path);
+    fprintf(o->draft.file[BOUGH_IMPORT_SCENE], "  wind: {kind: %s, file: ", kind);
+    bough_import_path(o->draft.file[BOUGH_IMPORT_SCENE], path);
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "wind of %s, by its path", path);
 }
 
 static void put_steady(bough_openfast *o, double up) {
     double speed = bough_deck_number(o->inflow, "HWindSpeed");
     double power = bough_deck_number_or(o->inflow, "PLExp|PLexp", 0);
-    FILE *file = o->file[BOUGH_IMPORT_SCENE];
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     fprintf(file, "  wind: {kind: %s, speed: %.10g m/s", power > 0 ? "power" : "uniform",
             speed * cos(up));
     if (power > 0) {
@@ -136,11 +135,11 @@ static void put_steady(bough_openfast *o, double up) {
                 bough_deck_number(o->inflow, "RefHt"));
     }
     if (up != 0) fprintf(file, ", vertical: %.10g m/s", speed * sin(up));
-    bough_openfast_note(o, BOUGH_TAKEN, "steady wind of %g m/s", speed);
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "steady wind of %g m/s", speed);
 }
 
 static void put_wind(bough_openfast *o) {
-    FILE *file = o->file[BOUGH_IMPORT_SCENE];
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     if (!o->inflow) {
         fputs("  wind: {kind: uniform, speed: 0 m/s}\n", file);
         return;
@@ -178,7 +177,7 @@ static void put_induction(bough_openfast *o) {
     bool new_skew = bough_deck_line(a, "Skew_Mod") >= 0;
     bool oye = wake == 2 || (wake == 1 && bough_deck_line(a, "Wake_Mod") >= 0 && dynamic > 0);
     bool pitt = new_skew ? skew == 1 : skew == 2;
-    FILE *file = o->file[BOUGH_IMPORT_SCENE];
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     fprintf(file,
             "  induction: {tip_loss: %s, hub_loss: %s, tangential: %s, drag: %s, skew: %s, "
             "high_thrust: %s",
@@ -192,19 +191,21 @@ static void put_induction(bough_openfast *o) {
     }
     fputs("}\n", file);
     if (bough_deck_flag_or(a, "AIDrag", true) != bough_deck_flag_or(a, "TIDrag", true)) {
-        bough_openfast_note(o, BOUGH_APPROXIMATED,
-                            "TIDrag: drag in the tangential induction as "
-                            "AIDrag has it in the axial one");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "TIDrag: drag in the tangential induction as "
+                         "AIDrag has it in the axial one");
     }
-    if (wake == 0) bough_openfast_note(o, BOUGH_APPROXIMATED, "WakeMod 0: induction is computed");
+    if (wake == 0)
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "WakeMod 0: induction is computed");
     if (wake == 3) {
-        bough_openfast_note(o, BOUGH_APPROXIMATED, "OLAF: blade element momentum theory instead");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "OLAF: blade element momentum theory instead");
     }
     if (oye) {
-        bough_openfast_note(o, BOUGH_APPROXIMATED,
-                            "DBEMT_Mod %d: Oye's dynamic inflow, each element "
-                            "by itself",
-                            dynamic);
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "DBEMT_Mod %d: Oye's dynamic inflow, each element "
+                         "by itself",
+                         dynamic);
     }
 }
 
@@ -213,16 +214,17 @@ static void put_stall(bough_openfast *o) {
     bool newer = bough_deck_line(a, "UA_Mod") >= 0;
     int model = bough_deck_whole_or(a, "UAMod|UA_Mod", 0);
     bool on = newer ? model > 0 : bough_deck_whole_or(a, "AFAeroMod", 1) == 2;
-    FILE *file = o->file[BOUGH_IMPORT_SCENE];
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     if (on) fputs("  dynamic_stall: hgm\n", file);
     if (on && model != 4) {
-        bough_openfast_note(o, BOUGH_APPROXIMATED,
-                            "UAMod %d: dynamic stall by Hansen, Gaunaa and "
-                            "Madsen's model (4), its constants from the polars",
-                            model);
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "UAMod %d: dynamic stall by Hansen, Gaunaa and "
+                         "Madsen's model (4), its constants from the polars",
+                         model);
     }
     if (on && bough_deck_number_or(a, "UAStartRad", 0) > 0) {
-        bough_openfast_note(o, BOUGH_LEFT_OUT, "UAStartRad: dynamic stall acts on all elements");
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
+                         "UAStartRad: dynamic stall acts on all elements");
     }
     if (!bough_deck_flag_or(a, "UseBlCm", true)) fputs("  pitching_moment: false\n", file);
 }
@@ -244,30 +246,30 @@ static void put_tower(bough_openfast *o) {
     int n = bough_deck_whole(a, "NumTwrNds", 1, MOST_ROWS);
     const double *row = bough_deck_table(a, column, 3, n);
     if (!row) return;
-    FILE *file = o->file[BOUGH_IMPORT_SCENE];
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     fprintf(file, "  tower:\n    influence: %s\n", potential == 2 ? "bak" : "potential");
     if (shadow > 0) fputs("    shadow: powles\n", file);
     if (drag) fputs("    body: tower\n", file);
     put_column(file, "height", row, 0, n);
     put_column(file, "diameter", row, 1, n);
     put_column(file, "drag", row, 2, n);
-    bough_openfast_note(o, BOUGH_TAKEN, "the tower's influence on the wind%s",
-                        drag ? " and its drag" : "");
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "the tower's influence on the wind%s",
+                     drag ? " and its drag" : "");
     if (potential == 0) {
-        bough_openfast_note(o, BOUGH_APPROXIMATED,
-                            "TwrPotent 0: potential flow about the tower "
-                            "nevertheless, with its shadow or drag");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "TwrPotent 0: potential flow about the tower "
+                         "nevertheless, with its shadow or drag");
     }
     if (shadow == 2) {
-        bough_openfast_note(o, BOUGH_APPROXIMATED, "TwrShadow 2: Powles' shadow, not Eames'");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "TwrShadow 2: Powles' shadow, not Eames'");
     }
 }
 
 void bough_openfast_aero(bough_openfast *o) {
     const bough_deck *a = o->aero;
-    if (!a || !bough_is_ok(o->status)) return;
+    if (!a || !bough_is_ok(o->draft.status)) return;
     double density = bough_deck_number_or(o->main, "AirDens", 1.225);
-    FILE *file = o->file[BOUGH_IMPORT_SCENE];
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     fprintf(file, "aero:\n  rate: 50 Hz\n  air_density: %.10g\n",
             bough_deck_number_or(a, "AirDens", density));
     put_wind(o);
@@ -281,7 +283,7 @@ void bough_openfast_aero(bough_openfast *o) {
                                        "NacelleDrag"};
     for (size_t i = 0; i < sizeof left / sizeof *left; i++) {
         if (bough_deck_flag_or(a, left[i], false)) {
-            bough_openfast_note(o, BOUGH_LEFT_OUT, "AeroDyn's %s", left[i]);
+            bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "AeroDyn's %s", left[i]);
         }
     }
 }

@@ -1,9 +1,10 @@
 // BeamDyn's blade: key points of the reference line, and two 6 × 6 matrices at each station.
 #include "apps/import/openfast.h"
+#include "apps/import/section.h"
 
 #include <math.h>
 
-enum { MOST = 1000, MATRIX = 36, STATION = 1 + 2 * MATRIX };
+enum { MOST = 1000, MATRIX = BOUGH_IMPORT_MATRIX, STATION = 1 + 2 * MATRIX };
 
 typedef struct line_point {
     double x, y, z, twist; // [m, deg]
@@ -32,7 +33,8 @@ static line_point at_share(const line_point *p, int n, double share) {
 static const line_point *read_line(bough_openfast *o, const bough_deck *deck, int *n) {
     *n = bough_deck_whole(deck, "kp_total", 2, MOST);
     if (bough_deck_whole_or(deck, "member_total", 1) != 1) {
-        bough_openfast_note(o, BOUGH_APPROXIMATED, "BeamDyn's members: all as one row of points");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "BeamDyn's members: all as one row of points");
     }
     const char *const column[] = {"kp_xr", "kp_yr", "kp_zr", "initial_twist"};
     const line_point *p = (const line_point *)bough_deck_table(deck, column, 4, *n);
@@ -48,57 +50,10 @@ static const line_point *read_line(bough_openfast *o, const bough_deck *deck, in
     return p;
 }
 
-// What m has beyond a mass, its centre and inertias about it: the largest entry it should not have
-// or have otherwise, relative to its neighbours.
-static double strangeness(const double m[MATRIX]) {
-    double mass = m[0], x = -m[2 * 6 + 4], y = m[2 * 6 + 3], polar = m[35];
-    double off[] = {(m[7] - mass) / mass,
-                    (m[14] - mass) / mass,
-                    (m[5] + y) / (mass + fabs(y)),
-                    (m[11] - x) / (mass + fabs(x)),
-                    m[1] / mass,
-                    m[2] / mass,
-                    m[8] / mass,
-                    m[3] / mass,
-                    m[4] / mass,
-                    m[9] / mass,
-                    m[10] / mass,
-                    m[17] / mass,
-                    polar > 0 ? m[23] / polar : 0,
-                    polar > 0 ? m[29] / polar : 0};
-    double most = 0;
-    for (size_t i = 0; i < sizeof off / sizeof *off; i++)
-        most = fmax(most, fabs(off[i]));
-    return most;
-}
-
-static void put_stiffness(FILE *file, const double k[MATRIX]) {
-    double entry[21];
-    bool diagonal = true;
-    int n = 0;
-    for (int i = 0; i < 6; i++) {
-        for (int j = i; j < 6; j++) {
-            entry[n++] = (k[i * 6 + j] + k[j * 6 + i]) / 2;
-            diagonal = diagonal && (i == j || entry[n - 1] == 0);
-        }
-    }
-    const double main[] = {k[0], k[7], k[14], k[21], k[28], k[35]};
-    if (diagonal)
-        bough_import_list(file, main, 6);
-    else
-        bough_import_list(file, entry, 21);
-}
-
-static void put_mass(FILE *file, const double m[MATRIX]) {
-    const double row[] = {
-        m[0], -m[2 * 6 + 4] / m[0], m[2 * 6 + 3] / m[0], m[21], m[28], (m[22] + m[27]) / 2, m[35]};
-    bough_import_list(file, row, 7);
-}
-
 static void put_station(bough_openfast *o, const bough_deck *deck, const line_point *p,
                         const double *s, int line) {
     const double *k = s + 1, *m = s + 1 + MATRIX;
-    FILE *file = o->file[BOUGH_IMPORT_BLADE];
+    FILE *file = o->draft.file[BOUGH_IMPORT_BLADE];
     for (int i = 0; i < 6; i++) {
         if (k[7 * i] > 0 && m[0] > 0) continue;
         bough_deck_fail(deck, line,
@@ -106,9 +61,9 @@ static void put_station(bough_openfast *o, const bough_deck *deck, const line_po
                         "mass on the diagonals");
     }
     fprintf(file, "    - [%.10g, %.10g, [%.10g, %.10g], ", p->z, p->twist, p->x, p->y);
-    put_stiffness(file, k);
+    bough_section_stiffness(file, k);
     fputs(", ", file);
-    put_mass(file, m);
+    bough_section_mass(file, m);
     fputs("]\n", file);
 }
 
@@ -116,13 +71,13 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
                          int n_point) {
     int n = bough_deck_whole(deck, "station_total", 2, MOST);
     int line = bough_deck_find(deck, "DISTRIBUTED PROPERTIES") + 1;
-    if (bough_is_ok(o->status) && line == 0) {
+    if (bough_is_ok(o->draft.status) && line == 0) {
         bough_deck_fail(deck, -1, "no section 'DISTRIBUTED PROPERTIES'");
     }
     double last[STATION] = {0}, s[STATION], strange = 0, span = 0;
-    fprintf(o->file[BOUGH_IMPORT_BLADE],
+    fprintf(o->draft.file[BOUGH_IMPORT_BLADE],
             "stations:\n  columns: [span, twist deg, axis, stiffness, mass]\n  rows:\n");
-    for (int i = 0; i < n && bough_is_ok(o->status); i++) {
+    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
         bough_deck_numbers(deck, &line, "a station's share of the length", 1, s);
         int start = line - 1;
         bough_deck_numbers(deck, &line, "a station's two matrices", 2 * MATRIX, s + 1);
@@ -132,24 +87,24 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
                             "the station stands at %g: expected shares that grow from 0 to 1",
                             s[0]);
         }
-        if (!bough_is_ok(o->status)) return;
+        if (!bough_is_ok(o->draft.status)) return;
         line_point at = at_share(p, n_point, s[0]);
         put_station(o, deck, &at, s, start);
-        strange = fmax(strange, strangeness(s + 1 + MATRIX));
+        strange = fmax(strange, bough_section_strangeness(s + 1 + MATRIX));
         if (i > 0) o->blade_mass += (at.z - span) * (s[1 + MATRIX] + last[1 + MATRIX]) / 2;
         span = at.z;
         for (int k = 0; k < STATION; k++)
             last[k] = s[k];
     }
-    bough_openfast_note(o, BOUGH_TAKEN,
-                        "%d stations with full stiffness and mass; the blade weighs "
-                        "%.7g kg",
-                        n, o->blade_mass);
+    bough_draft_note(&o->draft, BOUGH_TAKEN,
+                     "%d stations with full stiffness and mass; the blade weighs "
+                     "%.7g kg",
+                     n, o->blade_mass);
     if (strange > 1e-3) {
-        bough_openfast_note(o, BOUGH_APPROXIMATED,
-                            "mass matrices: only mass, centre and inertias; "
-                            "other entries, up to %.2g of these, are left out",
-                            strange);
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "mass matrices: only mass, centre and inertias; "
+                         "other entries, up to %.2g of these, are left out",
+                         strange);
     }
 }
 
@@ -158,26 +113,26 @@ static void put_damping(bough_openfast *o, const bough_deck *deck) {
     double none[6] = {0};
     int kind = bough_deck_whole_or(deck, "damp_type", 1);
     const double *mu = kind == 1 ? bough_deck_table(deck, column, 6, 1) : none;
-    fputs("damping: ", o->file[BOUGH_IMPORT_BLADE]);
-    if (mu) bough_import_list(o->file[BOUGH_IMPORT_BLADE], mu, 6);
-    fputs("  # s\n", o->file[BOUGH_IMPORT_BLADE]);
+    fputs("damping: ", o->draft.file[BOUGH_IMPORT_BLADE]);
+    if (mu) bough_import_list(o->draft.file[BOUGH_IMPORT_BLADE], mu, 6);
+    fputs("  # s\n", o->draft.file[BOUGH_IMPORT_BLADE]);
     if (kind > 1) {
-        bough_openfast_note(o, BOUGH_LEFT_OUT, "damp_type %d: the blade is undamped", kind);
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "damp_type %d: the blade is undamped", kind);
     }
 }
 
 void bough_openfast_beamdyn(bough_openfast *o) {
     bough_deck *deck = bough_openfast_open(o, o->main, "BDBldFile(1)|BDBldFile1");
-    if (!bough_is_ok(o->status)) return;
+    if (!bough_is_ok(o->draft.status)) return;
     int n;
     const line_point *p = read_line(o, deck, &n);
     if (bough_deck_flag_or(deck, "UsePitchAct", false)) {
-        bough_openfast_note(o, BOUGH_LEFT_OUT, "UsePitchAct: the pitch actuator");
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "UsePitchAct: the pitch actuator");
     }
     bough_deck *blade = bough_openfast_open(o, deck, "BldFile");
-    if (!bough_is_ok(o->status)) return;
+    if (!bough_is_ok(o->draft.status)) return;
     o->blade_length = p[n - 1].z;
-    fprintf(o->file[BOUGH_IMPORT_BLADE], "length: %.10g\n", o->blade_length);
+    fprintf(o->draft.file[BOUGH_IMPORT_BLADE], "length: %.10g\n", o->blade_length);
     put_damping(o, blade);
     put_stations(o, blade, p, n);
 }

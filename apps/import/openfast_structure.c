@@ -1,6 +1,7 @@
 // ElastoDyn's blade and tower: mass and two bending stiffnesses along the span, and mode shapes,
 // from which the frequencies come that turn damping ratios into times.
 #include "apps/import/openfast.h"
+#include "apps/import/section.h"
 
 #include <math.h>
 
@@ -87,29 +88,6 @@ static void check_rows(const bough_deck *deck, const slender *b, const char *cou
     }
 }
 
-// One station, in the scene's order: shear x, shear y, axial, bend x, bend y, twist.
-typedef struct section {
-    double span, twist; // [m, deg]
-    double mass, axial, shear, bend_x, bend_y, torsion;
-} section;
-
-static void put_section(FILE *file, const section *s) {
-    const double stiffness[] = {s->shear, s->shear, s->axial, s->bend_x, s->bend_y, s->torsion};
-    double share = s->mass / s->axial; // of one material: inertia over stiffness
-    const double mass[] = {s->mass, 0, 0, s->bend_x * share, s->bend_y * share, 0};
-    fprintf(file, "    - [%.10g, %.10g, ", s->span, s->twist);
-    bough_import_list(file, stiffness, 6);
-    fputs(", ", file);
-    bough_import_list(file, mass, 6);
-    fputs("]\n", file);
-}
-
-static void put_head(FILE *file, double length, const double *time) {
-    fprintf(file, "length: %.10g\ndamping: ", length);
-    bough_import_list(file, time, 6);
-    fputs("  # s\nstations:\n  columns: [span, twist deg, stiffness, mass]\n  rows:\n", file);
-}
-
 // -- blade ----------------------------------------------------------------------------------------
 
 enum { FRACTION, TWIST, MASS, FLAP, EDGE, TORSION, AXIAL, N_BLADE_COLUMN };
@@ -120,18 +98,19 @@ static void put_blade(bough_openfast *o, const bough_deck *deck, const slender *
     edgewise.bending = EDGE;
     edgewise.bending_factor = edge;
     double edge_time = damping(deck, edgewise, "BldEdDmp(1)|BldEdDmp1", "BldEdgSh");
-    if (!bough_is_ok(o->status)) return;
+    if (!bough_is_ok(o->draft.status)) return;
     const double time[] = {flap_time, edge_time, flap_time, edge_time, flap_time, flap_time};
-    FILE *file = o->file[BOUGH_IMPORT_BLADE];
-    put_head(file, b->length, time);
+    FILE *file = o->draft.file[BOUGH_IMPORT_BLADE];
+    bough_section_head(file, b->length, time);
     for (int i = 0; i < b->n; i++) {
         const double *r = &b->row[i * b->width];
         double mass = r[MASS] * b->mass_factor;
         double axial = r[AXIAL] > 0 ? r[AXIAL] : laminate * mass;
         double bend_x = r[EDGE] * edge, bend_y = r[FLAP] * b->bending_factor;
         double torsion = r[TORSION] > 0 ? r[TORSION] : bend_x;
-        section s = {r[0] * b->length, r[TWIST], mass, axial, axial / 10, bend_x, bend_y, torsion};
-        put_section(file, &s);
+        bough_section s = {r[0] * b->length, r[TWIST], mass,   axial,
+                           axial / 10,       bend_x,   bend_y, torsion};
+        bough_section_put(file, &s);
     }
 }
 
@@ -150,29 +129,28 @@ void bough_openfast_blade(bough_openfast *o) {
                  .bending_factor = bough_deck_number_or(deck, "AdjFlSt", 1),
                  .length = bough_deck_number(o->elasto, "TipRad") - o->hub_radius};
     double edge = bough_deck_number_or(deck, "AdjEdSt", 1);
-    if (!bough_is_ok(o->status)) return;
+    if (!bough_is_ok(o->draft.status)) return;
     check_rows(deck, &b, "NBlInpSt");
     put_blade(o, deck, &b, edge);
     o->blade_length = b.length;
     o->blade_mass = total_mass(&b);
-    bough_openfast_note(o, BOUGH_TAKEN,
-                        "%d stations, mass times AdjBlMs %g: the blade weighs %.7g "
-                        "kg, without tip mass",
-                        n, b.mass_factor, o->blade_mass);
-    bough_openfast_note(o, BOUGH_APPROXIMATED,
-                        "blade: bends geometrically exactly, not in "
-                        "ElastoDyn's modes; its damping grows with the frequency from the first");
+    bough_draft_note(&o->draft, BOUGH_TAKEN,
+                     "%d stations, mass times AdjBlMs %g: the blade weighs %.7g "
+                     "kg, without tip mass",
+                     n, b.mass_factor, o->blade_mass);
+    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                     "blade: bends geometrically exactly, not in "
+                     "ElastoDyn's modes; its damping grows with the frequency from the first");
     if (!(b.row[AXIAL] > 0)) {
-        bough_openfast_note(o, BOUGH_APPROXIMATED,
-                            "blade: axial stiffness mass x %.3g m2/s2, shear "
-                            "a tenth of it, sections' inertia as of one material",
-                            laminate);
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "blade: axial stiffness mass x %.3g m2/s2, shear "
+                         "a tenth of it, sections' inertia as of one material",
+                         laminate);
     }
     if (!(b.row[TORSION] > 0)) {
-        bough_openfast_note(
-            o, BOUGH_APPROXIMATED,
-            "blade: ElastoDyn's has no torsion, this one the "
-            "edgewise stiffness, which is stiff; no offsets of mass and shear centre");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "blade: ElastoDyn's has no torsion, this one the "
+                         "edgewise stiffness, which is stiff; no offsets of mass and shear centre");
     }
 }
 
@@ -196,21 +174,22 @@ void bough_openfast_tower(bough_openfast *o, double top_mass) {
                  .end_mass = top_mass};
     double side = bough_deck_number_or(deck, "AdjSSSt", 1);
     double time = damping(deck, b, "TwrFADmp(1)|TwrFADmp1", "TwFAM1Sh");
-    if (!bough_is_ok(o->status)) return;
+    if (!bough_is_ok(o->draft.status)) return;
     check_rows(deck, &b, "NTwInpSt");
     const double times[] = {time, time, time, time, time, time};
-    FILE *file = o->file[BOUGH_IMPORT_TOWER];
-    put_head(file, b.length, times);
+    FILE *file = o->draft.file[BOUGH_IMPORT_TOWER];
+    bough_section_head(file, b.length, times);
     for (int i = 0; i < n; i++) {
         const double *r = &b.row[i * b.width];
         double mass = r[1] * b.mass_factor, axial = steel * mass;
         double x = r[SIDE] * side, y = r[FORE] * b.bending_factor, ratio = 80.8 / 210;
-        section s = {r[0] * b.length, 0, mass, axial, axial * ratio / 2, x, y, (x + y) * ratio};
-        put_section(file, &s);
+        bough_section s = {r[0] * b.length,   0, mass, axial,
+                           axial * ratio / 2, x, y,    (x + y) * ratio};
+        bough_section_put(file, &s);
     }
-    bough_openfast_note(o, BOUGH_TAKEN, "%d stations of the tower, which weighs %.7g kg", n,
-                        total_mass(&b));
-    bough_openfast_note(o, BOUGH_APPROXIMATED,
-                        "tower: axial, shear and torsional stiffness of a thin "
-                        "steel tube; damping grows with the frequency from the first mode's ratio");
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "%d stations of the tower, which weighs %.7g kg", n,
+                     total_mass(&b));
+    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                     "tower: axial, shear and torsional stiffness of a thin "
+                     "steel tube; damping grows with the frequency from the first mode's ratio");
 }

@@ -1,0 +1,133 @@
+#include "apps/import/draft.h"
+
+#include "apps/output/folder.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+static const double macro_step = 0.02; // [s]
+
+const char *const bough_import_name[BOUGH_N_IMPORT_FILE] = {
+    "scene.yaml",      "blade-structure.yaml", "tower-structure.yaml",
+    "blade-aero.yaml", "airfoils.yaml",        "import.txt"};
+
+// -- text -----------------------------------------------------------------------------------------
+
+void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...) {
+    va_list list;
+    va_start(list, format);
+    fputs("  ", d->note[kind]);
+    vfprintf(d->note[kind], format, list);
+    fputc('\n', d->note[kind]);
+    va_end(list);
+}
+
+void bough_import_list(FILE *file, const double *value, int n) {
+    for (int i = 0; i < n; i++)
+        fprintf(file, "%s%.10g", i == 0 ? "[" : ", ", value[i] + 0.0);
+    fputc(']', file);
+}
+
+void bough_import_quoted(FILE *file, const char *text) {
+    fputc('"', file);
+    for (; *text; text++) {
+        if (*text == '"' || *text == '\\') fputc('\\', file);
+        if ((unsigned char)*text >= ' ') fputc(*text, file);
+    }
+    fputc('"', file);
+}
+
+void bough_import_path(FILE *file, const char *path) {
+    char here[BOUGH_PATH_MAX], whole[2 * BOUGH_PATH_MAX];
+    bool relative = path[0] != '/' && getcwd(here, sizeof here);
+    snprintf(whole, sizeof whole, "%s%s%s", relative ? here : "", relative ? "/" : "", path);
+    bough_import_quoted(file, whole);
+}
+
+char bough_import_letter(char letter) {
+    return isalnum((unsigned char)letter) || letter == '-' ? letter : '_';
+}
+
+void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity,
+                      double duration) {
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    double steps = fmax(ceil(duration / macro_step - 1e-6), 1);
+    fprintf(file,
+            "# Imported from %s: import.txt tells what was taken.\n"
+            "# Ground axes: x downwind, z up. The rotor turns positive about the shaft's x.\n"
+            "title: ",
+            origin);
+    bough_import_quoted(file, title);
+    fprintf(file,
+            "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
+            "  macro_step: %g s\n  coupling: {scheme: ramp, theta: auto}\n"
+            "  master: {solver: ida, rtol: 1e-6}\n"
+            "  micro: {solver: rosenbrock, step: 10 ms, rtol: 1e-3}\n  threads: 2\n",
+            -gravity, steps * macro_step, macro_step);
+}
+
+// -- files ----------------------------------------------------------------------------------------
+
+void bough_draft_start(bough_draft *d, bough_status *status) {
+    *d = (bough_draft){.arena = bough_arena_create(), .status = status};
+    bool good = d->arena != NULL;
+    for (int i = 0; i < BOUGH_N_NOTE; i++)
+        good = (d->note[i] = open_memstream(&d->note_text[i], &d->note_size[i])) && good;
+    for (int i = 0; i < BOUGH_N_IMPORT_FILE; i++)
+        good = (d->file[i] = open_memstream(&d->file_text[i], &d->file_size[i])) && good;
+    *status = good ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+}
+
+static bough_status write_file(const char *folder, int kind, const char *text) {
+    char path[BOUGH_PATH_MAX];
+    FILE *file;
+    bough_status status = bough_folder_path(folder, bough_import_name[kind], path);
+    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    if (!bough_is_ok(&status)) return status;
+    fputs(text, file);
+    return bough_folder_commit(path, file);
+}
+
+// The scene last: with it the model is whole.
+static bough_status write_files(const char *folder, char *const *text) {
+    bough_status status = bough_folder_make(folder);
+    for (int i = BOUGH_N_IMPORT_FILE - 1; i >= 0 && bough_is_ok(&status); i--) {
+        if (text[i][0]) status = write_file(folder, i, text[i]);
+    }
+    return status;
+}
+
+static void put_list(bough_draft *d) {
+    static const char *const head[BOUGH_N_NOTE] = {"taken", "approximated", "left out"};
+    for (int i = 0; i < BOUGH_N_NOTE; i++) {
+        const char *note = d->note_text[i];
+        fprintf(d->file[BOUGH_IMPORT_LIST], "%s:\n%s", head[i], note[0] ? note : "  nothing\n");
+    }
+}
+
+// Closes texts; whether all were written whole.
+static bool close_all(FILE **file, int n) {
+    bool good = true;
+    for (int i = 0; i < n; i++) {
+        if (file[i] && (ferror(file[i]) | fclose(file[i])) != 0) good = false;
+    }
+    return good;
+}
+
+void bough_draft_finish(bough_draft *d, const char *folder, FILE *echo) {
+    bool good = close_all(d->note, BOUGH_N_NOTE);
+    if (good && bough_is_ok(d->status)) put_list(d);
+    good = close_all(d->file, BOUGH_N_IMPORT_FILE) && good;
+    if (!good) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (bough_is_ok(d->status)) *d->status = write_files(folder, d->file_text);
+    if (bough_is_ok(d->status) && echo) fputs(d->file_text[BOUGH_IMPORT_LIST], echo);
+    for (int i = 0; i < BOUGH_N_NOTE; i++)
+        free(d->note_text[i]);
+    for (int i = 0; i < BOUGH_N_IMPORT_FILE; i++)
+        free(d->file_text[i]);
+    bough_arena_destroy(d->arena);
+}

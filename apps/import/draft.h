@@ -1,0 +1,66 @@
+// What every reader of foreign models writes: the texts of a scene's files and of the list, which
+// become files only when the whole model could be read.
+#ifndef BOUGH_IMPORT_DRAFT_H
+#define BOUGH_IMPORT_DRAFT_H
+
+#include "core/arena.h"
+#include "core/status.h"
+
+#include <stddef.h>
+#include <stdio.h>
+
+typedef enum bough_import_note {
+    BOUGH_TAKEN,
+    BOUGH_APPROXIMATED,
+    BOUGH_LEFT_OUT,
+    BOUGH_N_NOTE
+} bough_import_note;
+
+typedef enum bough_import_file {
+    BOUGH_IMPORT_SCENE,
+    BOUGH_IMPORT_BLADE,
+    BOUGH_IMPORT_TOWER,
+    BOUGH_IMPORT_AERO,
+    BOUGH_IMPORT_POLARS,
+    BOUGH_IMPORT_LIST,
+    BOUGH_N_IMPORT_FILE,
+} bough_import_file;
+
+extern const char *const bough_import_name[BOUGH_N_IMPORT_FILE];
+
+typedef struct bough_draft {
+    bough_arena *arena;
+    bough_status *status;            // the first failure is kept
+    FILE *note[BOUGH_N_NOTE];        // lines of the list
+    FILE *file[BOUGH_N_IMPORT_FILE]; // texts of the files; one left empty is not written
+    char *note_text[BOUGH_N_NOTE], *file_text[BOUGH_N_IMPORT_FILE];
+    size_t note_size[BOUGH_N_NOTE], file_size[BOUGH_N_IMPORT_FILE];
+} bough_draft;
+
+// Takes memory; a failure is in *status. The draft must then stay where it is.
+void bough_draft_start(bough_draft *d, bough_status *status);
+
+// Writes the files unless there was a failure, the list also to `echo` (NULL: nobody), and gives
+// the memory back.
+void bough_draft_finish(bough_draft *d, const char *folder, FILE *echo);
+
+// A line of the list.
+void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+// The scene's first lines: title and comment, time, solvers; of duration [s], a multiple of which
+// is what the macro step needs. `origin`: "an OpenFAST model".
+void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity,
+                      double duration);
+
+// "[1, 2, 3]" in the scene's spelling.
+void bough_import_list(FILE *file, const double *value, int n);
+
+// A text in double quotes; a path as an absolute one, so, for what the scene leaves in its place.
+void bough_import_quoted(FILE *file, const char *text);
+void bough_import_path(FILE *file, const char *path);
+
+// Whether the letter may stand in a scene's name.
+char bough_import_letter(char letter);
+
+#endif

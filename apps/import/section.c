@@ -1,0 +1,68 @@
+#include "apps/import/section.h"
+
+#include "apps/import/draft.h"
+
+#include <math.h>
+#include <stdbool.h>
+
+void bough_section_stiffness(FILE *file, const double k[BOUGH_IMPORT_MATRIX]) {
+    double entry[21];
+    bool diagonal = true;
+    int n = 0;
+    for (int i = 0; i < 6; i++) {
+        for (int j = i; j < 6; j++) {
+            entry[n++] = (k[i * 6 + j] + k[j * 6 + i]) / 2;
+            diagonal = diagonal && (i == j || entry[n - 1] == 0);
+        }
+    }
+    const double main[] = {k[0], k[7], k[14], k[21], k[28], k[35]};
+    if (diagonal)
+        bough_import_list(file, main, 6);
+    else
+        bough_import_list(file, entry, 21);
+}
+
+void bough_section_mass(FILE *file, const double m[BOUGH_IMPORT_MATRIX]) {
+    const double row[] = {
+        m[0], -m[2 * 6 + 4] / m[0], m[2 * 6 + 3] / m[0], m[21], m[28], (m[22] + m[27]) / 2, m[35]};
+    bough_import_list(file, row, 7);
+}
+
+double bough_section_strangeness(const double m[BOUGH_IMPORT_MATRIX]) {
+    double mass = m[0], x = -m[2 * 6 + 4], y = m[2 * 6 + 3], polar = m[35];
+    double off[] = {(m[7] - mass) / mass,
+                    (m[14] - mass) / mass,
+                    (m[5] + y) / (mass + fabs(y)),
+                    (m[11] - x) / (mass + fabs(x)),
+                    m[1] / mass,
+                    m[2] / mass,
+                    m[8] / mass,
+                    m[3] / mass,
+                    m[4] / mass,
+                    m[9] / mass,
+                    m[10] / mass,
+                    m[17] / mass,
+                    polar > 0 ? m[23] / polar : 0,
+                    polar > 0 ? m[29] / polar : 0};
+    double most = 0;
+    for (size_t i = 0; i < sizeof off / sizeof *off; i++)
+        most = fmax(most, fabs(off[i]));
+    return most;
+}
+
+void bough_section_head(FILE *file, double length, const double *time) {
+    fprintf(file, "length: %.10g\ndamping: ", length);
+    bough_import_list(file, time, 6);
+    fputs("  # s\nstations:\n  columns: [span, twist deg, stiffness, mass]\n  rows:\n", file);
+}
+
+void bough_section_put(FILE *file, const bough_section *s) {
+    const double stiffness[] = {s->shear, s->shear, s->axial, s->bend_x, s->bend_y, s->torsion};
+    double share = s->mass / s->axial; // of one material: inertia over stiffness
+    const double mass[] = {s->mass, 0, 0, s->bend_x * share, s->bend_y * share, 0};
+    fprintf(file, "    - [%.10g, %.10g, ", s->span, s->twist);
+    bough_import_list(file, stiffness, 6);
+    fputs(", ", file);
+    bough_import_list(file, mass, 6);
+    fputs("]\n", file);
+}

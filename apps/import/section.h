@@ -1,0 +1,31 @@
+// Sections of slender bodies in the spelling of a scene's table of structure.
+#ifndef BOUGH_IMPORT_SECTION_H
+#define BOUGH_IMPORT_SECTION_H
+
+#include <stdio.h>
+
+enum { BOUGH_IMPORT_MATRIX = 36 };
+
+// A 6 × 6 stiffness, row by row, in the scene's order (shear x, shear y, axial, bend x, bend y,
+// twist): its six diagonal entries where there are no others, else the 21 of its upper triangle.
+void bough_section_stiffness(FILE *file, const double k[BOUGH_IMPORT_MATRIX]);
+
+// A 6 × 6 mass matrix as mass, centre and inertias.
+void bough_section_mass(FILE *file, const double m[BOUGH_IMPORT_MATRIX]);
+
+// What m has beyond a mass, its centre and inertias about it: the largest entry that it should not
+// have or have otherwise, relative to its neighbours.
+double bough_section_strangeness(const double m[BOUGH_IMPORT_MATRIX]);
+
+// A section of one material without offsets.
+typedef struct bough_section {
+    double span, twist;                           // [m, deg]
+    double mass;                                  // [kg/m]
+    double axial, shear, bend_x, bend_y, torsion; // [N, N m2]
+} bough_section;
+
+// The table's head, with damping times (6) [s], and a row.
+void bough_section_head(FILE *file, double length, const double *time);
+void bough_section_put(FILE *file, const bough_section *s);
+
+#endif
