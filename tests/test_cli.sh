@@ -406,7 +406,12 @@ imported() {
     sed 's/CompHydro/CompHydra/; s/CompElast/CompPlast/' "$folder/tests/decks/main.fst" >../bad.fst
     refused "bad.fst: no 'CompElast': expected a line" import openfast ../bad.fst --out out
     refused "cannot read 'none.fst'" import openfast none.fst --out out
-    refused 'missing openfast MAIN.fst' import openfast
+    refused 'missing KIND FILE' import openfast
+    expect 0 import windio "$folder/tests/decks/turbine-2.yaml" --out out
+    has ../stdout '^scene: out/scene.yaml$'
+    expect 0 check out/scene.yaml
+    rm -r out
+    refused 'main.fst:6:36: unexpected' import windio "$folder/tests/decks/main.fst" --out out
     refused "unknown kind 'adams'" import adams main.cmd --out out
     refused 'unexpected argument' import openfast main.fst more --out out
 }

@@ -34,10 +34,11 @@ refused() {
 
 repeat() { yes "$2" 2>/dev/null | head -n "$1" | tr -d '\n'; } # N TEXT
 
-# What every file in YAML must withstand, given as scene, study, and table of a scene.
+# What every file in YAML must withstand, given as scene, study, foreign turbine, and table of a scene.
 yaml() { # MESSAGE FILE
     refused "$1" check "$2"
     refused "$1" study "$2"
+    refused . import windio "$2" --out imported
     for key in aero.blade aero.polars 'bodies[3].rod.table'; do
         refused "$1" check example-turbine.yaml --set "$key=$2"
     done

@@ -1,14 +1,8 @@
 // Decks of OpenFAST as scenes: the numbers, by hand; what bad decks are told; that a scene runs.
-#include "tests/check.h"
+#include "tests/import.h"
 
 #include "apps/api/bough.h"
-#include "apps/import/import.h"
 #include "apps/output/folder.h"
-#include "apps/scene/text.h"
-
-#include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 static const char *const decks[] = {
     "main.fst",        "parts/elasto.dat",     "parts/blade.dat",       "parts/tower.dat",
@@ -16,41 +10,6 @@ static const char *const decks[] = {
     "parts/servo.dat", "parts/aero-blade.dat", "parts/foils/round.dat", "parts/foils/flat.dat",
 };
 enum { N_DECK = sizeof decks / sizeof *decks };
-
-typedef struct edit {
-    const char *file, *from, *to;
-} edit;
-
-typedef struct trial {
-    char folder[64], out[96];
-    bough_arena *arena;
-    bough_status status;
-} trial;
-
-// Replaces the first place of `from` in the text of that file.
-static void apply(const edit *change, const char *name, char text[8192]) {
-    if (!change || strcmp(change->file, name) != 0) return;
-    char *at = strstr(text, change->from), rest[8192];
-    assert_non_null(at);
-    strcpy(rest, at + strlen(change->from));
-    snprintf(at, (size_t)(text + 8192 - at), "%s%s", change->to, rest);
-}
-
-static void copy_deck(const char *folder, const char *name, const edit *one, const edit *two) {
-    char path[256], text[8192];
-    snprintf(path, sizeof path, "%s/tests/decks/%s", BOUGH_SOURCE_DIR, name);
-    FILE *in = fopen(path, "r");
-    assert_non_null(in);
-    text[fread(text, 1, sizeof text - 1, in)] = '\0';
-    fclose(in);
-    apply(one, name, text);
-    apply(two, name, text);
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    FILE *out = fopen(path, "w");
-    assert_non_null(out);
-    fputs(text, out);
-    fclose(out);
-}
 
 // Imports the decks with two texts replaced (NULL: none).
 static trial import_with(const edit *one, const edit *two) {
@@ -70,51 +29,6 @@ static trial import_with(const edit *one, const edit *two) {
 }
 
 static trial import(const edit *change) { return import_with(change, NULL); }
-
-static void done(trial *t) {
-    char command[128];
-    bough_arena_destroy(t->arena);
-    snprintf(command, sizeof command, "rm -rf %s", t->folder);
-    assert_int_equal(system(command), 0);
-}
-
-static const bough_node *read_file(trial *t, const char *name) {
-    char path[160];
-    snprintf(path, sizeof path, "%s/%s", t->out, name);
-    bough_errors errors = {.arena = t->arena};
-    const bough_node *node = bough_text_read(t->arena, path, &errors);
-    assert_non_null(node);
-    return node;
-}
-
-// The node at "key.3.key": keys of mappings and places in sequences.
-static const bough_node *at(const bough_node *node, const char *path) {
-    char word[64];
-    while (*path) {
-        size_t n = strcspn(path, ".");
-        snprintf(word, sizeof word, "%.*s", (int)n, path);
-        node = node->kind == BOUGH_SEQUENCE ? node->value[atoi(word)] : bough_node_find(node, word);
-        if (!node) fail_msg("no '%s'", word);
-        path += n + (path[n] == '.');
-    }
-    return node;
-}
-
-static double number(const bough_node *node, const char *path) {
-    return strtod(at(node, path)->text, NULL);
-}
-
-static const char *text(const bough_node *node, const char *path) { return at(node, path)->text; }
-
-static bool list_says(trial *t, const char *words) {
-    char path[160], all[8192];
-    snprintf(path, sizeof path, "%s/import.txt", t->out);
-    FILE *file = fopen(path, "r");
-    assert_non_null(file);
-    all[fread(all, 1, sizeof all - 1, file)] = '\0';
-    fclose(file);
-    return strstr(all, words) != NULL;
-}
 
 // A reference line of 5 m along z and 5 m on a slope of 3 to 4; a station at 6.25 m of it.
 static void beamdyn_stations_keep_line_and_matrices(void **context) {

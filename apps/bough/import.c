@@ -7,15 +7,17 @@
 #include <string.h>
 
 bough_status bough_verb_import(bough_arena *arena, const bough_options *options) {
-    if (strcmp(options->operand, "openfast") != 0) {
-        return bough_fail(BOUGH_INVALID, "import: unknown kind '%.80s'; known: openfast",
+    bool windio = strcmp(options->operand, "windio") == 0;
+    if (!windio && strcmp(options->operand, "openfast") != 0) {
+        return bough_fail(BOUGH_INVALID, "import: unknown kind '%.80s'; known: openfast, windio",
                           options->operand);
     }
     bough_options named = *options; // the folder's name comes from the model's
     named.operand = options->second;
     const char *folder = bough_out_folder(arena, &named);
     if (!folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_status status = bough_import_openfast(options->second, folder, stdout);
+    bough_status status = windio ? bough_import_windio(options->second, folder, stdout)
+                                 : bough_import_openfast(options->second, folder, stdout);
     if (bough_is_ok(&status)) printf("scene: %s/scene.yaml\n", folder);
     return status;
 }

@@ -12,4 +12,8 @@
 // could be read. BOUGH_INVALID says file:line, the value's name and what was expected.
 bough_status bough_import_openfast(const char *path, const char *folder, FILE *echo);
 
+// The same with a turbine of the WindIO ontology, a YAML file in the layout of version 1 or 2;
+// BOUGH_INVALID says file:line:col.
+bough_status bough_import_windio(const char *path, const char *folder, FILE *echo);
+
 #endif

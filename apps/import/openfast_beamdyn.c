@@ -54,11 +54,10 @@ static void put_station(bough_openfast *o, const bough_deck *deck, const line_po
                         const double *s, int line) {
     const double *k = s + 1, *m = s + 1 + MATRIX;
     FILE *file = o->draft.file[BOUGH_IMPORT_BLADE];
-    for (int i = 0; i < 6; i++) {
-        if (k[7 * i] > 0 && m[0] > 0) continue;
+    if (!bough_section_possible(k, m)) {
         bough_deck_fail(deck, line,
-                        "the station: expected positive stiffness and "
-                        "mass on the diagonals");
+                        "the station: expected stiffness and inertia of a real section, positive "
+                        "definite");
     }
     fprintf(file, "    - [%.10g, %.10g, [%.10g, %.10g], ", p->z, p->twist, p->x, p->y);
     bough_section_stiffness(file, k);

@@ -1,9 +1,9 @@
 #include "apps/import/section.h"
 
 #include "apps/import/draft.h"
+#include "core/linalg.h"
 
 #include <math.h>
-#include <stdbool.h>
 
 void bough_section_stiffness(FILE *file, const double k[BOUGH_IMPORT_MATRIX]) {
     double entry[21];
@@ -26,6 +26,19 @@ void bough_section_mass(FILE *file, const double m[BOUGH_IMPORT_MATRIX]) {
     const double row[] = {
         m[0], -m[2 * 6 + 4] / m[0], m[2 * 6 + 3] / m[0], m[21], m[28], (m[22] + m[27]) / 2, m[35]};
     bough_import_list(file, row, 7);
+}
+
+bool bough_section_possible(const double k[BOUGH_IMPORT_MATRIX],
+                            const double m[BOUGH_IMPORT_MATRIX]) {
+    double stiffness[BOUGH_IMPORT_MATRIX], mass = m[0];
+    double x = -m[2 * 6 + 4] / mass, y = m[2 * 6 + 3] / mass;
+    double product = (m[22] + m[27]) / 2 + mass * x * y;
+    double inertia[] = {m[21] - mass * y * y,          product, 0, product,
+                        m[28] - mass * x * x,          0,       0, 0,
+                        m[35] - mass * (x * x + y * y)};
+    for (int i = 0; i < BOUGH_IMPORT_MATRIX; i++)
+        stiffness[i] = (k[i] + k[i % 6 * 6 + i / 6]) / 2;
+    return mass > 0 && bough_cholesky_factor(6, stiffness) && bough_cholesky_factor(3, inertia);
 }
 
 double bough_section_strangeness(const double m[BOUGH_IMPORT_MATRIX]) {

@@ -2,6 +2,7 @@
 #ifndef BOUGH_IMPORT_SECTION_H
 #define BOUGH_IMPORT_SECTION_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
 enum { BOUGH_IMPORT_MATRIX = 36 };
@@ -12,6 +13,10 @@ void bough_section_stiffness(FILE *file, const double k[BOUGH_IMPORT_MATRIX]);
 
 // A 6 × 6 mass matrix as mass, centre and inertias.
 void bough_section_mass(FILE *file, const double m[BOUGH_IMPORT_MATRIX]);
+
+// Whether a scene takes them: stiffness and inertia about the centre of mass positive definite.
+bool bough_section_possible(const double k[BOUGH_IMPORT_MATRIX],
+                            const double m[BOUGH_IMPORT_MATRIX]);
 
 // What m has beyond a mass, its centre and inertias about it: the largest entry that it should not
 // have or have otherwise, relative to its neighbours.

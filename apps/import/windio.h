@@ -1,0 +1,49 @@
+// What the readers of a WindIO turbine share. Each reads a part of the file, in the layout of
+// version 1 (outer_shape_bem, angles in radians) or 2 (outer_shape, degrees), and writes its part
+// of the scene and of the list.
+#ifndef BOUGH_IMPORT_WINDIO_H
+#define BOUGH_IMPORT_WINDIO_H
+
+#include "apps/import/entry.h"
+
+typedef struct bough_windio {
+    bough_draft draft;
+    const bough_node *root, *parts; // the file; its components
+    const bough_node *blade, *shape, *hub, *train;
+    const bough_node *tower; // NULL: none
+    bool second;             // the layout of version 2
+    double degree;           // unit of its angles [deg]
+    double forward;          // 1: the rotor is upwind of the tower, -1: downwind
+    int n_blade;
+    bough_curve axis[3];             // the blade's reference line over its share [m]
+    double blade_length, blade_mass; // along z [m]; [kg]
+    double hub_radius, radius;       // [m]
+    double tower_base, tower_top;    // above ground [m]
+    double hub_height;               // above the tower's top [m]
+    double density;                  // of the air [kg/m3]
+    double rated_power;              // of the generator [W]
+    double rated_speed;              // of the rotor [rad/s]
+    double speed, wind;              // at the start: rotor [rad/s], air [m/s]
+} bough_windio;
+
+// A number of the control block, in version 1 or 2 by other names and units: `second_unit` is what
+// one of the latter is in the former. The fallback is in version 1's unit.
+double bough_windio_control(bough_windio *w, const char *first, const char *second,
+                            double second_unit, double fallback);
+
+// Table of the blade's structure.
+void bough_windio_blade(bough_windio *w);
+
+// Tables of airfoils and blade elements.
+void bough_windio_air_tables(bough_windio *w);
+
+// Table of the tower's structure, and the part aero.tower.
+void bough_windio_tower(bough_windio *w);
+void bough_windio_tower_air(bough_windio *w);
+
+// The parts `bodies` and `turbine`, `aero` and `control` of the scene.
+void bough_windio_bodies(bough_windio *w);
+void bough_windio_air(bough_windio *w);
+void bough_windio_law(bough_windio *w);
+
+#endif

@@ -1,0 +1,263 @@
+// The blade's structure: 6 × 6 stiffness and inertia over the share of its reference line, as rows
+// of 21 (version 1) or as one list for each entry (version 2). Section axes: x flapwise, y
+// edgewise, turned by the twist; both matrices about the reference line: those of the scene.
+#include "apps/import/section.h"
+#include "apps/import/windio.h"
+#include "core/symmetric6.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { ENTRIES = 21, MATRIX = BOUGH_IMPORT_MATRIX };
+
+// Damping times where the file has none [s]: a few tenths of a percent in the first modes.
+static const double usual_damping = 2e-3;
+
+// 6 × 6 matrices, of which the upper triangle is given.
+typedef struct matrices {
+    const bough_node *node;
+    int n;
+    const double *grid; // (n)
+    double *entry;      // (21 × n), the values of one entry side by side
+} matrices;
+
+static void matrix_at(const matrices *m, double share, double to[MATRIX]) {
+    int k = m->n > 1;
+    while (k < m->n - 1 && m->grid[k] < share)
+        k++;
+    double width = k > 0 ? m->grid[k] - m->grid[k - 1] : 0;
+    double s = width > 0 ? fmin(fmax((share - m->grid[k - 1]) / width, 0), 1) : 1;
+    for (int i = 0; i < 6; i++) {
+        for (int j = i; j < 6; j++) {
+            const double *y = m->entry + (size_t)bough_symmetric6_index(i, j) * m->n + k;
+            to[6 * i + j] = to[6 * j + i] = k > 0 ? y[-1] + s * (y[0] - y[-1]) : y[0];
+        }
+    }
+}
+
+// -- reading --------------------------------------------------------------------------------------
+
+static matrices read_grid(bough_windio *w, const bough_node *from, const char *path) {
+    matrices m = {.node = bough_entry_need(&w->draft, from, path)};
+    if (m.node) m.grid = bough_entry_numbers(&w->draft, m.node, "grid", &m.n);
+    if (!m.grid) return (matrices){0};
+    m.entry = bough_arena_doubles(w->draft.arena, (size_t)ENTRIES * m.n);
+    if (!m.entry) *w->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!m.entry) return (matrices){0};
+    for (int i = 0; i < ENTRIES * m.n; i++)
+        m.entry[i] = 0;
+    return m;
+}
+
+// Rows of 21.
+static void read_rows(bough_windio *w, matrices *m) {
+    const bough_node *rows = bough_entry(m->node, "values");
+    if (rows->kind != BOUGH_SEQUENCE || rows->n != m->n) {
+        bough_entry_fail(&w->draft, rows, "values: expected a list of %d rows, as the grid has",
+                         m->n);
+        return;
+    }
+    for (int k = 0; k < m->n && bough_is_ok(w->draft.status); k++) {
+        int n = ENTRIES;
+        const double *row = bough_entry_numbers(&w->draft, rows->value[k], "", &n);
+        for (int e = 0; row && e < ENTRIES; e++)
+            m->entry[(size_t)e * m->n + k] = row[e];
+    }
+}
+
+static const double *read_list(bough_windio *w, const matrices *m, const char *key) {
+    int n = m->n;
+    return bough_entry_numbers(&w->draft, m->node, key, &n);
+}
+
+static matrices read_stiffness(bough_windio *w, const bough_node *from) {
+    matrices m = read_grid(w, from, "stiff_matrix|stiffness_matrix");
+    if (!m.node) return m;
+    if (bough_entry(m.node, "values")) {
+        read_rows(w, &m);
+        return m;
+    }
+    for (int i = 0; i < 6; i++) {
+        for (int j = i; j < 6; j++) {
+            char key[] = {'K', (char)('1' + i), (char)('1' + j), '\0'};
+            const double *list = read_list(w, &m, key);
+            for (int k = 0; list && k < m.n; k++)
+                m.entry[(size_t)bough_symmetric6_index(i, j) * m.n + k] = list[k];
+        }
+    }
+    return m;
+}
+
+// The inertia of a mass with its centre and inertias about the reference line.
+static void put_inertia(matrices *m, int k, const double value[7]) {
+    double mass = value[0], x = value[1], y = value[2];
+    const struct {
+        int i, j;
+        double value;
+    } entry[] = {{0, 0, mass},     {1, 1, mass},     {2, 2, mass},      {0, 5, -mass * y},
+                 {1, 5, mass * x}, {2, 3, mass * y}, {2, 4, -mass * x}, {3, 3, value[3]},
+                 {4, 4, value[4]}, {5, 5, value[5]}, {3, 4, -value[6]}};
+    for (size_t e = 0; e < sizeof entry / sizeof *entry; e++)
+        m->entry[(size_t)bough_symmetric6_index(entry[e].i, entry[e].j) * m->n + k] =
+            entry[e].value;
+}
+
+static matrices read_inertia(bough_windio *w, const bough_node *from) {
+    static const char *const key[] = {"mass", "cm_x", "cm_y", "i_edge", "i_flap", "i_plr", "i_cp"};
+    matrices m = read_grid(w, from, "inertia_matrix");
+    if (!m.node) return m;
+    if (bough_entry(m.node, "values")) {
+        read_rows(w, &m);
+        return m;
+    }
+    const double *list[7];
+    for (int e = 0; e < 7; e++)
+        list[e] = read_list(w, &m, key[e]);
+    for (int k = 0; k < m.n && bough_is_ok(w->draft.status); k++) {
+        double value[7];
+        for (int e = 0; e < 7; e++)
+            value[e] = list[e][k];
+        put_inertia(&m, k, value);
+    }
+    return m;
+}
+
+// -- stations -------------------------------------------------------------------------------------
+
+static int compare(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+// All shares at which something bends, from 0 to 1; their number.
+static int union_of(bough_draft *d, const bough_curve *const *curve, int n_curve, double **share) {
+    int n = 2, kept = 1;
+    for (int c = 0; c < n_curve; c++)
+        n += curve[c]->n;
+    double *s = *share = bough_arena_doubles(d->arena, (size_t)n);
+    if (!s) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!s) return 0;
+    s[0] = 0;
+    s[1] = 1;
+    n = 2;
+    for (int c = 0; c < n_curve; c++) {
+        for (int i = 0; i < curve[c]->n; i++)
+            if (curve[c]->x[i] > 0 && curve[c]->x[i] < 1) s[n++] = curve[c]->x[i];
+    }
+    qsort(s, (size_t)n, sizeof *s, compare);
+    for (int i = 1; i < n; i++) {
+        if (s[i] > s[kept - 1] + 1e-6) s[kept++] = s[i];
+    }
+    s[kept - 1] = 1;
+    return kept;
+}
+
+static void put_station(bough_windio *w, const matrices *stiffness, const matrices *inertia,
+                        double share, double twist, double *strange) {
+    double k[MATRIX], m[MATRIX];
+    FILE *file = w->draft.file[BOUGH_IMPORT_BLADE];
+    matrix_at(stiffness, share, k);
+    matrix_at(inertia, share, m);
+    if (!bough_section_possible(k, m)) {
+        bough_entry_fail(&w->draft, stiffness->node,
+                         "at %.4g of the span: expected stiffness and inertia of a real section, "
+                         "positive definite",
+                         share);
+    }
+    fprintf(file, "    - [%.10g, %.10g, [%.10g, %.10g], ", bough_curve_at(&w->axis[2], share),
+            twist, bough_curve_at(&w->axis[0], share), bough_curve_at(&w->axis[1], share));
+    bough_section_stiffness(file, k);
+    fputs(", ", file);
+    bough_section_mass(file, m);
+    fputs("]\n", file);
+    *strange = fmax(*strange, bough_section_strangeness(m));
+}
+
+// Of the length of the reference line.
+static double mass_between(const bough_windio *w, const matrices *inertia, double a, double b) {
+    double square = 0;
+    bough_curve mass = {inertia->node, inertia->n, inertia->grid, inertia->entry};
+    for (int i = 0; i < 3; i++) {
+        double step = bough_curve_at(&w->axis[i], b) - bough_curve_at(&w->axis[i], a);
+        square += step * step;
+    }
+    return sqrt(square) * (bough_curve_at(&mass, a) + bough_curve_at(&mass, b)) / 2;
+}
+
+static void put_damping(bough_windio *w, const bough_node *from) {
+    FILE *file = w->draft.file[BOUGH_IMPORT_BLADE];
+    const double usual[6] = {usual_damping, usual_damping, usual_damping,
+                             usual_damping, usual_damping, usual_damping};
+    int n = 6;
+    const double *mu = usual;
+    if (bough_entry(from, "structural_damping.mu"))
+        mu = bough_entry_numbers(&w->draft, from, "structural_damping.mu", &n);
+    bool any = false;
+    for (int i = 0; mu && i < 6; i++) {
+        any = any || mu[i] > 0;
+        if (mu[i] < 0)
+            bough_entry_fail(&w->draft, from,
+                             "structural_damping.mu: expected no "
+                             "negative time");
+    }
+    if (!any || mu == usual) {
+        mu = usual;
+        bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
+                         "blade: no damping given: %g s times the rates of all strains",
+                         usual_damping);
+    }
+    fprintf(file, "length: %.10g\ndamping: ", w->blade_length);
+    bough_import_list(file, mu, 6);
+    fputs("  # s\nstations:\n  columns: [span, twist deg, axis, stiffness, mass]\n  rows:\n", file);
+}
+
+static void put_stations(bough_windio *w, const bough_node *from, const matrices *stiffness,
+                         const matrices *inertia) {
+    bough_curve k = {stiffness->node, stiffness->n, stiffness->grid, NULL};
+    bough_curve m = {inertia->node, inertia->n, inertia->grid, NULL};
+    bough_curve twist =
+        bough_entry_curve(&w->draft, bough_entry(from, "twist") ? from : w->shape, "twist");
+    const bough_curve *all[] = {&k, &m, &twist, &w->axis[0], &w->axis[1], &w->axis[2]};
+    double *share, strange = 0;
+    int n = union_of(&w->draft, all, 6, &share);
+    for (int i = 0; i < n && bough_is_ok(w->draft.status); i++) {
+        double turn = bough_curve_at(&twist, share[i]) * w->degree;
+        put_station(w, stiffness, inertia, share[i], turn, &strange);
+        if (i > 0) w->blade_mass += mass_between(w, inertia, share[i - 1], share[i]);
+    }
+    bough_draft_note(&w->draft, BOUGH_TAKEN,
+                     "%d stations of the blade, %d of them with full stiffness and inertia; it "
+                     "weighs %.7g kg",
+                     n, stiffness->n, w->blade_mass);
+    if (strange > 1e-3) {
+        bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
+                         "inertia matrices: only mass, centre and inertias; other entries, up to "
+                         "%.2g of these, are left out",
+                         strange);
+    }
+}
+
+void bough_windio_blade(bough_windio *w) {
+    const bough_node *from = bough_entry(w->blade, "elastic_properties_mb.six_x_six");
+    if (!from) from = bough_entry(w->blade, "structure.elastic_properties");
+    if (!from) from = bough_entry(w->blade, "elastic_properties.six_x_six");
+    if (!from) from = bough_entry(w->blade, "elastic_properties");
+    if (!from) {
+        bough_entry_fail(&w->draft, w->blade,
+                         "expected stiffness and inertia of the blade: "
+                         "'elastic_properties_mb.six_x_six' or 'structure.elastic_properties'; "
+                         "they are not computed from layers");
+        return;
+    }
+    matrices stiffness = read_stiffness(w, from), inertia = read_inertia(w, from);
+    if (bough_is_ok(w->draft.status)) {
+        bough_curve_of(&w->draft, stiffness.node, stiffness.grid, stiffness.entry, stiffness.n);
+        bough_curve_of(&w->draft, inertia.node, inertia.grid, inertia.entry, inertia.n);
+    }
+    if (!bough_is_ok(w->draft.status)) return;
+    put_damping(w, from);
+    put_stations(w, from, &stiffness, &inertia);
+    if (bough_entry_number_or(&w->draft, w->blade, "internal_structure_2d_fem.joint.mass", 0) > 0) {
+        bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "the mass of the blade's joint");
+    }
+}

@@ -1,0 +1,226 @@
+// Hub, nacelle and their bearings; wind; the generator's torque.
+#include "apps/import/windio.h"
+#include "core/base.h"
+
+#include <math.h>
+
+// Reference turbines of 3 to 15 MW: nacelle with generator, per rated power [kg/W]; the hub with
+// its pitch system, per blade mass.
+static const double nacelle_per_watt = 0.05, hub_per_blade = 2.5;
+
+// A rigid body's mass properties in the axes of its frame.
+typedef struct lump {
+    double mass;                  // [kg]
+    double centre[3], inertia[3]; // [m]; about the centre of mass [kg m2]
+} lump;
+
+// -- masses ---------------------------------------------------------------------------------------
+
+// Version 1: elastic_properties_mb {system_mass, system_inertia, system_center_mass}; version 2:
+// elastic_properties {mass, inertia, location}. False: there are none.
+static bool read_lump(bough_windio *w, const bough_node *part, lump *l) {
+    bough_draft *d = &w->draft;
+    const bough_node *from = bough_entry(part, "elastic_properties_mb|elastic_properties");
+    if (!bough_entry(from, "system_mass|mass")) return false;
+    *l = (lump){.mass = bough_entry_number(d, from, "system_mass|mass")};
+    const bough_node *inertia = bough_entry(from, "system_inertia|inertia");
+    const bough_node *centre = bough_entry(from, "system_center_mass|location");
+    int n = inertia && inertia->n == 3 ? 3 : 6, three = 3;
+    const double *row = inertia ? bough_entry_numbers(d, inertia, "", &n) : NULL;
+    const double *at = centre ? bough_entry_numbers(d, centre, "", &three) : NULL;
+    for (int i = 0; i < 3; i++) {
+        l->inertia[i] = row ? row[i] : 0;
+        l->centre[i] = at ? at[i] : 0;
+        if (row && row[i] < 0) bough_entry_fail(d, inertia, "expected no negative inertia");
+    }
+    if (l->mass < 0) bough_entry_fail(d, from, "mass: expected no negative one");
+    if (row && n == 6 && (row[3] != 0 || row[4] != 0 || row[5] != 0)) {
+        bough_draft_note(d, BOUGH_LEFT_OUT, "products of inertia of %s",
+                         part == w->hub ? "the hub" : "the nacelle");
+    }
+    return true;
+}
+
+// From the frame's origin to the centre of mass, none of them below zero.
+static void move_to_centre(lump *l) {
+    const double *c = l->centre;
+    double square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+    for (int i = 0; i < 3; i++)
+        l->inertia[i] = fmax(l->inertia[i] - l->mass * (square - c[i] * c[i]), 0);
+}
+
+static lump hub_lump(bough_windio *w) {
+    lump l;
+    if (read_lump(w, w->hub, &l)) return l;
+    double inertia = 2.0 / 3 * hub_per_blade * w->blade_mass * w->hub_radius * w->hub_radius;
+    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
+                     "hub: no mass given: %g blades' mass as a shell of its radius", hub_per_blade);
+    return (lump){hub_per_blade * w->blade_mass, {0}, {inertia, inertia, inertia}};
+}
+
+static lump nacelle_lump(bough_windio *w, double overhang) {
+    lump l;
+    if (read_lump(w, w->train, &l)) {
+        if (w->second) move_to_centre(&l);
+        return l;
+    }
+    double mass = nacelle_per_watt * w->rated_power, inertia = mass * overhang * overhang / 4;
+    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
+                     "nacelle: no mass given: %g kg per kW of rated power at half the hub's "
+                     "height, its radius of gyration half the overhang",
+                     nacelle_per_watt * 1000);
+    return (lump){mass, {0, 0, w->hub_height / 2}, {inertia, inertia, inertia}};
+}
+
+static double generator_inertia(bough_windio *w, double ratio) {
+    const bough_node *from = bough_entry(w->train, "generator.elastic_properties.inertia");
+    int n = 6;
+    const double *row = from ? bough_entry_numbers(&w->draft, from, "", &n) : NULL;
+    if (!from) bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "inertia of the generator: not given");
+    return row ? row[0] * ratio * ratio : 0;
+}
+
+// -- bodies ---------------------------------------------------------------------------------------
+
+static void put_lump(FILE *file, const lump *l) {
+    fprintf(file, "    mass: %.10g kg\n    centre_of_mass: ", l->mass);
+    bough_import_list(file, l->centre, 3);
+    fputs("\n    inertia: ", file);
+    bough_import_list(file, l->inertia, 3);
+    fputc('\n', file);
+}
+
+// A rigid tower is only a place.
+static void put_tower(bough_windio *w, bool rod) {
+    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
+    if (!rod) return;
+    fputs("  - name: tower\n    fidelity: rod\n    joint: {kind: fixed, parent: ground", file);
+    if (w->tower_base > 0) fprintf(file, ", placement: [move z %.10g m]", w->tower_base);
+    fprintf(file, "}\n    rod: {table: %s, segments: 20}\n", bough_import_name[BOUGH_IMPORT_TOWER]);
+}
+
+static void put_nacelle(bough_windio *w, bool on_rod, double overhang) {
+    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
+    lump l = nacelle_lump(w, overhang);
+    fprintf(file, "  - name: nacelle\n    fidelity: rigid\n    joint: {kind: fixed, parent: %s",
+            on_rod ? "tower" : "ground");
+    if (!on_rod) fprintf(file, ", placement: [move z %.10g m]", w->tower_top);
+    fputs("}\n", file);
+    put_lump(file, &l);
+}
+
+static void put_hub(bough_windio *w, double overhang, double tilt, double ratio) {
+    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
+    lump l = hub_lump(w);
+    l.inertia[0] += generator_inertia(w, ratio);
+    fprintf(file,
+            "  - name: hub\n    fidelity: rigid\n    joint:\n      kind: revolute\n"
+            "      parent: nacelle\n      placement: [move z %.10g m, move x %.10g m, "
+            "rotate y %.10g deg]\n      axis: x\n      speed: %.10g rad/s\n",
+            w->hub_height, -w->forward * overhang, w->forward * tilt, w->speed);
+    put_lump(file, &l);
+}
+
+static void put_blades(bough_windio *w, double cone, double pitch) {
+    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
+    for (int k = 1; k <= w->n_blade; k++) {
+        fprintf(file,
+                "  - name: blade%d\n    fidelity: rod\n    joint: {kind: fixed, parent: hub, "
+                "placement: [rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n"
+                "    pitch: %.10g deg\n    rod: {table: %s, segments: 48}\n",
+                k, 360.0 * (k - 1) / w->n_blade, -w->forward * cone, w->hub_radius, pitch,
+                bough_import_name[BOUGH_IMPORT_BLADE]);
+    }
+    fprintf(file, "turbine:\n  rotor: hub\n  blades: [blade1%s%s]\n",
+            w->n_blade > 1 ? ", blade2" : "", w->n_blade > 2 ? ", blade3" : "");
+}
+
+static double gear_ratio(bough_windio *w) {
+    const char *path = w->second ? "gearbox.gear_ratio" : "gear_ratio";
+    double ratio = bough_entry_number_or(&w->draft, w->train, path, 1);
+    if (!(ratio > 0)) bough_entry_fail(&w->draft, w->train, "gear_ratio: expected a positive one");
+    return ratio;
+}
+
+void bough_windio_bodies(bough_windio *w) {
+    bough_draft *d = &w->draft;
+    if (!bough_is_ok(d->status)) return;
+    const bough_node *from = w->second ? bough_entry_need(d, w->train, "outer_shape") : w->train;
+    double overhang = bough_entry_number(d, from, "overhang");
+    double tilt = bough_entry_number_or(d, from, "uptilt", 0) * w->degree;
+    double cone = bough_entry_number_or(d, w->hub, "cone_angle", 0) * w->degree;
+    double pitch =
+        bough_windio_control(w, "pitch.min_pitch", "fine_pitch|min_pitch_limit", BOUGH_PI / 180, 0);
+    w->hub_height = bough_entry_number(d, from, "distance_tt_hub");
+    fflush(d->file[BOUGH_IMPORT_TOWER]);
+    bool rod = d->file_size[BOUGH_IMPORT_TOWER] > 0;
+    if (!w->tower) w->tower_top -= w->hub_height;
+    fputs("bodies:\n", d->file[BOUGH_IMPORT_SCENE]);
+    put_tower(w, rod);
+    put_nacelle(w, rod, overhang);
+    put_hub(w, overhang, tilt, gear_ratio(w));
+    put_blades(w, cone, pitch * 180 / BOUGH_PI);
+    bough_draft_note(d, BOUGH_TAKEN,
+                     "hub radius %g m, cone %.4g deg, tilt %.4g deg, overhang %g m, pitch %.4g deg",
+                     w->hub_radius, cone, tilt, overhang, pitch * 180 / BOUGH_PI);
+    bough_draft_note(d, BOUGH_LEFT_OUT, "yaw bearing and drive train: both are rigid");
+}
+
+// -- air ------------------------------------------------------------------------------------------
+
+void bough_windio_air(bough_windio *w) {
+    bough_draft *d = &w->draft;
+    if (!bough_is_ok(d->status)) return;
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    double shear = bough_entry_number_or(d, w->root, "environment.shear_exp", 0);
+    double height = w->tower_top + w->hub_height;
+    fprintf(file, "aero:\n  rate: 50 Hz\n  air_density: %.10g\n  wind: {kind: %s, speed: %.6g m/s",
+            w->density, shear > 0 ? "power" : "uniform", w->wind);
+    if (shear > 0) {
+        fprintf(file, ", exponent: %.10g, reference_height: %.10g m", shear, height);
+        bough_draft_note(d, BOUGH_TAKEN, "wind that grows with height^%g", shear);
+    }
+    fprintf(file,
+            "}\n  ramp: [0 s, 2 s]\n  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n"
+            "  induction: {high_thrust: smooth, skew: pitt-peters}\n  dynamic_stall: hgm\n",
+            bough_import_name[BOUGH_IMPORT_AERO], bough_import_name[BOUGH_IMPORT_POLARS],
+            w->hub_radius);
+    bough_draft_note(d, BOUGH_APPROXIMATED,
+                     "dynamic stall by Hansen, Gaunaa and Madsen's model, which also damps the "
+                     "blade's torsion");
+    bough_windio_tower_air(w);
+}
+
+// -- control --------------------------------------------------------------------------------------
+
+void bough_windio_law(bough_windio *w) {
+    bough_draft *d = &w->draft;
+    if (!bough_is_ok(d->status)) return;
+    if (!(w->rated_power > 0)) {
+        bough_draft_note(d, BOUGH_LEFT_OUT, "no rated_power: no torque acts on the generator");
+        return;
+    }
+    double ratio = gear_ratio(w);
+    const char *path = w->second ? "gearbox.efficiency" : "gearbox_efficiency";
+    double efficiency = bough_entry_number_or(d, w->train, path, 1);
+    if (!(efficiency > 0 && efficiency <= 1)) {
+        bough_entry_fail(d, w->train, "efficiency: expected one above 0, at most 1");
+    }
+    double power = w->rated_power / efficiency, rated = w->rated_speed * ratio;
+    double torque = power / rated, gain = 0.99 * torque / (rated * rated); // below the rated one
+    double rate = bough_windio_control(w, "torque.max_torque_rate", "max_torque_rate", 1, 1e9);
+    fprintf(d->file[BOUGH_IMPORT_SCENE],
+            "control:\n  kind: variable-speed\n  rate: 50 Hz\n  gear_ratio: %.10g\n"
+            "  efficiency: %.10g\n  law:\n    cut_in: 0\n    optimal_from: 1e-3\n"
+            "    optimal_gain: %.10g\n    rated_speed: %.10g\n    rated_power: %.10g\n"
+            "    most_torque: %.10g\n    torque_rate: %.10g\n    power_pitch: 100\n",
+            ratio, efficiency, gain, rated, power, torque, rate);
+    bough_draft_note(d, BOUGH_TAKEN, "rated power %g MW at %.4g rpm of the rotor",
+                     w->rated_power / 1e6, w->rated_speed * 30 / BOUGH_PI);
+    bough_draft_note(d, BOUGH_APPROXIMATED,
+                     "torque grows with the square of the speed to its rated value; no loss in the "
+                     "generator");
+    bough_draft_note(d, BOUGH_LEFT_OUT,
+                     "pitch control: the pitch is held, so the wind must not "
+                     "exceed the rated one");
+}
