@@ -112,6 +112,12 @@ typedef struct bough_subsystem_ops {
     // Takes out of a tangent x (n_state) at `state` what is no motion: changes of a quaternion's
     // length. NULL: there is nothing such.
     void (*project)(void *self, const double *state, double *x);
+
+    // As `advance`, but may stop on the way, at the first of its own steps' ends at or after `pause`:
+    // the current time tells. `advance` to t1 under the same input, without restart, then goes on to
+    // the bits of an advance in one go. NULL: cannot.
+    bough_status (*advance_part)(void *self, double pause, double t1, const bough_signal *input,
+                                 bool restart);
 } bough_subsystem_ops;
 
 typedef struct bough_subsystem {

@@ -19,6 +19,7 @@ static bool take(bough_coupling *c, bough_arena *arena) {
     c->seen = bough_arena_doubles(arena, n_input);
     c->seen_rate = bough_arena_doubles(arena, n_input);
     c->status = bough_arena_take(arena, n_member * sizeof *c->status);
+    c->turn = bough_arena_take(arena, n_member * sizeof *c->turn);
     c->followed = bough_arena_take(arena, n_input * sizeof *c->followed);
     c->signal = bough_arena_take(arena, n_member * sizeof *c->signal);
     for (int i = 0; i < a->n_member && c->signal; i++) {
@@ -64,17 +65,21 @@ static void run_member(void *data, int i) {
     if (in_stage(w->coupling, w->stage, i)) w->work(w->coupling, i);
 }
 
-bough_status bough_coupling_each(bough_coupling *c, int stage,
-                                 void (*work)(bough_coupling *c, int member)) {
-    int n = c->assembly->n_member;
-    member_work w = {c, stage, work};
-    bough_pool_run(c->pool, n, run_member, &w);
-    for (int i = 0; i < n; i++) {
+static bough_status first_failure(bough_coupling *c) {
+    for (int i = 0; i < c->assembly->n_member; i++) {
         if (bough_is_ok(&c->status[i])) continue;
         c->failed_member = i;
         return c->status[i];
     }
     return bough_ok();
+}
+
+bough_status bough_coupling_each(bough_coupling *c, int stage,
+                                 void (*work)(bough_coupling *c, int member)) {
+    int n = c->assembly->n_member;
+    member_work w = {c, stage, work};
+    bough_pool_run(c->pool, n, run_member, &w);
+    return first_failure(c);
 }
 
 void bough_coupling_begin(bough_coupling *c) {
@@ -104,16 +109,54 @@ static void advance(bough_coupling *c, int member, bool restart) {
     c->status[member] = s->ops->advance(s->self, c->t1, &c->signal[member], restart);
 }
 
-static void advance_kept(bough_coupling *c, int member) {
-    advance(c, member, false);
+static void advance_first_half(bough_coupling *c, int member, bool restart) {
+    const bough_subsystem *s = c->assembly->member[member];
+    const bough_signal *signal = &c->signal[member];
+    if (s->ops->advance_part == NULL) {
+        advance(c, member, restart);
+        return;
+    }
+    double middle = 0.5 * (c->t0 + c->t1) - 1e-9 * (c->t1 - c->t0);
+    c->status[member] = s->ops->advance_part(s->self, middle, c->t1, signal, restart);
 }
 
-static void advance_restarted(bough_coupling *c, int member) {
-    advance(c, member, true);
+static void advance_second_half(bough_coupling *c, int member) {
+    bool arrived = *c->assembly->member[member]->time >= c->t1;
+    if (bough_is_ok(&c->status[member]) && !arrived) advance(c, member, false);
+}
+
+// The members c->turn of a stage (n). Of those that fill no whole turn of all threads (rest) the
+// first halves come first and the second ones last, so that three members keep two threads busy.
+typedef struct turns {
+    bough_coupling *coupling;
+    bool restart;
+    int n, rest;
+} turns;
+
+static void take_turn(void *data, int k) {
+    const turns *w = data;
+    bough_coupling *c = w->coupling;
+    const int *member = c->turn;
+    if (k < w->rest) {
+        advance_first_half(c, member[w->n - w->rest + k], w->restart);
+    } else if (k < w->n) {
+        advance(c, member[k - w->rest], w->restart);
+    } else {
+        bough_pool_await(c->pool, k - w->n);
+        advance_second_half(c, member[k - w->rest]);
+    }
 }
 
 bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart) {
-    return bough_coupling_each(c, stage, restart ? advance_restarted : advance_kept);
+    turns w = {c, restart, 0, 0};
+    for (int i = 0; i < c->assembly->n_member; i++) {
+        c->status[i].code = BOUGH_OK;
+        if (in_stage(c, stage, i)) c->turn[w.n++] = i;
+    }
+    int threads = bough_pool_threads(c->pool);
+    if (w.n > threads) w.rest = w.n % threads;
+    bough_pool_run(c->pool, w.n + w.rest, take_turn, &w);
+    return first_failure(c);
 }
 
 // Rates of a member's outputs at a time of the step under the signal it sees.

@@ -58,6 +58,7 @@ typedef struct bough_coupling {
     double *end_output;    // (n_output) outputs at t1, likewise
     double *end_rate;      // (n_output)
     bough_status *status;  // (n_member) of the last move
+    int *turn;             // (n_member) the members of the stage in progress
     int failed_member;     // −1, or the member whose move failed
 
     // scratch

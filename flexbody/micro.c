@@ -33,6 +33,11 @@ static bough_status advance_rosenbrock(void *self, double t, double t1, bool res
     return bough_micro_rosenbrock_advance(self, t, t1, restart, y);
 }
 
+static bough_status advance_rosenbrock_part(void *self, double *t, double pause, double t1,
+                                            bool restart, double *y) {
+    return bough_micro_rosenbrock_advance_part(self, t, pause, t1, restart, y);
+}
+
 static void count_rosenbrock(const void *self, bough_statistics *sum) {
     bough_micro_rosenbrock_statistics(self, sum);
 }
@@ -41,7 +46,7 @@ static bough_status create_cvode(bough_arena *arena, const bough_ode *ode, const
                                  bough_micro_options options, bough_micro *micro) {
     bough_micro_cvode *self = NULL;
     bough_status status = bough_micro_cvode_create(arena, ode, scale, options.rtol, &self);
-    *micro = (bough_micro){"CVODE BDF", self, advance_cvode, count_cvode};
+    *micro = (bough_micro){"CVODE BDF", self, advance_cvode, count_cvode, NULL};
     return status;
 }
 
@@ -49,7 +54,7 @@ static bough_status create_arkode(bough_arena *arena, const bough_ode *ode, cons
                                   bough_micro_options options, bough_micro *micro) {
     bough_micro_arkode *self = NULL;
     bough_status status = bough_micro_arkode_create(arena, ode, scale, options.rtol, &self);
-    *micro = (bough_micro){"ARKODE ESDIRK", self, advance_arkode, count_arkode};
+    *micro = (bough_micro){"ARKODE ESDIRK", self, advance_arkode, count_arkode, NULL};
     return status;
 }
 
@@ -58,7 +63,7 @@ static bough_status create_alpha(bough_arena *arena, const bough_ode *ode, const
     bough_micro_alpha *self = NULL;
     bough_micro_alpha_options alpha = {options.step, options.rho, options.rtol};
     bough_status status = bough_micro_alpha_create(arena, ode, scale, alpha, &self);
-    *micro = (bough_micro){"generalised-α", self, advance_alpha, count_alpha};
+    *micro = (bough_micro){"generalised-α", self, advance_alpha, count_alpha, NULL};
     return status;
 }
 
@@ -68,7 +73,8 @@ static bough_status create_rosenbrock(bough_arena *arena, const bough_ode *ode,
     bough_micro_rosenbrock *self = NULL;
     bough_micro_rosenbrock_options own = {options.step, options.rtol};
     bough_status status = bough_micro_rosenbrock_create(arena, ode, scale, own, &self);
-    *micro = (bough_micro){"Rosenbrock", self, advance_rosenbrock, count_rosenbrock};
+    *micro = (bough_micro){"Rosenbrock", self, advance_rosenbrock, count_rosenbrock,
+                           advance_rosenbrock_part};
     return status;
 }
 

@@ -39,6 +39,10 @@ typedef struct bough_micro {
     // or f jumps at t.
     bough_status (*advance)(void *self, double t, double t1, bool restart, double *y);
     void (*statistics)(const void *self, bough_statistics *sum);
+    // The same from *t, but ends with the first step that reaches `pause`, and tells in *t where.
+    // NULL: cannot stop on the way.
+    bough_status (*advance_part)(void *self, double *t, double pause, double t1, bool restart,
+                                 double *y);
 } bough_micro;
 
 // The sub-solver of the options' kind in the arena; scale (n) is borrowed.

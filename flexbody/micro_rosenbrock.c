@@ -156,8 +156,8 @@ static double try_step(bough_micro_rosenbrock *m, double t, double h, const doub
 
 // Equal parts of the way that is left, none longer than allowed. A step that fails with old tangents
 // is tried with new ones first.
-static bool cross(bough_micro_rosenbrock *m, double *t, double t1, double *y) {
-    for (int n = 0; *t < t1; n++) {
+static bool cross(bough_micro_rosenbrock *m, double *t, double pause, double t1, double *y) {
+    for (int n = 0; *t < pause; n++) {
         double parts = ceil((t1 - *t) / m->longest * (1 - 1e-12));
         double h = (t1 - *t) / fmax(parts, 1);
         double error = try_step(m, *t, h, y);
@@ -181,18 +181,22 @@ static bool cross(bough_micro_rosenbrock *m, double *t, double t1, double *y) {
 
 bough_status bough_micro_rosenbrock_advance(bough_micro_rosenbrock *micro, double t, double t1,
                                             bool restart, double *y) {
+    return bough_micro_rosenbrock_advance_part(micro, &t, t1, t1, restart, y);
+}
+
+bough_status bough_micro_rosenbrock_advance_part(bough_micro_rosenbrock *micro, double *t,
+                                                 double pause, double t1, bool restart, double *y) {
     if (restart || !micro->started) {
         if (micro->started) micro->sum.restarts++;
         micro->started = true;
         micro->age = MOST_AGE;
         micro->longest = micro->options.step;
     }
-    double at = t;
-    if (cross(micro, &at, t1, y)) return bough_ok();
+    if (cross(micro, t, pause, t1, y)) return bough_ok();
     micro->started = false;
     return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: the Rosenbrock method cannot go on: the error"
                       " test fails down to the smallest step (a segment that turns by more than"
-                      " 120°, or a value that overflows)", micro->ode.name, at);
+                      " 120°, or a value that overflows)", micro->ode.name, *t);
 }
 
 void bough_micro_rosenbrock_statistics(const bough_micro_rosenbrock *micro,

@@ -27,6 +27,11 @@ bough_status bough_micro_rosenbrock_create(bough_arena *arena, const bough_ode *
 bough_status bough_micro_rosenbrock_advance(bough_micro_rosenbrock *micro, double t, double t1,
                                             bool restart, double *y);
 
+// The same from *t, but ends with the first step that reaches `pause`; *t tells where. Going on from
+// there to t1 takes the steps of an advance in one go.
+bough_status bough_micro_rosenbrock_advance_part(bough_micro_rosenbrock *micro, double *t,
+                                                 double pause, double t1, bool restart, double *y);
+
 void bough_micro_rosenbrock_statistics(const bough_micro_rosenbrock *micro,
                                        bough_statistics *sum);
 

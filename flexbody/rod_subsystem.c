@@ -113,6 +113,18 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
     return status;
 }
 
+static bough_status advance_part(void *self, double pause, double t1, const bough_signal *input,
+                                 bool restart) {
+    bough_rod_body *b = self;
+    if (b->micro.advance_part == NULL) return advance(self, t1, input, restart);
+    b->input = input;
+    bough_status status = b->micro.advance_part(b->micro.self, &b->time, pause, t1,
+                                                restart || b->moved, b->state);
+    if (b->time >= t1) normalise(b);
+    b->moved = !bough_is_ok(&status);
+    return status;
+}
+
 static size_t state_bytes(const bough_rod_body *b) {
     return (size_t)BOUGH_ROD_STATES * b->model->n * sizeof(double);
 }
@@ -203,7 +215,7 @@ bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *mo
 bough_subsystem bough_rod_body_subsystem(bough_rod_body *body) {
     static const bough_subsystem_ops ops = {
         derivative, output, output_tangent, input_columns, newton_setup, newton_solve, advance,
-        save_size,  save,   restore,        set_state,     statistics, project};
+        save_size,  save,   restore,        set_state,     statistics, project,      advance_part};
     return (bough_subsystem){.name = body->model->name,
                              .kind = "rod",
                              .solver = body->micro.name,

@@ -184,6 +184,33 @@ static inline void contract_set_state(const bough_subsystem *s, contract_point a
     free(rate), free(moved), free(coefficient);
 }
 
+// A pause on the way changes no bit.
+static inline void contract_pause(const bough_subsystem *s, contract_point at, double length) {
+    if (s->ops->advance_part == NULL) return;
+    size_t n = (size_t)s->n_state * sizeof(double);
+    double *whole = contract_doubles(s->n_state);
+    double *coefficient = contract_doubles(4 * s->n_input);
+    memcpy(coefficient, at.input, (size_t)s->n_input * sizeof(double));
+    for (int run = 0; run < 2; run++) {
+        bough_signal input = {s->n_input, at.t, at.t + length, coefficient};
+        double pause = at.t + 0.4 * length;
+        bough_status status = bough_ok();
+        s->ops->set_state(s->self, at.t, at.state);
+        if (run == 1) {
+            status = s->ops->advance_part(s->self, pause, input.t1, &input, true);
+            assert_true(*s->time >= pause && *s->time <= input.t1);
+        }
+        if (bough_is_ok(&status) && *s->time < input.t1) {
+            status = s->ops->advance(s->self, input.t1, &input, run == 0);
+        }
+        if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+        check_near(*s->time, input.t1, 0, 0);
+        if (run == 0) memcpy(whole, s->state, n);
+    }
+    assert_memory_equal(whole, s->state, n);
+    free(whole), free(coefficient);
+}
+
 // Everything; `gamma` for the Newton matrix and `length` of an advance [s]. contract_set_state is
 // left to the caller, who knows a length short against the fastest motion.
 static inline void contract_check(const bough_subsystem *s, contract_point at, double gamma,
@@ -193,6 +220,7 @@ static inline void contract_check(const bough_subsystem *s, contract_point at, d
     contract_newton(s, at, gamma);
     contract_save_restore(s, at, length, true);
     contract_save_restore(s, at, length, false);
+    contract_pause(s, at, length);
 }
 
 #endif

@@ -146,6 +146,21 @@ static void a_restart_gives_the_same_bits(void **context) {
     bough_arena_destroy(arena);
 }
 
+static void a_pause_changes_no_bit(void **context) {
+    (void)context;
+    problem p = {.skew = 1, .wall = (double)INFINITY};
+    double once[N], twice[N], t = 0;
+    bough_arena *arena = build(&p, 0.05, 1e-5);
+    exact(0, once);
+    bough_micro_rosenbrock_advance(p.micro, 0, 0.7, true, once);
+    exact(0, twice);
+    bough_micro_rosenbrock_advance_part(p.micro, &t, 0.33, 0.7, true, twice);
+    assert_true(t >= 0.33 && t < 0.4);
+    bough_micro_rosenbrock_advance(p.micro, t, 0.7, false, twice);
+    assert_memory_equal(once, twice, sizeof once);
+    bough_arena_destroy(arena);
+}
+
 static void what_has_no_value_ends_with_a_diagnosis(void **context) {
     (void)context;
     problem p = {.skew = 1, .wall = (double)INFINITY};
@@ -167,6 +182,7 @@ int main(void) {
         cmocka_unit_test(error_follows_the_tolerance),
         cmocka_unit_test(stiff_mode_is_forgotten),
         cmocka_unit_test(a_restart_gives_the_same_bits),
+        cmocka_unit_test(a_pause_changes_no_bit),
         cmocka_unit_test(what_has_no_value_ends_with_a_diagnosis),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

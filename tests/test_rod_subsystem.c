@@ -67,6 +67,14 @@ static void operations_agree_on_a_deformed_loaded_rod(void **context) {
     sample_loads(r.model, bough_rod_body_loads(r.body));
     contract_point at = {0.5, state, input, 1e-5};
     contract_check(&r.s, at, 0.03, 0.01);
+    // by steps between which it may pause
+    bough_micro_options steps = {BOUGH_MICRO_ROSENBROCK, 1e-3, 2e-3, 0};
+    rod rosenbrock = {.arena = r.arena};
+    bough_status status = bough_rod_body_create(r.arena, r.model, 0, steps, input, &rosenbrock.body);
+    assert_true(bough_is_ok(&status));
+    rosenbrock.s = bough_rod_body_subsystem(rosenbrock.body);
+    sample_loads(r.model, bough_rod_body_loads(rosenbrock.body));
+    contract_pause(&rosenbrock.s, at, 0.01);
     for (int i = 0; i < N; i++) { // advance normalises the quaternions
         bough_quaternion p = turn_of(state, N, i + 1);
         const double normal[4] = {p.w, p.x, p.y, p.z};

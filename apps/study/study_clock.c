@@ -71,6 +71,15 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
     return status;
 }
 
+static bough_status advance_part(void *self, double pause, double t1, const bough_signal *input,
+                                 bool restart) {
+    const bough_subsystem_ops *ops = ((const clocked_member *)self)->real->ops;
+    if (ops->advance_part == NULL) return advance(self, t1, input, restart);
+    bough_status status;
+    CLOCKED(own, status = ops->advance_part(m->real->self, pause, t1, input, restart));
+    return status;
+}
+
 static size_t save_size(void *self) {
     const clocked_member *m = self;
     return m->real->ops->save_size(m->real->self);
@@ -101,6 +110,7 @@ static const bough_subsystem_ops clocked_ops = {
     .newton_setup = newton_setup,
     .newton_solve = newton_solve,
     .advance = advance,
+    .advance_part = advance_part,
     .save_size = save_size,
     .save = save,
     .restore = restore,
