@@ -137,6 +137,7 @@ static void release(void *object) {
 }
 
 static bool create_objects(bough_ida *ida) {
+    if (!bough_vector_room(ida->dae.n)) return false;
     if (SUNContext_Create(NULL, &ida->context) != 0) return false;
     ida->y = bough_vector_create(ida->dae.n, ida->context);
     ida->rate = bough_vector_create(ida->dae.n, ida->context);
@@ -174,7 +175,7 @@ bough_status bough_ida_create(bough_arena *arena, const bough_dae *dae, const do
     bool created = create_objects(ida) && configure(ida);
     bough_arena_on_destroy(arena, release, ida);
     if (created && !bough_arena_exhausted(arena)) return bough_ok();
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: IDA cannot be built. %s", dae->name, ida->message);
+    return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for IDA. %s", dae->name, ida->message);
 }
 
 // -- stepping --------------------------------------------------------------------------------

@@ -64,7 +64,7 @@ bough_status bough_micro_arkode_create(bough_arena *arena, const bough_ode *ode,
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory for ARKODE", ode->name);
     }
     if (!configure(m)) {
-        return bough_fail(BOUGH_FAILED, "%s: ARKODE cannot be set up: %s", ode->name,
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for ARKODE: %s", ode->name,
                           newton->text);
     }
     *micro = m;

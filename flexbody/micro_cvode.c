@@ -60,7 +60,7 @@ bough_status bough_micro_cvode_create(bough_arena *arena, const bough_ode *ode,
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory for CVODE", ode->name);
     }
     if (!configure(m)) {
-        return bough_fail(BOUGH_FAILED, "%s: CVODE cannot be set up: %s", ode->name,
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for CVODE: %s", ode->name,
                           m->newton.text);
     }
     *micro = m;

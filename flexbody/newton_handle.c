@@ -69,6 +69,7 @@ static SUNLinearSolver solver_create(bough_newton_handle *handle) {
 bool bough_newton_handle_create(bough_newton_handle *handle, const bough_ode *ode,
                                 const double *scale, double rtol) {
     handle->ode = *ode;
+    if (!bough_vector_room(ode->n)) return false;
     if (SUNContext_Create(NULL, &handle->context) != 0) return false;
     handle->y = bough_vector_create(ode->n, handle->context);
     handle->weight = bough_vector_create(ode->n, handle->context);

@@ -124,8 +124,9 @@ static bough_status build(bough_session *s, const char *path, const char *const 
     bough_scene *scene = NULL;
     bough_status status = bough_scene_read(s->arena, path, set, count, &errors, &scene);
     if (!bough_is_ok(&status)) {
-        if (errors.n > 0) keep_errors(s, &errors);
-        if (errors.n > 0) status.message[0] = '\0';
+        bool listed = errors.n > 0 && status.code == BOUGH_INVALID;
+        if (listed) keep_errors(s, &errors);
+        if (listed) status.message[0] = '\0';
         return status;
     }
     bough_simulation *simulation = NULL;

@@ -503,10 +503,10 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
     if (!take_arrays(&b)) return out_of_memory();
     bough_status status = bough_pool_create(arena, scene->simulation.threads, &b.s->pool);
     if (bough_is_ok(&status)) status = set_bodies(&b);
-    set_loads(&b);
+    if (bough_is_ok(&status)) set_loads(&b);
     if (bough_is_ok(&status)) status = build_tree(&b);
     if (bough_is_ok(&status)) status = build_rods(&b);
-    connect(&b);
+    if (bough_is_ok(&status)) connect(&b);
     if (bough_is_ok(&status)) bough_simulation_update(b.s);
     if (bough_is_ok(&status)) status = bough_load_link_build(arena, b.s);
     if (bough_is_ok(&status) && scene->aero.node != NULL) {

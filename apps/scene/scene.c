@@ -23,7 +23,7 @@ static bough_node *replace(bough_arena *arena, bough_node *root, const char *con
 }
 
 static bough_status finish(const char *path, bough_arena *arena, bough_errors *errors) {
-    if (bough_arena_exhausted(arena)) {
+    if (bough_arena_exhausted(arena) || errors->exhausted) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: memory is exhausted", path);
     }
     int n = errors->n + errors->dropped;
@@ -39,10 +39,12 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     bough_node *root = bough_text_read(arena, path, errors);
     if (s == NULL || root == NULL) return finish(path, arena, errors);
     root = replace(arena, root, sets, n_set, errors);
+    if (bough_arena_exhausted(arena)) return finish(path, arena, errors);
     bough_schema_reader reader = {
         .arena = arena, .errors = errors, .directory = directory_of(arena, path)};
     s->file = bough_arena_string(arena, path);
     bough_schema_read(&reader, &bough_scene_schema, root, s);
+    if (bough_arena_exhausted(arena)) return finish(path, arena, errors);
     if (s->node != NULL && errors->n == 0) bough_scene_repeat(&reader, s);
     if (s->node != NULL) bough_scene_link(&reader, s);
     bough_status status = finish(path, arena, errors);

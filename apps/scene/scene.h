@@ -484,6 +484,7 @@ typedef struct bough_scene {
     int n_body;
     bough_scene_body *body; // (n_body) in the file's order; a parent may come after its child
     int *order;             // (n_body) indices of bodies, parents before children
+    const bough_scene_body **by_name; // (n_body) by name, then by place
     int n_load;
     bough_scene_load *load; // (n_load)
     int n_spring;

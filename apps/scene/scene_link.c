@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { UNRESOLVED = -2 }; // a name that could not be resolved
@@ -20,11 +21,34 @@ static void at(bough_schema_reader *r, const char *format, ...) {
     va_end(arguments);
 }
 
+static const char *name_of(const bough_scene_body *b) { return b->name == NULL ? "" : b->name; }
+
+static int compare_names(const void *a, const void *b) {
+    const bough_scene_body *x = *(bough_scene_body *const *)a, *y = *(bough_scene_body *const *)b;
+    int names = strcmp(name_of(x), name_of(y));
+    return names != 0 ? names : (x > y) - (x < y);
+}
+
+static bool sort_names(bough_schema_reader *r, bough_scene *s) {
+    s->by_name = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *s->by_name);
+    if (s->by_name == NULL) return false;
+    for (int i = 0; i < s->n_body; i++)
+        s->by_name[i] = &s->body[i];
+    qsort(s->by_name, (size_t)s->n_body, sizeof *s->by_name, compare_names);
+    return true;
+}
+
+// The first of that name.
 static int find_body(const bough_scene *s, const char *name) {
-    for (int i = 0; i < s->n_body; i++) {
-        if (s->body[i].name != NULL && strcmp(s->body[i].name, name) == 0) return i;
+    int low = 0, high = s->n_body;
+    while (low < high) {
+        int middle = (low + high) / 2;
+        if (strcmp(name_of(s->by_name[middle]), name) < 0) low = middle + 1;
+        else high = middle;
     }
-    return UNRESOLVED;
+    bool found = low < s->n_body && s->by_name[low]->name != NULL &&
+                 strcmp(s->by_name[low]->name, name) == 0;
+    return found ? (int)(s->by_name[low] - s->body) : UNRESOLVED;
 }
 
 // Among the bodies, and the ground where a parent is named.
@@ -167,9 +191,11 @@ static bool order_bodies(bough_schema_reader *r, bough_scene *s) {
         for (int steps = 0; k >= 0 && !placed[k] && steps < s->n_body; steps++) {
             k = s->body[k].joint.parent;
         }
-        if (k < 0 || placed[k]) continue;
-        report_loop(r, s, i);
-        break;
+        bool loop = k >= 0 && !placed[k];
+        if (loop) report_loop(r, s, i);
+        if (loop) break;
+        for (k = i; k >= 0 && !placed[k]; k = s->body[k].joint.parent)
+            placed[k] = true; // looked at
     }
     return n == s->n_body;
 }
@@ -522,8 +548,10 @@ static void check_times(bough_schema_reader *r, bough_scene *s) {
 }
 
 void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
+    if (!sort_names(r, scene)) return;
     check_times(r, scene);
     link_bodies(r, scene);
+    if (bough_arena_exhausted(r->arena)) return;
     for (int i = 0; i < scene->n_load; i++) {
         at(r, "loads[%d]", i);
         if (scene->load[i].node != NULL) link_load(r, scene, &scene->load[i]);
@@ -549,6 +577,7 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
         if (scene->closure[i].node != NULL) link_closure(r, scene, &scene->closure[i]);
     }
     link_turbine(r, scene);
+    if (bough_arena_exhausted(r->arena)) return;
     link_aero(r, scene);
     link_control(r, scene);
     link_modes(r, scene);

@@ -20,6 +20,7 @@ static size_t count_bodies(bough_schema_reader *r, const bough_scene *s) {
     size_t bodies = 0, segments = 0;
     for (int i = 0; i < s->n_body; i++) {
         bodies += (size_t)s->body[i].repeat;
+        if (s->body[i].rod.node == NULL) continue;
         segments += (size_t)s->body[i].repeat * (size_t)s->body[i].rod.n_segment;
     }
     if (bodies > MOST_BODIES || segments > MOST_SEGMENTS) {

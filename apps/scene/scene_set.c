@@ -38,7 +38,8 @@ static bough_node *parse_value(replacement *s, const char *text) {
     for (int i = before; i < s->errors->n; i++) {
         bough_error *e = &s->errors->item[i];
         e->line = e->column = 0;
-        e->path = bough_arena_string(s->arena, s->path);
+        const char *path = bough_arena_string(s->arena, s->path);
+        e->path = path == NULL ? "" : path;
     }
     if (value != NULL) forget_position(value);
     return value;
@@ -114,7 +115,7 @@ static bough_node *put_key(const replacement *s, const bough_node *node, const c
         i++;
     bough_node *value = put(s, i < copy->n ? copy->value[i] : NULL, rest + length, depth + 1);
     bough_node *key = new_node(s, BOUGH_SCALAR, bough_arena_string(s->arena, name));
-    if (value == NULL || key == NULL) return NULL;
+    if (value == NULL || key == NULL || key->text == NULL) return NULL;
     copy->key[i] = key;
     copy->value[i] = value;
     if (i == copy->n) copy->n++;

@@ -605,7 +605,8 @@ static void read_mapping(bough_schema_reader *r, const bough_schema *schema, con
             unknown_key(r, schema, node->key[i], node->key[i]->text);
         }
     }
-    if (schema->check != NULL && node != NULL && errors_so_far(r) == before) {
+    bool good = errors_so_far(r) == before && !bough_arena_exhausted(r->arena);
+    if (schema->check != NULL && node != NULL && good) {
         schema->check(r, item);
     }
 }

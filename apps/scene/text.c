@@ -63,6 +63,11 @@ static bool grow_errors(bough_errors *errors) {
     return true;
 }
 
+static const char *keep(const bough_errors *errors, const char *text, const char *instead) {
+    const char *copy = bough_arena_string(errors->arena, text);
+    return copy == NULL ? instead : copy;
+}
+
 void bough_errors_add(bough_errors *errors, const bough_node *where, const char *path,
                       const char *format, ...) {
     if (errors->n >= MAX_ERRORS || !grow_errors(errors)) {
@@ -75,8 +80,8 @@ void bough_errors_add(bough_errors *errors, const bough_node *where, const char 
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     errors->item[errors->n++] = (bough_error){
-        bough_arena_string(errors->arena, where->file), where->line, where->column,
-        bough_arena_string(errors->arena, path), bough_arena_string(errors->arena, text)};
+        keep(errors, where->file, ""), where->line, where->column, keep(errors, path, ""),
+        keep(errors, text, "memory is exhausted")};
 }
 
 // Rank of an error's file: those without a position, the first file, the others.
@@ -167,6 +172,7 @@ static bool refuse(reader *r, yaml_mark_t at, const char *text) {
 
 static bool exhausted(reader *r) {
     bough_node where = {.file = r->file};
+    r->errors->exhausted = true;
     bough_errors_add(r->errors, &where, "", "memory is exhausted");
     return false;
 }
@@ -412,6 +418,7 @@ bough_node *bough_text_parse(bough_arena *arena, const char *file, const char *t
     bough_node nowhere = {.file = file};
     if (r == NULL || !yaml_parser_initialize(&r->parser)) {
         free(r);
+        errors->exhausted = true;
         bough_errors_add(errors, &nowhere, "", "memory is exhausted");
         return NULL;
     }
@@ -441,7 +448,9 @@ static char *read_bytes(const char *path, size_t *size, bough_errors *errors) {
     errno = stream == NULL ? errno : 0;
     *size = bytes == NULL ? 0 : fread(bytes, 1, MAX_BYTES + 1, stream);
     if (bytes == NULL || ferror(stream)) {
-        const char *why = errno == 0 ? "memory is exhausted" : strerror(errno);
+        bool full = stream != NULL && bytes == NULL;
+        const char *why = full ? "memory is exhausted" : strerror(errno);
+        errors->exhausted = errors->exhausted || full;
         bough_errors_add(errors, &where, "", "cannot be read: %s", why);
     } else if (*size > MAX_BYTES) {
         bough_errors_add(errors, &where, "", "the file is larger than 16 MB");

@@ -280,7 +280,7 @@ static bool find_scene(bough_arena *arena, bough_study *s, bough_errors *errors)
 }
 
 static bough_status finish(const char *path, bough_arena *arena, bough_errors *errors) {
-    if (bough_arena_exhausted(arena)) {
+    if (bough_arena_exhausted(arena) || errors->exhausted) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: memory is exhausted", path);
     }
     int n = errors->n + errors->dropped;
