@@ -21,10 +21,18 @@ opens() {
 opens "$folder/run"
 grep -q "\[deg\]" "$folder/dom" # its channels can be picked
 grep -q '<section id="motion">' "$folder/dom"
+grep -q '<th class="words">interface</th>' "$folder/dom"
 
 mkdir "$folder/study"
 echo 'a table' >"$folder/study/table.txt"
 echo '<svg xmlns="http://www.w3.org/2000/svg"><rect/></svg>' >"$folder/study/plot.svg"
 opens "$folder/study"
 grep -q '<img src="data:image/svg+xml,%3Csvg' "$folder/dom"
+
+mkdir "$folder/cases"
+printf 'case,quantity,result,verdict\n"a, b",tip,1.5,pass\nc,tip,nan,FAIL\n' >"$folder/cases/verify.csv"
+opens "$folder/cases"
+grep -q '<td class="words">a, b</td>' "$folder/dom"
+grep -q '<td class="words good">pass</td>' "$folder/dom"
+grep -q '<td class="words bad">FAIL</td>' "$folder/dom"
 echo "all pages opened"

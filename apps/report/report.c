@@ -62,11 +62,23 @@ static bough_status add_part(const char *folder, const char *field,
     return status;
 }
 
+// The rows of a study that leaves no table.txt.
+static bough_status add_rows(const char *folder, FILE *out, bool *any) {
+    static const char *const names[] = {"verify.csv", "rivals.csv", "two-mass.csv",
+                                        "added-mass.csv", "cells.csv"};
+    bough_status status = bough_ok();
+    for (size_t i = 0; i < sizeof names / sizeof *names && !*any && bough_is_ok(&status); i++) {
+        status = add_file(folder, names[i], "rows", out, any);
+    }
+    return status;
+}
+
 static bough_status add_data(const char *folder, FILE *out) {
     bool any = false;
     fputs("const data = {};\n", out);
     bough_status status = add_file(folder, "summary.json", "summary", out, &any);
     if (bough_is_ok(&status)) status = add_file(folder, "table.txt", "table", out, &any);
+    if (bough_is_ok(&status)) status = add_rows(folder, out, &any);
     if (bough_is_ok(&status)) status = add_file(folder, "plot.svg", "plot", out, &any);
     if (bough_is_ok(&status)) {
         status = add_part(folder, "channels", bough_report_channels, out, &any);
@@ -74,7 +86,7 @@ static bough_status add_data(const char *folder, FILE *out) {
     if (bough_is_ok(&status)) status = add_part(folder, "shape", bough_report_frames, out, &any);
     if (!bough_is_ok(&status) || any) return status;
     return bough_fail(BOUGH_INVALID, "'%.200s' holds no results: a run leaves summary.json and "
-                      "channels.out, a study table.txt", folder);
+                      "channels.out, a study a table", folder);
 }
 
 bough_status bough_report_write(const char *folder) {
