@@ -34,13 +34,12 @@ static bool changes_sign(point a, point b) {
     return (a.balance.residual > 0) != (b.balance.residual > 0);
 }
 
-// A root between low and high, where f changes sign; begins in the middle, or where the chord meets
-// zero.
-static point root(quest *q, point low, point high, bool secant) {
+// A root between low and high, where f changes sign.
+static point root(quest *q, point low, point high) {
     enum { MOST = 100 };
     point a = high, b = low;
     double fa = a.balance.residual, fb = b.balance.residual;
-    double t = secant ? lane_clamp(fa / (fa - fb), 0.01, 0.99) : 0.5;
+    double t = lane_clamp(fa / (fa - fb), 0.01, 0.99);
     for (int i = 0; i < MOST; i++) {
         point x = point_at(q, a.phi + t * (b.phi - a.phi)), c = a;
         if (changes_sign(x, a)) {
@@ -59,34 +58,32 @@ static point root(quest *q, point low, point high, bool secant) {
     return a;
 }
 
-// The root next to the attached angle, which the answer takes whatever other roots there are.
-static bool search_attached(quest *q, double phi0, point *found) {
-    double phi = attached_angle(q->problem, q->polar->slope, q->polar->zero_lift, phi0);
-    if (!(phi > 0)) return false;
-    point a = point_at(q, phi);
-    const double share[2] = {first_share, second_share};
-    for (int i = 0; i < 2; i++) {
-        point b = point_at(q, further(a.phi, a.balance.residual, share[i], phi0));
-        if (changes_sign(a, b)) {
-            *found = root(q, b, a, true);
-            return found->balance.axial > 0;
-        }
+// The windmill state, φ in (0, π/2]: the root next to the attached angle, whatever other roots there
+// are, without one that next to the angle without induction; else any.
+static bool search_near(quest *q, double phi0, point *found) {
+    const bough_polar *polar = q->polar;
+    double guess = attached_angle(q->problem, polar->slope, polar->zero_lift, phi0);
+    point a = point_at(q, guess > 0 ? guess : phi0);
+    point b = point_at(q, nearby(q->problem, guess, polar->slope, phi0, a.phi, a.flow, a.balance));
+    if (!changes_sign(a, b)) {
         a = b;
+        b = point_at(q, farther(guess, phi0, a.phi, a.balance.residual));
+        if (!changes_sign(a, b)) return false;
     }
-    return false;
+    *found = root(q, b, a);
+    return found->balance.axial > 0;
 }
 
-// The windmill state, φ in (0, π/2], split at the angle without induction, near which it ends.
 static bool search_windmill(quest *q, point *found) {
     double middle = free_angle(q->problem);
-    if (search_attached(q, middle, found)) return true;
+    if (search_near(q, middle, found)) return true;
     point low = point_at(q, clearance), high = point_at(q, middle);
     if (!changes_sign(low, high)) {
         low = high;
         high = point_at(q, BOUGH_PI / 2);
         if (!changes_sign(low, high)) return false;
     }
-    *found = root(q, low, high, false);
+    *found = root(q, low, high);
     return found->balance.axial > 0;
 }
 
@@ -95,7 +92,7 @@ static bool search(quest *q, double low, double high, bool brake, point *found) 
     q->brake = brake;
     point at_low = point_at(q, low), at_high = point_at(q, high);
     if (!changes_sign(at_low, at_high)) return false;
-    *found = root(q, at_low, at_high, false);
+    *found = root(q, at_low, at_high);
     return brake ? found->balance.axial < 0 : found->balance.axial > 0;
 }
 
@@ -113,7 +110,7 @@ bough_induction bough_induction_solve(const bough_induction_options *options,
     bool found = search_windmill(&q, &p) || search(&q, -BOUGH_PI / 4, -clearance, true, &p) ||
                  search(&q, BOUGH_PI / 2, BOUGH_PI - clearance, false, &p);
     bough_induction i = {0};
-    if (found) i = induction_of(options, p.flow, p.balance);
+    if (found) i = induction_of(weights_of(options), p.flow, p.balance);
     i.evaluations = q.evaluations;
     return i;
 }

@@ -148,14 +148,26 @@ static inline double attached_angle(problem p, double lift_slope, double zero_li
     return windmill * square > 0 && off < 0.2 && phi > 1e-3 && phi < phi0 ? phi : 0;
 }
 
-// Further on from a, towards smaller angles where the residual is positive, but not past φ₀.
-static inline double further(double a, double residual, double share, double phi0) {
-    double next = residual > 0 ? (1 - share) * a : (1 + share) * a;
-    return next < phi0 ? next : phi0;
+// Where a bracket's other end is sought, a little beyond the root's likely place: next to the
+// attached angle where Newton's method leads with the slope of the same model, from φ₀ where one
+// step of the plain iteration for the inductions does.
+static inline double nearby(problem p, double attached, double lift_slope, double phi0, double phi,
+                            flow w, balance b) {
+    const double overshoot = 1.25;
+    double rise = 2 * phi - phi0 + p.density * p.cone * lift_slope / w.loss;
+    double newton = lane_clamp(phi - overshoot * b.residual / rise, 0.8 * phi, 1.2 * phi);
+    double induced = lane_angle(p.slope * w.s * b.swirl, w.c * b.axial);
+    double iterated = lane_clamp(phi + overshoot * (induced - phi), clearance, BOUGH_PI / 2);
+    double bound = newton < phi0 ? newton : phi0;
+    return attached > 0 ? bound : iterated;
 }
 
-// Of the way from the bracket's first guess to its other end, and how much further the next is.
-static const double first_share = 0.04, second_share = 0.2;
+// Where it is sought if not there.
+static inline double farther(double attached, double phi0, double phi, double residual) {
+    double up = 1.2 * phi < phi0 ? 1.2 * phi : phi0;
+    double low = attached > 0 ? 0.8 * phi : clearance, high = attached > 0 ? up : BOUGH_PI / 2;
+    return residual > 0 ? low : high;
+}
 
 // One step of Chandrupatla's method: inverse quadratic interpolation through (a, fa), (b, fb),
 // (c, fc) where it is known to converge, else bisection; the fraction of the way from a to b.
@@ -168,10 +180,10 @@ static inline double root_fraction(double a, double fa, double b, double fb, dou
     return fits > 0 ? t : 0.5;
 }
 
-static inline bough_induction induction_of(const bough_induction_options *o, flow w, balance b) {
-    double swirl = b.swirl != 0 ? w.s * w.c / b.swirl - 1 : -1;
+static inline bough_induction induction_of(weights o, flow w, balance b) {
+    double safe = b.swirl == 0 ? 1 : b.swirl, swirl = b.swirl == 0 ? -1 : w.s * w.c / safe - 1;
     return (bough_induction){.axial = lane_clamp(1 - w.s * w.s / b.axial, -1, 1.5),
-                             .tangential = o->tangential ? lane_clamp(swirl, -1, 1) : 0,
+                             .tangential = o.swirl * lane_clamp(swirl, -1, 1),
                              .loss = w.loss};
 }
 

@@ -1,20 +1,19 @@
-// The search of induction.c for many elements side by side, in vector lanes: that of the windmill
-// state, next to attached flow or in all its range. The rest goes one by one.
+// The search of induction.c for many elements side by side: that of a windmill's root next to a
+// guess in vector lanes, all else one by one.
 #include "aero/induction_balance.h"
 
 enum { MOST_LANES = 32, MOST_STEPS = 100 };
 
 typedef double lane[MOST_LANES];
 
-static const double NOWHERE = 0, ATTACHED = 1, BELOW = 2, ABOVE = 3; // φ₀
-
 typedef struct lanes {
     const bough_induction_options *options;
     const bough_polar *const *polar;
     int n;
+    int n_live, live[MOST_LANES / BOUGH_LANES]; // groups of lanes, by their first, not yet done with
     lane sign_x, sign_y, slope, density, cone, tip_factor, hub_factor, twist; // of the problem
-    lane free_angle;
-    lane search; // which search of the windmill state is under way, or NOWHERE
+    lane lift_slope, free_angle;
+    lane attached, here; // 1: the guess is the attached angle; the root is taken to be in reach
     // the point last evaluated
     lane phi, s, c, loss, alpha, lift, drag, residual, axial, swirl;
     // the bracket, and where to go in it: none when the root is found
@@ -26,52 +25,70 @@ static inline problem load_problem(const lanes *x, int i) {
                      x->cone[i],   x->tip_factor[i], x->hub_factor[i], x->twist[i]};
 }
 
+static inline flow load_flow(const lanes *x, int i) {
+    return (flow){x->s[i], x->c[i], x->loss[i], x->alpha[i]};
+}
+
+static inline balance load_balance(const lanes *x, int i) {
+    return (balance){x->residual[i], x->axial[i], x->swirl[i]};
+}
+
 static bough_element element_of(const bough_elements *e, int i) {
     return (bough_element){e->polar[i], e->solidity[i], e->tip_factor[i], e->hub_factor[i],
                            e->cone[i],  e->twist[i],    e->inflow_x[i],   e->inflow_y[i]};
 }
 
-static inline void balance_all(bough_high_thrust high_thrust, weights o, lanes *restrict x) {
+// The stages of an evaluation, each for a group of lanes.
+static inline void enter_flow(int first, lanes *restrict x) {
 #pragma omp simd
-    for (int i = 0; i < x->n; i++) {
-        flow w = {x->s[i], x->c[i], x->loss[i], x->alpha[i]};
-        balance b = balance_of(high_thrust, false, o, load_problem(x, i), w, x->lift[i],
-                               x->drag[i]);
-        x->residual[i] = b.residual;
-        x->axial[i] = b.axial;
-        x->swirl[i] = b.swirl;
-    }
-}
-
-// At x->phi.
-static void evaluate(lanes *restrict x) {
-#pragma omp simd
-    for (int i = 0; i < x->n; i++) {
+    for (int i = first; i < first + BOUGH_LANES; i++) {
         flow w = flow_at(load_problem(x, i), x->phi[i]);
         x->s[i] = w.s;
         x->c[i] = w.c;
         x->loss[i] = w.loss;
         x->alpha[i] = w.alpha;
     }
-    for (int i = 0; i < x->n; i++) {
+}
+
+static inline void ask_polars(int first, lanes *restrict x) {
+    for (int i = first; i < first + BOUGH_LANES; i++) {
         bough_coefficients k = bough_polar_at(x->polar[i], x->alpha[i]);
         x->lift[i] = k.lift;
         x->drag[i] = k.drag;
     }
+}
+
+static inline void weigh(bough_high_thrust high_thrust, weights o, int first, lanes *restrict x) {
+#pragma omp simd
+    for (int i = first; i < first + BOUGH_LANES; i++) {
+        balance b = balance_of(high_thrust, false, o, load_problem(x, i), load_flow(x, i),
+                               x->lift[i], x->drag[i]);
+        x->residual[i] = b.residual;
+        x->axial[i] = b.axial;
+        x->swirl[i] = b.swirl;
+    }
+}
+
+// At x->phi. Stage by stage, so that the groups' chains of operations run beside each other.
+static void evaluate(lanes *restrict x) {
     weights o = weights_of(x->options);
+    for (int g = 0; g < x->n_live; g++) enter_flow(x->live[g], x);
+    for (int g = 0; g < x->n_live; g++) ask_polars(x->live[g], x);
     if (x->options->high_thrust == BOUGH_HIGH_THRUST_BUHL) {
-        balance_all(BOUGH_HIGH_THRUST_BUHL, o, x);
+        for (int g = 0; g < x->n_live; g++) weigh(BOUGH_HIGH_THRUST_BUHL, o, x->live[g], x);
     } else {
-        balance_all(BOUGH_HIGH_THRUST_SMOOTH, o, x);
+        for (int g = 0; g < x->n_live; g++) weigh(BOUGH_HIGH_THRUST_SMOOTH, o, x->live[g], x);
     }
 }
 
 // Poses the problems of the elements from `first` on, and where to begin with them.
 static void take(const bough_elements *e, int first, lanes *restrict x) {
     weights o = weights_of(x->options);
-    lane lift_slope, zero_lift;
+    lane zero_lift;
+    x->n_live = x->n / BOUGH_LANES;
+    for (int g = 0; g < x->n_live; g++) x->live[g] = BOUGH_LANES * g;
     for (int i = 0; i < x->n; i++) {
-        lift_slope[i] = x->polar[i]->slope;
+        x->lift_slope[i] = x->polar[i]->slope;
         zero_lift[i] = x->polar[i]->zero_lift;
     }
 #pragma omp simd
@@ -80,8 +97,7 @@ static void take(const bough_elements *e, int first, lanes *restrict x) {
         double vx = e->inflow_x[k], vy = e->inflow_y[k];
         problem p = problem_of(o, e->solidity[k], e->cone[k], e->tip_factor[k], e->hub_factor[k],
                                e->twist[k], vx, vy);
-        double limit = free_angle(p), phi = attached_angle(p, lift_slope[i], zero_lift[i], limit);
-        double search = phi > 0 ? ATTACHED : BELOW;
+        double limit = free_angle(p), phi = attached_angle(p, x->lift_slope[i], zero_lift[i], limit);
         x->sign_x[i] = p.sign_x;
         x->sign_y[i] = p.sign_y;
         x->slope[i] = p.slope;
@@ -91,23 +107,32 @@ static void take(const bough_elements *e, int first, lanes *restrict x) {
         x->hub_factor[i] = p.hub_factor;
         x->twist[i] = p.twist;
         x->free_angle[i] = limit;
-        x->search[i] = is_balanced(p, vx, vy) ? search : NOWHERE;
+        x->here[i] = is_balanced(p, vx, vy) ? 1 : 0;
+        x->attached[i] = phi > 0 ? 1 : 0;
         x->phi[i] = phi > 0 ? phi : limit;
-        x->step[i] = 0;
     }
 }
 
 // From the point just evaluated, which becomes a, to where the bracket's other end may be.
-static void go_on(double share, lanes *restrict x) {
+static void go_near(lanes *restrict x) {
 #pragma omp simd
     for (int i = 0; i < x->n; i++) {
-        double near = further(x->phi[i], x->residual[i], share, x->free_angle[i]);
-        double edge = x->search[i] == BELOW ? clearance : BOUGH_PI / 2;
-        double next = x->search[i] == ATTACHED ? near : edge;
-        double free = x->step[i] == 0 ? 1 : 0; // no bracket there yet
-        x->a[i] = free > 0 ? x->phi[i] : x->a[i];
-        x->fa[i] = free > 0 ? x->residual[i] : x->fa[i];
-        x->phi[i] = free > 0 ? next : x->phi[i];
+        x->a[i] = x->phi[i];
+        x->fa[i] = x->residual[i];
+        x->phi[i] = nearby(load_problem(x, i), x->attached[i], x->lift_slope[i], x->free_angle[i],
+                           x->phi[i], load_flow(x, i), load_balance(x, i));
+    }
+}
+
+// Likewise where the bracket is still missing.
+static void go_far(lanes *restrict x) {
+#pragma omp simd
+    for (int i = 0; i < x->n; i++) {
+        double next = farther(x->attached[i], x->free_angle[i], x->phi[i], x->residual[i]);
+        double missing = x->step[i] == 0 ? 1 : 0;
+        x->a[i] = missing > 0 ? x->phi[i] : x->a[i];
+        x->fa[i] = missing > 0 ? x->residual[i] : x->fa[i];
+        x->phi[i] = missing > 0 ? next : x->phi[i];
     }
 }
 
@@ -123,44 +148,32 @@ static double bracket(lanes *restrict x) {
 #pragma omp simd reduction(+ : missing)
     for (int i = 0; i < x->n; i++) {
         double fa = x->fa[i], fb = x->residual[i], chord = lane_clamp(fa / (fa - fb), 0.01, 0.99);
-        double start = x->search[i] == ATTACHED ? chord : 0.5, found = differ(fa, fb);
+        double found = x->here[i] * differ(fa, fb);
         x->b[i] = x->phi[i];
         x->fb[i] = fb;
-        x->step[i] = x->search[i] != NOWHERE ? found * start : 0;
-        missing += x->search[i] != NOWHERE ? 1 - found : 0;
+        x->step[i] = found * chord;
+        missing += x->here[i] - found;
     }
     return missing;
 }
 
-// Where a search has failed: the attached one goes on, that below φ₀ is followed by that above.
-static void turn_round(lanes *restrict x) {
-#pragma omp simd
-    for (int i = 0; i < x->n; i++) {
-        bool turn = x->step[i] == 0 && x->search[i] == BELOW;
-        x->phi[i] = turn ? x->a[i] : x->phi[i];
-        x->residual[i] = turn ? x->fa[i] : x->residual[i];
-        x->search[i] = turn ? ABOVE : x->search[i];
-    }
-}
-
 static void surround(lanes *restrict x) {
     evaluate(x);
-    go_on(first_share, x);
+    go_near(x);
     evaluate(x);
     if (bracket(x) == 0) return;
-    turn_round(x);
-    go_on(second_share, x);
+    go_far(x);
     evaluate(x);
     if (bracket(x) == 0) return;
 #pragma omp simd
-    for (int i = 0; i < x->n; i++) x->search[i] = x->step[i] > 0 ? x->search[i] : NOWHERE;
+    for (int i = 0; i < x->n; i++) x->here[i] = x->step[i] > 0 ? 1 : 0;
 }
 
-// Shrinks the brackets to the points just evaluated; how many roots are still to be found.
-static double shrink(lanes *restrict x) {
+// Shrinks a group's brackets to the points just evaluated; how many roots are still to be found.
+static inline double shrink(int first, lanes *restrict x) {
     double open = 0;
 #pragma omp simd reduction(+ : open)
-    for (int i = 0; i < x->n; i++) {
+    for (int i = first; i < first + BOUGH_LANES; i++) {
         double was_open = x->step[i] > 0 ? 1 : 0;
         double a = x->phi[i], fa = x->residual[i], other = x->a[i], fother = x->fa[i];
         double far = x->b[i], ffar = x->fb[i], crossed = differ(fa, fother);
@@ -182,37 +195,47 @@ static double shrink(lanes *restrict x) {
     return open;
 }
 
-static void find_roots(lanes *restrict x) {
-    double open = 1;
-    for (int k = 0; k < MOST_STEPS && open > 0; k++) {
+static inline void step(int first, lanes *restrict x) {
 #pragma omp simd
-        for (int i = 0; i < x->n; i++) {
-            double next = x->a[i] + x->step[i] * (x->b[i] - x->a[i]);
-            x->phi[i] = x->step[i] > 0 ? next : x->phi[i];
-        }
+    for (int i = first; i < first + BOUGH_LANES; i++) {
+        double next = x->a[i] + x->step[i] * (x->b[i] - x->a[i]);
+        x->phi[i] = x->step[i] > 0 ? next : x->phi[i];
+    }
+}
+
+static void find_roots(lanes *restrict x) {
+    for (int k = 0; k < MOST_STEPS && x->n_live > 0; k++) {
+        for (int g = 0; g < x->n_live; g++) step(x->live[g], x);
         evaluate(x);
-        open = shrink(x);
+        int left = 0;
+        for (int g = 0; g < x->n_live; g++)
+            if (shrink(x->live[g], x) > 0) x->live[left++] = x->live[g];
+        x->n_live = left;
     }
 }
 
 // Elements from `first` on, at most MOST_LANES of them.
-static void solve_some(const bough_elements *e, int first, lanes *restrict x, double *axial,
-                       double *tangential, double *loss) {
-    const bough_induction_options options = *x->options;
+static void solve_some(const bough_elements *e, int first, lanes *restrict x,
+                       double *restrict axial, double *restrict tangential,
+                       double *restrict loss) {
+    weights o = weights_of(x->options);
     take(e, first, x);
     surround(x);
     find_roots(x);
+#pragma omp simd
     for (int i = 0; i < x->n; i++) {
-        flow w = {x->s[i], x->c[i], x->loss[i], x->alpha[i]};
-        balance b = {x->residual[i], x->axial[i], x->swirl[i]};
-        bough_induction found = induction_of(&options, w, b);
-        if (!(x->search[i] != NOWHERE && b.axial > 0)) {
-            bough_element element = element_of(e, first + i);
-            found = bough_induction_solve(&options, &element);
-        }
-        axial[first + i] = found.axial;
-        tangential[first + i] = found.tangential;
-        loss[first + i] = found.loss;
+        bough_induction found = induction_of(o, load_flow(x, i), load_balance(x, i));
+        axial[i] = found.axial;
+        tangential[i] = found.tangential;
+        loss[i] = found.loss;
+    }
+    for (int i = 0; i < x->n; i++) {
+        if (x->here[i] > 0 && x->axial[i] > 0) continue;
+        bough_element element = element_of(e, first + i);
+        bough_induction found = bough_induction_solve(x->options, &element);
+        axial[i] = found.axial;
+        tangential[i] = found.tangential;
+        loss[i] = found.loss;
     }
 }
 
@@ -225,6 +248,6 @@ void bough_induction_solve_all(const bough_induction_options *options,
         x.options = options;
         x.polar = elements->polar + first;
         x.n = left < MOST_LANES ? left : MOST_LANES;
-        solve_some(elements, first, &x, axial, tangential, loss);
+        solve_some(elements, first, &x, axial + first, tangential + first, loss + first);
     }
 }

@@ -1,6 +1,6 @@
 // Elementary functions without branches, so that loops over sections run in vector lanes, with
-// errors of a few units in the last place. Polynomials of sine, cosine, arc sine and arc tangent are
-// those of fdlibm (Sun Microsystems, 1993).
+// errors of a few units in the last place. Polynomials of sine, cosine and arc tangent are those of
+// fdlibm (Sun Microsystems, 1993).
 #ifndef BOUGH_AERO_LANES_H
 #define BOUGH_AERO_LANES_H
 
@@ -72,18 +72,21 @@ static inline double lane_exp(double x) {
     return p * scale;
 }
 
-// For |t| ≤ ½.
+// For |t| ≤ ½: asin(t)/t by its best polynomial of degree 12 in t².
 static inline double lane_arc_sine(double t) {
-    double z = t * t, p = 3.47933107596021167570e-05, q = 7.70381505559019352791e-02;
-    p = 7.91534994289814532176e-04 + z * p;
-    p = -4.00555345006794114027e-02 + z * p;
-    p = 2.01212532134862925881e-01 + z * p;
-    p = -3.25565818622400915405e-01 + z * p;
-    p = z * (1.66666666666666657415e-01 + z * p);
-    q = -6.88283971605453293030e-01 + z * q;
-    q = 2.02094576023350569471e+00 + z * q;
-    q = 1 + z * (-2.40339491173441421878e+00 + z * q);
-    return t + t * (p / q);
+    double z = t * t, p = 0.028169218060881412899;
+    p = -0.010749050339697807562 + z * p;
+    p = 0.016035514349148823079 + z * p;
+    p = 0.0078029494773533171436 + z * p;
+    p = 0.0118754943826369232 + z * p;
+    p = 0.013929652902326633248 + z * p;
+    p = 0.017355259955786321748 + z * p;
+    p = 0.022372047631744510379 + z * p;
+    p = 0.030381947367098481126 + z * p;
+    p = 0.044642857103423643363 + z * p;
+    p = 0.075000000000207643609 + z * p;
+    p = 0.16666666666666648628 + z * p;
+    return t + t * z * p;
 }
 
 // atan2(y, x); 0 for both 0.
