@@ -118,6 +118,9 @@ typedef struct bough_subsystem_ops {
     // the bits of an advance in one go. NULL: cannot.
     bough_status (*advance_part)(void *self, double pause, double t1, const bough_signal *input,
                                  bool restart);
+
+    // Factors with another γ where the last newton_setup linearised. NULL: ask newton_setup.
+    bool (*newton_refactor)(void *self, double gamma);
 } bough_subsystem_ops;
 
 typedef struct bough_subsystem {

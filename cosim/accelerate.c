@@ -3,6 +3,8 @@
 // factorisation of V is made anew by twice Gram–Schmidt in each iteration; a column that hardly
 // differs from the span of newer ones carries noise only and is dropped for good. Columns live
 // within one problem: a step of a nonlinear system is no guide to the next.
+//
+// Newton's method does the same to u + (I − J)⁻¹ r, so that the differences correct the Jacobian.
 #include "cosim/accelerate.h"
 
 #include <math.h>
@@ -35,12 +37,13 @@ const char *const *bough_acceleration_names(void) {
                                         [BOUGH_ACCELERATE_RELAXATION] = "relaxation",
                                         [BOUGH_ACCELERATE_AITKEN] = "aitken",
                                         [BOUGH_ACCELERATE_IQN_ILS] = "iqn-ils",
-                                        [BOUGH_ACCELERATE_IQN_ILS + 1] = NULL};
+                                        [BOUGH_ACCELERATE_NEWTON] = "interface-newton",
+                                        [BOUGH_ACCELERATE_NEWTON + 1] = NULL};
     return names;
 }
 
 static bough_status check(const bough_accelerator_def *def) {
-    if (def->kind < BOUGH_ACCELERATE_NONE || def->kind > BOUGH_ACCELERATE_IQN_ILS) {
+    if (def->kind < BOUGH_ACCELERATE_NONE || def->kind > BOUGH_ACCELERATE_NEWTON) {
         return bough_fail(BOUGH_INVALID, "unknown accelerator");
     }
     if (!(def->relaxation > 0) || !(def->relaxation <= 1)) {
@@ -62,7 +65,7 @@ bough_status bough_accelerator_create(bough_arena *arena, const bough_accelerato
     a->image = bough_arena_doubles(arena, n);
     a->residual_before = bough_arena_doubles(arena, n);
     a->image_before = bough_arena_doubles(arena, n);
-    if (def->kind == BOUGH_ACCELERATE_IQN_ILS) {
+    if (def->kind == BOUGH_ACCELERATE_IQN_ILS || def->kind == BOUGH_ACCELERATE_NEWTON) {
         a->capacity = def->n < MOST_COLUMNS ? def->n : MOST_COLUMNS;
     }
     for (int k = 0; k < a->capacity; k++) {
@@ -109,6 +112,10 @@ double bough_accelerator_take(bough_accelerator *a, const double *u, const doubl
     a->norm[0] = sqrt(dot(n, a->residual, a->residual));
     a->smallest = fmin(a->smallest, a->norm[0]);
     a->evaluations++;
+    if (a->def.kind == BOUGH_ACCELERATE_NEWTON) {
+        a->def.solve(a->def.self, a->residual);
+        for (int i = 0; i < n; i++) a->image[i] = u[i] + a->residual[i];
+    }
     return a->norm[0];
 }
 
@@ -199,12 +206,13 @@ static void solve_least_squares(bough_accelerator *a, double *u) {
 
 void bough_accelerator_next(bough_accelerator *a, double *u) {
     double factor = a->def.relaxation;
-    if (a->def.kind == BOUGH_ACCELERATE_NONE) factor = 1;
+    bool whole = a->def.kind == BOUGH_ACCELERATE_NONE || a->def.kind == BOUGH_ACCELERATE_NEWTON;
+    if (whole) factor = 1;
     if (a->def.kind == BOUGH_ACCELERATE_AITKEN) {
         update_factor(a);
         factor = a->factor;
     }
-    if (a->def.kind == BOUGH_ACCELERATE_IQN_ILS && a->evaluations > 1) {
+    if (a->capacity > 0 && a->evaluations > 1) {
         insert_column(a);
         solve_least_squares(a, u);
         return;

@@ -14,17 +14,21 @@ typedef enum bough_acceleration {
     BOUGH_ACCELERATE_RELAXATION, // u + ω r, ω constant
     BOUGH_ACCELERATE_AITKEN,     // u + ω r, ω from the last two residuals
     BOUGH_ACCELERATE_IQN_ILS,    // quasi-Newton: least squares over all differences so far
+    BOUGH_ACCELERATE_NEWTON,     // u + (I − ∂H/∂u)⁻¹ r, corrected likewise
 } bough_acceleration;
 
 typedef struct bough_accelerator_def {
     bough_acceleration kind;
     int n;             // components
     double relaxation; // ω, of Aitken and IQN-ILS in the first iteration
+    // of Newton: x (n) ← (I − ∂H/∂u)⁻¹ x, as nearly as is known
+    void (*solve)(void *self, double *x);
+    void *self;
 } bough_accelerator_def;
 
 typedef struct bough_accelerator bough_accelerator;
 
-// "none", "relaxation", "aitken", "iqn-ils" in the order of the kinds, NULL-terminated.
+// "none", "relaxation", "aitken", "iqn-ils", "interface-newton" in the order of the kinds, NULL-terminated.
 const char *const *bough_acceleration_names(void);
 
 // Takes all memory from the arena; iterating takes none.

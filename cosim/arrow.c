@@ -171,6 +171,11 @@ void bough_arrow_solve_driven(bough_arrow *arrow, const double *outside, double 
     each(arrow, ALL, finish);
 }
 
+void bough_arrow_close(bough_arrow *arrow, double *outside) {
+    memset(arrow->interface->coordinate, 0, (size_t)arrow->interface->n * sizeof(double));
+    bough_condensed_solve(arrow->interface, outside);
+}
+
 // The border's multipliers make the held entries of its solutions vanish.
 static bool factor_border(bough_arrow *arrow) {
     int n = arrow->assembly->n_state, held = arrow->n_held;

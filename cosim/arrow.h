@@ -62,4 +62,8 @@ void bough_arrow_solve(bough_arrow *arrow, double *x);
 // The same with `outside` (n_input) added to the inputs' changes, δu = P δo + outside; NULL: 0.
 void bough_arrow_solve_driven(bough_arrow *arrow, const double *outside, double *x);
 
+// δu for x = 0 and `outside` (n_input) at the leaders' inputs, in place. Asks no member: their Newton
+// factors may be others by now.
+void bough_arrow_close(bough_arrow *arrow, double *outside);
+
 #endif

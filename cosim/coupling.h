@@ -13,6 +13,12 @@ typedef enum bough_interpolation {
     BOUGH_POLYNOMIAL, // through the new value and `order` earlier ones; order 0 holds the new value
 } bough_interpolation;
 
+// What the iterated scheme iterates on.
+typedef enum bough_exchange {
+    BOUGH_EXCHANGE_END_VALUES, // values at t1
+    BOUGH_EXCHANGE_WAVEFORM,   // values at the Lobatto points: a cubic over the step
+} bough_exchange;
+
 // What the user chose. Unused fields are ignored by a scheme.
 typedef struct bough_scheme_options {
     const char *name;  // one of bough_scheme_names()
@@ -22,6 +28,7 @@ typedef struct bough_scheme_options {
     bough_interpolation interpolation; // sequential schemes
     double theta;      // ramp: 1/2 … 1; 0 chooses by the ratio of interface inertias
     double rtol;       // monolithic: tolerance relative to the members' scales
+    bough_exchange exchange;        // iterated
     bough_acceleration accelerator; // iterated
     double relaxation;              // iterated: the accelerator's first factor, 0 … 1
     double tolerance; // iterated: of the interface relative to its largest values so far [1]

@@ -1,10 +1,14 @@
 // Iterated coupling: the macro step is repeated until the interface agrees with itself. The unknowns
-// are the end values of the inputs whose source advances in the same stage or later (the feedback);
-// every input is a polynomial of degree `order` through its end value and earlier ones, so the order
-// is degree + 1, from the interpolation and not from the iteration. A sweep takes the stages in
-// order and tells what the feedback turned out to be; an accelerator turns that into the next end
-// values. Before each repetition the members return to T_k and restart their integrators, the first
-// sweep likewise, so that equal end values give equal answers.
+// are values of the inputs whose source advances in the same stage or later (the feedback), at nodes of
+// the step:
+//   - end values: at T_{k+1}. The input is a polynomial of degree `order` through it and earlier ones,
+//     so the order is degree + 1, from the interpolation and not from the iteration.
+//   - waveform: at the Lobatto points too, where the sub-solvers stop on their way. The input is the
+//     cubic through them. What it misses is orthogonal to linear functions: the order is 6.
+// Other inputs follow what their source really did. A sweep takes the stages in order and tells what
+// the feedback turned out to be; an accelerator turns that into the next values. Before each repetition
+// the members return to T_k and restart their integrators, the first sweep likewise, so that equal
+// values give equal answers.
 //
 // Converged is not yet stable: measured on a mass a ten-thousandth of the other (test_scheme.c), a
 // linear force holds to a macro step of about 3.5 over its frequency (11 ms), a quadratic one at none
@@ -14,6 +18,7 @@
 // The residual is relative to the largest value of its port so far. It cannot become smaller than
 // the noise that the members' own tolerances leave on their answers.
 #include "cosim/accelerate.h"
+#include "cosim/interface_newton.h"
 #include "cosim/port.h"
 #include "cosim/scheme.h"
 #include "cosim/sequence.h"
@@ -24,18 +29,29 @@
 // Ports below this share of the largest one hold rounding only.
 static const double least_scale = 1e-6;
 
+enum { MOST_NODES = 3 };
+static const double end_point[] = {1};
+static const double lobatto[MOST_NODES] = {0.27639320225002103, 0.72360679774997897, 1};
+
 typedef struct iteration {
     bough_accelerator *accelerator;
-    void **copy;         // (n_member) states at T_k
-    int n;               // feedback inputs
-    int *input;          // (n) their numbers over all inputs
-    int *group;          // (n) first feedback of the vector that each belongs to, up to 3 long
-    bool *is_feedback;   // (n_input)
-    double *end;         // (n_input) end values in use
-    double *size;        // (n) of a group's first: its largest norm so far
-    double *scale;       // (n)
-    double *guess;       // (n) scaled end values
-    double *image;       // (n) what they turned out to be
+    bough_interface_newton *newton; // NULL: another accelerator
+    double span[MOST_NODES];        // of the Newton's Jacobians, over the macro step
+    void **copy;                    // (n_member) states at T_k
+    int n_node;
+    const double *node; // (n_node) in (0, 1], the last is 1
+    double *told;       // (n_node × n_input) values of the inputs in use
+    double *found;      // (n_node × n_output) outputs in the last sweep; of end values the coupling's
+    int n_input;        // of all members
+    int n;              // feedback inputs
+    int *input;         // (n) their numbers over all inputs
+    int *group;         // (n) first feedback of the vector that each belongs to, up to 3 long
+    bool *is_feedback;  // (n_input)
+    double *size;       // (n) of a group's first: its largest norm so far
+    double *scale;      // (n)
+    double *guess;      // (n_node × n) scaled values told
+    double *image;      // (n_node × n) what they turned out to be
+    double *change;     // (n_input) scratch
 } iteration;
 
 // -- building -------------------------------------------------------------------------------------
@@ -49,6 +65,9 @@ static bough_status check(const bough_scheme_options *o) {
         return bough_fail(BOUGH_INVALID,
                           "iterated coupling: tolerance %g and iterations %d must be positive",
                           o->tolerance, o->iterations);
+    }
+    if (o->accelerator == BOUGH_ACCELERATE_NEWTON && o->reversed) {
+        return bough_fail(BOUGH_INVALID, "iterated coupling: interface-newton lets stage 0 lead");
     }
     return bough_ok();
 }
@@ -70,16 +89,17 @@ static void find_feedback(iteration *it, const bough_coupling *c) {
 }
 
 static bool take(iteration *it, const bough_assembly *a, bough_arena *arena) {
-    size_t n = (size_t)a->n_input;
+    size_t n = (size_t)a->n_input, n_node = (size_t)it->n_node;
     it->copy = bough_arena_take(arena, (size_t)a->n_member * sizeof *it->copy);
     it->input = bough_arena_take(arena, n * sizeof *it->input);
     it->group = bough_arena_take(arena, n * sizeof *it->group);
     it->is_feedback = bough_arena_take(arena, n * sizeof *it->is_feedback);
-    it->end = bough_arena_doubles(arena, n);
+    it->told = bough_arena_doubles(arena, n_node * n);
     it->size = bough_arena_doubles(arena, n);
     it->scale = bough_arena_doubles(arena, n);
-    it->guess = bough_arena_doubles(arena, n);
-    it->image = bough_arena_doubles(arena, n);
+    it->guess = bough_arena_doubles(arena, n_node * n);
+    it->image = bough_arena_doubles(arena, n_node * n);
+    it->change = bough_arena_doubles(arena, n);
     for (int i = 0; i < a->n_member && it->copy; i++) {
         const bough_subsystem *s = a->member[i];
         it->copy[i] = bough_arena_take(arena, s->ops->save_size(s->self));
@@ -87,18 +107,39 @@ static bool take(iteration *it, const bough_assembly *a, bough_arena *arena) {
     return !bough_arena_exhausted(arena);
 }
 
+static void solve_newton(void *self, double *x);
+
+static bough_status create_accelerator(bough_coupling *c, iteration *it, bough_arena *arena) {
+    bough_accelerator_def def = {.kind = c->options.accelerator,
+                                 .n = it->n_node * it->n,
+                                 .relaxation = c->options.relaxation,
+                                 .solve = solve_newton,
+                                 .self = it};
+    bough_status status = bough_accelerator_create(arena, &def, &it->accelerator);
+    if (!bough_is_ok(&status) || def.kind != BOUGH_ACCELERATE_NEWTON) return status;
+    static const double share[BOUGH_HISTORY] = {1, 1. / 2, 5. / 12}; // ∫ of the end value's weight
+    for (int k = 0; k < it->n_node; k++) {
+        it->span[k] = it->n_node == 1 ? share[c->options.order] : it->node[k] / 2;
+    }
+    return bough_interface_newton_create(arena, c, it->n_node, &it->newton);
+}
+
 static bough_status create(bough_coupling *c, bough_arena *arena) {
     bough_status status = check(&c->options);
     if (!bough_is_ok(&status)) return status;
     iteration *it = bough_arena_take(arena, sizeof *it);
-    if (!it || !take(it, c->assembly, arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
+    if (!it) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bool waveform = c->options.exchange == BOUGH_EXCHANGE_WAVEFORM;
+    it->n_input = c->assembly->n_input;
+    it->n_node = waveform ? MOST_NODES : 1;
+    it->node = waveform ? lobatto : end_point;
+    bool taken = take(it, c->assembly, arena);
+    it->found = c->end_output;
+    if (waveform) it->found = bough_arena_doubles(arena, MOST_NODES * (size_t)c->assembly->n_output);
+    if (!taken || !it->found) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     find_feedback(it, c);
     c->scheme_data = it;
-    bough_accelerator_def def = {
-        .kind = c->options.accelerator, .n = it->n, .relaxation = c->options.relaxation};
-    return bough_accelerator_create(arena, &def, &it->accelerator);
+    return create_accelerator(c, it, arena);
 }
 
 // -- a sweep --------------------------------------------------------------------------------------
@@ -115,68 +156,111 @@ static void restore(bough_coupling *c, int member) {
     s->ops->restore(s->self, it->copy[member]);
 }
 
-// Input j of the member through its end value.
-static void interpolate(bough_coupling *c, int member, int j) {
+static double node_time(const bough_coupling *c, int k) {
     const iteration *it = c->scheme_data;
-    int degree = c->options.order < c->n_past ? c->options.order : c->n_past;
-    double time[BOUGH_HISTORY + 1] = {c->t1};
-    const double *value[BOUGH_HISTORY + 1] = {it->end + j};
-    for (int p = 0; p < degree; p++) {
-        time[p + 1] = c->past_time[p];
-        value[p + 1] = c->past[p] + j;
-    }
-    bough_port_polynomial(&c->signal[member], j - c->assembly->input_offset[member], 1, degree + 1,
-                          time, value);
+    return k + 1 < it->n_node ? c->t0 + it->node[k] * (c->t1 - c->t0) : c->t1;
 }
 
-// Advances a member and finds its outputs under what it was told.
+// Input j of the member through its values at the nodes and, of end values, earlier ones.
+static void interpolate(bough_coupling *c, int member, int j) {
+    const bough_assembly *a = c->assembly;
+    const iteration *it = c->scheme_data;
+    double time[MOST_NODES + BOUGH_HISTORY];
+    const double *value[MOST_NODES + BOUGH_HISTORY];
+    int n = it->n_node, earlier = n > 1 ? 1 : c->options.order;
+    for (int k = 0; k < n; k++) {
+        time[k] = node_time(c, k);
+        value[k] = it->told + k * a->n_input + j;
+    }
+    for (int p = 0; p < earlier && p < c->n_past; p++, n++) {
+        time[n] = c->past_time[p];
+        value[n] = c->past[p] + j;
+    }
+    bough_port_polynomial(&c->signal[member], j - a->input_offset[member], 1, n, time, value);
+}
+
+// What the member sees: its feedback as told, the rest as it was.
+static void prepare(bough_coupling *c, int member) {
+    const bough_assembly *a = c->assembly;
+    const iteration *it = c->scheme_data;
+    for (int j = a->input_offset[member]; j < a->input_offset[member + 1]; j++) {
+        if (it->is_feedback[j]) {
+            interpolate(c, member, j);
+        } else if (it->n_node == 1) {
+            bough_coupling_interpolate(c, member, j);
+        } else {
+            for (int k = 0; k < it->n_node; k++) {
+                it->told[k * a->n_input + j] = it->found[k * a->n_output + a->source[j]];
+            }
+            interpolate(c, member, j);
+            c->followed[j] = true;
+        }
+    }
+}
+
+// Advances a member from node to node and finds its outputs under what it was told.
 static void advance(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const bough_subsystem *s = a->member[member];
     const iteration *it = c->scheme_data;
-    for (int j = a->input_offset[member]; j < a->input_offset[member + 1]; j++) {
-        if (!it->is_feedback[j]) it->end[j] = c->end_output[a->source[j]];
-        interpolate(c, member, j);
+    double *seen = c->seen + a->input_offset[member];
+    for (int k = 0; k < it->n_node; k++) {
+        double t = node_time(c, k);
+        c->status[member] = s->ops->advance(s->self, t, &c->signal[member], k == 0);
+        if (!bough_is_ok(&c->status[member])) return;
+        bough_signal_value(&c->signal[member], t, seen);
+        s->ops->output(s->self, t, s->state, seen,
+                       it->found + k * a->n_output + a->output_offset[member]);
     }
-    c->status[member] = s->ops->advance(s->self, c->t1, &c->signal[member], true);
-    if (!bough_is_ok(&c->status[member])) return;
-    s->ops->output(s->self, c->t1, s->state, it->end + a->input_offset[member],
-                   c->end_output + a->output_offset[member]);
 }
 
+// Who follows end values follows rates too.
 static bough_status sweep(bough_coupling *c) {
+    const iteration *it = c->scheme_data;
     int n = c->assembly->n_stage;
     bough_status status = bough_ok();
     for (int k = 0; k < n && bough_is_ok(&status); k++) {
-        status = bough_coupling_each(c, c->options.reversed ? n - 1 - k : k, advance);
+        int stage = c->options.reversed ? n - 1 - k : k;
+        bool rates = it->n_node == 1 && k + 1 < n;
+        bough_coupling_each(c, stage, prepare);
+        status = rates ? bough_coupling_advance_lead(c, stage, true)
+                       : bough_coupling_each(c, stage, advance);
     }
     return status;
 }
 
 // -- the iteration --------------------------------------------------------------------------------
 
-// First end values: the earlier ones extrapolated, or held where the loads jump.
+// First values: the earlier ones extrapolated, or held where the loads jump.
 static void predict(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     iteration *it = c->scheme_data;
+    int degree = c->restart ? 0 : it->n_node > 1 ? BOUGH_HISTORY - 1 : c->options.order;
     for (int i = 0; i < a->n_member; i++) {
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            bough_sequence_extrapolate(c, i, j, c->restart ? 0 : c->options.order);
+        int first = a->input_offset[i];
+        for (int j = first; j < a->input_offset[i + 1]; j++) {
+            bough_sequence_extrapolate(c, i, j, degree);
         }
-        bough_signal_value(&c->signal[i], c->t1, it->end + a->input_offset[i]);
+        for (int k = 0; k < it->n_node; k++) {
+            double *told = it->told + k * a->n_input + first;
+            bough_signal_value(&c->signal[i], node_time(c, k), told);
+        }
     }
 }
 
 // Sizes of the ports from what the first sweep found; they hold for the step.
 static void update_scales(bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
     iteration *it = c->scheme_data;
+    const double *found = it->found + (it->n_node - 1) * a->n_output;
+    const double *told = it->told + (it->n_node - 1) * a->n_input;
     double largest = 0;
     for (int k = 0; k < it->n;) {
         int first = k;
         double sum = 0;
         for (; k < it->n && it->group[k] == first; k++) {
-            double value = c->end_output[c->assembly->source[it->input[k]]];
-            sum += fmax(value * value, it->end[it->input[k]] * it->end[it->input[k]]);
+            double value = found[a->source[it->input[k]]], old = told[it->input[k]];
+            sum += fmax(value * value, old * old);
         }
         it->size[first] = fmax(it->size[first], sqrt(sum));
         largest = fmax(largest, it->size[first]);
@@ -189,11 +273,15 @@ static void update_scales(bough_coupling *c) {
 
 // The residual of the sweep just made [1].
 static double evaluate(bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
     iteration *it = c->scheme_data;
-    for (int k = 0; k < it->n; k++) {
-        int j = it->input[k];
-        it->guess[k] = it->end[j] / it->scale[k];
-        it->image[k] = c->end_output[c->assembly->source[j]] / it->scale[k];
+    for (int p = 0; p < it->n_node; p++) {
+        const double *told = it->told + p * a->n_input, *found = it->found + p * a->n_output;
+        for (int k = 0; k < it->n; k++) {
+            int j = it->input[k];
+            it->guess[p * it->n + k] = told[j] / it->scale[k];
+            it->image[p * it->n + k] = found[a->source[j]] / it->scale[k];
+        }
     }
     return bough_accelerator_take(it->accelerator, it->guess, it->image);
 }
@@ -201,21 +289,37 @@ static double evaluate(bough_coupling *c) {
 static void correct(bough_coupling *c) {
     iteration *it = c->scheme_data;
     bough_accelerator_next(it->accelerator, it->guess);
-    for (int k = 0; k < it->n; k++) it->end[it->input[k]] = it->scale[k] * it->guess[k];
+    for (int p = 0; p < it->n_node; p++) {
+        double *told = it->told + p * c->assembly->n_input;
+        for (int k = 0; k < it->n; k++) {
+            told[it->input[k]] = it->scale[k] * it->guess[p * it->n + k];
+        }
+    }
+}
+
+// x (n_node × n), scaled: node by node the change that closes the interface over this residual.
+static void solve_newton(void *self, double *x) {
+    const iteration *it = self;
+    for (int p = 0; p < it->n_node; p++, x += it->n) {
+        memset(it->change, 0, (size_t)it->n_input * sizeof(double));
+        for (int k = 0; k < it->n; k++) it->change[it->input[k]] = it->scale[k] * x[k];
+        bough_interface_newton_solve(it->newton, p, it->change);
+        for (int k = 0; k < it->n; k++) x[k] = it->change[it->input[k]] / it->scale[k];
+    }
 }
 
 static bough_status not_converged(const bough_coupling *c, int sweeps, double residual) {
     const bough_assembly *a = c->assembly;
     const iteration *it = c->scheme_data;
-    int worst = 0, to = 0;
+    int worst = 0, to = 0, last = (it->n_node - 1) * it->n;
     for (int k = 1; k < it->n; k++) {
-        double off = fabs(it->image[k] - it->guess[k]);
-        if (off > fabs(it->image[worst] - it->guess[worst])) worst = k;
+        double off = fabs(it->image[last + k] - it->guess[last + k]);
+        if (off > fabs(it->image[last + worst] - it->guess[last + worst])) worst = k;
     }
     while (it->input[worst] >= a->input_offset[to + 1]) to++;
     double contraction = bough_accelerator_contraction(it->accelerator);
-    const char *advice = c->options.accelerator != BOUGH_ACCELERATE_IQN_ILS
-                             ? "try accelerator: iqn-ils"
+    bool learns = c->options.accelerator >= BOUGH_ACCELERATE_IQN_ILS;
+    const char *advice = !learns ? "try accelerator: iqn-ils"
                          : contraction < 0.9 ? "try more iterations"
                                              : "try a larger tolerance or a tighter micro rtol";
     return bough_fail(BOUGH_FAILED,
@@ -231,6 +335,9 @@ static bough_status step(bough_coupling *c) {
     bough_status status = bough_coupling_each(c, BOUGH_ALL_STAGES, save);
     bough_accelerator_start(it->accelerator);
     predict(c);
+    if (bough_is_ok(&status) && it->newton) {
+        status = bough_interface_newton_update(it->newton, c, it->span);
+    }
     for (int k = 1; bough_is_ok(&status); k++) {
         status = sweep(c);
         c->sweeps++;

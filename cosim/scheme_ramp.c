@@ -213,7 +213,7 @@ static const double heavy_interface = 0.25;
 // on masses of 3 to 1700 times the one that carries them (10 ms, stiff spring) 0.6 is stable
 // throughout, 1/2 grows by up to 18 per second between 30 and 500, and 1, held, at a low frequency
 // everywhere.
-static const double weights[] = {0.5, 0.55, 0.6, 0.65, 0.7, 0.8, 1};
+static const double weights[] = {0.5, 0.55, 0.6, 0.65, 0.7, 0.8};
 enum { WEIGHTS = sizeof weights / sizeof *weights };
 static const double ringing = 0.05; // growth that does not count [1/s]
 static const double untamed = 10;   // growth that no outer load damps [1/s]
@@ -231,21 +231,21 @@ static bough_status growth_with(const bough_coupling *c, double theta, double *g
     return status;
 }
 
-// The first weight under which nothing rings; where all do, the least growth below 1. Outer loads
-// may damp slow growth (measured: 2.5 per second on a hub a hundred times too light, damped by the
-// air), a held force loses the solution: it is for what nothing else tames.
+// The first weight under which nothing rings; where all do, the least growth. Outer loads may damp
+// slow growth (measured: 2.5 per second on a hub a hundred times too light, damped by the air). A
+// held force, θ = 1, loses the solution: it is for what nothing else tames.
 static bough_status choose_weight(bough_coupling *c) {
     ramp *r = c->scheme_data;
     double least = HUGE_VAL;
     bough_status status = bough_ok();
     for (int k = 0; k < WEIGHTS && least > ringing && bough_is_ok(&status); k++) {
         double growth;
-        if (weights[k] >= 1 && least < untamed) break;
         status = growth_with(c, weights[k], &growth);
         if (!bough_is_ok(&status) || growth >= least) continue;
         least = growth;
         r->final = weights[k];
     }
+    if (least > untamed) r->final = 1;
     return status;
 }
 

@@ -10,6 +10,7 @@ typedef struct shadow {
     double sub_step;
     double *at, *input_at; // (n_state), (n_input) where the subsystem is linearised
     double *column;        // (n_input × n_state) B
+    bool linearised;       // the subsystem is, here
     double gamma;          // of the factors in place; 0: none
     double time, *state;   // (n_state) the perturbation
     double *plus, *minus;  // (n_state) scratch
@@ -80,7 +81,10 @@ static bool newton_setup(void *self, double t, const double *state, const double
     shadow *s = self;
     const bough_subsystem *r = s->real;
     if (gamma == s->gamma) return true;
-    bool ok = r->ops->newton_setup(r->self, *r->time, s->at, s->input_at, gamma);
+    bool again = s->linearised && r->ops->newton_refactor != NULL;
+    bool ok = again ? r->ops->newton_refactor(r->self, gamma)
+                    : r->ops->newton_setup(r->self, *r->time, s->at, s->input_at, gamma);
+    s->linearised = true;
     s->gamma = ok ? gamma : 0;
     return ok;
 }

@@ -180,7 +180,7 @@ bough_status bough_modal_body_create(bough_arena *arena, const bough_modal_model
 bough_subsystem bough_modal_body_subsystem(bough_modal_body *body) {
     static const bough_subsystem_ops ops = {
         derivative, output, output_tangent, input_columns, newton_setup, newton_solve, advance,
-        save_size,  save,   restore,        set_state,     statistics, NULL, NULL};
+        save_size,  save,   restore,        set_state,     statistics, NULL, NULL, NULL};
     return (bough_subsystem){.name = body->model->name,
                              .kind = "modal",
                              .solver = body->micro.name,

@@ -97,6 +97,11 @@ static bool newton_setup(void *self, double t, const double *state, const double
            bough_rod_factor(b->model, &b->newton, gamma);
 }
 
+static bool newton_refactor(void *self, double gamma) {
+    bough_rod_body *b = self;
+    return bough_rod_factor(b->model, &b->newton, gamma);
+}
+
 static void newton_solve(void *self, double *x) {
     bough_rod_body *b = self;
     bough_rod_solve(b->model, &b->newton, x);
@@ -215,7 +220,8 @@ bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *mo
 bough_subsystem bough_rod_body_subsystem(bough_rod_body *body) {
     static const bough_subsystem_ops ops = {
         derivative, output, output_tangent, input_columns, newton_setup, newton_solve, advance,
-        save_size,  save,   restore,        set_state,     statistics, project,      advance_part};
+        save_size,  save,   restore,        set_state,     statistics, project,      advance_part,
+        newton_refactor};
     return (bough_subsystem){.name = body->model->name,
                              .kind = "rod",
                              .solver = body->micro.name,

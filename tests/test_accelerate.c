@@ -66,6 +66,43 @@ static void evaluations_are_the_published_ones(void **state) {
     }
 }
 
+// The Jacobian of a problem, wrong by a factor.
+typedef struct jacobian {
+    problem p;
+    double factor;
+} jacobian;
+
+static void close_interface(void *self, double *x) {
+    const jacobian *j = self;
+    for (int i = 0; i < j->p.n; i++) x[i] /= 1 + j->factor * j->p.r[i];
+}
+
+static int newton_evaluations(jacobian j) {
+    bough_arena *arena = bough_arena_create();
+    double u[MOST];
+    bough_accelerator_def def = {.kind = BOUGH_ACCELERATE_NEWTON,
+                                 .n = j.p.n,
+                                 .relaxation = .5,
+                                 .solve = close_interface,
+                                 .self = &j};
+    bough_accelerator *a = NULL;
+    bough_status status = bough_accelerator_create(arena, &def, &a);
+    assert_int_equal(status.code, BOUGH_OK);
+    int count = solve(a, j.p, u);
+    bough_arena_destroy(arena);
+    return count;
+}
+
+// Exact: at once. Half as large or twice: its own differences correct it.
+static void newton_needs_one_step_with_the_exact_jacobian(void **state) {
+    (void)state;
+    const problem p = {6, {.01, .1, 1, 10, 100, 1000}}, one = {1, {1000}};
+    assert_int_equal(newton_evaluations((jacobian){p, 1}), 2);
+    assert_int_equal(newton_evaluations((jacobian){one, .5}), 3);
+    assert_int_equal(newton_evaluations((jacobian){one, 2}), 3);
+    assert_in_range(newton_evaluations((jacobian){p, .5}), 3, 8);
+}
+
 static void divergence_tells_the_contraction(void **state) {
     (void)state;
     bough_arena *arena = bough_arena_create();
@@ -117,6 +154,7 @@ static void relaxation_outside_its_range_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(evaluations_are_the_published_ones),
+        cmocka_unit_test(newton_needs_one_step_with_the_exact_jacobian),
         cmocka_unit_test(divergence_tells_the_contraction),
         cmocka_unit_test(dependent_columns_are_dropped),
         cmocka_unit_test(a_solution_at_once_needs_no_iteration),

@@ -152,7 +152,13 @@ static void print_coupling(const bough_simulation *s) {
     const bough_scheme_options *o = &m->coupling->options;
     printf("coupling: %s", m->scheme->name);
     bool iterates = strcmp(m->scheme->name, "iterated") == 0;
-    if (iterates || strcmp(m->scheme->name, "extrapolated") == 0) printf(", order %d", o->order);
+    bool waveform = iterates && o->exchange == BOUGH_EXCHANGE_WAVEFORM;
+    bool ordered = iterates || strcmp(m->scheme->name, "extrapolated") == 0;
+    if (waveform) {
+        printf(", waveforms");
+    } else if (ordered) {
+        printf(", order %d", o->order);
+    }
     if (iterates) {
         printf(", accelerator %s, tolerance %.6g in at most %d iterations",
                bough_acceleration_names()[o->accelerator], o->tolerance, o->iterations);

@@ -418,12 +418,14 @@ static bough_scheme_options scheme_options(const bough_scene *scene) {
         [BOUGH_SCENE_UNACCELERATED] = BOUGH_ACCELERATE_NONE,
         [BOUGH_SCENE_RELAXATION] = BOUGH_ACCELERATE_RELAXATION,
         [BOUGH_SCENE_AITKEN] = BOUGH_ACCELERATE_AITKEN,
-        [BOUGH_SCENE_IQN_ILS] = BOUGH_ACCELERATE_IQN_ILS};
+        [BOUGH_SCENE_IQN_ILS] = BOUGH_ACCELERATE_IQN_ILS,
+        [BOUGH_SCENE_INTERFACE_NEWTON] = BOUGH_ACCELERATE_NEWTON};
     const bough_scene_coupling *coupling = &scene->simulation.coupling;
     bough_scheme_options options = bough_scheme_options_default();
     options.name = names[coupling->scheme];
     options.order = coupling->order;
     options.theta = coupling->theta;
+    options.exchange = (bough_exchange)coupling->exchange;
     options.accelerator = kinds[coupling->accelerator];
     options.relaxation = coupling->relaxation;
     // A body answers with the noise of its own tolerance, below which nothing converges: measured

@@ -36,6 +36,7 @@ typedef enum bough_scene_accelerator {
     BOUGH_SCENE_RELAXATION,
     BOUGH_SCENE_AITKEN,
     BOUGH_SCENE_IQN_ILS,
+    BOUGH_SCENE_INTERFACE_NEWTON,
 } bough_scene_accelerator;
 
 typedef struct bough_scene_coupling {
@@ -43,7 +44,8 @@ typedef struct bough_scene_coupling {
     int scheme;   // bough_scene_scheme
     int order;    // degree of the polynomial in extrapolated and iterated, 0..2
     double theta; // share of the new value in the ramp, 0.5..1; 0: chosen by the scheme ("auto")
-    int accelerator;   // bough_scene_accelerator, of iterated as all below
+    int exchange;      // bough_exchange, of iterated as all below
+    int accelerator;   // bough_scene_accelerator
     double relaxation; // factor of the correction [-]
     double tolerance;  // of the interface, relative [-]; 0: three times micro.rtol ("auto")
     int iterations;    // most in a macro step

@@ -49,9 +49,13 @@ static const bough_key coupling_keys[] = {
      AT(order), .example = "2", .help = "of extrapolated and iterated: degree of the polynomial"},
     {.name = "theta", .kind = BOUGH_KEY_NUMBER, .word = "auto", .range = "[0.5, 1]",
      .fallback = "auto", AT(theta), .example = "0.6", .help = "of ramp: share of the new value"},
+    {.name = "exchange", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("end-values", "waveform"),
+     .fallback = "end-values", AT(exchange),
+     .help = "of iterated: what is agreed on; waveform: cubics through the values within the macro "
+             "step"},
     {.name = "accelerator", .kind = BOUGH_KEY_CHOICE, .fallback = "iqn-ils", AT(accelerator),
-     .choices = CHOICES("none", "relaxation", "aitken", "iqn-ils"),
-     .help = "of iterated: how the next end values are found"},
+     .choices = CHOICES("none", "relaxation", "aitken", "iqn-ils", "interface-newton"),
+     .help = "of iterated: how the next values are found"},
     {.name = "relaxation", .kind = BOUGH_KEY_NUMBER, .range = "[0.001, 1]", .fallback = "0.5",
      AT(relaxation), .example = "0.7",
      .help = "of iterated: factor of the correction; the first one of aitken and "

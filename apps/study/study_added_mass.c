@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { ACCELERATORS = 4, MOST = 16, MOST_EVALUATIONS = 500, DIVERGED = 0 };
+enum { ACCELERATORS = 5, MOST = 16, MOST_EVALUATIONS = 500, DIVERGED = 0 };
 
 // A map whose components answer with these ratios.
 typedef struct ratios {
@@ -36,18 +36,26 @@ typedef struct bough_added_mass_study {
 typedef struct way {
     const char *name, *scheme;
     bough_acceleration accelerator;
+    bough_exchange exchange;
     bool must_hold; // at any ratio
 } way;
 
+#define ENDS BOUGH_EXCHANGE_END_VALUES
+#define WAVE BOUGH_EXCHANGE_WAVEFORM
 static const way ways[] = {
-    {"gauss-seidel", "gauss-seidel", BOUGH_ACCELERATE_NONE, false},
-    {"iterated, none", "iterated", BOUGH_ACCELERATE_NONE, false},
-    {"iterated, relaxation", "iterated", BOUGH_ACCELERATE_RELAXATION, false},
-    {"iterated, aitken", "iterated", BOUGH_ACCELERATE_AITKEN, false},
-    {"iterated, iqn-ils", "iterated", BOUGH_ACCELERATE_IQN_ILS, true},
-    {"ramp", "ramp", BOUGH_ACCELERATE_NONE, true},
-    {"monolithic", "monolithic", BOUGH_ACCELERATE_NONE, true},
+    {"gauss-seidel", "gauss-seidel", BOUGH_ACCELERATE_NONE, ENDS, false},
+    {"iterated, none", "iterated", BOUGH_ACCELERATE_NONE, ENDS, false},
+    {"iterated, relaxation", "iterated", BOUGH_ACCELERATE_RELAXATION, ENDS, false},
+    {"iterated, aitken", "iterated", BOUGH_ACCELERATE_AITKEN, ENDS, false},
+    {"iterated, iqn-ils", "iterated", BOUGH_ACCELERATE_IQN_ILS, ENDS, true},
+    {"iterated, interface-newton", "iterated", BOUGH_ACCELERATE_NEWTON, ENDS, true},
+    {"waveform, iqn-ils", "iterated", BOUGH_ACCELERATE_IQN_ILS, WAVE, true},
+    {"waveform, interface-newton", "iterated", BOUGH_ACCELERATE_NEWTON, WAVE, true},
+    {"ramp", "ramp", BOUGH_ACCELERATE_NONE, ENDS, true},
+    {"monolithic", "monolithic", BOUGH_ACCELERATE_NONE, ENDS, true},
 };
+#undef ENDS
+#undef WAVE
 enum { WAYS = sizeof ways / sizeof *ways };
 
 // -- reading --------------------------------------------------------------------------------------
@@ -75,7 +83,7 @@ static const bough_key map_keys[] = {
      AT(ratio), .count_offset = offsetof(ratios, n), .help = "one for each component"},
     {.name = "evaluations", .kind = BOUGH_KEY_NUMBERS, .range = ">= 0", .count = 1, AT(expected),
      .count_offset = offsetof(ratios, n_expected),
-     .help = "expected: plain, relaxation 0.5, Aitken, IQN-ILS; 0: diverges"},
+     .help = "expected: plain, relaxation 0.5, Aitken, IQN-ILS, Newton; 0: diverges"},
     {.name = "spread", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0", AT(spread),
      .help = "of Aitken's count, which depends on the right side"},
 };
@@ -119,10 +127,17 @@ struct bough_added_mass_study *bough_added_mass_read(bough_arena *arena, const b
 
 // -- maps -----------------------------------------------------------------------------------------
 
+// x ← (I − ∂H/∂u)⁻¹ x
+static void solve_exactly(void *self, double *x) {
+    const ratios *m = self;
+    for (int i = 0; i < m->n; i++) x[i] /= 1 + m->ratio[i];
+}
+
 // Evaluations until the residual is below 1e-10, from u = 0 with b = 1.
-static bough_status evaluate(const ratios *m, bough_acceleration kind, int *evaluations) {
+static bough_status evaluate(ratios *m, bough_acceleration kind, int *evaluations) {
     double u[MOST] = {0}, image[MOST];
-    bough_accelerator_def def = {.kind = kind, .n = m->n, .relaxation = 0.5};
+    bough_accelerator_def def = {
+        .kind = kind, .n = m->n, .relaxation = 0.5, .solve = solve_exactly, .self = m};
     bough_accelerator *a;
     bough_arena *arena = bough_arena_create();
     if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
@@ -166,6 +181,7 @@ static void run(const added_mass_study *s, const way *w, double ratio, outcome *
     bough_master_def def = bough_master_def_default();
     def.scheme.name = w->scheme;
     def.scheme.accelerator = w->accelerator;
+    def.scheme.exchange = w->exchange;
     def.scheme.tolerance = 1e-9;
     def.scheme.iterations = 200;
     def.macro_step = s->macro_step;
@@ -202,9 +218,9 @@ static bool as_expected(const ratios *m, int kind, int evaluations) {
 
 static bough_status perform_maps(const added_mass_study *s, report *out) {
     FILE *f = out->options->stream;
-    fprintf(f, "%-32s  plain  relaxation  aitken  iqn-ils   (expected)\n", "u <- -r u + b, r");
+    fprintf(f, "%-32s  plain  relaxation  aitken  iqn-ils  newton   (expected)\n", "u <- -r u + b, r");
     for (int i = 0; i < s->n_map; i++) {
-        const ratios *m = &s->map[i];
+        ratios *m = &s->map[i];
         char name[80] = "";
         for (int k = 0; k < m->n; k++) {
             size_t used = strlen(name);

@@ -1,0 +1,57 @@
+#include "cosim/interface_newton.h"
+
+#include "cosim/arrow.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MOST_AGE = 12 }; // steps: as the ramp keeps its tangents
+
+struct bough_interface_newton {
+    int n_span;
+    bough_arrow **arrow; // (n_span)
+    double *state;       // (n_state) where
+    double length;       // of the macro step they were made for [s]; 0: none
+    int age;             // steps since
+};
+
+bough_status bough_interface_newton_create(bough_arena *arena, const bough_coupling *c, int n_span,
+                                           bough_interface_newton **newton) {
+    bough_interface_newton *n = bough_arena_take(arena, sizeof *n);
+    if (!n) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    n->n_span = n_span;
+    n->arrow = bough_arena_take(arena, (size_t)n_span * sizeof *n->arrow);
+    n->state = bough_arena_doubles(arena, (size_t)c->assembly->n_state);
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    *newton = n;
+    bough_status status = bough_ok();
+    for (int k = 0; k < n_span && bough_is_ok(&status); k++) {
+        status = bough_arrow_create(arena, c->assembly, c->pool, &n->arrow[k]);
+    }
+    return status;
+}
+
+bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coupling *c,
+                                           const double *span) {
+    double length = c->t1 - c->t0;
+    bool same = !c->restart && !c->refactor && fabs(length - n->length) <= 1e-9 * length;
+    n->age++;
+    if (same && n->age <= MOST_AGE) return bough_ok();
+    n->length = length;
+    n->age = 0;
+    c->refactor = false;
+    const bough_assembly *a = c->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_subsystem *s = a->member[i];
+        memcpy(n->state + a->state_offset[i], s->state, (size_t)s->n_state * sizeof(double));
+    }
+    bough_status status = bough_ok();
+    for (int k = 0; k < n->n_span && bough_is_ok(&status); k++) {
+        status = bough_arrow_setup(n->arrow[k], c->t0, n->state, c->input, span[k] * length);
+    }
+    return status;
+}
+
+void bough_interface_newton_solve(const bough_interface_newton *n, int span, double *change) {
+    bough_arrow_close(n->arrow[span], change);
+}
