@@ -3,29 +3,40 @@
 
 #include "apps/api/bough.h"
 #include "apps/output/folder.h"
+#include "tests/scratch.h"
 
 static const char *const decks[] = {
     "main.fst",        "parts/elasto.dat",     "parts/blade.dat",       "parts/tower.dat",
     "parts/beam.dat",  "parts/beam-blade.dat", "parts/wind.dat",        "parts/aero.dat",
     "parts/servo.dat", "parts/aero-blade.dat", "parts/foils/round.dat", "parts/foils/flat.dat",
+    "v4/main.fst",     "v4/elasto.dat",        "v4/blade.dat",          "v4/aero.dat",
+    "v5/main.fst",     "v5/elasto.dat",        "v5/aero-blade.dat",     "v5/aero.dat",
+    "v5/servo.dat",    "v5/beam.dat",          "v5/beam-blade.dat",
 };
 enum { N_DECK = sizeof decks / sizeof *decks };
 
-// Imports the decks with two texts replaced (NULL: none).
-static trial import_with(const edit *one, const edit *two) {
+// Imports the decks under this main file with two texts replaced (NULL: none).
+static trial import_main(const char *main, const edit *one, const edit *two) {
+    static const char *const folder[] = {"parts/foils", "v4", "v5"};
     trial t = {.arena = bough_arena_create()};
     char path[128];
     strcpy(t.folder, "/tmp/bough-import-XXXXXX");
     assert_non_null(mkdtemp(t.folder));
-    snprintf(path, sizeof path, "%s/parts/foils", t.folder);
-    bough_status made = bough_folder_make(path);
-    assert_true(bough_is_ok(&made));
+    for (int i = 0; i < 3; i++) {
+        snprintf(path, sizeof path, "%s/%s", t.folder, folder[i]);
+        bough_status made = bough_folder_make(path);
+        assert_true(bough_is_ok(&made));
+    }
     for (int i = 0; i < N_DECK; i++)
         copy_deck(t.folder, decks[i], one, two);
-    snprintf(path, sizeof path, "%s/main.fst", t.folder);
+    snprintf(path, sizeof path, "%s/%s", t.folder, main);
     snprintf(t.out, sizeof t.out, "%s/out", t.folder);
     t.status = bough_import_openfast(path, t.out, NULL);
     return t;
+}
+
+static trial import_with(const edit *one, const edit *two) {
+    return import_main("main.fst", one, two);
 }
 
 static trial import(const edit *change) { return import_with(change, NULL); }
@@ -128,6 +139,60 @@ static void newer_names_are_known(void **context) {
     done(&t);
 }
 
+static void same_file(const trial *a, const trial *b, const char *name) {
+    char *one = scratch_read(a->out, name), *two = scratch_read(b->out, name);
+    assert_non_null(one);
+    assert_non_null(two);
+    assert_string_equal(one, two);
+    free(one);
+    free(two);
+}
+
+// The same turbine in the files of versions 3, 4 and 5, blades by BeamDyn and by ElastoDyn.
+static void versions_three_to_five_give_one_scene(void **context) {
+    (void)context;
+    static const char *const files[] = {"scene.yaml", "blade-structure.yaml", "airfoils.yaml",
+                                        "tower-structure.yaml", "blade-aero.yaml"};
+    static const char *const newer[] = {"v4/main.fst", "v5/main.fst"};
+    for (int elastic = 1; elastic <= 2; elastic++) {
+        char value[32];
+        snprintf(value, sizeof value, "%d    CompElast", elastic);
+        trial old = import(&(edit){"main.fst", "2    CompElast", value});
+        for (int i = 0; i < 2; i++) {
+            trial t = import_main(newer[i], &(edit){newer[i], "2    CompElast", value}, NULL);
+            assert_string_equal(t.status.message, "");
+            for (size_t k = 0; k < sizeof files / sizeof *files; k++)
+                same_file(&old, &t, files[k]);
+            assert_false(list_says(&t, "undamped"));
+            done(&t);
+        }
+        done(&old);
+    }
+}
+
+static void what_version_five_adds_is_told(void **context) {
+    (void)context;
+    const edit modal = {"v5/beam-blade.dat", "1   damp_type", "2   damp_type"};
+    const edit bearing = {"v5/elasto.dat", "False         PitchDOF", "True  PitchDOF"};
+    trial t = import_main("v5/main.fst", &modal, &bearing);
+    assert_true(list_says(&t, "damp_type 2: the blade is undamped"));
+    assert_true(list_says(&t, "PitchDOF: the pitch bearings are rigid"));
+    done(&t);
+    const edit rotors = {"v5/main.fst", "1    NRotors", "2    NRotors"};
+    t = import_main("v5/main.fst", &rotors, NULL);
+    assert_non_null(strstr(t.status.message, "NRotors: expected 1"));
+    done(&t);
+    const edit mirror = {"v5/main.fst", "F    MirrorRotor", "T    MirrorRotor"};
+    t = import_main("v5/main.fst", &mirror, NULL);
+    assert_non_null(strstr(t.status.message, "main.fst:25: MirrorRotor: expected False"));
+    done(&t);
+    const edit redistribution = {"v5/aero.dat", "\"default\"     SkewRedistr_Mod",
+                                 "0  SkewRedistr_Mod"};
+    t = import_main("v5/main.fst", &redistribution, NULL);
+    assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.induction.skew"), "none");
+    done(&t);
+}
+
 static void a_scene_steps(const edit *one, const edit *two) {
     trial t = import_with(one, two);
     assert_string_equal(t.status.message, "");
@@ -206,6 +271,8 @@ static void bad_decks_are_told_where(void **context) {
         {{"parts/aero-blade.dat", "  3   NumBlNds", "  4   NumBlNds"}, "3 rows, expected 4"},
         {{"parts/foils/flat.dat", "180.0   0.02\n", "170.0   0.02\n"},
          "flat.dat:5: alpha: expected"},
+        {{"parts/aero-blade.dat", "2       1.0\n", "2       0.0\n"},
+         "the model gives no scene: blade-aero.yaml:5: stations.rows[1].chord: must be > 0 m"},
         {{"parts/servo.dat", "400   VS_RtTq", "4   VS_RtTq"}, "servo.dat:6: VS_RtGnSp"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -225,6 +292,8 @@ int main(void) {
         cmocka_unit_test(air_tables_follow_their_headers),
         cmocka_unit_test(elastodyn_structure_is_scaled_and_damped),
         cmocka_unit_test(newer_names_are_known),
+        cmocka_unit_test(versions_three_to_five_give_one_scene),
+        cmocka_unit_test(what_version_five_adds_is_told),
         cmocka_unit_test(scenes_step),
         cmocka_unit_test(controller_libraries_and_wind_files_stay_in_place),
         cmocka_unit_test(bad_decks_are_told_where),

@@ -1,12 +1,15 @@
 #include "apps/import/draft.h"
 
 #include "apps/output/folder.h"
+#include "apps/scene/scene.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 static const double macro_step = 0.02; // [s]
@@ -92,12 +95,56 @@ static bough_status write_file(const char *folder, int kind, const char *text) {
     return bough_folder_commit(path, file);
 }
 
-// The scene last: with it the model is whole.
 static bough_status write_files(const char *folder, char *const *text) {
     bough_status status = bough_folder_make(folder);
-    for (int i = BOUGH_N_IMPORT_FILE - 1; i >= 0 && bough_is_ok(&status); i--) {
+    for (int i = 0; i < BOUGH_N_IMPORT_FILE && bough_is_ok(&status); i++) {
         if (text[i][0]) status = write_file(folder, i, text[i]);
     }
+    return status;
+}
+
+// What the deck's own checks have let through.
+static bough_status check_scene(bough_arena *arena, const char *folder) {
+    char path[BOUGH_PATH_MAX];
+    bough_errors errors = {.arena = arena};
+    bough_scene *scene;
+    bough_status status = bough_folder_path(folder, bough_import_name[BOUGH_IMPORT_SCENE], path);
+    if (bough_is_ok(&status)) status = bough_scene_read(arena, path, NULL, 0, &errors, &scene);
+    if (errors.n == 0) return status;
+    const bough_error *e = errors.item;
+    const char *slash = strrchr(e->file, '/');
+    return bough_fail(BOUGH_INVALID, "the model gives no scene: %.40s:%d: %.80s: %.200s",
+                      slash ? slash + 1 : e->file, e->line, e->path, e->text);
+}
+
+// Moves the files to their place, the scene last: with it the model is whole; or removes them.
+static bough_status settle_files(const char *from, const char *folder, bool good) {
+    char old[BOUGH_PATH_MAX], path[BOUGH_PATH_MAX];
+    bough_status status = bough_ok();
+    for (int i = BOUGH_N_IMPORT_FILE - 1; i >= 0; i--) {
+        bough_status named = bough_folder_path(from, bough_import_name[i], old);
+        if (bough_is_ok(&named)) named = bough_folder_path(folder, bough_import_name[i], path);
+        if (!bough_is_ok(&named) || !good) {
+            unlink(old);
+        } else if (rename(old, path) != 0 && errno != ENOENT && bough_is_ok(&status)) {
+            status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
+        }
+    }
+    rmdir(from);
+    return status;
+}
+
+// The files are read as a scene before they take their place.
+static bough_status publish(bough_draft *d, const char *folder) {
+    char draft[BOUGH_PATH_MAX];
+    bool present = access(folder, F_OK) == 0;
+    bough_status status = bough_folder_path(folder, "import.partial", draft);
+    if (!bough_is_ok(&status)) return status;
+    status = write_files(draft, d->file_text);
+    if (bough_is_ok(&status)) status = check_scene(d->arena, draft);
+    bough_status settled = settle_files(draft, folder, bough_is_ok(&status));
+    if (bough_is_ok(&status)) status = settled;
+    if (!bough_is_ok(&status) && !present) rmdir(folder);
     return status;
 }
 
@@ -123,7 +170,7 @@ void bough_draft_finish(bough_draft *d, const char *folder, FILE *echo) {
     if (good && bough_is_ok(d->status)) put_list(d);
     good = close_all(d->file, BOUGH_N_IMPORT_FILE) && good;
     if (!good) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    if (bough_is_ok(d->status)) *d->status = write_files(folder, d->file_text);
+    if (bough_is_ok(d->status)) *d->status = publish(d, folder);
     if (bough_is_ok(d->status) && echo) fputs(d->file_text[BOUGH_IMPORT_LIST], echo);
     for (int i = 0; i < BOUGH_N_NOTE; i++)
         free(d->note_text[i]);

@@ -16,7 +16,8 @@ bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const
 // -- reading --------------------------------------------------------------------------------------
 
 static void refuse_water(const bough_openfast *o) {
-    static const char *const part[] = {"CompHydro", "CompSub", "CompMooring", "CompIce", "MHK"};
+    static const char *const part[] = {"CompHydro", "CompSeaSt", "CompSub", "CompMooring",
+                                       "CompIce",   "CompSoil",  "MHK"};
     for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
         if (bough_deck_whole_or(o->main, part[i], 0) == 0) continue;
         bough_deck_fail(o->main, bough_deck_line(o->main, part[i]),
@@ -24,10 +25,21 @@ static void refuse_water(const bough_openfast *o) {
     }
 }
 
+// Since version 5.
+static void refuse_other_rotors(const bough_openfast *o) {
+    if (bough_deck_whole_or(o->main, "NRotors", 1) != 1) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "NRotors"), "NRotors: expected 1");
+    } else if (bough_deck_flag_or(o->main, "MirrorRotor", false)) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "MirrorRotor"),
+                        "MirrorRotor: expected False, a rotor that turns clockwise");
+    }
+}
+
 static void open_modules(bough_openfast *o) {
     int elastic = bough_deck_whole(o->main, "CompElast", 1, 2);
     int air = bough_deck_whole(o->main, "CompAero", 0, 3);
     refuse_water(o);
+    refuse_other_rotors(o);
     o->beamdyn = elastic == 2;
     o->elasto = bough_openfast_open(o, o->main, "EDFile");
     if (bough_deck_whole(o->main, "CompInflow", 0, 2) == 1) {

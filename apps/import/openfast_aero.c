@@ -176,7 +176,8 @@ static void put_induction(bough_openfast *o) {
     int skew = bough_deck_whole_or(a, "SkewMod|Skew_Mod", 1);
     bool new_skew = bough_deck_line(a, "Skew_Mod") >= 0;
     bool oye = wake == 2 || (wake == 1 && bough_deck_line(a, "Wake_Mod") >= 0 && dynamic > 0);
-    bool pitt = new_skew ? skew == 1 : skew == 2;
+    bool pitt =
+        new_skew ? skew == 1 && bough_deck_whole_or(a, "SkewRedistr_Mod", 1) != 0 : skew == 2;
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     fprintf(file,
             "  induction: {tip_loss: %s, hub_loss: %s, tangential: %s, drag: %s, skew: %s, "
@@ -279,8 +280,8 @@ void bough_openfast_aero(bough_openfast *o) {
     put_induction(o);
     put_stall(o);
     put_tower(o);
-    static const char *const left[] = {"CavitCheck", "Buoyancy", "CompAA", "TFinAero",
-                                       "NacelleDrag"};
+    static const char *const left[] = {"CavitCheck",  "Buoyancy",    "CompAA", "TFinAero",
+                                       "NacelleDrag", "SkewMomCorr", "SectAvg"};
     for (size_t i = 0; i < sizeof left / sizeof *left; i++) {
         if (bough_deck_flag_or(a, left[i], false)) {
             bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "AeroDyn's %s", left[i]);

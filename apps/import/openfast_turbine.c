@@ -190,6 +190,12 @@ static void note_left(bough_openfast *o) {
     if (o->n_blade == 2 && bough_deck_flag_or(o->elasto, "TeetDOF", false)) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "TeetDOF: the hub is rigid");
     }
+    if (bough_deck_flag_or(o->elasto, "PitchDOF", false)) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "PitchDOF: the pitch bearings are rigid");
+    }
+    if (bough_deck_whole_or(o->elasto, "YawFrctMod", 0) != 0) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "YawFrctMod: the yaw bearing has no friction");
+    }
     if (bough_deck_number_or(o->elasto, "GBoxEff", 100) != 100) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "GBoxEff: the gearbox loses nothing");
     }

@@ -1,4 +1,5 @@
 #include "apps/import/import.h"
+#include "apps/scene/scene.h"
 #include "tests/fuzz/fuzz.h"
 
 #include <string.h>
@@ -7,7 +8,9 @@
 static const char *const decks[] = {
     "main.fst", "parts/elasto.dat", "parts/blade.dat", "parts/tower.dat", "parts/aero.dat",
     "parts/aero-blade.dat", "parts/foils/flat.dat", "parts/servo.dat", "parts/wind.dat",
-    "parts/beam.dat", "parts/beam-blade.dat", "parts/foils/round.dat",
+    "parts/beam.dat", "parts/beam-blade.dat", "parts/foils/round.dat", "v4/main.fst", "v4/elasto.dat",
+    "v4/blade.dat", "v4/aero.dat", "v5/main.fst", "v5/elasto.dat", "v5/aero.dat", "v5/aero-blade.dat",
+    "v5/servo.dat", "v5/beam.dat", "v5/beam-blade.dat",
 };
 enum { DECKS = sizeof decks / sizeof *decks, ROOM = 1 << 16 };
 
@@ -40,6 +43,8 @@ static void start(void) {
     started = 1;
     make("parts");
     make("parts/foils");
+    make("v4");
+    make("v5");
     for (int i = 0; i < DECKS; i++)
         load(i);
 }
@@ -58,16 +63,30 @@ static int likest(const uint8_t *data, size_t size) {
     return best;
 }
 
+// What becomes a scene can be read as one.
+static void read_scene(const char *folder) {
+    char path[160];
+    bough_arena *arena = bough_arena_create();
+    bough_errors errors = {.arena = arena};
+    bough_scene *scene;
+    snprintf(path, sizeof path, "%s/scene.yaml", folder);
+    bough_status status = bough_scene_read(arena, path, NULL, 0, &errors, &scene);
+    if (!bough_is_ok(&status)) bough_errors_print(&errors, stderr);
+    fuzz_demand(bough_is_ok(&status), "a scene that can be read");
+    bough_arena_destroy(arena);
+}
+
 // Any bytes as a file of a model that is good otherwise.
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     char path[128], out[128];
     start();
-    snprintf(path, sizeof path, "%s/main.fst", fuzz_folder());
+    int i = likest(data, size), version = decks[i][0] == 'v' ? 3 : 0;
+    snprintf(path, sizeof path, "%s/%.*smain.fst", fuzz_folder(), version, decks[i]);
     snprintf(out, sizeof out, "%s/out", fuzz_folder());
-    int i = likest(data, size);
     fuzz_file(decks[i], data, size);
     bough_status status = bough_import_openfast(path, out, NULL);
     fuzz_demand(bough_is_ok(&status) || status.message[0], "a reason");
+    if (bough_is_ok(&status)) read_scene(out);
     fuzz_file(decks[i], original[i].text, original[i].size);
     return 0;
 }
