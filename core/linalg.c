@@ -1,5 +1,5 @@
-// LU by LAPACK, and Cholesky by hand for joints of at most six speeds, where a library call would
-// cost more than the work.
+// LU by LAPACK; by hand, as Cholesky, for at most six unknowns, where a library call would cost more
+// than the work.
 #include "core/linalg.h"
 
 #include <math.h>
@@ -50,10 +50,49 @@ static bool all_finite(size_t count, const double *a) {
 
 static bool finite_matrix(int n, const double *a) { return all_finite((size_t)n * (size_t)n, a); }
 
+enum { SMALL = 6 };
+
+static void swap(double *x, double *y) {
+    double kept = *x;
+    *x = *y;
+    *y = kept;
+}
+
+static bool factor_small(int n, double *a, int *pivot) {
+    for (int k = 0; k < n; k++) {
+        int best = k;
+        for (int i = k + 1; i < n; i++) {
+            if (fabs(a[k * n + i]) > fabs(a[k * n + best])) best = i;
+        }
+        pivot[k] = best;
+        if (a[k * n + best] == 0) return false;
+        for (int j = 0; j < n && best != k; j++) swap(&a[j * n + k], &a[j * n + best]);
+        for (int i = k + 1; i < n; i++) {
+            double factor = a[k * n + i] /= a[k * n + k];
+            for (int j = k + 1; j < n; j++) a[j * n + i] -= factor * a[j * n + k];
+        }
+    }
+    return true;
+}
+
+static void solve_small(int n, const double *factor, const int *pivot, double *x) {
+    for (int k = 0; k < n; k++) {
+        if (pivot[k] != k) swap(&x[k], &x[pivot[k]]);
+    }
+    for (int k = 0; k < n; k++) {
+        for (int i = k + 1; i < n; i++) x[i] -= factor[k * n + i] * x[k];
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        x[k] /= factor[k * n + k];
+        for (int i = 0; i < k; i++) x[i] -= factor[k * n + i] * x[k];
+    }
+}
+
 bool bough_dense_factor(int n, double *a, int *pivot) {
     if (n == 0) return true;
-    prepare();
     if (!finite_matrix(n, a)) return false;
+    if (n <= SMALL) return factor_small(n, a, pivot);
+    prepare();
     int info = 0;
     dgetrf_(&n, &n, a, &n, pivot, &info);
     return info == 0;
@@ -61,6 +100,10 @@ bool bough_dense_factor(int n, double *a, int *pivot) {
 
 void bough_dense_solve(int n, int n_right, const double *factor, const int *pivot, double *b) {
     if (n == 0 || n_right == 0) return;
+    if (n <= SMALL) {
+        for (int j = 0; j < n_right; j++) solve_small(n, factor, pivot, b + j * n);
+        return;
+    }
     int info = 0;
     dgetrs_("N", &n, &n_right, factor, &n, pivot, b, &n, &info, 1);
 }

@@ -66,6 +66,7 @@ static void take_answer(bough_condensed *k, bough_arena *arena, int member) {
     size_t n = (size_t)w->n, n_state = (size_t)s->n_state, n_input = (size_t)s->n_input;
     w->column = bough_arena_doubles(arena, n_input * n_state);
     w->response = bough_arena_doubles(arena, n * (size_t)s->n_output);
+    if (w->by_state) w->inverse = bough_arena_doubles(arena, n_state * n_state);
     if (w->leads) return;
     w->direction = bough_arena_doubles(arena, n * n_input);
     w->along = bough_arena_doubles(arena, n * n_state);
@@ -130,30 +131,67 @@ void bough_condensed_add_columns(const bough_condensed *k, int member, double fa
     }
 }
 
-bool bough_condensed_factor_leader(bough_condensed *k, int member,
-                                   const bough_operating_point *at) {
+// columns ← (I − γJ)⁻¹ γ columns, by the inverse: there are fewer states than inputs
+static void solve_columns(const bough_condensed *k, int member, double gamma) {
+    const bough_subsystem *s = subsystem(k, member);
+    const bough_answer *w = &k->of[member];
+    double *right = k->work + k->assembly->state_offset[member], *column = w->column;
+    int n = s->n_state;
+    memset(w->inverse, 0, (size_t)n * (size_t)n * sizeof(double));
+    for (int i = 0; i < n; i++) {
+        w->inverse[i * n + i] = gamma;
+        s->ops->newton_solve(s->self, w->inverse + (size_t)i * (size_t)n);
+    }
+    for (int j = 0; j < s->n_input; j++, column += n) {
+        memcpy(right, column, (size_t)n * sizeof(double));
+        memset(column, 0, (size_t)n * sizeof(double));
+        for (int i = 0; i < n; i++) {
+            for (int r = 0; r < n; r++)
+                column[r] += right[i] * w->inverse[i * n + r];
+        }
+    }
+}
+
+// The outputs' change with each input, through the states and at once.
+static void find_input_responses(const bough_condensed *k, int member,
+                                 const bough_operating_point *at) {
     const bough_subsystem *s = subsystem(k, member);
     const bough_answer *w = &k->of[member];
     double *unit = k->unit + k->assembly->input_offset[member];
-    double *state = k->work + k->assembly->state_offset[member];
-    if (!factor(k, member, at)) return false;
     double *column = w->column, *response = w->response;
-    for (int j = 0; j < s->n_input; j++, column += s->n_state) {
+    for (int j = 0; j < s->n_input; j++, column += s->n_state, response += s->n_output) {
         for (int i = 0; i < s->n_state; i++)
             column[i] *= at->gamma;
         s->ops->newton_solve(s->self, column);
-        if (w->by_state) continue;
         unit[j] = 1;
-        output_change(s, at, column, unit, response + (size_t)j * (size_t)s->n_output);
+        output_change(s, at, column, unit, response);
         unit[j] = 0;
     }
-    if (!w->by_state) return true;
+}
+
+static void find_state_responses(const bough_condensed *k, int member,
+                                 const bough_operating_point *at) {
+    const bough_subsystem *s = subsystem(k, member);
+    double *state = k->work + k->assembly->state_offset[member];
+    double *response = k->of[member].response;
     memset(state, 0, (size_t)s->n_state * sizeof(double));
     for (int i = 0; i < s->n_state; i++, response += s->n_output) {
         state[i] = 1;
         output_change(s, at, state, NULL, response);
         state[i] = 0;
     }
+}
+
+bool bough_condensed_factor_leader(bough_condensed *k, int member,
+                                   const bough_operating_point *at) {
+    const bough_answer *w = &k->of[member];
+    if (!factor(k, member, at)) return false;
+    if (!w->by_state) {
+        find_input_responses(k, member, at);
+        return true;
+    }
+    solve_columns(k, member, at->gamma);
+    find_state_responses(k, member, at);
     return true;
 }
 

@@ -21,6 +21,7 @@ typedef struct bough_answer {
     int first;  // leader: its coordinates begin there among all
     int n;      // coordinates of a leader, directions of a follower
     double *column; // (n_input × n_state) of a leader (I − γJ)⁻¹ γ ∂f/∂u, of a follower ∂f/∂u
+    double *inverse; // leader by states: (n_state × n_state) (I − γJ)⁻¹ by columns
     double *direction; // follower: (n × n_input) change of its inputs along each direction
     double *along;     // follower: (n × n_state) its answer to that
     double *response;  // (n × n_output) change of its outputs along each coordinate or direction

@@ -53,16 +53,24 @@ static bool in_stage(const bough_coupling *c, int stage, int member) {
     return stage == BOUGH_ALL_STAGES || c->assembly->stage[member] == stage;
 }
 
+// Lists the members of a stage in c->turn; nobody has failed yet.
+static int list_stage(bough_coupling *c, int stage) {
+    int n = 0;
+    for (int i = 0; i < c->assembly->n_member; i++) {
+        c->status[i].code = BOUGH_OK;
+        if (in_stage(c, stage, i)) c->turn[n++] = i;
+    }
+    return n;
+}
+
 typedef struct member_work {
     bough_coupling *coupling;
-    int stage;
     void (*work)(bough_coupling *c, int member);
 } member_work;
 
-static void run_member(void *data, int i) {
+static void run_member(void *data, int k) {
     const member_work *w = data;
-    w->coupling->status[i].code = BOUGH_OK;
-    if (in_stage(w->coupling, w->stage, i)) w->work(w->coupling, i);
+    w->work(w->coupling, w->coupling->turn[k]);
 }
 
 static bough_status first_failure(bough_coupling *c) {
@@ -76,9 +84,8 @@ static bough_status first_failure(bough_coupling *c) {
 
 bough_status bough_coupling_each(bough_coupling *c, int stage,
                                  void (*work)(bough_coupling *c, int member)) {
-    int n = c->assembly->n_member;
-    member_work w = {c, stage, work};
-    bough_pool_run(c->pool, n, run_member, &w);
+    member_work w = {c, work};
+    bough_pool_run(c->pool, list_stage(c, stage), run_member, &w);
     return first_failure(c);
 }
 
@@ -148,11 +155,7 @@ static void take_turn(void *data, int k) {
 }
 
 bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart) {
-    turns w = {c, restart, 0, 0};
-    for (int i = 0; i < c->assembly->n_member; i++) {
-        c->status[i].code = BOUGH_OK;
-        if (in_stage(c, stage, i)) c->turn[w.n++] = i;
-    }
+    turns w = {c, restart, list_stage(c, stage), 0};
     int threads = bough_pool_threads(c->pool);
     if (w.n > threads) w.rest = w.n % threads;
     bough_pool_run(c->pool, w.n + w.rest, take_turn, &w);

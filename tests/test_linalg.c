@@ -24,6 +24,22 @@ static void lu_solves_with_interchanges(void **state) {
         check_near(b[i], x[i], 1e-14, 0);
 }
 
+// By hand up to six unknowns, by a library beyond; diagonals are small, so that rows are exchanged.
+static void lu_solves_systems_of_any_size(void **state) {
+    (void)state;
+    for (int n = 1; n <= 9; n++) {
+        double a[81], b[9] = {0};
+        int pivot[9];
+        for (int k = 0; k < n * n; k++) a[k] = sin(1.7 * k * k + n) - (k % (n + 1) == 0 ? 0.9 : 0);
+        for (int c = 0; c < n; c++) {
+            for (int r = 0; r < n; r++) b[r] += a[c * n + r] * (c - 2.5);
+        }
+        assert_true(bough_dense_factor(n, a, pivot));
+        bough_dense_solve(n, 1, a, pivot, b);
+        for (int i = 0; i < n; i++) check_near(b[i], i - 2.5, 0, 1e-12);
+    }
+}
+
 static void lu_refuses_singular_and_nan(void **state) {
     (void)state;
     double singular[4] = {1, 2, 2, 4}, nan[4] = {1, 0, NAN, 1};
@@ -164,6 +180,7 @@ static void cholesky_refuses_indefinite_and_nearly_singular(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lu_solves_with_interchanges),
+        cmocka_unit_test(lu_solves_systems_of_any_size),
         cmocka_unit_test(lu_refuses_singular_and_nan),
         cmocka_unit_test(complex_lu_solves),
         cmocka_unit_test(symmetric_eigenvectors_rebuild_the_matrix),
