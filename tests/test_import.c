@@ -2,6 +2,7 @@
 #include "tests/import.h"
 
 #include "apps/api/bough.h"
+#include "apps/import/section.h"
 #include "apps/output/folder.h"
 #include "tests/scratch.h"
 
@@ -175,7 +176,10 @@ static void what_version_five_adds_is_told(void **context) {
     const edit modal = {"v5/beam-blade.dat", "1   damp_type", "2   damp_type"};
     const edit bearing = {"v5/elasto.dat", "False         PitchDOF", "True  PitchDOF"};
     trial t = import_main("v5/main.fst", &modal, &bearing);
-    assert_true(list_says(&t, "damp_type 2: the blade is undamped"));
+    assert_true(list_says(&t, "edgewise mode's zeta 0.1 and 0.2"));
+    const bough_node *times = at(read_file(&t, "blade-structure.yaml"), "damping");
+    // flap is 4/9 as stiff as edge, so 2/3 as fast
+    check_near(number(times, "4") / number(times, "3"), 0.5 * 1.5, 1e-9, 0);
     assert_true(list_says(&t, "PitchDOF: the pitch bearings are rigid"));
     done(&t);
     const edit rotors = {"v5/main.fst", "1    NRotors", "2    NRotors"};
@@ -191,6 +195,23 @@ static void what_version_five_adds_is_told(void **context) {
     t = import_main("v5/main.fst", &redistribution, NULL);
     assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.induction.skew"), "none");
     done(&t);
+}
+
+// ω = 1.8751² √(E I/(m l⁴)); a wedge of constant width: 5.315 √(E I/(m l⁴)) with the root's values.
+static void frequencies_are_those_of_beams(void **context) {
+    (void)context;
+    const double span[] = {0, 3, 6}, same[] = {4, 4, 4}, mass[] = {9, 9, 9};
+    check_near(bough_section_frequency(3, span, same, mass), 3.51602 * sqrt(4 / (9 * 1296.0)), 1e-4,
+               0);
+    double x[41], stiffness[41], thin[41];
+    for (int i = 0; i < 41; i++) {
+        double left = 1 - 0.999 * i / 40;
+        x[i] = 6.0 * i / 40;
+        stiffness[i] = 4 * left * left * left;
+        thin[i] = 9 * left;
+    }
+    check_near(bough_section_frequency(41, x, stiffness, thin), 5.315 * sqrt(4 / (9 * 1296.0)),
+               3e-3, 0);
 }
 
 static void a_scene_steps(const edit *one, const edit *two) {
@@ -294,6 +315,7 @@ int main(void) {
         cmocka_unit_test(newer_names_are_known),
         cmocka_unit_test(versions_three_to_five_give_one_scene),
         cmocka_unit_test(what_version_five_adds_is_told),
+        cmocka_unit_test(frequencies_are_those_of_beams),
         cmocka_unit_test(scenes_step),
         cmocka_unit_test(controller_libraries_and_wind_files_stay_in_place),
         cmocka_unit_test(bad_decks_are_told_where),

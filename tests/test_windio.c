@@ -97,7 +97,9 @@ static void turbine_has_the_files_values(void **context) {
     const bough_node *s = read_file(&t, "scene.yaml");
     char words[40];
     assert_string_equal(text(s, "bodies.0.joint.placement.0"), "move z 2 m");
-    check_near(number(s, "bodies.1.centre_of_mass.2"), 1, 1e-9, 0);
+    check_near(number(s, "bodies.1.centre_of_mass.2"), 8.0 / 9, 1e-9, 0); // with the yaw bearing
+    check_near(number(s, "bodies.1.inertia.1"), 5000 + 8000.0 / 9 * 1.25, 1e-9, 0);
+    check_near(number(s, "bodies.1.inertia.4"), -8000.0 / 9 * 0.5, 1e-9, 0);
     assert_string_equal(text(s, "bodies.2.joint.placement.1"), "move x -2 m");
     snprintf(words, sizeof words, "rotate y %.10g deg", 18 / acos(-1.0));
     assert_string_equal(text(s, "bodies.2.joint.placement.2"), words);
@@ -141,8 +143,14 @@ static void both_layouts_give_one_scene(void **context) {
     for (size_t i = 0; i < sizeof files / sizeof *files; i++)
         same(read_file(&first, files[i]), read_file(&second, files[i]));
     assert_true(list_says(&second, "the layout of version 2"));
-    done(&first);
     done(&second);
+    // the nacelle's inertia about its own centre and about the tower's top
+    second =
+        import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "[12000, 15000, 8000, 0, -4000, 0]",
+                                            "[4000, 5000, 6000]\n      inertia_tt: [12000]"});
+    same(read_file(&first, "scene.yaml"), read_file(&second, "scene.yaml"));
+    done(&second);
+    done(&first);
 }
 
 static void what_is_not_given_is_told(void **context) {
@@ -151,6 +159,12 @@ static void what_is_not_given_is_told(void **context) {
     assert_true(list_says(&t, "hub: no mass given"));
     check_near(number(read_file(&t, "scene.yaml"), "bodies.2.mass"),
                2.5 * (50 * sqrt(25.0025) + 25 * sqrt(25.1625)), 1e-9, 0);
+    done(&t);
+    t = import_of(
+        "turbine-2.yaml",
+        &(edit){"turbine-2.yaml", "efficiency: 0.95}",
+                "efficiency: 0.95}\n    generator: {elastic_properties: {inertia: [3, 1, 1]}}"});
+    check_near(number(read_file(&t, "scene.yaml"), "bodies.2.inertia.0"), 900 + 3 * 100, 1e-9, 0);
     done(&t);
     t = import_with("      layers:", "      other:");
     assert_true(list_says(&t, "no layers, so it is rigid"));

@@ -40,8 +40,8 @@ typedef struct bough_draft {
 // Takes memory; a failure is in *status. The draft must then stay where it is.
 void bough_draft_start(bough_draft *d, bough_status *status);
 
-// Writes the files unless there was a failure or they could not be read as a scene, the list also to
-// `echo` (NULL: nobody), and gives the memory back.
+// Writes the files unless there was a failure or they could not be read as a scene, the list also
+// to `echo` (NULL: nobody), and gives the memory back.
 void bough_draft_finish(bough_draft *d, const char *folder, FILE *echo);
 
 // A line of the list.

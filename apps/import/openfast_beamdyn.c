@@ -6,6 +6,12 @@
 
 enum { MOST = 1000, MATRIX = BOUGH_IMPORT_MATRIX, STATION = 1 + 2 * MATRIX };
 
+// What bends, for the first frequencies.
+typedef struct beam {
+    int n;
+    double *span, *flap, *edge, *mass; // (n) [m, N m2, N m2, kg/m]
+} beam;
+
 typedef struct line_point {
     double x, y, z, twist; // [m, deg]
 } line_point;
@@ -67,20 +73,20 @@ static void put_station(bough_openfast *o, const bough_deck *deck, const line_po
 }
 
 static void put_stations(bough_openfast *o, const bough_deck *deck, const line_point *p,
-                         int n_point) {
-    int n = bough_deck_whole(deck, "station_total", 2, MOST);
+                         int n_point, beam *b) {
+    int n = b->n;
     int line = bough_deck_find(deck, "DISTRIBUTED PROPERTIES") + 1;
     if (bough_is_ok(o->draft.status) && line == 0) {
         bough_deck_fail(deck, -1, "no section 'DISTRIBUTED PROPERTIES'");
     }
-    double last[STATION] = {0}, s[STATION], strange = 0, span = 0;
+    double last = 0, s[STATION], strange = 0;
     fprintf(o->draft.file[BOUGH_IMPORT_BLADE],
             "stations:\n  columns: [span, twist deg, axis, stiffness, mass]\n  rows:\n");
     for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
         bough_deck_numbers(deck, &line, "a station's share of the length", 1, s);
         int start = line - 1;
         bough_deck_numbers(deck, &line, "a station's two matrices", 2 * MATRIX, s + 1);
-        bool good = s[0] >= 0 && s[0] <= 1 && (i == 0 ? s[0] == 0 : s[0] > last[0]);
+        bool good = s[0] >= 0 && s[0] <= 1 && (i == 0 ? s[0] == 0 : s[0] > last);
         if (!good || (i == n - 1 && s[0] != 1)) {
             bough_deck_fail(deck, start,
                             "the station stands at %g: expected shares that grow from 0 to 1",
@@ -90,10 +96,12 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
         line_point at = at_share(p, n_point, s[0]);
         put_station(o, deck, &at, s, start);
         strange = fmax(strange, bough_section_strangeness(s + 1 + MATRIX));
-        if (i > 0) o->blade_mass += (at.z - span) * (s[1 + MATRIX] + last[1 + MATRIX]) / 2;
-        span = at.z;
-        for (int k = 0; k < STATION; k++)
-            last[k] = s[k];
+        b->span[i] = at.z;
+        b->flap[i] = s[1 + 4 * 7];
+        b->edge[i] = s[1 + 3 * 7];
+        b->mass[i] = s[1 + MATRIX];
+        if (i > 0) o->blade_mass += (at.z - b->span[i - 1]) * (b->mass[i] + b->mass[i - 1]) / 2;
+        last = s[0];
     }
     bough_draft_note(&o->draft, BOUGH_TAKEN,
                      "%d stations with full stiffness and mass; the blade weighs "
@@ -107,17 +115,45 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
     }
 }
 
-static void put_damping(bough_openfast *o, const bough_deck *deck) {
+// Times that give the first flapwise and edgewise mode their ratios.
+static const double *modal_damping(bough_openfast *o, const bough_deck *deck, const beam *b) {
+    int n = bough_deck_whole(deck, "n_modes", 1, MOST), line = bough_deck_line(deck, "n_modes") + 1;
+    double ratio[2] = {0}, *mu = bough_arena_doubles(o->draft.arena, 6);
+    bough_deck_numbers(deck, &line, "zeta", n < 2 ? 1 : 2, ratio);
+    if (!mu) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!bough_is_ok(o->draft.status)) return NULL;
+    double flap = 2 * ratio[0] / bough_section_frequency(b->n, b->span, b->flap, b->mass);
+    double edge = 2 * ratio[n > 1] / bough_section_frequency(b->n, b->span, b->edge, b->mass);
+    mu[0] = mu[2] = mu[4] = mu[5] = flap;
+    mu[1] = mu[3] = edge;
+    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                     "damp_type 2: damping grows with the frequency from the first flapwise and "
+                     "edgewise mode's zeta %g and %g",
+                     ratio[0], ratio[n > 1]);
+    return mu;
+}
+
+static void put_damping(bough_openfast *o, const bough_deck *deck, const beam *b) {
     const char *const column[] = {"mu1", "mu2", "mu3", "mu4", "mu5", "mu6"};
-    double none[6] = {0};
+    static const double none[6] = {0};
+    const double *mu = none;
     int kind = bough_deck_whole_or(deck, "damp_type", 1);
-    const double *mu = kind == 1 ? bough_deck_table(deck, column, 6, 1) : none;
+    if (kind == 1) mu = bough_deck_table(deck, column, 6, 1);
+    if (kind == 2) mu = modal_damping(o, deck, b);
+    if (!mu) return;
     fputs("damping: ", o->draft.file[BOUGH_IMPORT_BLADE]);
-    if (mu) bough_import_list(o->draft.file[BOUGH_IMPORT_BLADE], mu, 6);
+    bough_import_list(o->draft.file[BOUGH_IMPORT_BLADE], mu, 6);
     fputs("  # s\n", o->draft.file[BOUGH_IMPORT_BLADE]);
-    if (kind > 1) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "damp_type %d: the blade is undamped", kind);
-    }
+}
+
+static bool take_beam(bough_openfast *o, beam *b, int n) {
+    b->span = bough_arena_doubles(o->draft.arena, 4 * (size_t)n);
+    if (!b->span) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!b->span) return false;
+    b->flap = b->span + n;
+    b->edge = b->flap + n;
+    b->mass = b->edge + n;
+    return true;
 }
 
 void bough_openfast_beamdyn(bough_openfast *o) {
@@ -132,6 +168,8 @@ void bough_openfast_beamdyn(bough_openfast *o) {
     if (!bough_is_ok(o->draft.status)) return;
     o->blade_length = p[n - 1].z;
     fprintf(o->draft.file[BOUGH_IMPORT_BLADE], "length: %.10g\n", o->blade_length);
-    put_damping(o, blade);
-    put_stations(o, blade, p, n);
+    beam b = {.n = bough_deck_whole(blade, "station_total", 2, MOST)};
+    if (!bough_is_ok(o->draft.status) || !take_beam(o, &b, b.n)) return;
+    put_stations(o, blade, p, n, &b);
+    if (bough_is_ok(o->draft.status)) put_damping(o, blade, &b);
 }

@@ -22,6 +22,11 @@ bool bough_section_possible(const double k[BOUGH_IMPORT_MATRIX],
 // have or have otherwise, relative to its neighbours.
 double bough_section_strangeness(const double m[BOUGH_IMPORT_MATRIX]);
 
+// The first bending frequency [rad/s] of a clamped beam without twist and shear, given at n
+// stations from the root: span [m], bending stiffness [N m2] and mass [kg/m], linear between.
+double bough_section_frequency(int n, const double *span, const double *stiffness,
+                               const double *mass);
+
 // A section of one material without offsets.
 typedef struct bough_section {
     double span, twist;                           // [m, deg]

@@ -80,6 +80,7 @@ static matrices read_stiffness(bough_windio *w, const bough_node *from) {
     for (int i = 0; i < 6; i++) {
         for (int j = i; j < 6; j++) {
             char key[] = {'K', (char)('1' + i), (char)('1' + j), '\0'};
+            if (i != j && !bough_entry(m.node, key)) continue;
             const double *list = read_list(w, &m, key);
             for (int k = 0; list && k < m.n; k++)
                 m.entry[(size_t)bough_symmetric6_index(i, j) * m.n + k] = list[k];
@@ -104,6 +105,7 @@ static void put_inertia(matrices *m, int k, const double value[7]) {
 
 static matrices read_inertia(bough_windio *w, const bough_node *from) {
     static const char *const key[] = {"mass", "cm_x", "cm_y", "i_edge", "i_flap", "i_plr", "i_cp"};
+    static const bool needed[] = {true, false, false, true, true, true, false};
     matrices m = read_grid(w, from, "inertia_matrix");
     if (!m.node) return m;
     if (bough_entry(m.node, "values")) {
@@ -112,11 +114,11 @@ static matrices read_inertia(bough_windio *w, const bough_node *from) {
     }
     const double *list[7];
     for (int e = 0; e < 7; e++)
-        list[e] = read_list(w, &m, key[e]);
+        list[e] = needed[e] || bough_entry(m.node, key[e]) ? read_list(w, &m, key[e]) : NULL;
     for (int k = 0; k < m.n && bough_is_ok(w->draft.status); k++) {
         double value[7];
         for (int e = 0; e < 7; e++)
-            value[e] = list[e][k];
+            value[e] = list[e] ? list[e][k] : 0;
         put_inertia(&m, k, value);
     }
     return m;

@@ -3,6 +3,7 @@
 #include "core/base.h"
 
 #include <math.h>
+#include <string.h>
 
 // Reference turbines of 3 to 15 MW: nacelle with generator, per rated power [kg/W]; the hub with
 // its pitch system, per blade mass.
@@ -10,11 +11,39 @@ static const double nacelle_per_watt = 0.05, hub_per_blade = 2.5;
 
 // A rigid body's mass properties in the axes of its frame.
 typedef struct lump {
-    double mass;                  // [kg]
-    double centre[3], inertia[3]; // [m]; about the centre of mass [kg m2]
+    double mass;       // [kg]
+    double centre[3];  // [m]
+    double inertia[6]; // xx, yy, zz, xy, xz, yz of the matrix about the centre of mass [kg m2]
 } lump;
 
 // -- masses ---------------------------------------------------------------------------------------
+
+// Adds the inertia of a mass at c about the origin.
+static void add_offset(double inertia[6], double mass, const double c[3]) {
+    double square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+    for (int i = 0; i < 3; i++)
+        inertia[i] += mass * (square - c[i] * c[i]);
+    inertia[3] -= mass * c[0] * c[1];
+    inertia[4] -= mass * c[0] * c[2];
+    inertia[5] -= mass * c[1] * c[2];
+}
+
+// An inertia about the origin of the frame, if it can be one; else it is about the centre of mass.
+static void move_to_centre(lump *l) {
+    double moved[6];
+    memcpy(moved, l->inertia, sizeof moved);
+    add_offset(moved, -l->mass, l->centre);
+    if (moved[0] > 0 && moved[1] > 0 && moved[2] > 0) memcpy(l->inertia, moved, sizeof moved);
+}
+
+// Three or six numbers.
+static void read_inertia(bough_windio *w, const bough_node *from, const char *path, double to[6]) {
+    const bough_node *node = bough_entry(from, path);
+    int n = node && node->n == 3 ? 3 : 6;
+    const double *row = node ? bough_entry_numbers(&w->draft, node, "", &n) : NULL;
+    for (int i = 0; i < 6; i++)
+        to[i] = row && i < n ? row[i] : 0;
+}
 
 // Version 1: elastic_properties_mb {system_mass, system_inertia, system_center_mass}; version 2:
 // elastic_properties {mass, inertia, location}. False: there are none.
@@ -23,30 +52,25 @@ static bool read_lump(bough_windio *w, const bough_node *part, lump *l) {
     const bough_node *from = bough_entry(part, "elastic_properties_mb|elastic_properties");
     if (!bough_entry(from, "system_mass|mass")) return false;
     *l = (lump){.mass = bough_entry_number(d, from, "system_mass|mass")};
-    const bough_node *inertia = bough_entry(from, "system_inertia|inertia");
     const bough_node *centre = bough_entry(from, "system_center_mass|location");
-    int n = inertia && inertia->n == 3 ? 3 : 6, three = 3;
-    const double *row = inertia ? bough_entry_numbers(d, inertia, "", &n) : NULL;
-    const double *at = centre ? bough_entry_numbers(d, centre, "", &three) : NULL;
-    for (int i = 0; i < 3; i++) {
-        l->inertia[i] = row ? row[i] : 0;
-        l->centre[i] = at ? at[i] : 0;
-        if (row && row[i] < 0) bough_entry_fail(d, inertia, "expected no negative inertia");
-    }
+    int n = 3;
+    const double *at = centre ? bough_entry_numbers(d, centre, "", &n) : NULL;
+    if (at) memcpy(l->centre, at, sizeof l->centre);
+    read_inertia(w, from, "system_inertia|inertia", l->inertia);
     if (l->mass < 0) bough_entry_fail(d, from, "mass: expected no negative one");
-    if (row && n == 6 && (row[3] != 0 || row[4] != 0 || row[5] != 0)) {
-        bough_draft_note(d, BOUGH_LEFT_OUT, "products of inertia of %s",
-                         part == w->hub ? "the hub" : "the nacelle");
-    }
     return true;
 }
 
-// From the frame's origin to the centre of mass, none of them below zero.
-static void move_to_centre(lump *l) {
-    const double *c = l->centre;
-    double square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+// The yaw bearing's mass sits at the tower's top.
+static void add_yaw(bough_windio *w, lump *l) {
+    double mass = bough_entry_number_or(&w->draft, w->train, "elastic_properties_mb.yaw_mass", 0);
+    mass = bough_entry_number_or(&w->draft, w->parts, "yaw.elastic_properties.mass", mass);
+    double sum = l->mass + mass;
+    if (!(mass > 0)) return;
+    add_offset(l->inertia, l->mass * mass / sum, l->centre);
     for (int i = 0; i < 3; i++)
-        l->inertia[i] = fmax(l->inertia[i] - l->mass * (square - c[i] * c[i]), 0);
+        l->centre[i] *= l->mass / sum;
+    l->mass = sum;
 }
 
 static lump hub_lump(bough_windio *w) {
@@ -61,7 +85,9 @@ static lump hub_lump(bough_windio *w) {
 static lump nacelle_lump(bough_windio *w, double overhang) {
     lump l;
     if (read_lump(w, w->train, &l)) {
-        if (w->second) move_to_centre(&l);
+        if (w->second && !bough_entry(w->train, "elastic_properties.inertia_tt"))
+            move_to_centre(&l);
+        add_yaw(w, &l);
         return l;
     }
     double mass = nacelle_per_watt * w->rated_power, inertia = mass * overhang * overhang / 4;
@@ -73,11 +99,12 @@ static lump nacelle_lump(bough_windio *w, double overhang) {
 }
 
 static double generator_inertia(bough_windio *w, double ratio) {
-    const bough_node *from = bough_entry(w->train, "generator.elastic_properties.inertia");
-    int n = 6;
-    const double *row = from ? bough_entry_numbers(&w->draft, from, "", &n) : NULL;
-    if (!from) bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "inertia of the generator: not given");
-    return row ? row[0] * ratio * ratio : 0;
+    double inertia[6];
+    read_inertia(w, w->train, "generator.elastic_properties.inertia", inertia);
+    if (inertia[0] == 0) {
+        bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "inertia of the generator: not given");
+    }
+    return inertia[0] * ratio * ratio;
 }
 
 // -- bodies ---------------------------------------------------------------------------------------
@@ -86,7 +113,7 @@ static void put_lump(FILE *file, const lump *l) {
     fprintf(file, "    mass: %.10g kg\n    centre_of_mass: ", l->mass);
     bough_import_list(file, l->centre, 3);
     fputs("\n    inertia: ", file);
-    bough_import_list(file, l->inertia, 3);
+    bough_import_list(file, l->inertia, 6);
     fputc('\n', file);
 }
 
