@@ -52,11 +52,10 @@ static bough_status check(const bough_master_def *def) {
 // Nothing to say when the judgement fails: the run will show why.
 static void judge(bough_master *m) {
     if (!m->scheme->judged) return;
-    bough_stability_advice advice;
     const bough_scheme_options *options = &m->coupling->options;
-    bough_status status = bough_stability_advise(m->assembly, options, m->macro_step, &advice);
+    bough_status status = bough_stability_advise(m->assembly, options, m->macro_step, &m->advice);
     if (!bough_is_ok(&status)) return;
-    bough_stability_describe(m->assembly, &advice, options, m->macro_step, m->verdict);
+    bough_stability_describe(m->assembly, &m->advice, options, m->macro_step, m->verdict);
 }
 
 // Order of the defects in the macro step.
@@ -87,6 +86,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     if (bough_is_ok(&status)) {
         status = bough_monitor_create(arena, m->scheme, m->coupling, &m->monitor);
     }
+    if (bough_is_ok(&status)) status = bough_breakdown_create(arena, m->assembly, &m->breakdown);
     if (bough_is_ok(&status) && m->scheme != &bough_scheme_monolithic) {
         status = bough_error_estimate_create(arena, m->coupling, &m->estimate);
     }
@@ -161,17 +161,6 @@ static void set_time(bough_master *m, double t) {
     m->at_event = pass_events(m);
 }
 
-// Adds to a failed member's message what the coupling was doing.
-static bough_status explain(const bough_master *m, bough_status cause) {
-    if (cause.code != BOUGH_FAILED && cause.code != BOUGH_RETRY) return cause;
-    const char *advice = m->scheme->explicit_forces ? "; try a smaller macro step or scheme: ramp"
-                                                    : "; try a smaller macro step";
-    int room = (int)(sizeof cause.message - 160);
-    return bough_fail(BOUGH_FAILED, "%.*s (scheme %s, macro step %.6g s from %.6g s)%s", room,
-                      cause.message, m->scheme->name, m->coupling->t1 - m->coupling->t0, m->time,
-                      advice);
-}
-
 // One macro step: predict, exchange, advance, correct, as the scheme orders them.
 static bough_status take_step(bough_master *m) {
     bough_status status = m->scheme->step(m->coupling);
@@ -206,8 +195,11 @@ bough_status bough_step(bough_master *m) {
     bough_status status = sample_loads(m, &c->restart);
     if (!bough_is_ok(&status)) return status;
 
+    bough_breakdown_keep(m->breakdown);
     status = m->control ? take_controlled_step(m) : take_step(m);
-    if (!bough_is_ok(&status)) return explain(m, status);
+    if (!bough_is_ok(&status)) {
+        return bough_breakdown_explain(m->breakdown, c, &m->advice, status);
+    }
 
     status = bough_monitor_step(m->monitor, c);
     if (!bough_is_ok(&status)) return status;

@@ -3,6 +3,7 @@
 #ifndef BOUGH_COSIM_MASTER_H
 #define BOUGH_COSIM_MASTER_H
 
+#include "cosim/breakdown.h"
 #include "cosim/error_estimate.h"
 #include "cosim/monitor.h"
 #include "cosim/stability.h"
@@ -43,6 +44,7 @@ typedef struct bough_master {
     bough_monitor *monitor;
     bough_error_estimate *estimate; // NULL: the scheme makes no coupling error
     bough_step_control *control;    // NULL: fixed steps
+    bough_breakdown *breakdown;
     int n_load;
     bough_sampled_load *load; // (n_load)
     long *load_every;         // (n_load) macro steps per period
@@ -51,6 +53,7 @@ typedef struct bough_master {
     int next_event;  // first event after `time`
     long grid_index; // k of the last grid point at or before `time`
     bool at_event;   // `time` is an event
+    bough_stability_advice advice; // about the initial state; empty when not judged
     char verdict[BOUGH_VERDICT]; // a warning that the coupling is unstable; may be empty
 } bough_master;
 

@@ -77,7 +77,7 @@ static void every_cell_speaks(void **state) {
     assert_int_equal(lines_of(*state, "cells.csv"), 1 + CELLS + REFERENCES);
     assert_int_equal(lines_of(*state, "table.csv"), 1 + 1 + CELLS);
     char *table = scratch_read(*state, "table.csv"), *picture = scratch_read(*state, "plot.svg");
-    assert_int_equal(count(table, "smaller macro step"), 6);
+    assert_int_equal(count(table, "grows by a factor of "), 6);
     assert_int_equal(count(picture, "<rect"), 1 + CELLS);
     free(table);
     free(picture);

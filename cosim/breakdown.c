@@ -1,0 +1,81 @@
+#include "cosim/breakdown.h"
+
+#include "cosim/scheme.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+struct bough_breakdown {
+    const bough_assembly *assembly;
+    double *state; // (n_state)
+};
+
+enum { ADVICE = 150 };
+
+bough_status bough_breakdown_create(bough_arena *arena, const bough_assembly *assembly,
+                                    bough_breakdown **breakdown) {
+    bough_breakdown *b = bough_arena_take(arena, sizeof *b);
+    if (!b) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    b->assembly = assembly;
+    b->state = bough_arena_doubles(arena, (size_t)assembly->n_state);
+    *breakdown = b;
+    return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
+                                        : bough_ok();
+}
+
+void bough_breakdown_keep(bough_breakdown *b) {
+    for (int i = 0; i < b->assembly->n_member; i++) {
+        const bough_subsystem *s = b->assembly->member[i];
+        memcpy(b->state + b->assembly->state_offset[i], s->state,
+               (size_t)s->n_state * sizeof(double));
+    }
+}
+
+// Nothing when the judgement fails too: the state may be past judging.
+static bough_stability_advice judge_again(bough_breakdown *b, bough_coupling *c) {
+    const bough_assembly *a = b->assembly;
+    bough_scheme_options options = c->options;
+    bough_stability_advice advice;
+    if (c->theta > 0) options.theta = c->theta;
+    c->refactor = true;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_subsystem *s = a->member[i];
+        s->ops->set_state(s->self, c->t0, b->state + a->state_offset[i]);
+    }
+    bough_status status = bough_stability_advise(a, &options, c->t1 - c->t0, &advice);
+    return bough_is_ok(&status) ? advice : (bough_stability_advice){0};
+}
+
+static void advise(const bough_coupling *c, const bough_stability_advice *advice, char *text) {
+    const bough_scheme *scheme = bough_scheme_find(c->options.name);
+    bool ramp = advice->ramp_holds && scheme != &bough_scheme_ramp;
+    if (!advice->unstable) {
+        snprintf(text, ADVICE, "; try a smaller macro step%s",
+                 scheme->explicit_forces ? " or scheme: ramp" : "");
+        return;
+    }
+    int n = snprintf(text, ADVICE, ": the coupling grows by a factor of %.3g in each macro step; ",
+                     exp(advice->now.growth * (c->t1 - c->t0)));
+    char *end = text + n;
+    size_t room = (size_t)(ADVICE - n);
+    if (advice->macro_step > 0) {
+        snprintf(end, room, "try macro_step: %.4g s%s", advice->macro_step,
+                 ramp ? " or scheme: ramp" : "");
+    } else {
+        snprintf(end, room, "try scheme: %s", ramp ? "ramp" : "monolithic");
+    }
+}
+
+bough_status bough_breakdown_explain(bough_breakdown *b, bough_coupling *c,
+                                     const bough_stability_advice *before, bough_status cause) {
+    if (cause.code != BOUGH_FAILED && cause.code != BOUGH_RETRY) return cause;
+    char text[ADVICE];
+    bool judged = strcmp(c->options.name, bough_scheme_monolithic.name) != 0;
+    bough_stability_advice advice = *before;
+    if (!advice.unstable && judged) advice = judge_again(b, c);
+    advise(c, &advice, text);
+    int room = (int)(sizeof cause.message - ADVICE - 70);
+    return bough_fail(BOUGH_FAILED, "%.*s (scheme %s, macro step %.6g s from %.6g s)%s", room,
+                      cause.message, c->options.name, c->t1 - c->t0, c->t0, text);
+}
