@@ -89,13 +89,19 @@ static void factor_follower(bough_arrow *arrow, int i) {
 
 static bool factor_border(bough_arrow *arrow);
 
-bough_status bough_arrow_setup(bough_arrow *arrow, double t, const double *state,
-                               const double *input, double gamma) {
-    int n = arrow->assembly->n_input;
-    memcpy(arrow->setup_state, state, (size_t)arrow->assembly->n_state * sizeof(double));
-    memcpy(arrow->setup_input, input, (size_t)n * sizeof(double));
+void bough_arrow_adopt(bough_arrow *arrow, bough_condensed *interface, double t,
+                       const double *state, const double *input, double gamma) {
+    const bough_assembly *a = arrow->assembly;
+    memcpy(arrow->setup_state, state, (size_t)a->n_state * sizeof(double));
+    memcpy(arrow->setup_input, input, (size_t)a->n_input * sizeof(double));
     arrow->setup_time = t;
     arrow->gamma = gamma;
+    arrow->interface = interface;
+}
+
+bough_status bough_arrow_setup(bough_arrow *arrow, double t, const double *state,
+                               const double *input, double gamma) {
+    bough_arrow_adopt(arrow, arrow->own, t, state, input, gamma);
     bough_status status = each(arrow, LEADERS, factor_leader);
     if (!bough_is_ok(&status)) return status;
     status = each(arrow, FOLLOWERS, factor_follower);
@@ -230,7 +236,9 @@ bough_status bough_arrow_create(bough_arena *arena, const bough_assembly *assemb
     a->pool = pool;
     if (!take(a, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     *arrow = a;
-    return bough_condensed_create(arena, assembly, &a->interface);
+    bough_status status = bough_condensed_create(arena, assembly, &a->own);
+    a->interface = a->own;
+    return status;
 }
 
 bough_status bough_arrow_hold(bough_arena *arena, bough_arrow *arrow, int n, const int *held) {

@@ -24,7 +24,7 @@ typedef struct bough_arrow {
     double setup_time;
     double *setup_state;  // (n_state) where the matrix was taken
     double *setup_input;  // (n_input)
-    bough_condensed *interface;
+    bough_condensed *interface, *own; // in use, of the arrow
     const double *outside; // (n_input) of the solution in progress; NULL: 0
     double *change;        // (n_input) of the inputs with the last solution
     double *output_change; // (n_output) of each member by itself
@@ -55,6 +55,11 @@ bough_status bough_arrow_rate(bough_arrow *arrow, double t, const double *state,
 // BOUGH_RETRY when it is singular.
 bough_status bough_arrow_setup(bough_arrow *arrow, double t, const double *state,
                                const double *input, double gamma);
+
+// The same with the factors that members hold and the interface that belongs to them, for the next
+// solutions without held states; outputs are linearised about (t, state, input).
+void bough_arrow_adopt(bough_arrow *arrow, bough_condensed *interface, double t,
+                       const double *state, const double *input, double gamma);
 
 // x ← (I − γJ)⁻¹ x, x (n_state); arrow->change is then the change of the inputs with it.
 void bough_arrow_solve(bough_arrow *arrow, double *x);

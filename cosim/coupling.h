@@ -5,7 +5,7 @@
 #include "core/pool.h"
 #include "core/snapshot.h"
 #include "cosim/accelerate.h"
-#include "cosim/assembly.h"
+#include "cosim/condense.h"
 
 // What a later stage sees of what an earlier stage has already found.
 typedef enum bough_interpolation {
@@ -71,6 +71,11 @@ typedef struct bough_coupling {
     // scratch
     double *state_rate;       // (n_state)
     double *seen, *seen_rate; // (n_input)
+
+    // by the ramp scheme: the members' answers to its last step, whose factors they hold unless
+    // `refactor`, and the γ of these; NULL
+    bough_condensed *interface;
+    double interface_gamma; // [s]
 
     // by the ramp scheme, for the summary
     double theta;           // in use

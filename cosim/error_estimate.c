@@ -8,8 +8,23 @@
 
 enum { BATCH = 32, PAST = 3 };
 static const double longest_batch = 0.25; // the members are linearised once in it [s]
-static const double longest_step = 0.02;  // of the SDIRK method [s]
-static const double sdirk_gamma = 0.29289321881345248; // 1 − 1/√2
+static const double longest_step = 0.02;  // of the α method [s]
+
+// Generalised-α of a first-order system (Jansen, Whiting, Hulbert 2000): one solution a step, which
+// keeps the amplitude of resolved modes and takes that of others times ρ∞.
+typedef struct alpha_method {
+    double h;      // [s]
+    double m, f;   // α_m, α_f = γ = 1/(1 + ρ∞)
+    double factor; // g = α_f γ h/α_m: it solves with I − g J
+} alpha_method;
+
+static const double own_radius = 0.6;
+static const double shared_radius = 0.8; // g is then h/2, that of the trapezoidal rule, but for 1 %
+
+static alpha_method method_of(double h, double radius) {
+    double f = 1 / (1 + radius), m = 0.5 * (3 - radius) * f;
+    return (alpha_method){h, m, f, f * f * h / m};
+}
 
 struct bough_error_estimate {
     const bough_assembly *assembly;
@@ -20,23 +35,23 @@ struct bough_error_estimate {
     long batches;
     bool lost; // a member could not be linearised
     // reconstruction of the inputs
-    int n_point;            // valid entries of the two below
-    double time[PAST];      // synchronisation points before the step, newest first [s]
-    double *value[PAST];    // (n_input) inputs there
-    bough_signal curve;     // (n_input) through them and the step's end
-    int *vector;            // (n_input) first of the up to three inputs that form a vector
-    double *size;           // (n_input) of a vector's first: its largest norm so far
+    int n_point;         // valid entries of the two below
+    double time[PAST];   // synchronisation points before the step, newest first [s]
+    double *value[PAST]; // (n_input) inputs there
+    bough_signal curve;  // (n_input) through them and the step's end
+    int *vector;         // (n_input) first of the up to three inputs that form a vector
+    double *size;        // (n_input) of a vector's first: its largest norm so far
     // the error
-    double *error;      // (n_state) ε
-    double *input_worst; // (n_input) largest |P (C ε + D υ)|
+    double *error, *rate; // (n_state) ε, ε̇
+    double *input_worst;  // (n_input) largest |P (C ε + D υ)|
     // linearisation
     bough_arrow *arrow;
-    double gamma;    // of the factors in place
-    double *at;      // (n_state) where
+    double *at; // (n_state) where
     // scratch
-    double *x;       // (n_state)
-    double *outside; // (n_input) δ at a time
-    double *seen;    // (n_input)
+    double *x;              // (n_state)
+    double *outside, *seen; // (n_input)
+    double *mean;           // (n_input) of δ over a step
+    alpha_method method;    // of the batch
 };
 
 // -- building -------------------------------------------------------------------------------------
@@ -45,9 +60,11 @@ static bool take(bough_error_estimate *e, bough_arena *arena) {
     const bough_assembly *a = e->assembly;
     size_t n = (size_t)a->n_state, n_input = (size_t)a->n_input;
     e->defect = bough_arena_doubles(arena, BATCH * 4 * n_input);
-    for (int p = 0; p < PAST; p++) e->value[p] = bough_arena_doubles(arena, n_input);
+    for (int p = 0; p < PAST; p++)
+        e->value[p] = bough_arena_doubles(arena, n_input);
     e->curve = bough_port_signal(arena, a->n_input);
     e->error = bough_arena_doubles(arena, n);
+    e->rate = bough_arena_doubles(arena, n);
     e->input_worst = bough_arena_doubles(arena, n_input);
     e->vector = bough_arena_take(arena, n_input * sizeof *e->vector);
     e->size = bough_arena_doubles(arena, n_input);
@@ -55,6 +72,7 @@ static bool take(bough_error_estimate *e, bough_arena *arena) {
     e->x = bough_arena_doubles(arena, n);
     e->outside = bough_arena_doubles(arena, n_input);
     e->seen = bough_arena_doubles(arena, n_input);
+    e->mean = bough_arena_doubles(arena, n_input);
     return !bough_arena_exhausted(arena);
 }
 
@@ -176,8 +194,8 @@ static double defect_near(bough_error_estimate *e, const bough_coupling *c, doub
     return worst_relative(e, e->seen);
 }
 
-// Largest relative change over the step. After a start or a jump no curvature is known yet; a quarter
-// of the change stands in for it.
+// Largest relative change over the step. After a start or a jump no curvature is known yet; a
+// quarter of the change stands in for it.
 static double change_over(bough_error_estimate *e, const bough_coupling *c) {
     for (int j = 0; j < e->assembly->n_input; j++) {
         e->seen[j] = c->followed[j] ? 0 : c->input[j] - e->value[0][j];
@@ -200,55 +218,92 @@ double bough_error_estimate_defect(bough_error_estimate *e, const bough_coupling
 
 // -- propagation ----------------------------------------------------------------------------------
 
-// Factors for steps with this γ; `fresh` where the members are now.
-static bool linearise(bough_error_estimate *e, const bough_coupling *c, bool fresh, double gamma) {
+static bough_signal defect_of(const bough_error_estimate *e, int step) {
+    int n = e->assembly->n_input;
+    return (bough_signal){.n = n,
+                          .t0 = e->start[step],
+                          .t1 = e->end[step],
+                          .coefficient = e->defect + (size_t)step * 4 * (size_t)n};
+}
+
+// Takes the scheme's factors where they serve a step of nearly the length h, and that length: ε
+// goes by a clock that errs by 1 % then.
+static bool adopt(bough_error_estimate *e, const bough_coupling *c, double h) {
+    if (!c->interface || c->refactor) return false;
+    e->method = method_of(h, shared_radius);
+    double ratio = c->interface_gamma / e->method.factor;
+    if (fabs(ratio - 1) > 0.011) return false;
+    e->method.h *= ratio;
+    e->method.factor *= ratio;
+    bough_arrow_adopt(e->arrow, c->interface, c->t1, e->at, c->input, e->method.factor);
+    return true;
+}
+
+// Linearises where the members are now.
+static bool linearise(bough_error_estimate *e, bough_coupling *c, double h) {
     const bough_assembly *a = e->assembly;
-    if (!fresh && fabs(gamma - e->gamma) <= 1e-7 * gamma) return true;
-    e->gamma = gamma;
-    for (int i = 0; i < a->n_member && fresh; i++) {
+    for (int i = 0; i < a->n_member; i++) {
         const bough_subsystem *s = a->member[i];
         memcpy(e->at + a->state_offset[i], s->state, (size_t)s->n_state * sizeof(double));
     }
-    bough_status status = bough_arrow_setup(e->arrow, c->t1, e->at, c->input, gamma);
+    if (adopt(e, c, h)) return true;
+    e->method = method_of(h, own_radius);
+    c->refactor = true;
+    bough_status status = bough_arrow_setup(e->arrow, c->t1, e->at, c->input, e->method.factor);
     return bough_is_ok(&status);
 }
 
-static void defect_at(bough_error_estimate *e, int step, double t) {
+// The mean of δ over [t, t + h], by Gauss' rule on every macro step that shares in it; `step` is
+// the first of them and on return the last.
+static void find_mean(bough_error_estimate *e, int *step, double t, double h) {
+    static const double node[] = {0.2113248654051871, 0.7886751345948129};
     int n = e->assembly->n_input;
-    bough_signal s = {.n = n,
-                      .t0 = e->start[step],
-                      .t1 = e->end[step],
-                      .coefficient = e->defect + (size_t)step * 4 * (size_t)n};
-    bough_signal_value(&s, t, e->outside);
+    memset(e->mean, 0, (size_t)n * sizeof(double));
+    for (;; (*step)++) {
+        bough_signal defect = defect_of(e, *step);
+        double a = fmax(t, defect.t0), b = fmin(t + h, defect.t1), share = 0.5 * (b - a) / h;
+        for (int g = 0; g < 2; g++) {
+            bough_signal_value(&defect, a + node[g] * (b - a), e->outside);
+            for (int j = 0; j < n; j++)
+                e->mean[j] += share * e->outside[j];
+        }
+        if (defect.t1 >= t + h || *step == e->n_step - 1) return;
+    }
 }
 
-// One SDIRK step of length h from t, as of the shadows.
-static void advance(bough_error_estimate *e, int step, double t, double h) {
+// One step: x is ε at t + α_f h,
+//     (I − g J) x = ε + (α_f h (1 − γ) − g (1 − α_m)) ε̇ + g B δ.
+static void advance(bough_error_estimate *e) {
+    const alpha_method *a = &e->method;
     int n = e->assembly->n_state;
-    double share = (1 - sdirk_gamma) / sdirk_gamma;
-    memcpy(e->x, e->error, (size_t)n * sizeof(double));
-    defect_at(e, step, t + sdirk_gamma * h);
-    bough_arrow_solve_driven(e->arrow, e->outside, e->x);
-    for (int k = 0; k < n; k++) e->error[k] += share * (e->x[k] - e->error[k]);
-    defect_at(e, step, t + h);
-    bough_arrow_solve_driven(e->arrow, e->outside, e->error);
+    double h = a->h, kept = a->f * h * (1 - a->f), own = 1 / (a->f * a->f * h);
+    double carried = kept - a->factor * (1 - a->m);
+    for (int k = 0; k < n; k++)
+        e->x[k] = e->error[k] + carried * e->rate[k];
+    bough_arrow_solve_driven(e->arrow, e->mean, e->x);
+    for (int k = 0; k < n; k++) {
+        double rate = own * (e->x[k] - e->error[k] - kept * e->rate[k]);
+        e->error[k] += h * (e->rate[k] + a->f * (rate - e->rate[k]));
+        e->rate[k] = rate;
+    }
+    for (int j = 0; j < e->assembly->n_input; j++) {
+        e->input_worst[j] = fmax(e->input_worst[j], fabs(e->arrow->change[j] - e->mean[j]));
+    }
 }
 
-static bool propagate(bough_error_estimate *e, const bough_coupling *c, int step) {
-    double length = e->end[step] - e->start[step];
-    int n = (int)fmax(1, ceil(length / longest_step - 1e-6));
-    double h = length / n;
-    if (!linearise(e, c, step == 0, sdirk_gamma * h)) return false;
-    for (int k = 0; k < n; k++) advance(e, step, e->start[step] + k * h, h);
-    for (int j = 0; j < e->assembly->n_input; j++) {
-        e->input_worst[j] = fmax(e->input_worst[j], fabs(e->arrow->change[j] - e->outside[j]));
+static bool propagate(bough_error_estimate *e, bough_coupling *c) {
+    double start = e->start[0], span = e->end[e->n_step - 1] - start;
+    double steps = fmax(e->n_step, ceil(span / longest_step - 1e-6)), h = span / steps;
+    if (!linearise(e, c, h)) return false;
+    for (int k = 0, step = 0; k < (int)steps; k++) {
+        find_mean(e, &step, start + k * h, h);
+        advance(e);
     }
     return true;
 }
 
 void bough_error_estimate_finish(bough_error_estimate *e, bough_coupling *c) {
-    c->refactor = true;
-    for (int k = 0; k < e->n_step && !e->lost; k++) e->lost = !propagate(e, c, k);
+    if (e->n_step > 0 && !e->lost) e->lost = !propagate(e, c);
     if (e->n_step > 0) e->batches++;
     e->n_step = 0;
 }
@@ -264,17 +319,17 @@ void bough_error_estimate_snapshot(bough_error_estimate *e, bough_snapshot *s) {
     bough_snapshot_take(s, &e->lost, sizeof e->lost);
     bough_snapshot_take(s, &e->n_point, sizeof e->n_point);
     bough_snapshot_doubles(s, e->time, PAST);
-    for (int p = 0; p < PAST; p++) bough_snapshot_doubles(s, e->value[p], a->n_input);
+    for (int p = 0; p < PAST; p++)
+        bough_snapshot_doubles(s, e->value[p], a->n_input);
     bough_snapshot_doubles(s, e->size, a->n_input);
     bough_snapshot_doubles(s, e->error, a->n_state);
+    bough_snapshot_doubles(s, e->rate, a->n_state);
     bough_snapshot_doubles(s, e->input_worst, a->n_input);
 }
 
 // -- answers --------------------------------------------------------------------------------------
 
-long bough_error_estimate_batches(const bough_error_estimate *e) {
-    return e->batches;
-}
+long bough_error_estimate_batches(const bough_error_estimate *e) { return e->batches; }
 
 const double *bough_error_estimate_states(const bough_error_estimate *e) {
     return e->lost ? NULL : e->error;

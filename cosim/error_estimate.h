@@ -4,9 +4,10 @@
 // from those of one monolithic system by ε with
 //     ε̇ = J ε + B υ,   υ = P (C ε + D υ) + δ,   ε(0) = 0,
 // the linearised members coupled without any delay. The defects of a batch of steps are kept, then
-// the members are linearised once and ε is taken through the batch by the two-stage SDIRK method
-// (shadow.h), its Newton matrix condensed to the inputs. So defects do not merely add up: they
-// excite, ring and die as the mechanics let them.
+// ε is taken through it by the generalised-α method, one solution a step, its Newton matrix condensed
+// as in condense.h: with the factors of the ramp's predictions where these are at hand, else the
+// members are linearised once. Each step takes the mean of δ over it, so that impulses are exact. So
+// defects do not merely add up: they excite, ring and die as the mechanics let them.
 //
 // Not seen: the damping by loads from outside the members, so that of the air: ε errs on the safe
 // side; the members' own integration errors; second order in ε.

@@ -187,6 +187,8 @@ static bough_status predict(bough_coupling *c) {
     choose_inputs(c);
     r->gamma = r->theta * (c->t1 - c->t0);
     r->middle = c->t0 + r->gamma;
+    c->interface = r->interface;
+    c->interface_gamma = r->gamma;
     bough_status status = bough_coupling_each(c, 0, predict_leader);
     if (!bough_is_ok(&status)) return status;
     status = bough_coupling_each(c, BOUGH_ALL_STAGES, predict_follower);

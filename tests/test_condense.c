@@ -248,7 +248,7 @@ static void radius_is_that_of_the_loop(void **state) {
     status = bough_condensed_create(arena, a, &k);
     assert_true(bough_is_ok(&status));
     const double zero[MOST] = {0};
-    bough_operating_point at = {0, zero, zero, .4};
+    bough_operating_point at = {.state = zero, .input = zero, .gamma = .4};
     assert_true(bough_condensed_factor_leader(k, 0, &at));
     assert_true(bough_condensed_factor_follower(k, 1, &at));
     assert_true(bough_condensed_close(k));
