@@ -110,13 +110,20 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
     return bough_ok();
 }
 
+double *bough_rod_vertex_rows(bough_arena *arena, const bough_rod_model *model, int rows) {
+    double *block = bough_arena_doubles(arena, (size_t)rows * (size_t)model->stride + BOUGH_LANES);
+    return block == NULL ? NULL : block + BOUGH_LANES - 1;
+}
+
 bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
                             const bough_rod_model *model) {
-    size_t s = (size_t)model->stride;
-    scratch->vertex = bough_arena_doubles(arena, BOUGH_ROD_STATES * s);
-    scratch->segment = bough_arena_doubles(arena, 9 * s);
-    scratch->load = bough_arena_doubles(arena, 6 * s);
-    scratch->follower = bough_arena_doubles(arena, 6 * s);
+    scratch->vertex = bough_rod_vertex_rows(arena, model, BOUGH_ROD_STATES);
+    for (int i = 0; i < model->stride && scratch->vertex != NULL; i++) {
+        scratch->vertex[BOUGH_ROD_P * model->stride + i] = 1; // beyond the last: no rotation
+    }
+    scratch->segment = bough_arena_doubles(arena, 9 * (size_t)model->stride);
+    scratch->load = bough_rod_vertex_rows(arena, model, 6);
+    scratch->follower = bough_rod_vertex_rows(arena, model, 6);
     return scratch->vertex != NULL && scratch->segment != NULL && scratch->load != NULL &&
            scratch->follower != NULL;
 }
@@ -124,8 +131,8 @@ bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
 bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
                           const bough_rod_model *model) {
     loads->start = 0;
-    loads->value = bough_arena_doubles(arena, 6 * (size_t)model->stride);
-    loads->rate = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    loads->value = bough_rod_vertex_rows(arena, model, 6);
+    loads->rate = bough_rod_vertex_rows(arena, model, 6);
     loads->ramped = NULL;
     return loads->value != NULL && loads->rate != NULL;
 }
@@ -136,7 +143,7 @@ double *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
         if (l->follower == follower && l->start == ramp[0] && l->end == ramp[1]) return l->value;
     }
     bough_rod_ramped_load *fresh = bough_arena_take(arena, sizeof *fresh);
-    double *value = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    double *value = bough_rod_vertex_rows(arena, model, 6);
     if (fresh == NULL || value == NULL) return NULL;
     *fresh = (bough_rod_ramped_load){loads->ramped, ramp[0], ramp[1], follower, value};
     loads->ramped = fresh;

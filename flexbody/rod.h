@@ -117,6 +117,10 @@ typedef struct bough_rod_scratch {
 bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
                               bough_rod_model **model);
 
+// An array over the vertices (rows × stride) in which those of vertex 1 begin vector registers: loops
+// over moving vertices load and store aligned ones. NULL when memory is exhausted.
+double *bough_rod_vertex_rows(bough_arena *arena, const bough_rod_model *model, int rows);
+
 bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
                             const bough_rod_model *model);
 bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
@@ -147,6 +151,12 @@ bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_s
 bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                           const double *state, const double *input, bough_rod_scratch *scratch,
                           double *rate);
+
+// The same at another time and input, `state` being that of the last bough_rod_derivative with this
+// scratch: only segments that touch the input are evaluated anew.
+bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                                const double *state, const double *input,
+                                bough_rod_scratch *scratch, double *rate);
 
 // The root wrench (6).
 void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,

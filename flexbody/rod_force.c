@@ -5,33 +5,46 @@
 
 #include <string.h>
 
-void bough_rod_gather(const bough_rod_model *m, const double *state, const double *input,
-                      bough_rod_scratch *scratch) {
-    int n = m->n, s = m->stride;
-    double *restrict v = scratch->vertex;
-    for (int c = 0; c < BOUGH_ROD_STATES; c++) {
-        memcpy(v + c * s + 1, state + c * n, (size_t)n * sizeof *v);
-    }
+// Vertices that move as the input says: the root, and the last one of a rod that carries bodies.
+static void gather_input(const bough_rod_model *m, const double *input, double *vertex) {
+    int s = m->stride;
     bough_quaternion p0 = m->rotation0[0];
     bough_vec3 omega = {input[3], input[4], input[5]};
     bough_vec3 w0 = bough_mat3_tmul(bough_rotation_matrix(p0), omega);
     const double root[BOUGH_ROD_STATES] = {0,        0,        0,        p0.w, p0.x, p0.y, p0.z,
                                            input[0], input[1], input[2], w0.x, w0.y, w0.z};
-    for (int c = 0; c < BOUGH_ROD_STATES; c++) v[c * s] = root[c];
-    if (bough_rod_carries(m)) {
-        const double *end = input + BOUGH_ROD_INPUTS; // u W x p
-        for (int c = 0; c < BOUGH_ROD_STATES; c++) v[c * s + n + 1] = end[(c + 6) % 13];
-    }
-    double *restrict p = v + BOUGH_ROD_P * s;
+    for (int c = 0; c < BOUGH_ROD_STATES; c++) vertex[c * s] = root[c];
+    if (!bough_rod_carries(m)) return;
+    const double *u = input + BOUGH_ROD_INPUTS, *p = u + 9; // u W x p
+    double scale = 1 / sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
+    const double end[BOUGH_ROD_STATES] = {u[6],         u[7],         u[8],         scale * p[0],
+                                          scale * p[1], scale * p[2], scale * p[3], u[0],
+                                          u[1],         u[2],         u[3],         u[4],
+                                          u[5]};
+    for (int c = 0; c < BOUGH_ROD_STATES; c++) vertex[c * s + m->n + 1] = end[c];
+}
+
+// Moving vertices up to `last`.
+static void gather_state(const bough_rod_model *m, const double *restrict state, int last,
+                         double *restrict vertex) {
+    int n = m->n, s = m->stride;
 #pragma omp simd
-    for (int i = 1; i <= m->n_segment; i++) {
-        double w = p[i], x = p[s + i], y = p[2 * s + i], z = p[3 * s + i];
-        double scale = 1 / sqrt(w * w + x * x + y * y + z * z);
-        p[i] = scale * w;
-        p[s + i] = scale * x;
-        p[2 * s + i] = scale * y;
-        p[3 * s + i] = scale * z;
+    for (int i = 1; i <= last; i++) {
+        const double *restrict y = state + i - 1;
+        double w = y[3 * n], x = y[4 * n], v = y[5 * n], z = y[6 * n];
+        double scale = 1 / sqrt(w * w + x * x + v * v + z * z);
+        store3(vertex, s, i, (bough_vec3){y[0], y[n], y[2 * n]});
+        vertex[3 * s + i] = scale * w;
+        store3(vertex + 4 * s, s, i, (bough_vec3){scale * x, scale * v, scale * z});
+        store3(vertex + 7 * s, s, i, (bough_vec3){y[7 * n], y[8 * n], y[9 * n]});
+        store3(vertex + 10 * s, s, i, (bough_vec3){y[10 * n], y[11 * n], y[12 * n]});
     }
+}
+
+void bough_rod_gather(const bough_rod_model *m, const double *state, const double *input,
+                      bough_rod_scratch *scratch) {
+    gather_input(m, input, scratch->vertex);
+    gather_state(m, state, m->n, scratch->vertex);
 }
 
 bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
@@ -54,7 +67,8 @@ bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_s
         store3(out, s, n, f.f);
         store3(out + 3 * s, s, n, f.ll);
         store3(out + 6 * s, s, n, f.lr);
-        least = shape.w < least ? shape.w : least;
+        double w = length[n] > 0 ? shape.w : 1; // beyond the last: no segment
+        least = w < least ? w : least;
     }
     return least >= 0.5;
 }
@@ -84,12 +98,12 @@ static void add_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
 // Loads at time t into scratch->load, after the gathering.
 static void loads_at(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                      bough_rod_scratch *scratch) {
-    double elapsed = t - loads->start;
+    double elapsed = t - loads->start; // all that bough_rod_vertex_rows took: whole registers
     const double *restrict value = loads->value, *restrict rate = loads->rate;
     double *restrict load = scratch->load;
     int count = 6 * m->stride;
 #pragma omp simd
-    for (int k = 0; k < count; k++) load[k] = value[k] + elapsed * rate[k];
+    for (int k = 1 - BOUGH_LANES; k <= count; k++) load[k] = value[k] + elapsed * rate[k];
     if (loads->ramped != NULL) add_ramped(m, loads, t, scratch);
 }
 
@@ -143,12 +157,9 @@ static void vertex_kinematics(int n, const double *restrict state, const double 
     }
 }
 
-bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                          const double *state, const double *input, bough_rod_scratch *scratch,
-                          double *rate) {
-    bough_rod_gather(m, state, input, scratch);
-    loads_at(m, loads, t, scratch);
-    if (!bough_rod_forces(m, 0, m->n_segment, scratch)) return false;
+// The balances of all vertices under the segments' forces in scratch.
+static bool balance_vertices(const bough_rod_model *m, const double *state, const double *input,
+                             const bough_rod_scratch *scratch, double *restrict rate) {
     vertex_kinematics(m->n, state, input, rate);
     vertex_accelerations(m, scratch, input, rate);
     double sum = 0; // NaN and infinity survive a sum of squares
@@ -158,11 +169,33 @@ bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads
     return isfinite(sum);
 }
 
+bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                          const double *state, const double *input, bough_rod_scratch *scratch,
+                          double *rate) {
+    bough_rod_gather(m, state, input, scratch);
+    loads_at(m, loads, t, scratch);
+    // whole registers: segments beyond the last exert nothing
+    if (!bough_rod_forces(m, 0, bough_padded(m->n_segment), scratch)) return false;
+    return balance_vertices(m, state, input, scratch, rate);
+}
+
+bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                                const double *state, const double *input,
+                                bough_rod_scratch *scratch, double *rate) {
+    int n = m->n_segment;
+    gather_input(m, input, scratch->vertex);
+    loads_at(m, loads, t, scratch);
+    bool ok = bough_rod_forces(m, 0, 1, scratch);
+    if (bough_rod_carries(m)) ok = bough_rod_forces(m, n - 1, n, scratch) && ok;
+    return ok && balance_vertices(m, state, input, scratch, rate);
+}
+
 void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                            const double *state, const double *input, bough_rod_scratch *scratch,
                            double *wrench) {
     int s = m->stride;
-    bough_rod_gather(m, state, input, scratch);
+    gather_input(m, input, scratch->vertex);
+    gather_state(m, state, 1, scratch->vertex);
     loads_at(m, loads, t, scratch);
     bough_rod_forces(m, 0, 1, scratch);
     const double *f = scratch->segment;

@@ -139,24 +139,38 @@ static void eliminate_residual(const bough_rod_model *m, const bough_rod_tangent
     }
 }
 
+// A r_q of the ends of eight segments, a row for each direction of their tangents.
+static inline void gather_directions(const double *restrict q, int s, double *restrict d) {
+    for (int i = 0; i < 3; i++) {
+#pragma omp simd
+        for (int l = 0; l < LANES; l++) {
+            d[(DELTA + i) * LANES + l] = q[i * s + l + 1] - q[i * s + l];
+            d[(LEFT + i) * LANES + l] = q[(3 + i) * s + l];
+            d[(RIGHT + i) * LANES + l] = q[(3 + i) * s + l + 1];
+        }
+    }
+}
+
 // γ K A r_q of every segment.
 static void segment_residual(const bough_rod_model *m, const bough_rod_tangent *k,
                              const double *restrict q, double *restrict force) {
-    int n = m->n_segment, s = m->stride;
+    int s = m->stride;
     double gamma = k->gamma;
-    for (int f = 0; f < FORCES; f++) {
-        const double *restrict t = k->variation + (size_t)f * s;
-        double *restrict out = force + (size_t)f * s;
-#define T(direction) t[FORCES * (direction)*s + k2]
+    for (int first = 0; first < m->n_segment; first += LANES) {
+        _Alignas(64) double d[DIRECTIONS * LANES];
+        gather_directions(q + first, s, d);
+        for (int f = 0; f < FORCES; f++) {
+            const double *restrict t = k->variation + (size_t)TANGENTS * first +
+                                       (size_t)LANES * DIRECTIONS * f;
+            double *restrict out = force + f * s + first;
+#define TERM(j) t[LANES * (j) + l] * d[LANES * (j) + l]
 #pragma omp simd
-        for (int k2 = 0; k2 < n; k2++) {
-            double sum = T(0) * (q[k2 + 1] - q[k2]) + T(1) * (q[s + k2 + 1] - q[s + k2]) +
-                         T(2) * (q[2 * s + k2 + 1] - q[2 * s + k2]);
-            sum += T(3) * q[3 * s + k2] + T(4) * q[4 * s + k2] + T(5) * q[5 * s + k2];
-            sum += T(6) * q[3 * s + k2 + 1] + T(7) * q[4 * s + k2 + 1] + T(8) * q[5 * s + k2 + 1];
-            out[k2] = gamma * sum;
+            for (int l = 0; l < LANES; l++) {
+                out[l] = gamma * ((TERM(0) + TERM(1) + TERM(2)) + (TERM(3) + TERM(4) + TERM(5)) +
+                                  (TERM(6) + TERM(7) + TERM(8)));
+            }
+#undef TERM
         }
-#undef T
     }
 }
 
@@ -166,7 +180,7 @@ static void velocity_residual(const bough_rod_model *m, const bough_rod_tangent 
     int n = m->n, s = m->stride;
     const double *restrict kept = k->vertex, *restrict own = k->local_position;
     const double *restrict mass = m->mass, *restrict first = m->moment;
-    const double *restrict inertia = m->inertia, *restrict force = work + WORK_FORCE * s;
+    const double *restrict inertia = m->inertia, *restrict force = k->force;
     double *restrict out = work + WORK_VELOCITY * s;
     double gamma = k->gamma;
 #pragma omp simd
@@ -249,7 +263,7 @@ static void recover(const bough_rod_model *m, const bough_rod_tangent *k,
 void bough_rod_solve(const bough_rod_model *m, bough_rod_tangent *k, double *x) {
     double *velocity = k->work + (size_t)WORK_VELOCITY * m->stride;
     eliminate_residual(m, k, x, k->work);
-    segment_residual(m, k, k->work, k->work + (size_t)WORK_FORCE * m->stride);
+    segment_residual(m, k, k->work, k->force);
     velocity_residual(m, k, x, k->work);
     pack(m->n, m->stride, velocity, k->packed);
     bough_block_tridiagonal_solve(&k->matrix, k->packed);

@@ -31,6 +31,7 @@ typedef struct segment_geometry {
     bough_mat3 r;    // R_mid
     bough_vec3 v, t; // sin θ/2 n, tan θ/4 n
     double w, c, g;  // cos θ/2 >= 0
+    double e, slope; // 1/(1 + w), dg/dw
     bough_vec3 stretch; // V
     bough_vec3 phi;     // φ
 } segment_geometry;
@@ -84,9 +85,9 @@ static inline bough_vec3 rotation_tangent(double c, double g, bough_vec3 v, boug
     return bough_axpy(-0.5 * g * bough_dot(v, y), v, bough_scale(0.5 * c, y));
 }
 
-static inline bough_mat3 mid_frame(bough_quaternion l, bough_quaternion r, double sign) {
+// Of unit quaternions, whose sum has the square 2 (1 + w) = 2/s.
+static inline bough_mat3 mid_frame(bough_quaternion l, bough_quaternion r, double sign, double s) {
     double w = l.w + sign * r.w, x = l.x + sign * r.x, y = l.y + sign * r.y, z = l.z + sign * r.z;
-    double s = 2 / (w * w + x * x + y * y + z * z);
     return (bough_mat3){{1 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)},
                         {s * (x * y - w * z), 1 - s * (x * x + z * z), s * (y * z + w * x)},
                         {s * (x * z + w * y), s * (y * z - w * x), 1 - s * (x * x + y * y)}};
@@ -98,11 +99,13 @@ static inline segment_geometry segment_shape(vertex_state l, vertex_state r, dou
     double sign = copysign(1.0, d.w); // p and −p are the same rotation
     s.w = sign * d.w;
     s.v = bough_scale(sign, bough_v3(d.x, d.y, d.z));
-    s.t = bough_scale(1 / (1 + s.w), s.v);
+    s.e = 1 / (1 + s.w);
+    s.t = bough_scale(s.e, s.v);
     s.g = geometry_value(s.w);
+    s.slope = geometry_slope(s.w);
     s.c = 2 + s.g * bough_dot(s.v, s.v);
     s.phi = bough_scale(s.c, s.v);
-    s.r = mid_frame(l.p, r.p, sign);
+    s.r = mid_frame(l.p, r.p, sign, s.e);
     s.stretch = bough_scale(inverse_h, bough_mat3_tmul(s.r, bough_sub(r.x, l.x)));
     return s;
 }
@@ -195,9 +198,9 @@ static inline segment_variation shape_variation(segment_geometry s, vertex_varia
     d.middle = bough_scale(0.5, bough_add(bough_add(a, b), bough_cross(turn, s.t)));
     d.w = -0.5 * bough_dot(s.v, turn);
     d.v = bough_scale(0.5, bough_axpy(-bough_dot(s.v, turn), s.t, turn));
-    d.t = bough_scale(1 / (1 + s.w), bough_axpy(-d.w, s.t, d.v));
-    d.c = (s.g - s.c / (1 + s.w)) * d.w;
-    d.g = geometry_slope(s.w) * d.w;
+    d.t = bough_scale(s.e, bough_axpy(-d.w, s.t, d.v));
+    d.c = (s.g - s.c * s.e) * d.w;
+    d.g = s.slope * d.w;
     d.phi = rotation_tangent(s.c, s.g, s.v, turn);
     d.stretch = bough_axpy(inverse_h, bough_mat3_tmul(s.r, bough_sub(r.x, l.x)),
                            bough_cross(s.stretch, d.middle));

@@ -3,79 +3,24 @@
 
 #include "flexbody/rod_lanes.h"
 #include "flexbody/rod_tangent_layout.h"
+#include "flexbody/rod_variation.h"
 
 #include <string.h>
 
 bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m) {
     size_t s = (size_t)m->stride;
-    k->variation = bough_arena_doubles(arena, 2 * TANGENTS * s);
-    k->mass = bough_arena_doubles(arena, 36 * s);
-    k->local_velocity = bough_arena_doubles(arena, 36 * s);
-    k->local_position = bough_arena_doubles(arena, 18 * s);
-    k->vertex = bough_arena_doubles(arena, KEPT * s);
-    k->work = bough_arena_doubles(arena, WORK * s);
+    k->variation = bough_arena_doubles(arena, TANGENTS * s);
+    k->mass = bough_rod_vertex_rows(arena, m, 36);
+    k->local_velocity = bough_rod_vertex_rows(arena, m, 36);
+    k->local_position = bough_rod_vertex_rows(arena, m, 18);
+    k->vertex = bough_rod_vertex_rows(arena, m, KEPT);
+    k->work = bough_rod_vertex_rows(arena, m, WORK);
     k->rate = bough_arena_doubles(arena, BOUGH_ROD_STATES * s);
+    k->force = bough_arena_doubles(arena, FORCES * s);
     k->packed = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * W8);
     bool ok = bough_block_tridiagonal_init(&k->matrix, arena, m->n);
     ok = bough_rod_blocks_init(&k->blocks, arena, m) && ok;
     return ok && !bough_arena_exhausted(arena);
-}
-
-// -- segments ------------------------------------------------------------------------------------
-
-// The unit variation of direction `k`: Δ of the right against the left vertex, then each rotation;
-// of velocities if so asked.
-static void unit_variation(int k, bool velocity, vertex_variation *l, vertex_variation *r) {
-    const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    memset(l, 0, sizeof *l);
-    memset(r, 0, sizeof *r);
-    bough_vec3 *const part[6] = {&r->x, &l->phi, &r->phi, &r->u, &l->w, &r->w};
-    *part[(velocity ? 3 : 0) + k / 3] = unit[k % 3];
-}
-
-// Configuration directions of segments first..last−1.
-static void position_variations(const bough_rod_model *m, const double *vertex, int first, int last,
-                                double *restrict out) {
-    int s = m->stride;
-    for (int k = 0; k < DIRECTIONS; k++) {
-        vertex_variation dl, dr;
-        unit_variation(k, false, &dl, &dr);
-        double *restrict column = out + (size_t)k * FORCES * s;
-#pragma omp simd
-        for (int n = first; n < last; n++) {
-            segment_force f = segment_tangent(m, vertex, n, &dl, &dr);
-            store3(column, s, n, f.f);
-            store3(column + 3 * s, s, n, f.ll);
-            store3(column + 6 * s, s, n, f.lr);
-        }
-    }
-}
-
-// Velocity directions: the shape does not vary, the stress varies by D ė.
-static void velocity_variations(const bough_rod_model *m, const double *vertex, int first, int last,
-                                double *restrict out) {
-    int s = m->stride;
-    for (int k = 0; k < DIRECTIONS; k++) {
-        vertex_variation dl, dr;
-        unit_variation(k, true, &dl, &dr);
-        double *restrict column = out + (size_t)k * FORCES * s;
-#pragma omp simd
-        for (int n = first; n < last; n++) {
-            vertex_state l = load_vertex(vertex, s, n), r = load_vertex(vertex, s, n + 1);
-            segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
-            l.u = dl.u;
-            l.w = dl.w;
-            r.u = dr.u;
-            r.w = dr.w;
-            segment_rate motion = segment_motion(shape, l, r);
-            strain rate = strain_rate(shape, motion, m->inverse_length[n]);
-            segment_force f = stress_force(shape, symmetric_times(m->damping, s, n, rate),
-                                           m->length[n]);
-            store3(column, s, n, f.f);
-            store3(column + 3 * s, s, n, f.ll);
-            store3(column + 6 * s, s, n, f.lr);
-        }
-    }
 }
 
 // -- a vertex' own terms --------------------------------------------------------------------------
@@ -215,9 +160,13 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
     }
     rotation_columns(m, rate + (size_t)BOUGH_ROD_U * m->n, input, scratch, k);
     if (bough_rod_loads_follow(loads)) add_followers(m, scratch, k);
-    position_variations(m, scratch->vertex, 0, m->n_segment, k->variation);
-    velocity_variations(m, scratch->vertex, 0, m->n_segment,
-                        k->variation + (size_t)TANGENTS * m->stride);
-    bough_rod_form_blocks(m, k);
+    for (int first = 0; first < m->n_segment; first += LANES) {
+        _Alignas(64) double base[BOUGH_ROD_BASE * LANES], velocity[TANGENTS * LANES];
+        double *position = k->variation + (size_t)TANGENTS * first;
+        bough_rod_base(m, scratch->vertex, first, base);
+        bough_rod_position_variation(m, scratch->vertex, first, base, position);
+        bough_rod_velocity_variation(m, first, base, velocity);
+        bough_rod_form_blocks(m, k, first, velocity);
+    }
     return true;
 }

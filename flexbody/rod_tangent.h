@@ -21,7 +21,8 @@ typedef struct bough_rod_blocks {
 // vertices have the model's stride; moving vertex v is at index v = 1..n.
 typedef struct bough_rod_tangent {
     // computed by bough_rod_linearise
-    double *variation;      // of segment forces (2 × 9 directions × 9 forces × stride)
+    double *variation;      // of segment forces by configuration, eight segments at a time: see
+                            // rod_variation.h (padded N × 81)
     double *mass;           // (11) with force in BRF axes (36 × stride)
     double *local_velocity; // tangents of a vertex' own terms, by u, W (36 × stride)
     double *local_position; // by rotation (18 × stride)
@@ -32,6 +33,7 @@ typedef struct bough_rod_tangent {
     // computed by bough_rod_factor
     double gamma;
     bough_block_tridiagonal matrix;
+    double *force;          // γ K A r_q of the segments (9 × stride)
     double *work;           // of a solution
     double *packed;         // (padded n × 8)
 } bough_rod_tangent;
@@ -47,8 +49,10 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
 // A copy of the blocks of the last linearisation.
 void bough_rod_assemble(const bough_rod_model *m, const bough_rod_tangent *k, bough_rod_blocks *b);
 
-// Puts the tangents of segments and vertices into blocks.
-void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k);
+// Puts the tangents of segments first..first + 7 and of the vertices at their right ends into
+// blocks; `velocity` as `variation`, by velocities. To be called in the order of segments.
+void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k, int first,
+                           const double *velocity);
 
 // Factors I − γ ∂f/∂y of the last linearisation. False when singular.
 bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma);

@@ -2,10 +2,13 @@
 #ifndef BOUGH_FLEXBODY_ROD_TANGENT_LAYOUT_H
 #define BOUGH_FLEXBODY_ROD_TANGENT_LAYOUT_H
 
+#include "core/base.h"
+
 enum {
     FORCES = 9,     // f, left moment, right moment
     DIRECTIONS = 9, // Δx, φ left, φ right; then Δu, W left, W right
     TANGENTS = FORCES * DIRECTIONS,
+    LANES = BOUGH_LANES,
     W8 = 8,
 };
 
@@ -24,8 +27,7 @@ enum {
 enum {
     WORK_Q = 0,      // eliminated configuration residual A r_q
     WORK_SCALAR = 6, // of the quaternion residual
-    WORK_FORCE = 7,  // γ K A r_q per segment
-    WORK_VELOCITY = WORK_FORCE + FORCES, // residual, then increments of the velocities
+    WORK_VELOCITY = 7, // residual, then increments of the velocities
     WORK = WORK_VELOCITY + W8,
 };
 

@@ -3,9 +3,9 @@
 #ifndef BOUGH_FLEXBODY_ROD_TILE_H
 #define BOUGH_FLEXBODY_ROD_TILE_H
 
-#include "core/base.h"
+#include "flexbody/rod_tangent_layout.h"
 
-enum { LANES = BOUGH_LANES, TILE = LANES * LANES };
+enum { TILE = LANES * LANES };
 
 typedef struct tile {
     _Alignas(64) double entry[TILE];

@@ -126,6 +126,86 @@ static void newton_solution_inverts_the_jacobian(void **context) {
     check_newton(*context);
 }
 
+// A rod of any number of segments, in a strongly deformed state.
+typedef struct sized {
+    bough_arena *arena;
+    bough_rod_model *model;
+    bough_rod_scratch scratch;
+    bough_rod_loads loads;
+    bough_rod_tangent tangent;
+    double *state, *x, *rate, *moved; // (13 n)
+    double input[BOUGH_ROD_MOST_INPUTS];
+} sized;
+
+static sized build_sized(int n_segment, bool carries) {
+    sized r = {.arena = bough_arena_create(), .input = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9}};
+    r.model = sample_general_as(r.arena, n_segment, carries);
+    assert_true(bough_rod_scratch_init(&r.scratch, r.arena, r.model));
+    assert_true(bough_rod_loads_init(&r.loads, r.arena, r.model));
+    assert_true(bough_rod_tangent_init(&r.tangent, r.arena, r.model));
+    double **const arrays[] = {&r.state, &r.x, &r.rate, &r.moved};
+    for (int k = 0; k < 4; k++) {
+        *arrays[k] = bough_arena_doubles(r.arena, BOUGH_ROD_STATES * (size_t)r.model->n);
+    }
+    sample_state(r.model, r.input, r.state);
+    sample_loads(r.model, &r.loads);
+    bough_vec3 x = r.model->position0[n_segment];
+    bough_quaternion p = r.model->rotation0[n_segment];
+    const double end[BOUGH_ROD_END_INPUTS] = {0.1, 0.2, 0.3, 0.3, 0.2, 0.1, x.x,
+                                              x.y, x.z, p.w, p.x, p.y, p.z};
+    memcpy(r.input + BOUGH_ROD_INPUTS, end, sizeof end);
+    return r;
+}
+
+// (I − γJ) d for a random d into x, by differences; d itself by the solution.
+static void check_sized(int n_segment, bool carries) {
+    const double eps = 1e-6, gamma = 0.07;
+    sized r = build_sized(n_segment, carries);
+    int count = BOUGH_ROD_STATES * r.model->n;
+    for (int side = -1; side <= 1; side += 2) {
+        unsigned seed = 3;
+        for (int k = 0; k < count; k++) r.moved[k] = r.state[k] + side * eps * sample_random(&seed);
+        assert_true(bough_rod_derivative(r.model, &r.loads, 0.5, r.moved, r.input, &r.scratch,
+                                         r.rate));
+        for (int k = 0; k < count; k++) r.x[k] -= side * gamma * r.rate[k] / (2 * eps);
+    }
+    unsigned seed = 3;
+    for (int k = 0; k < count; k++) r.x[k] += sample_random(&seed);
+    assert_true(bough_rod_linearise(r.model, &r.loads, 0.5, r.state, r.input, &r.scratch,
+                                    &r.tangent));
+    assert_true(bough_rod_factor(r.model, &r.tangent, gamma));
+    bough_rod_solve(r.model, &r.tangent, r.x);
+    seed = 3;
+    for (int k = 0; k < count; k++) check_near(r.x[k], sample_random(&seed), 0, 1e-6);
+    bough_arena_destroy(r.arena);
+}
+
+// Segments go by eight: fewer, just as many, one more.
+static void newton_solution_holds_for_any_number_of_segments(void **context) {
+    (void)context;
+    const int sizes[] = {1, 2, 7, 8, 9, 16, 17, 25};
+    for (int k = 0; k < 8; k++) {
+        check_sized(sizes[k], false);
+        if (sizes[k] > 1) check_sized(sizes[k], true);
+    }
+}
+
+// What is left out depends on neither time nor input.
+static void second_evaluation_at_a_state_is_the_same(void **context) {
+    (void)context;
+    for (int carries = 0; carries < 2; carries++) {
+        sized r = build_sized(11, carries);
+        int count = BOUGH_ROD_STATES * r.model->n;
+        const bough_rod_loads *l = &r.loads;
+        bough_rod_derivative(r.model, l, 0.5, r.state, r.input, &r.scratch, r.rate);
+        for (int k = 0; k < 12; k++) r.input[k] += 0.1 * k - 0.3;
+        assert_true(bough_rod_derivative_again(r.model, l, 0.75, r.state, r.input, &r.scratch, r.x));
+        assert_true(bough_rod_derivative(r.model, l, 0.75, r.state, r.input, &r.scratch, r.rate));
+        for (int k = 0; k < count; k++) check_near(r.x[k], r.rate[k], 1e-12, 1e-12);
+        bough_arena_destroy(r.arena);
+    }
+}
+
 // Half of the ramp is reached at the time of evaluation.
 static double *ramped(fixture *f, bool follower) {
     const double ramp[2] = {0.25, 0.75};
@@ -256,6 +336,8 @@ int main(void) {
                                         teardown),
         cmocka_unit_test_setup_teardown(forces_are_the_gradient_of_the_energy, setup, teardown),
         cmocka_unit_test_setup_teardown(newton_solution_inverts_the_jacobian, setup, teardown),
+        cmocka_unit_test(newton_solution_holds_for_any_number_of_segments),
+        cmocka_unit_test(second_evaluation_at_a_state_is_the_same),
         cmocka_unit_test_setup_teardown(newton_solution_knows_follower_loads, setup, teardown),
         cmocka_unit_test_setup_teardown(follower_load_turns_with_its_section, setup, teardown),
         cmocka_unit_test(ramped_load_grows_between_its_times),
