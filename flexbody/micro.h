@@ -13,6 +13,8 @@ typedef struct bough_ode {
     int n;
     void *self;
     bool (*derivative)(void *self, double t, const double *y, double *rate);
+    // the same at another time, y being that of the last call: may be cheaper
+    bool (*derivative_again)(void *self, double t, const double *y, double *rate);
     bool (*linearise)(void *self, double t, const double *y); // tangents of f
     bool (*factor)(void *self, double gamma);                 // I − γ ∂f/∂y of the last tangents
     void (*solve)(void *self, double *x);                     // in place

@@ -26,13 +26,13 @@ static const double e[STAGES] = {0.2777499476479672, -1.4032398951759988, 1.7726
 
 struct bough_micro_rosenbrock {
     bough_ode ode;
-    const double *scale; // (n)
-    bough_micro_rosenbrock_options options;
+    double *weight; // 1/tolerance of each state (n)
+    double step;    // longest [s]
     double longest;  // step allowed next [s]
     double factored; // γh of the factors; 0: none
     int age;         // steps since the tangents were found
     bool started;
-    double *rate, *drift;       // f(t, y) and ∂f/∂t (n)
+    double *drift;              // ∂f/∂t (n)
     double *stage[STAGES];      // u_i (n)
     double *at;                 // argument of f, then y₁ (n)
     bough_statistics sum;
@@ -46,15 +46,15 @@ bough_status bough_micro_rosenbrock_create(bough_arena *arena, const bough_ode *
     size_t n = (size_t)ode->n;
     if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
     m->ode = *ode;
-    m->scale = scale;
-    m->options = options;
-    m->rate = bough_arena_doubles(arena, n);
+    m->step = options.step;
+    m->weight = bough_arena_doubles(arena, n);
     m->drift = bough_arena_doubles(arena, n);
     m->at = bough_arena_doubles(arena, n);
     for (int i = 0; i < STAGES; i++) m->stage[i] = bough_arena_doubles(arena, n);
     if (bough_arena_exhausted(arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
     }
+    for (size_t k = 0; k < n; k++) m->weight[k] = 1 / (options.rtol * scale[k]);
     *micro = m;
     return bough_ok();
 }
@@ -81,51 +81,62 @@ static bool evaluate(bough_micro_rosenbrock *m, double t, const double *y, doubl
     return m->ode.derivative(m->ode.self, t, y, rate);
 }
 
-// f(t, y), and ∂f/∂t as its mean over the step: the inputs move.
+// ∂f/∂t as its mean over the step, since the inputs move, and the first right side
+// γh [f + γ₁h ∂f/∂t].
 static bool find_rates(bough_micro_rosenbrock *m, double t, double h, const double *y) {
-    if (!evaluate(m, t, y, m->rate) || !evaluate(m, t + h, y, m->drift)) return false;
-    double *restrict drift = m->drift;
-    const double *restrict rate = m->rate;
+    double *restrict drift = m->drift, *restrict u = m->stage[0];
+    if (!evaluate(m, t, y, u)) return false;
+    m->sum.derivatives++;
+    if (!m->ode.derivative_again(m->ode.self, t + h, y, drift)) return false;
+    double f = gamma_h * h, first = slope[0] * h;
 #pragma omp simd
-    for (int k = 0; k < m->ode.n; k++) drift[k] = (drift[k] - rate[k]) / h;
+    for (int k = 0; k < m->ode.n; k++) {
+        drift[k] = (drift[k] - u[k]) / h;
+        u[k] = f * (u[k] + first * drift[k]);
+    }
     return true;
+}
+
+// Σ_j weight_j u_j over the stages before stage i; loops take what does not change out of them.
+static inline double stages_before(const bough_micro_rosenbrock *m, int i, const double weight[3],
+                                   int k) {
+    double sum = weight[0] * m->stage[0][k];
+    if (i > 1) sum += weight[1] * m->stage[1][k];
+    if (i > 2) sum += weight[2] * m->stage[2][k];
+    return sum;
 }
 
 // at = y + Σ_j a_ij u_j
-static void set_argument(bough_micro_rosenbrock *m, int i, const double *restrict y) {
+static inline void set_argument(bough_micro_rosenbrock *m, int i, const double *restrict y) {
     double *restrict at = m->at;
-    const double *restrict u0 = m->stage[0], *restrict u1 = m->stage[1], *restrict u2 = m->stage[2];
-    double a0 = a[i][0], a1 = a[i][1], a2 = a[i][2];
+    int n = m->ode.n;
 #pragma omp simd
-    for (int k = 0; k < m->ode.n; k++) at[k] = y[k] + a0 * u0[k] + a1 * u1[k] + a2 * u2[k];
+    for (int k = 0; k < n; k++) at[k] = y[k] + stages_before(m, i, a[i], k);
 }
 
 // u_i = γh [f + γ_i h ∂f/∂t] + Σ_j c_ij u_j, f standing in u_i
-static void set_right_side(bough_micro_rosenbrock *m, int i, double h) {
+static inline void set_right_side(bough_micro_rosenbrock *m, int i, double h) {
     double *restrict u = m->stage[i];
-    const double *restrict u0 = m->stage[0], *restrict u1 = m->stage[1], *restrict u2 = m->stage[2];
     const double *restrict drift = m->drift;
     double f = gamma_h * h, d = gamma_h * h * slope[i] * h;
-    double c0 = c[i][0], c1 = c[i][1], c2 = c[i][2];
+    int n = m->ode.n;
 #pragma omp simd
-    for (int k = 0; k < m->ode.n; k++) {
-        u[k] = f * u[k] + d * drift[k] + c0 * u0[k] + c1 * u1[k] + c2 * u2[k];
-    }
+    for (int k = 0; k < n; k++) u[k] = f * u[k] + d * drift[k] + stages_before(m, i, c[i], k);
+}
+
+// Stage i after the first. Inlined with i known, it has a loop of its own.
+static inline bool find_stage(bough_micro_rosenbrock *m, int i, double t, double h,
+                              const double *y) {
+    set_argument(m, i, y);
+    if (!evaluate(m, t + alpha[i] * h, m->at, m->stage[i])) return false;
+    set_right_side(m, i, h);
+    m->ode.solve(m->ode.self, m->stage[i]);
+    return true;
 }
 
 static bool find_stages(bough_micro_rosenbrock *m, double t, double h, const double *y) {
-    for (int i = 1; i < STAGES - 1; i++) memset(m->stage[i], 0, (size_t)m->ode.n * sizeof *y);
-    for (int i = 0; i < STAGES; i++) {
-        if (i == 0) {
-            memcpy(m->stage[0], m->rate, (size_t)m->ode.n * sizeof *y);
-        } else {
-            set_argument(m, i, y);
-            if (!evaluate(m, t + alpha[i] * h, m->at, m->stage[i])) return false;
-        }
-        set_right_side(m, i, h);
-        m->ode.solve(m->ode.self, m->stage[i]);
-    }
-    return true;
+    m->ode.solve(m->ode.self, m->stage[0]);
+    return find_stage(m, 1, t, h, y) && find_stage(m, 2, t, h, y) && find_stage(m, 3, t, h, y);
 }
 
 // y₁ into `at`, whose last argument lacks the last stage only; the error against the tolerance, root
@@ -133,15 +144,15 @@ static bool find_stages(bough_micro_rosenbrock *m, double t, double h, const dou
 static double finish(bough_micro_rosenbrock *m) {
     double *restrict at = m->at;
     const double *restrict u0 = m->stage[0], *restrict u1 = m->stage[1], *restrict u2 = m->stage[2];
-    const double *restrict u3 = m->stage[3], *restrict scale = m->scale;
+    const double *restrict u3 = m->stage[3], *restrict weight = m->weight;
     double sum = 0;
 #pragma omp simd reduction(+ : sum)
     for (int k = 0; k < m->ode.n; k++) {
         at[k] += u3[k];
-        double error = (e[0] * u0[k] + e[1] * u1[k] + e[2] * u2[k] + e[3] * u3[k]) / scale[k];
-        sum += error * error;
+        double error = e[0] * u0[k] + e[1] * u1[k] + e[2] * u2[k] + e[3] * u3[k];
+        sum += (weight[k] * error) * (weight[k] * error);
     }
-    return sqrt(sum / m->ode.n) / m->options.rtol;
+    return sqrt(sum / m->ode.n);
 }
 
 // The error of a step against the tolerance; infinite where f has no value.
@@ -173,7 +184,7 @@ static bool cross(bough_micro_rosenbrock *m, double *t, double pause, double t1,
         m->sum.steps++;
         m->age++;
         double grown = 0.9 * h * fmin(5, cbrt(1 / fmax(error, 1e-6)));
-        m->longest = fmin(m->options.step, fmax(h, grown));
+        m->longest = fmin(m->step, fmax(h, grown));
         *t = parts <= 1 ? t1 : *t + h;
     }
     return true;
@@ -190,7 +201,7 @@ bough_status bough_micro_rosenbrock_advance_part(bough_micro_rosenbrock *micro, 
         if (micro->started) micro->sum.restarts++;
         micro->started = true;
         micro->age = MOST_AGE;
-        micro->longest = micro->options.step;
+        micro->longest = micro->step;
     }
     if (cross(micro, t, pause, t1, y)) return bough_ok();
     micro->started = false;

@@ -17,7 +17,7 @@ typedef struct bough_micro_rosenbrock_options {
 
 typedef struct bough_micro_rosenbrock bough_micro_rosenbrock;
 
-// Builds the integrator in the arena; scale (n) is borrowed.
+// Builds the integrator in the arena, for errors of each state against scale (n).
 bough_status bough_micro_rosenbrock_create(bough_arena *arena, const bough_ode *ode,
                                            const double *scale,
                                            bough_micro_rosenbrock_options options,

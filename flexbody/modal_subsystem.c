@@ -170,8 +170,14 @@ bough_status bough_modal_body_create(bough_arena *arena, const bough_modal_model
     b->moved = true;
     bough_modal_rest_state(model, input, b->state);
     set_scale(b);
-    bough_ode ode = {model->name,     model->n_state, b,          micro_derivative,
-                     micro_linearise, micro_factor,   micro_solve};
+    bough_ode ode = {.name = model->name,
+                     .n = model->n_state,
+                     .self = b,
+                     .derivative = micro_derivative,
+                     .derivative_again = micro_derivative,
+                     .linearise = micro_linearise,
+                     .factor = micro_factor,
+                     .solve = micro_solve};
     bough_status status = bough_micro_create(arena, &ode, b->scale, micro, &b->micro);
     if (bough_is_ok(&status)) *body = b;
     return status;

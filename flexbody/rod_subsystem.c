@@ -26,6 +26,13 @@ static bool micro_derivative(void *self, double t, const double *y, double *rate
     return bough_rod_derivative(b->model, &b->loads, t, y, input, &b->scratch, rate);
 }
 
+static bool micro_derivative_again(void *self, double t, const double *y, double *rate) {
+    bough_rod_body *b = self;
+    double input[BOUGH_ROD_MOST_INPUTS];
+    bough_signal_value(b->input, t, input);
+    return bough_rod_derivative_again(b->model, &b->loads, t, y, input, &b->scratch, rate);
+}
+
 // |p| = 1 to rounding in what others see; the integrator's own history is not touched.
 static void normalise(bough_rod_body *b) {
     int n = b->model->n;
@@ -210,8 +217,14 @@ bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *mo
     bough_rod_rest_state(model, input, b->state);
     int n = model->n;
     for (int k = 0; k < BOUGH_ROD_STATES * n; k++) b->scale[k] = scale[k / n];
-    bough_ode ode = {model->name, BOUGH_ROD_STATES * n, b,           micro_derivative,
-                     micro_linearise, micro_factor,       micro_solve};
+    bough_ode ode = {.name = model->name,
+                     .n = BOUGH_ROD_STATES * n,
+                     .self = b,
+                     .derivative = micro_derivative,
+                     .derivative_again = micro_derivative_again,
+                     .linearise = micro_linearise,
+                     .factor = micro_factor,
+                     .solve = micro_solve};
     bough_status status = bough_micro_create(arena, &ode, b->scale, micro, &b->micro);
     if (bough_is_ok(&status)) *body = b;
     return status;

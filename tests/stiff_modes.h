@@ -98,7 +98,7 @@ static problem *create_scaled(bough_micro_kind kind, const double *scale, double
     assert_non_null(p);
     p->arena = bough_arena_create();
     p->wall = (double)INFINITY;
-    bough_ode ode = {"stiff", N, p, derivative, linearise, factor, solve};
+    bough_ode ode = {"stiff", N, p, derivative, derivative, linearise, factor, solve};
     bough_micro_options options = {.kind = kind, .rtol = rtol};
     bough_status status = bough_micro_create(p->arena, &ode, scale, options, &p->micro);
     assert_int_equal(status.code, BOUGH_OK);

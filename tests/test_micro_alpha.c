@@ -62,7 +62,7 @@ static void start(double *y) {
 static bough_arena *build(problem *p, double step, double rho) {
     static const double scale[3] = {1, 1, 1};
     bough_arena *arena = bough_arena_create();
-    bough_ode ode = {"sample", 3, p, derivative, linearise, factor, solve};
+    bough_ode ode = {"sample", 3, p, derivative, derivative, linearise, factor, solve};
     bough_status status = bough_micro_alpha_create(
         arena, &ode, scale, (bough_micro_alpha_options){step, rho, 1e-10}, &p->micro);
     assert_int_equal(status.code, BOUGH_OK);

@@ -67,7 +67,7 @@ static void exact(double t, double *y) {
 static bough_arena *build(problem *p, double step, double rtol) {
     static const double scale[N] = {1, 1, 1, 1};
     bough_arena *arena = bough_arena_create();
-    bough_ode ode = {"sample", N, p, derivative, linearise, factor, solve};
+    bough_ode ode = {"sample", N, p, derivative, derivative, linearise, factor, solve};
     bough_micro_rosenbrock_options options = {step, rtol};
     bough_status status = bough_micro_rosenbrock_create(arena, &ode, scale, options, &p->micro);
     assert_int_equal(status.code, BOUGH_OK);
