@@ -3,8 +3,9 @@
 //
 // The solver keeps no memory: where a stalled polar gives several roots, a start from the last
 // answer would make the next depend on the past, and a repeated step would not repeat its loads. It
-// starts where linear lift would balance, which as the last answer would saves four evaluations of
-// ten, and takes the root of attached flow if there are others. Elsewhere it brackets as Ning does.
+// starts where linear lift would balance and takes the root of attached flow whatever others there
+// are; without attached flow it starts from no induction; where neither start has a root close by it
+// brackets as Ning does.
 //
 // S. A. Ning, "A simple solution method for the blade element momentum equations with guaranteed
 // convergence", Wind Energy 17 (2014).

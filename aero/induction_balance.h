@@ -14,6 +14,8 @@ static const double clearance = 1e-6;
 static const double precision = 1e-12;
 // Slower than this there is no wake to speak of [m/s].
 static const double slow = 1e-3;
+// From this exponent on Prandtl's factor is 1 to the last digit.
+static const double no_loss = 40;
 // Least loss factor.
 static const double least_loss = 1e-4;
 // a beyond which the smooth parabola replaces momentum theory.
@@ -68,9 +70,9 @@ static inline bool is_balanced(problem p, double vx, double vy) {
     return least_factor >= 1e-9 && least_speed >= slow;
 }
 
-// (2/π) acos exp(−x); beyond x = 37 that is 1 to the last digit.
+// (2/π) acos exp(−x)
 static inline double prandtl(double x) {
-    double e = lane_exp(-(x < 40 ? x : 40)), near_one = e > 0.5 ? 1 : 0;
+    double e = lane_exp(-(x < no_loss ? x : no_loss)), near_one = e > 0.5 ? 1 : 0;
     double angle = lane_arc_sine(near_one > 0 ? sqrt((1 - e) / 2) : e);
     return near_one > 0 ? 4 / BOUGH_PI * angle : 1 - 2 / BOUGH_PI * angle;
 }
@@ -153,7 +155,7 @@ static inline double attached_angle(problem p, double lift_slope, double zero_li
 // step of the plain iteration for the inductions does.
 static inline double nearby(problem p, double attached, double lift_slope, double phi0, double phi,
                             flow w, balance b) {
-    const double overshoot = 1.25;
+    const double overshoot = 1.4;
     double rise = 2 * phi - phi0 + p.density * p.cone * lift_slope / w.loss;
     double newton = lane_clamp(phi - overshoot * b.residual / rise, 0.8 * phi, 1.2 * phi);
     double induced = lane_angle(p.slope * w.s * b.swirl, w.c * b.axial);

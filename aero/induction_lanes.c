@@ -7,17 +7,19 @@ enum { MOST_LANES = 32, MOST_STEPS = 100 };
 typedef double lane[MOST_LANES];
 
 typedef struct lanes {
-    const bough_induction_options *options;
-    const bough_polar *const *polar;
-    int n;
-    int n_live, live[MOST_LANES / BOUGH_LANES]; // groups of lanes, by their first, not yet done with
-    lane sign_x, sign_y, slope, density, cone, tip_factor, hub_factor, twist; // of the problem
+    // of the problem; aligned, so that no vector of any lane lies across cache lines
+    _Alignas(8 * BOUGH_LANES) lane sign_x;
+    lane sign_y, slope, density, cone, tip_factor, hub_factor, twist;
     lane lift_slope, free_angle;
     lane attached, here; // 1: the guess is the attached angle; the root is taken to be in reach
     // the point last evaluated
     lane phi, s, c, loss, alpha, lift, drag, residual, axial, swirl;
     // the bracket, and where to go in it: none when the root is found
     lane a, fa, b, fb, step;
+    const bough_induction_options *options;
+    const bough_polar *const *polar;
+    int n;
+    int n_live, live[MOST_LANES / BOUGH_LANES]; // groups of lanes, by their first, not yet done with
 } lanes;
 
 static inline problem load_problem(const lanes *x, int i) {
