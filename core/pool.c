@@ -9,55 +9,56 @@
 #include <unistd.h>
 
 // Longer lists are done in portions.
-enum { MOST_TASKS = 1024, LINE = 64 };
+enum { MOST_TASKS = 256, LINE = 64 };
 
 static const long patience = 50000; // before sleep [ns]
+static const long courtesy = 2000;  // before a thread takes what is another's turn [ns]
 
-// Where threads sleep: until there is a task to take, or until one is done.
+// Where threads sleep: until there is a list, or until a task is done.
 typedef struct bedroom {
     atomic_int sleepers;
     pthread_cond_t door;
 } bedroom;
 
+// A task of the list in progress: the numbers of the last lists in which it was taken and done.
+typedef struct slot {
+    _Alignas(LINE) atomic_uint_least64_t taken, done;
+} slot;
+
+typedef struct worker {
+    struct bough_pool *pool;
+    int number; // the caller's is 0
+    pthread_t thread;
+} worker;
+
 struct bough_pool {
-    int n_worker;
-    pthread_t *worker; // (n_worker)
-    bool impatient;    // more threads than processors
+    int n_thread;
+    worker *worker; // (n_thread), the caller's unused
+    bool impatient; // more threads than processors
     // the list in progress, written before `list` tells of it
     bough_task task;
     void *data;
     int first; // number of its first task
-    // generation << 32 | number of tasks << 16 | next one: one word, so that nobody who comes late
-    // takes a task of another list
-    _Alignas(LINE) atomic_uint_least64_t list;
-    _Alignas(LINE) atomic_int left;            // tasks of the list not done yet
-    atomic_uint_least32_t done[MOST_TASKS];    // the generation in which each was done
-    _Alignas(LINE) atomic_bool ended;
+    _Alignas(LINE) atomic_uint_least64_t list; // its number << 16 | how many tasks
+    atomic_bool ended;
+    slot slot[MOST_TASKS];
     bedroom idle, waiting;
     pthread_mutex_t mutex; // of both
 };
 
-static uint32_t generation_of(uint64_t list) { return (uint32_t)(list >> 32); }
-static int count_of(uint64_t list) { return (int)(list >> 16 & 0xffff); }
-static int next_of(uint64_t list) { return (int)(list & 0xffff); }
+static uint64_t number_of(uint64_t list) { return list >> 16; }
+static int count_of(uint64_t list) { return (int)(list & 0xffff); }
 
 // -- waiting --------------------------------------------------------------------------------------
 
-typedef bool (*condition)(bough_pool *p, int argument);
+typedef bool (*condition)(bough_pool *p, uint64_t argument);
 
-static bool has_work(bough_pool *p, int unused) {
-    (void)unused;
-    uint64_t list = atomic_load(&p->list);
-    return next_of(list) < count_of(list) || atomic_load(&p->ended);
+static bool has_news(bough_pool *p, uint64_t known_list) {
+    return atomic_load(&p->list) != known_list || atomic_load(&p->ended);
 }
 
-static bool is_complete(bough_pool *p, int unused) {
-    (void)unused;
-    return atomic_load(&p->left) == 0;
-}
-
-static bool is_done(bough_pool *p, int task) {
-    return atomic_load(&p->done[task]) == generation_of(atomic_load(&p->list));
+static bool is_done(bough_pool *p, uint64_t task) {
+    return atomic_load(&p->slot[task].done) == number_of(atomic_load(&p->list));
 }
 
 static void pause_briefly(void) {
@@ -72,11 +73,12 @@ static long clock_ns(void) {
     return (long)now.tv_sec * 1000000000L + now.tv_nsec;
 }
 
-static bool spin(bough_pool *p, condition ready, int argument) {
-    enum { LOOKS = 32 }; // between looks at the clock
+// Looks for so long; false when it has not come.
+static bool look(bough_pool *p, long duration, condition ready, uint64_t argument) {
+    enum { LOOKS = 16 }; // between looks at the clock
     if (ready(p, argument)) return true;
     if (p->impatient) return false;
-    for (long until = clock_ns() + patience; clock_ns() < until;) {
+    for (long until = clock_ns() + duration; clock_ns() < until;) {
         for (int k = 0; k < LOOKS; k++) {
             if (ready(p, argument)) return true;
             pause_briefly();
@@ -87,8 +89,8 @@ static bool spin(bough_pool *p, condition ready, int argument) {
 
 // A sleeper counts itself before its last look, and who changes something looks for sleepers after:
 // one of the two sees the other.
-static void wait_until(bough_pool *p, bedroom *room, condition ready, int argument) {
-    if (spin(p, ready, argument)) return;
+static void wait_until(bough_pool *p, bedroom *room, condition ready, uint64_t argument) {
+    if (look(p, patience, ready, argument)) return;
     pthread_mutex_lock(&p->mutex);
     atomic_fetch_add(&room->sleepers, 1);
     while (!ready(p, argument)) pthread_cond_wait(&room->door, &p->mutex);
@@ -105,26 +107,44 @@ static void wake(bough_pool *p, bedroom *room) {
 
 // -- working --------------------------------------------------------------------------------------
 
-// Takes and does tasks while the list has any that nobody has taken.
-static void work(bough_pool *p) {
-    uint64_t list = atomic_load(&p->list);
-    while (next_of(list) < count_of(list)) {
-        if (!atomic_compare_exchange_weak(&p->list, &list, list + 1)) continue;
-        int k = next_of(list);
-        p->task(p->data, p->first + k);
-        atomic_store(&p->done[k], generation_of(list));
-        atomic_fetch_sub(&p->left, 1);
-        wake(p, &p->waiting);
-        list = atomic_load(&p->list);
+// Does task k of the list unless it is taken. A thread that comes late finds all of them taken; who
+// has taken one keeps the list from ending, so that task and data stand.
+static void do_task(bough_pool *p, uint64_t list, int k) {
+    uint64_t number = number_of(list), taken = atomic_load(&p->slot[k].taken);
+    if (taken >= number || !atomic_compare_exchange_strong(&p->slot[k].taken, &taken, number)) {
+        return;
+    }
+    p->task(p->data, p->first + k);
+    atomic_store(&p->slot[k].done, number);
+    wake(p, &p->waiting);
+}
+
+// Whose task k is: 0, 1, …, n − 1, n − 1, …, 1, 0, 0, 1, … for n threads.
+static int owner(const bough_pool *p, int k) {
+    int place = k % p->n_thread;
+    return k / p->n_thread % 2 == 0 ? place : p->n_thread - 1 - place;
+}
+
+// A thread's own tasks, then those of threads that do not come.
+static void work(bough_pool *p, uint64_t list, int self) {
+    for (int k = 0; k < count_of(list); k++) {
+        if (owner(p, k) == self) do_task(p, list, k);
+    }
+    if (self > 0 && look(p, courtesy, has_news, list)) return;
+    for (int k = 0; k < count_of(list); k++) {
+        if (self == 0 && look(p, courtesy, is_done, (uint64_t)k)) continue;
+        do_task(p, list, k);
     }
 }
 
 static void *live(void *self) {
-    bough_pool *p = self;
-    for (;;) {
-        wait_until(p, &p->idle, has_work, 0);
+    const worker *w = self;
+    bough_pool *p = w->pool;
+    for (uint64_t list = 0;;) {
+        wait_until(p, &p->idle, has_news, list);
         if (atomic_load(&p->ended)) return NULL;
-        work(p);
+        list = atomic_load(&p->list);
+        work(p, list, w->number);
     }
 }
 
@@ -132,12 +152,11 @@ static void run_portion(bough_pool *p, int first, int n, bough_task task, void *
     p->task = task;
     p->data = data;
     p->first = first;
-    atomic_store(&p->left, n);
-    uint64_t generation = generation_of(atomic_load(&p->list)) + UINT64_C(1);
-    atomic_store(&p->list, generation << 32 | (uint64_t)n << 16);
+    uint64_t number = number_of(atomic_load(&p->list)) + 1, list = number << 16 | (uint64_t)n;
+    atomic_store(&p->list, list);
     wake(p, &p->idle);
-    work(p);
-    wait_until(p, &p->waiting, is_complete, 0);
+    work(p, list, 0);
+    for (int k = 0; k < n; k++) wait_until(p, &p->waiting, is_done, (uint64_t)k);
 }
 
 void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data) {
@@ -152,10 +171,12 @@ void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data) {
 
 void bough_pool_await(bough_pool *pool, int earlier) {
     if (!pool || earlier < pool->first) return;
-    wait_until(pool, &pool->waiting, is_done, earlier - pool->first);
+    int k = earlier - pool->first;
+    if (!look(pool, courtesy, is_done, (uint64_t)k)) do_task(pool, atomic_load(&pool->list), k);
+    wait_until(pool, &pool->waiting, is_done, (uint64_t)k);
 }
 
-int bough_pool_threads(const bough_pool *pool) { return pool ? pool->n_worker + 1 : 1; }
+int bough_pool_threads(const bough_pool *pool) { return pool ? pool->n_thread : 1; }
 
 // -- life -----------------------------------------------------------------------------------------
 
@@ -163,7 +184,7 @@ static void end(void *self) {
     bough_pool *p = self;
     atomic_store(&p->ended, true);
     wake(p, &p->idle);
-    for (int k = 0; k < p->n_worker; k++) pthread_join(p->worker[k], NULL);
+    for (int k = 1; k < p->n_thread; k++) pthread_join(p->worker[k].thread, NULL);
     pthread_cond_destroy(&p->idle.door);
     pthread_cond_destroy(&p->waiting.door);
     pthread_mutex_destroy(&p->mutex);
@@ -179,14 +200,16 @@ bough_status bough_pool_create(bough_arena *arena, int threads, bough_pool **poo
     pthread_mutex_init(&p->mutex, NULL);
     pthread_cond_init(&p->idle.door, NULL);
     pthread_cond_init(&p->waiting.door, NULL);
-    while (p->n_worker < threads - 1) {
-        int error = pthread_create(&p->worker[p->n_worker], NULL, live, p);
-        if (error == 0) {
-            p->n_worker++;
-            continue;
-        }
+    int error = 0, started = 1;
+    p->n_thread = threads; // read by the threads
+    for (; started < threads && error == 0; started += error == 0) {
+        p->worker[started] = (worker){.pool = p, .number = started};
+        error = pthread_create(&p->worker[started].thread, NULL, live, &p->worker[started]);
+    }
+    if (error != 0) {
+        p->n_thread = started;
         end(p);
-        return bough_fail(BOUGH_IO, "cannot start thread %d of %d: %s", p->n_worker + 2, threads,
+        return bough_fail(BOUGH_IO, "cannot start thread %d of %d: %s", started + 1, threads,
                           strerror(error));
     }
     bough_arena_on_destroy(arena, end, p);

@@ -1,8 +1,9 @@
 // Threads that share out lists of short tasks: a few microseconds each, many lists per step.
 //
-// A list is worked through in order: whoever is free takes its next task. So a task may wait for an
-// earlier one, which somebody has in hand; and the caller, who takes tasks too, never waits for a
-// thread that does not run. Results do not depend on who takes what as long as no sum crosses tasks.
+// Each task is some thread's own, in lists alike the same one's, so that what it works on stays in that
+// processor's cache: of three tasks the caller has the first and one thread the others. A thread does
+// its own in order, then those of threads that do not come; so nobody waits for a thread that does not
+// run. Results do not depend on who does what as long as no sum crosses tasks.
 //
 // Who waits looks again for some 50 µs and then sleeps: at once where there are more threads than
 // processors. Threads are not bound to processors: two runs side by side would bind to the same.
@@ -26,7 +27,7 @@ int bough_pool_threads(const bough_pool *pool);
 // Does task(data, 0 … n − 1) and returns when all are done. One list at a time; no task may call it.
 void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data);
 
-// Inside a task: returns when the earlier task `earlier` of the list is done.
+// Inside a task: returns when the task `earlier` of the list, which comes before it, is done.
 void bough_pool_await(bough_pool *pool, int earlier);
 
 #endif

@@ -132,32 +132,36 @@ static void advance_second_half(bough_coupling *c, int member) {
     if (bough_is_ok(&c->status[member]) && !arrived) advance(c, member, false);
 }
 
-// The members c->turn of a stage (n). Of those that fill no whole turn of all threads (rest) the
-// first halves come first and the second ones last, so that three members keep two threads busy.
+// The members c->turn of a stage (n). The last of them, which fill no whole turn of all threads, are
+// advanced in two halves (rest): the first ones in the first turn, the second ones last, so that three
+// members keep two threads busy.
 typedef struct turns {
     bough_coupling *coupling;
     bool restart;
-    int n, rest;
+    int n, rest, before; // before: members in the first turn that are advanced as a whole
 } turns;
 
 static void take_turn(void *data, int k) {
     const turns *w = data;
     bough_coupling *c = w->coupling;
-    const int *member = c->turn;
-    if (k < w->rest) {
-        advance_first_half(c, member[w->n - w->rest + k], w->restart);
+    const int *split = c->turn + w->n - w->rest;
+    if (k < w->before) {
+        advance(c, c->turn[k], w->restart);
+    } else if (k < w->before + w->rest) {
+        advance_first_half(c, split[k - w->before], w->restart);
     } else if (k < w->n) {
-        advance(c, member[k - w->rest], w->restart);
+        advance(c, c->turn[k - w->rest], w->restart);
     } else {
-        bough_pool_await(c->pool, k - w->n);
-        advance_second_half(c, member[k - w->rest]);
+        bough_pool_await(c->pool, w->before + k - w->n);
+        advance_second_half(c, split[k - w->n]);
     }
 }
 
 bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart) {
-    turns w = {c, restart, list_stage(c, stage), 0};
+    turns w = {c, restart, list_stage(c, stage), 0, 0};
     int threads = bough_pool_threads(c->pool);
     if (w.n > threads) w.rest = w.n % threads;
+    if (w.rest > 0) w.before = threads - w.rest;
     bough_pool_run(c->pool, w.n + w.rest, take_turn, &w);
     return first_failure(c);
 }
