@@ -89,6 +89,38 @@ bough_status bough_coupling_each(bough_coupling *c, int stage,
     return first_failure(c);
 }
 
+typedef struct led_list {
+    bough_coupling *coupling;
+    bough_lead_work work;
+    int n_lead;
+} led_list;
+
+static void run_led(void *data, int k) {
+    const led_list *w = data;
+    bough_coupling *c = w->coupling;
+    int member = c->turn[k];
+    if (k < w->n_lead) {
+        w->work.lead(c, member);
+        return;
+    }
+    w->work.prepare(c, member);
+    for (int lead = 0; lead < w->n_lead; lead++) bough_pool_await(c->pool, lead);
+    if (bough_is_ok(&c->status[member])) w->work.follow(c, member);
+}
+
+// Leaders first. Followers go round by as many, so that with one leader each keeps the thread that it
+// has in a list without leaders.
+bough_status bough_coupling_each_led(bough_coupling *c, bough_lead_work work) {
+    int n = c->assembly->n_member;
+    led_list w = {c, work, list_stage(c, 0)};
+    int n_follow = n - w.n_lead, place = n_follow > 0 ? n_follow - w.n_lead % n_follow : 0;
+    for (int i = 0; i < n; i++) {
+        if (!in_stage(c, 0, i)) c->turn[w.n_lead + place++ % n_follow] = i;
+    }
+    bough_pool_run(c->pool, n, run_led, &w);
+    return first_failure(c);
+}
+
 void bough_coupling_begin(bough_coupling *c) {
     memset(c->followed, 0, (size_t)c->assembly->n_input * sizeof *c->followed);
     for (int i = 0; i < c->assembly->n_member; i++) {

@@ -98,6 +98,15 @@ enum { BOUGH_ALL_STAGES = -1 };
 bough_status bough_coupling_each(bough_coupling *c, int stage,
                                  void (*work)(bough_coupling *c, int member));
 
+// The same for lead(c, member) of stage 0 beside prepare(c, member) of all others; follow(c, member)
+// of those once all of stage 0 are done. Nobody follows who has failed to prepare.
+typedef struct bough_lead_work {
+    void (*lead)(bough_coupling *c, int member);
+    void (*prepare)(bough_coupling *c, int member);
+    void (*follow)(bough_coupling *c, int member);
+} bough_lead_work;
+bough_status bough_coupling_each_led(bough_coupling *c, bough_lead_work work);
+
 // Sets the span of every signal to the step.
 void bough_coupling_begin(bough_coupling *c);
 

@@ -152,12 +152,14 @@ static void predict_leader(bough_coupling *c, int member) {
     solve(c, member, NULL);
 }
 
+static void prepare_follower(bough_coupling *c, int member) {
+    if (!evaluate(c, member)) c->status[member] = bough_coupling_not_finite(c, member);
+}
+
 static void predict_follower(bough_coupling *c, int member) {
     const ramp *r = c->scheme_data;
     bough_operating_point at = operating_point(c, member);
-    if (leads(c, member)) return;
-    if (!evaluate(c, member) ||
-        (r->fresh && !bough_condensed_factor_follower(r->interface, member, &at))) {
+    if (r->fresh && !bough_condensed_factor_follower(r->interface, member, &at)) {
         c->status[member] = bough_coupling_not_finite(c, member);
         return;
     }
@@ -189,9 +191,8 @@ static bough_status predict(bough_coupling *c) {
     r->middle = c->t0 + r->gamma;
     c->interface = r->interface;
     c->interface_gamma = r->gamma;
-    bough_status status = bough_coupling_each(c, 0, predict_leader);
-    if (!bough_is_ok(&status)) return status;
-    status = bough_coupling_each(c, BOUGH_ALL_STAGES, predict_follower);
+    bough_lead_work work = {predict_leader, prepare_follower, predict_follower};
+    bough_status status = bough_coupling_each_led(c, work);
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) expect_inputs(c, i);
