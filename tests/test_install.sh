@@ -27,7 +27,7 @@ cp "$source/apps/api/example.c" "$folder/project"
 cat >"$folder/project/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.20)
 project(example C)
-find_package(bough REQUIRED)
+find_package(bough 0.1 REQUIRED)
 add_executable(example example.c)
 target_link_libraries(example bough::api)
 END

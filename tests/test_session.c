@@ -3,6 +3,7 @@
 
 #include "apps/api/bough.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -63,6 +64,30 @@ static void sessions_live_side_by_side(void **context) {
     }
     bough_session_close(a);
     bough_session_close(b);
+}
+
+// Opens, steps and reads a session of its own.
+static void *run_alone(void *last) {
+    const char *const set[] = {"bodies[3-5].rod.segments=8", "simulation.threads=1"};
+    bough_session *s = bough_session_open(BOUGH_SOURCE_DIR "/apps/turbine/runup.yaml", set, 2);
+    for (int k = 0; k < 50; k++) bough_session_step(s);
+    *(double *)last = bough_session_read(s, bough_session_find(s, "OoPDefl1"));
+    bough_session_close(s);
+    return NULL;
+}
+
+static void sessions_run_at_the_same_time(void **context) {
+    (void)context;
+    enum { THREADS = 3 };
+    pthread_t thread[THREADS];
+    double last[THREADS], alone;
+    for (int k = 0; k < THREADS; k++) {
+        assert_int_equal(pthread_create(&thread[k], NULL, run_alone, &last[k]), 0);
+    }
+    for (int k = 0; k < THREADS; k++) pthread_join(thread[k], NULL);
+    run_alone(&alone);
+    assert_true(alone > 0.1);
+    for (int k = 0; k < THREADS; k++) assert_true(last[k] == alone);
 }
 
 // -- copies ---------------------------------------------------------------------------------------
@@ -191,6 +216,7 @@ int main(void) {
         cmocka_unit_test(steps_to_the_end_and_reads),
         cmocka_unit_test(errors_are_told),
         cmocka_unit_test(sessions_live_side_by_side),
+        cmocka_unit_test(sessions_run_at_the_same_time),
         cmocka_unit_test(restored_runs_go_on_to_the_same_bits),
         cmocka_unit_test(another_wind_makes_a_what_if),
         cmocka_unit_test(a_failed_session_is_restored),

@@ -1,6 +1,6 @@
 /* bough as a library: opens a scene, steps it, reads its channels, keeps copies of its state. One
-   session is used by one thread at a time; any number of sessions may live at once. Needs nothing
-   else of bough's headers.
+   session is used by one thread at a time; any number of sessions may live, and run, at once. Needs
+   nothing else of bough's headers.
 
        bough_session *s = bough_session_open("runup.yaml", NULL, 0);
        int speed = bough_session_find(s, "RotSpeed");
