@@ -47,6 +47,12 @@ void bough_rod_gather(const bough_rod_model *m, const double *state, const doubl
     gather_state(m, state, m->n, scratch->vertex);
 }
 
+void bough_rod_gather_root(const bough_rod_model *m, const double *state, const double *input,
+                           bough_rod_scratch *scratch) {
+    gather_input(m, input, scratch->vertex);
+    gather_state(m, state, 1, scratch->vertex);
+}
+
 bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
     int s = m->stride;
     const double *restrict vertex = scratch->vertex, *restrict e0 = m->strain0;
@@ -194,8 +200,7 @@ void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *load
                            const double *state, const double *input, bough_rod_scratch *scratch,
                            double *wrench) {
     int s = m->stride;
-    gather_input(m, input, scratch->vertex);
-    gather_state(m, state, 1, scratch->vertex);
+    bough_rod_gather_root(m, state, input, scratch);
     loads_at(m, loads, t, scratch);
     bough_rod_forces(m, 0, 1, scratch);
     const double *f = scratch->segment;

@@ -46,7 +46,7 @@ static vertex_variation end_variation(const double *end, const double *d) {
 void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, const double *input,
                               const double *state_rate, const double *input_rate,
                               bough_rod_scratch *scratch, double *wrench) {
-    bough_rod_gather(m, state, input, scratch);
+    bough_rod_gather_root(m, state, input, scratch);
     bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
     vertex_variation l = {0}, r = {0};
     if (input_rate != NULL) l = root_variation(m, input_rate);
