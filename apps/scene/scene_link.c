@@ -8,13 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { UNRESOLVED = -2 }; // a name that could not be resolved
-
-// Sets the path of the next errors.
-static void at(bough_schema_reader *r, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static void at(bough_schema_reader *r, const char *format, ...) {
+void bough_link_at(bough_schema_reader *r, const char *format, ...) {
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(r->path, sizeof r->path, format, arguments);
@@ -48,7 +42,7 @@ static int find_body(const bough_scene *s, const char *name) {
     }
     bool found = low < s->n_body && s->by_name[low]->name != NULL &&
                  strcmp(s->by_name[low]->name, name) == 0;
-    return found ? (int)(s->by_name[low] - s->body) : UNRESOLVED;
+    return found ? (int)(s->by_name[low] - s->body) : BOUGH_UNRESOLVED;
 }
 
 // Among the bodies, and the ground where a parent is named.
@@ -63,26 +57,24 @@ static const char *nearest_body(bough_schema_reader *r, const bough_scene *s, co
     return bough_nearest(name, names, s->n_body + (strcmp(key, "parent") == 0));
 }
 
-// The index of a named body; UNRESOLVED after an error at the key of `node`.
-static int resolve(bough_schema_reader *r, const bough_scene *s, const bough_node *node,
-                   const char *key, const char *name) {
-    if (name == NULL) return UNRESOLVED;
+int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node,
+                    const char *key, const char *name) {
+    if (name == NULL) return BOUGH_UNRESOLVED;
     int index = find_body(s, name);
-    if (index != UNRESOLVED) return index;
+    if (index != BOUGH_UNRESOLVED) return index;
     const char *near = nearest_body(r, s, key, name);
     bough_schema_error(r, node, key, "there is no body '%.48s'%s%s%s", name,
                        near == NULL ? "" : " (did you mean '", near == NULL ? "" : near,
                        near == NULL ? "" : "'?)");
-    return UNRESOLVED;
+    return BOUGH_UNRESOLVED;
 }
 
-static const bough_node *value_of(const bough_node *node, const char *key) {
+const bough_node *bough_link_value(const bough_node *node, const char *key) {
     const bough_node *value = bough_node_find(node, key);
     return value == NULL ? node : value;
 }
 
-// -- bodies
-// -----------------------------------------------------------------------------------------
+// -- bodies ---------------------------------------------------------------------------------------
 
 // Names go into channels and file names.
 static void check_name(bough_schema_reader *r, const bough_scene *s, int i) {
@@ -90,7 +82,7 @@ static void check_name(bough_schema_reader *r, const bough_scene *s, int i) {
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
     const bough_scene_body *b = &s->body[i];
     if (b->name == NULL) return;
-    const bough_node *node = value_of(b->node, "name");
+    const bough_node *node = bough_link_value(b->node, "name");
     char shown[64];
     if (strspn(b->name, allowed) != strlen(b->name)) {
         bough_schema_error(r, node, "name", "a name has letters, digits, '_' and '-', got %s",
@@ -132,15 +124,15 @@ static void check_rod_use(bough_schema_reader *r, const bough_scene_body *b) {
 
 static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
     bough_scene_joint *joint = &s->body[i].joint;
-    joint->parent = UNRESOLVED;
+    joint->parent = BOUGH_UNRESOLVED;
     if (joint->parent_name == NULL) return;
-    at(r, "bodies[%d].joint", i);
+    bough_link_at(r, "bodies[%d].joint", i);
     if (strcmp(joint->parent_name, "ground") == 0) {
         joint->parent = BOUGH_SCENE_GROUND;
         return;
     }
-    const bough_node *node = value_of(joint->node, "parent");
-    joint->parent = resolve(r, s, node, "parent", joint->parent_name);
+    const bough_node *node = bough_link_value(joint->node, "parent");
+    joint->parent = bough_link_body(r, s, node, "parent", joint->parent_name);
     if (joint->parent >= 0 && s->body[joint->parent].fidelity > BOUGH_SCENE_ROD) {
         bough_schema_error(r, node, "parent", "'%s' is a modal body, which carries none; make it a"
                            " rod", joint->parent_name);
@@ -166,8 +158,8 @@ static void report_loop(bough_schema_reader *r, const bough_scene *s, int start)
         if (length >= (int)sizeof loop) length = (int)sizeof loop - 1;
         more = s->body[k].joint.parent != first;
     }
-    at(r, "bodies[%d].joint", first);
-    bough_schema_error(r, value_of(s->body[first].joint.node, "parent"), "parent",
+    bough_link_at(r, "bodies[%d].joint", first);
+    bough_schema_error(r, bough_link_value(s->body[first].joint.node, "parent"), "parent",
                        "parents form a loop: %s%s", loop, s->body[first].name);
 }
 
@@ -181,7 +173,8 @@ static bool order_bodies(bough_schema_reader *r, bough_scene *s) {
         before = n;
         for (int i = 0; i < s->n_body; i++) {
             int parent = s->body[i].joint.parent;
-            if (placed[i] || parent == UNRESOLVED || (parent >= 0 && !placed[parent])) continue;
+            if (placed[i] || parent == BOUGH_UNRESOLVED) continue;
+            if (parent >= 0 && !placed[parent]) continue;
             placed[i] = true;
             s->order[n++] = i;
         }
@@ -216,7 +209,7 @@ static void check_moving_mass(bough_schema_reader *r, const bough_scene *s) {
         if (carries[i] && b->joint.parent >= 0) carries[b->joint.parent] = true;
         bool driven = b->joint.motion.node != NULL;
         if (carries[i] || driven || b->joint.kind <= BOUGH_SCENE_FIXED) continue;
-        at(r, "bodies[%d]", i);
+        bough_link_at(r, "bodies[%d]", i);
         bough_schema_error(r, b->node, "",
                            "a joint that moves must carry mass: give 'mass' here or "
                            "to a body that hangs on this one");
@@ -225,7 +218,7 @@ static void check_moving_mass(bough_schema_reader *r, const bough_scene *s) {
 
 static void link_bodies(bough_schema_reader *r, bough_scene *s) {
     for (int i = 0; i < s->n_body; i++) {
-        at(r, "bodies[%d]", i);
+        bough_link_at(r, "bodies[%d]", i);
         check_name(r, s, i);
         check_rod_use(r, &s->body[i]);
         link_parent(r, s, i);
@@ -233,12 +226,11 @@ static void link_bodies(bough_schema_reader *r, bough_scene *s) {
     if (order_bodies(r, s)) check_moving_mass(r, s);
 }
 
-// -- loads and turbine
-// ------------------------------------------------------------------------------
+// -- loads and turbine ----------------------------------------------------------------------------
 
 static void link_joint_load(bough_schema_reader *r, const bough_scene *s, bough_scene_load *load) {
-    const bough_node *joint = value_of(load->node, "joint");
-    load->joint = resolve(r, s, joint, "joint", load->joint_name);
+    const bough_node *joint = bough_link_value(load->node, "joint");
+    load->joint = bough_link_body(r, s, joint, "joint", load->joint_name);
     if (load->joint < 0) return;
     int kind = s->body[load->joint].joint.kind;
     if (kind < 0) return;
@@ -258,9 +250,10 @@ static void link_joint_load(bough_schema_reader *r, const bough_scene *s, bough_
 }
 
 static void link_load(bough_schema_reader *r, const bough_scene *s, bough_scene_load *load) {
-    load->joint = load->body = UNRESOLVED;
+    load->joint = load->body = BOUGH_UNRESOLVED;
     if (load->body_name != NULL) {
-        load->body = resolve(r, s, value_of(load->node, "body"), "body", load->body_name);
+        const bough_node *node = bough_link_value(load->node, "body");
+        load->body = bough_link_body(r, s, node, "body", load->body_name);
         if (load->body >= 0) bough_scene_check_body_load(r, s, load);
     } else {
         link_joint_load(r, s, load);
@@ -274,15 +267,15 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
     for (int end = 0; end < 2; end++) {
         body[end] = BOUGH_SCENE_GROUND;
         if (name[end] == NULL || strcmp(name[end], "ground") == 0) continue;
-        const bough_node *node = value_of(item, keys[end]);
-        body[end] = resolve(r, s, node, keys[end], name[end]);
+        const bough_node *node = bough_link_value(item, keys[end]);
+        body[end] = bough_link_body(r, s, node, keys[end], name[end]);
         if (body[end] < 0 || s->body[body[end]].fidelity <= BOUGH_SCENE_RIGID) continue;
         bough_schema_error(r, node, keys[end],
                            "'%s' is a rod; it must be a rigid body, which may hang on the rod and "
                            "needs no mass", name[end]);
     }
     if (name[0] != NULL && name[1] != NULL && strcmp(name[0], name[1]) == 0) {
-        bough_schema_error(r, value_of(item, "to"), "to", "must be another body");
+        bough_schema_error(r, bough_link_value(item, "to"), "to", "must be another body");
     }
 }
 
@@ -295,69 +288,19 @@ static void link_closure(bough_schema_reader *r, const bough_scene *s, bough_sce
 static void link_marker(bough_schema_reader *r, const bough_scene *s, bough_scene_marker *marker) {
     marker->body = BOUGH_SCENE_GROUND;
     if (marker->body_name == NULL || strcmp(marker->body_name, "ground") == 0) return;
-    const bough_node *node = value_of(marker->node, "body");
-    marker->body = resolve(r, s, node, "body", marker->body_name);
+    const bough_node *node = bough_link_value(marker->node, "body");
+    marker->body = bough_link_body(r, s, node, "body", marker->body_name);
     if (marker->body < 0 || s->body[marker->body].fidelity <= BOUGH_SCENE_RIGID) return;
     bough_schema_error(r, node, "body", "'%s' is a rod, whose tip is recorded", marker->body_name);
-}
-
-// Whether `ancestor` carries body i; false in a loop or where a name is unknown.
-static bool hangs_on(const bough_scene *s, int i, int ancestor) {
-    for (int steps = 0; i >= 0 && steps <= s->n_body; steps++) {
-        if (i == ancestor) return true;
-        i = s->body[i].joint.parent;
-    }
-    return false;
-}
-
-static bool is_listed_before(const bough_scene_turbine *t, int k) {
-    for (int i = 0; i < k; i++) {
-        if (t->blade[i] == t->blade[k]) return true;
-    }
-    return false;
-}
-
-static void link_blade(bough_schema_reader *r, bough_scene *s, int k) {
-    bough_scene_turbine *t = &s->turbine;
-    const bough_node *node = bough_node_find(t->node, "blades")->value[k];
-    const char *name = t->blade_name[k];
-    at(r, "turbine.blades[%d]", k);
-    t->blade[k] = resolve(r, s, node, "", name);
-    if (t->blade[k] < 0) return;
-    if (is_listed_before(t, k)) {
-        bough_schema_error(r, node, "", "blade '%s' is given twice", name);
-    } else if (bough_node_find(s->body[t->blade[k]].node, "rod") == NULL) {
-        bough_schema_error(r, node, "", "body '%s' has no rod, so it is no blade", name);
-    } else if (t->rotor >= 0 && !hangs_on(s, t->blade[k], t->rotor)) {
-        bough_schema_error(r, node, "", "body '%s' does not hang on the rotor '%s'", name,
-                           t->rotor_name);
-    }
-}
-
-static void link_turbine(bough_schema_reader *r, bough_scene *s) {
-    bough_scene_turbine *t = &s->turbine;
-    t->rotor = UNRESOLVED;
-    if (t->node == NULL) return;
-    at(r, "turbine");
-    const bough_node *rotor = value_of(t->node, "rotor");
-    t->rotor = resolve(r, s, rotor, "rotor", t->rotor_name);
-    int kind = t->rotor < 0 ? -1 : s->body[t->rotor].joint.kind;
-    if (kind >= 0 && kind != BOUGH_SCENE_REVOLUTE) {
-        bough_schema_error(r, rotor, "rotor", "the joint of '%s' must be revolute", t->rotor_name);
-    }
-    t->blade = bough_arena_take(r->arena, (size_t)t->n_blade * sizeof *t->blade);
-    if (t->blade == NULL) return;
-    for (int k = 0; k < t->n_blade; k++)
-        link_blade(r, s, k);
 }
 
 // -- modes ----------------------------------------------------------------------------------------
 
 static void link_modes(bough_schema_reader *r, bough_scene *s) {
     bough_scene_modes *m = &s->modes;
-    m->about = UNRESOLVED;
+    m->about = BOUGH_UNRESOLVED;
     if (m->node == NULL) return;
-    at(r, "modes");
+    bough_link_at(r, "modes");
     const bough_node *axis = bough_node_find(m->node, "axis");
     const bough_node *centre = bough_node_find(m->node, "centre");
     const bough_node *speed = bough_node_find(m->node, "speed");
@@ -365,8 +308,8 @@ static void link_modes(bough_schema_reader *r, bough_scene *s) {
         bough_schema_error(r, speed, "speed", "only used with 'of: rods'");
     }
     if (m->about_name != NULL) {
-        const bough_node *about = value_of(m->node, "about");
-        m->about = resolve(r, s, about, "about", m->about_name);
+        const bough_node *about = bough_link_value(m->node, "about");
+        m->about = bough_link_body(r, s, about, "about", m->about_name);
         if (m->about >= 0 && s->body[m->about].joint.kind >= 0 &&
             s->body[m->about].joint.kind != BOUGH_SCENE_REVOLUTE) {
             bough_schema_error(r, about, "about", "the joint of '%s' must be revolute",
@@ -382,132 +325,7 @@ static void link_modes(bough_schema_reader *r, bough_scene *s) {
     }
 }
 
-// -- aerodynamics
-// -----------------------------------------------------------------------------------
-
-// The index of the polar that a station's key names; −1 after an error.
-static int find_polar(bough_schema_reader *r, bough_scene *s, const char *const *names, int i,
-                      const char *key, const char *name) {
-    const bough_scene_polars *polars = &s->aero.polars;
-    for (int k = 0; k < polars->n_polar; k++) {
-        if (names[k] != NULL && strcmp(names[k], name) == 0) return k;
-    }
-    bool compact = bough_node_find(s->aero.blade.node, "stations")->kind == BOUGH_MAPPING;
-    at(r, "stations%s[%d]", compact ? ".rows" : "", i);
-    int n = r->errors->dropped > 0 ? 0 : polars->n_polar;
-    const char *near = bough_nearest(name, names, n);
-    bough_schema_error(r, value_of(s->aero.blade.station[i].node, key), key,
-                       "the polars file has no '%.48s'%s%s%s", name,
-                       near == NULL ? "" : " (did you mean '", near == NULL ? "" : near,
-                       near == NULL ? "" : "'?)");
-    return -1;
-}
-
-static void link_polar(bough_schema_reader *r, bough_scene *s, const char *const *names, int i) {
-    bough_scene_aero_station *station = &s->aero.blade.station[i];
-    station->polar = station->second = -1;
-    if (station->polar_name != NULL) {
-        station->polar = find_polar(r, s, names, i, "polar", station->polar_name);
-    }
-    if (station->second_name != NULL) {
-        station->second = find_polar(r, s, names, i, "blend", station->second_name);
-    } else if (station->share > 0) {
-        at(r, "stations[%d]", i);
-        bough_schema_error(r, station->node, "share", "needs 'blend', which names a second polar");
-    }
-}
-
-static void link_polars(bough_schema_reader *r, bough_scene *s) {
-    const bough_scene_polars *polars = &s->aero.polars;
-    if (polars->n_polar == 0) return;
-    const char **names = bough_arena_take(r->arena, (size_t)polars->n_polar * sizeof *names);
-    if (names == NULL) return;
-    for (int k = 0; k < polars->n_polar; k++)
-        names[k] = polars->polar[k].name;
-    for (int i = 0; i < s->aero.blade.n_station; i++) {
-        if (s->aero.blade.station[i].node != NULL) link_polar(r, s, names, i);
-    }
-}
-
-// Blade elements end where the rods end.
-static void check_blade_lengths(bough_schema_reader *r, const bough_scene *s) {
-    const bough_scene_aero_blade *blade = &s->aero.blade;
-    if (blade->n_station < 2) return;
-    double span = blade->station[blade->n_station - 1].span;
-    for (int k = 0; k < s->turbine.n_blade; k++) {
-        if (s->turbine.blade[k] < 0) continue;
-        const bough_scene_body *b = &s->body[s->turbine.blade[k]];
-        double length = b->rod.structure.length;
-        if (!(length > 0) || !(fabs(span - length) > 1e-3 * length)) continue;
-        bough_schema_error(r, value_of(s->aero.node, "blade"), "blade",
-                           "the blade elements end at %g m, but '%s' is %g m long", span, b->name,
-                           length);
-        return;
-    }
-}
-
-// The body on which the tower's drag acts.
-static void link_tower(bough_schema_reader *r, bough_scene *s) {
-    bough_scene_tower *tower = &s->aero.tower;
-    const bough_node *node = value_of(tower->node, "body");
-    tower->body = resolve(r, s, node, "tower.body", tower->body_name);
-    if (tower->body < 0) return;
-    bool blade = false;
-    for (int k = 0; k < s->turbine.n_blade; k++)
-        blade = blade || s->turbine.blade[k] == tower->body;
-    if (blade || bough_node_find(s->body[tower->body].node, "rod") == NULL) {
-        bough_schema_error(r, node, "tower.body", "'%s' must have a rod and be no blade",
-                           tower->body_name);
-    }
-}
-
-static void link_aero(bough_schema_reader *r, bough_scene *s) {
-    if (s->aero.node == NULL) return;
-    at(r, "aero");
-    if (s->turbine.node == NULL) {
-        bough_schema_error(r, s->aero.node, "", "needs 'turbine', which names rotor and blades");
-    }
-    bough_scene_check_ramp(r, s->aero.node, s->aero.ramp);
-    for (int k = 0; k < s->aero.n_node; k++) {
-        double node = s->aero.nodes[k];
-        if (node == floor(node) && node <= s->aero.blade.n_station) continue;
-        bough_schema_error(r, value_of(s->aero.node, "nodes"), "nodes",
-                           "expected numbers from 1 to %d, got %g", s->aero.blade.n_station, node);
-    }
-    check_blade_lengths(r, s);
-    if (s->aero.tower.body_name != NULL) link_tower(r, s);
-    link_polars(r, s);
-}
-
-// -- control
-// ----------------------------------------------------------------------------------------
-
-// A blade that is pitched turns about its own z by a joint that is told how.
-static bool has_pitch_joint(const bough_scene_body *b) {
-    return b->joint.kind == BOUGH_SCENE_REVOLUTE && b->joint.motion.node != NULL;
-}
-
-static void link_control(bough_schema_reader *r, bough_scene *s) {
-    if (s->control.node == NULL) return;
-    at(r, "control");
-    if (s->turbine.node == NULL) {
-        bough_schema_error(r, s->control.node, "", "needs 'turbine', which names rotor and blades");
-    }
-    for (int k = 0; k < s->turbine.n_blade && s->turbine.blade && s->turbine.blade[0] >= 0; k++) {
-        if (s->turbine.blade[k] < 0) return;
-        const bough_scene_body *first = &s->body[s->turbine.blade[0]];
-        const bough_scene_body *b = &s->body[s->turbine.blade[k]];
-        if (has_pitch_joint(b) != has_pitch_joint(first)) {
-            bough_schema_error(r, b->node, "", "blades '%s' and '%s': all or none are pitched by a "
-                               "joint with 'motion'", first->name, b->name);
-        } else if (has_pitch_joint(b) && b->joint.axis != 2) {
-            bough_schema_error(r, b->node, "", "the pitch joint of '%s' must turn about z", b->name);
-        }
-    }
-}
-
-// -- times
-// ------------------------------------------------------------------------------------------
+// -- times ----------------------------------------------------------------------------------------
 
 // Whether time/step is a whole number, at least one; true where either is wrong already.
 static bool is_multiple(double time, double step) {
@@ -521,9 +339,9 @@ static void check_times(bough_schema_reader *r, bough_scene *s) {
     double step = simulation->macro_step;
     const bough_node *interval = bough_node_find(simulation->output.node, "interval");
     if (simulation->output.node == NULL || interval == NULL) simulation->output.interval = step;
-    at(r, "simulation");
+    bough_link_at(r, "simulation");
     if (!is_multiple(simulation->duration, step)) {
-        bough_schema_error(r, value_of(simulation->node, "duration"), "duration",
+        bough_schema_error(r, bough_link_value(simulation->node, "duration"), "duration",
                            "%g s is not a multiple of the macro step, %g s", simulation->duration,
                            step);
     }
@@ -534,14 +352,14 @@ static void check_times(bough_schema_reader *r, bough_scene *s) {
     }
     if (s->control.node != NULL && s->control.rate > 0 &&
         !is_multiple(1 / s->control.rate, step)) {
-        at(r, "control");
-        bough_schema_error(r, value_of(s->control.node, "rate"), "rate",
+        bough_link_at(r, "control");
+        bough_schema_error(r, bough_link_value(s->control.node, "rate"), "rate",
                            "its period %g s is not a multiple of the macro step, %g s",
                            1 / s->control.rate, step);
     }
     if (s->aero.node != NULL && s->aero.rate > 0 && !is_multiple(1 / s->aero.rate, step)) {
-        at(r, "aero");
-        bough_schema_error(r, value_of(s->aero.node, "rate"), "rate",
+        bough_link_at(r, "aero");
+        bough_schema_error(r, bough_link_value(s->aero.node, "rate"), "rate",
                            "its period %g s is not a multiple of the macro step, %g s",
                            1 / s->aero.rate, step);
     }
@@ -553,33 +371,33 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
     link_bodies(r, scene);
     if (bough_arena_exhausted(r->arena)) return;
     for (int i = 0; i < scene->n_load; i++) {
-        at(r, "loads[%d]", i);
+        bough_link_at(r, "loads[%d]", i);
         if (scene->load[i].node != NULL) link_load(r, scene, &scene->load[i]);
     }
     for (int i = 0; i < scene->n_marker; i++) {
-        at(r, "markers[%d]", i);
+        bough_link_at(r, "markers[%d]", i);
         if (scene->marker[i].node != NULL) link_marker(r, scene, &scene->marker[i]);
     }
     for (int i = 0; i < scene->n_bushing; i++) {
-        at(r, "bushings[%d]", i);
+        bough_link_at(r, "bushings[%d]", i);
         bough_scene_bushing *bushing = &scene->bushing[i];
         if (bushing->node == NULL) continue;
         link_ends(r, scene, bushing->node, bushing->body_name, bushing->body);
     }
     for (int i = 0; i < scene->n_spring; i++) {
-        at(r, "springs[%d]", i);
+        bough_link_at(r, "springs[%d]", i);
         bough_scene_spring *spring = &scene->spring[i];
         if (spring->node == NULL) continue;
         link_ends(r, scene, spring->node, spring->body_name, spring->body);
     }
     for (int i = 0; i < scene->n_closure; i++) {
-        at(r, "closures[%d]", i);
+        bough_link_at(r, "closures[%d]", i);
         if (scene->closure[i].node != NULL) link_closure(r, scene, &scene->closure[i]);
     }
-    link_turbine(r, scene);
+    bough_link_turbine(r, scene);
     if (bough_arena_exhausted(r->arena)) return;
-    link_aero(r, scene);
-    link_control(r, scene);
+    bough_link_aero(r, scene);
+    bough_link_control(r, scene);
     link_modes(r, scene);
-    at(r, "%s", "");
+    bough_link_at(r, "%s", "");
 }

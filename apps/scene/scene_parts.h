@@ -10,9 +10,9 @@ extern const bough_schema bough_scene_schema;
 
 // Those of its parts.
 extern const bough_schema bough_scene_micro_schema, bough_scene_body_schema,
-    bough_scene_load_schema, bough_scene_spring_schema, bough_scene_bushing_schema, bough_scene_closure_schema,
-    bough_scene_marker_schema, bough_scene_turbine_schema, bough_scene_aero_schema,
-    bough_scene_control_schema;
+    bough_scene_load_schema, bough_scene_spring_schema, bough_scene_bushing_schema,
+    bough_scene_closure_schema, bough_scene_marker_schema, bough_scene_turbine_schema,
+    bough_scene_aero_schema, bough_scene_control_schema;
 
 // Readers of values that are lists of their own kind. `field` is named in the body.
 void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field);
@@ -56,6 +56,24 @@ void bough_scene_repeat(bough_schema_reader *reader, bough_scene *scene);
 
 // Resolves names and checks what spans several parts of the scene.
 void bough_scene_link(bough_schema_reader *r, bough_scene *scene);
+
+enum { BOUGH_UNRESOLVED = -2 }; // the index of a name that no body has
+
+// Sets the path of the next errors.
+void bough_link_at(bough_schema_reader *r, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+// The index of a named body; BOUGH_UNRESOLVED after an error at the key of `node`.
+int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node,
+                    const char *key, const char *name);
+
+// The value of a key, where an error about it stands; the mapping where it is left out.
+const bough_node *bough_link_value(const bough_node *node, const char *key);
+
+// Parts of bough_scene_link, in this order.
+void bough_link_turbine(bough_schema_reader *r, bough_scene *s);
+void bough_link_aero(bough_schema_reader *r, bough_scene *s);
+void bough_link_control(bough_schema_reader *r, bough_scene *s);
 
 // Replaces or adds the value that "path.to[2].key=value" names; the new root, or NULL after an
 // error. Nodes that an alias shares are copied before they change.
