@@ -108,9 +108,19 @@ static void turbine_has_the_files_values(void **context) {
     assert_string_equal(text(s, "bodies.4.joint.placement.1"), words);
     check_near(number(s, "bodies.5.pitch"), 3.6 / acos(-1.0), 1e-9, 0);
     check_near(number(s, "aero.wind.speed"), 0.75 * 3 * 11 * cos(0.05) / 7, 1e-5, 0);
-    check_near(number(s, "control.law.rated_speed"), 30, 1e-9, 0);
-    check_near(number(s, "control.law.rated_power"), 2e5 / 0.95, 1e-9, 0);
-    check_near(number(s, "control.law.most_torque"), 2e5 / 0.95 / 30, 1e-9, 0);
+    check_near(number(s, "control.law.rated_speed"), 0.99 * 30, 1e-9, 0);
+    check_near(number(s, "control.law.reference_speed"), 30, 1e-9, 0);
+    check_near(number(s, "control.law.rated_power"), 5e4 / 0.95, 1e-9, 0);
+    check_near(number(s, "control.law.most_torque"), 1.1 * 5e4 / 0.95 / 29.7, 1e-9, 0);
+    // Ω I ω²/(N 4.8 P) with ω = 0.2, and twice that over ω
+    double mass[] = {50 * sqrt(25.0025), 25 * sqrt(25.1625)};
+    double inertia = 900 + 3 * (mass[0] * 3.5 * 3.5 + mass[1] * 8.5 * 8.5);
+    double integral = 3 * inertia * 0.04 / (10 * 4.8 * 5e4);
+    check_near(number(s, "control.law.integral"), integral, 1e-9, 0);
+    check_near(number(s, "control.law.proportional"), 10 * integral, 1e-9, 0);
+    check_near(number(s, "control.law.most_pitch"), 1.5, 1e-9, 0);
+    check_near(number(s, "control.law.pitch_rate"), 0.1, 1e-9, 0);
+    assert_string_equal(text(s, "bodies.3.joint.kind"), "revolute");
     done(&t);
     t = import_with("control:", "environment: {air_density: 1.1, shear_exp: 0.1}\ncontrol:");
     s = read_file(&t, "scene.yaml");
@@ -175,6 +185,7 @@ static void what_is_not_given_is_told(void **context) {
     t = import_with("  rated_power", "  other");
     assert_true(list_says(&t, "no rated_power: no torque"));
     assert_null(bough_node_find(read_file(&t, "scene.yaml"), "control"));
+    assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.3.joint.kind"), "fixed");
     done(&t);
     t = import_with("values: [0.02, 0.02]", "values: [0.02, -0.01]");
     assert_true(list_says(&t, "0.02 at -180 deg but -0.01 at 180 deg: the mean"));

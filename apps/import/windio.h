@@ -17,6 +17,7 @@ typedef struct bough_windio {
     int n_blade;
     bough_curve axis[3];             // the blade's reference line over its share [m]
     double blade_length, blade_mass; // along z [m]; [kg]
+    double inertia;                  // of the rotor about its axis [kg m2]
     double hub_radius, radius;       // [m]
     double tower_base, tower_top;    // above ground [m]
     double hub_height;               // above the tower's top [m]

@@ -225,7 +225,11 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
     for (int i = 0; i < n && bough_is_ok(w->draft.status); i++) {
         double turn = bough_curve_at(&twist, share[i]) * w->degree;
         put_station(w, stiffness, inertia, share[i], turn, &strange);
-        if (i > 0) w->blade_mass += mass_between(w, inertia, share[i - 1], share[i]);
+        if (i == 0) continue;
+        double mass = mass_between(w, inertia, share[i - 1], share[i]);
+        double radius = w->hub_radius + bough_curve_at(&w->axis[2], (share[i - 1] + share[i]) / 2);
+        w->blade_mass += mass;
+        w->inertia += w->n_blade * mass * radius * radius;
     }
     bough_draft_note(&w->draft, BOUGH_TAKEN,
                      "%d stations of the blade, %d of them with full stiffness and inertia; it "

@@ -140,6 +140,7 @@ static void put_hub(bough_windio *w, double overhang, double tilt, double ratio)
     FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
     lump l = hub_lump(w);
     l.inertia[0] += generator_inertia(w, ratio);
+    w->inertia += l.inertia[0];
     fprintf(file,
             "  - name: hub\n    fidelity: rigid\n    joint:\n      kind: revolute\n"
             "      parent: nacelle\n      placement: [move z %.10g m, move x %.10g m, "
@@ -150,12 +151,14 @@ static void put_hub(bough_windio *w, double overhang, double tilt, double ratio)
 
 static void put_blades(bough_windio *w, double cone, double pitch) {
     FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
+    bool steered = w->rated_power > 0;
     for (int k = 1; k <= w->n_blade; k++) {
         fprintf(file,
-                "  - name: blade%d\n    fidelity: rod\n    joint: {kind: fixed, parent: hub, "
+                "  - name: blade%d\n    fidelity: rod\n    joint: {%s, parent: hub, "
                 "placement: [rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n"
                 "    pitch: %.10g deg\n    rod: {table: %s, segments: 48}\n",
-                k, 360.0 * (k - 1) / w->n_blade, -w->forward * cone, w->hub_radius, pitch,
+                k, steered ? "kind: revolute, axis: z, motion: {angle: 0 deg}" : "kind: fixed",
+                360.0 * (k - 1) / w->n_blade, -w->forward * cone, w->hub_radius, pitch,
                 bough_import_name[BOUGH_IMPORT_BLADE]);
     }
     fprintf(file, "turbine:\n  rotor: hub\n  blades: [blade1%s%s]\n",
@@ -220,6 +223,36 @@ void bough_windio_air(bough_windio *w) {
 
 // -- control --------------------------------------------------------------------------------------
 
+// What the pitch takes off the power of the NREL 5 MW turbine at its rated wind, relative to the
+// rated power [1/rad], and the pitch where it takes twice as much [rad].
+static const double pitch_effect = 4.8, doubling_pitch = 0.11;
+
+// The pitch law's gains from the frequency and damping that the speed is to have (Jonkman et al.,
+// NREL/TP-500-38060, section 7.3).
+static void put_pitch(bough_windio *w, double ratio) {
+    double degree = BOUGH_PI / 180;
+    double omega = bough_windio_control(w, "pitch.PC_omega", "PC_omega", 1, 0.2);
+    double zeta = bough_windio_control(w, "pitch.PC_zeta", "PC_zeta", 1, 1);
+    double least =
+        bough_windio_control(w, "pitch.min_pitch", "min_pitch_limit|fine_pitch", degree, 0);
+    double most =
+        bough_windio_control(w, "pitch.max_pitch", "max_pitch_limit", degree, BOUGH_PI / 2);
+    double rate = bough_windio_control(w, "pitch.max_pitch_rate", "max_pitch_rate", degree, 0.1);
+    double gain = w->inertia * w->rated_speed * omega / (ratio * pitch_effect * w->rated_power);
+    fprintf(w->draft.file[BOUGH_IMPORT_SCENE],
+            "    reference_speed: %.10g\n    proportional: %.10g\n    integral: %.10g\n"
+            "    halving_pitch: %.10g\n    least_pitch: %.10g rad\n    most_pitch: %.10g rad\n"
+            "    pitch_rate: %.10g\n",
+            w->rated_speed * ratio, 2 * zeta * gain, omega * gain, doubling_pitch, least, most,
+            rate);
+    bough_draft_note(&w->draft, BOUGH_TAKEN, "pitch from %.4g to %.4g deg by at most %.3g deg/s",
+                     least / degree, most / degree, rate / degree);
+    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
+                     "pitch control: a speed loop of %g rad/s and damping %g with the sensitivity "
+                     "of the NREL 5 MW turbine's power to the pitch, relative to its rated power",
+                     omega, zeta);
+}
+
 void bough_windio_law(bough_windio *w) {
     bough_draft *d = &w->draft;
     if (!bough_is_ok(d->status)) return;
@@ -233,21 +266,20 @@ void bough_windio_law(bough_windio *w) {
     if (!(efficiency > 0 && efficiency <= 1)) {
         bough_entry_fail(d, w->train, "efficiency: expected one above 0, at most 1");
     }
-    double power = w->rated_power / efficiency, rated = w->rated_speed * ratio;
-    double torque = power / rated, gain = 0.99 * torque / (rated * rated); // below the rated one
+    double power = w->rated_power / efficiency, held = w->rated_speed * ratio;
+    double rated = 0.99 * held; // so that torque and pitch do not compete
     double rate = bough_windio_control(w, "torque.max_torque_rate", "max_torque_rate", 1, 1e9);
     fprintf(d->file[BOUGH_IMPORT_SCENE],
             "control:\n  kind: variable-speed\n  rate: 50 Hz\n  gear_ratio: %.10g\n"
             "  efficiency: %.10g\n  law:\n    cut_in: 0\n    optimal_from: 1e-3\n"
             "    optimal_gain: %.10g\n    rated_speed: %.10g\n    rated_power: %.10g\n"
-            "    most_torque: %.10g\n    torque_rate: %.10g\n    power_pitch: 100\n",
-            ratio, efficiency, gain, rated, power, torque, rate);
+            "    most_torque: %.10g\n    torque_rate: %.10g\n",
+            ratio, efficiency, 0.99 * power / (rated * rated * rated), rated, power,
+            1.1 * power / rated, rate);
     bough_draft_note(d, BOUGH_TAKEN, "rated power %g MW at %.4g rpm of the rotor",
                      w->rated_power / 1e6, w->rated_speed * 30 / BOUGH_PI);
     bough_draft_note(d, BOUGH_APPROXIMATED,
-                     "torque grows with the square of the speed to its rated value; no loss in the "
-                     "generator");
-    bough_draft_note(d, BOUGH_LEFT_OUT,
-                     "pitch control: the pitch is held, so the wind must not "
-                     "exceed the rated one");
+                     "torque grows with the square of the speed to its rated value, then constant "
+                     "power; no loss in the generator");
+    put_pitch(w, ratio);
 }
