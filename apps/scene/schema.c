@@ -5,12 +5,7 @@
 #include "apps/scene/schema_parts.h"
 
 #include <errno.h>
-#include <math.h>
-#include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
-
-enum { MAX_ITEMS = 10000 }; // of a list: names are looked up one by one
 
 // A file that was read; bodies that name the same one share its tables.
 struct bough_schema_file {
@@ -23,270 +18,21 @@ struct bough_schema_file {
 static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node,
                        void *item);
 
-// -- errors
-// -----------------------------------------------------------------------------------------
-
-// Appends to the path; the length before, for pop.
-static size_t push(bough_schema_reader *r, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
-
-static size_t push(bough_schema_reader *r, const char *format, ...) {
-    size_t length = strlen(r->path);
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(r->path + length, sizeof r->path - length, format, arguments);
-    va_end(arguments);
-    return length;
-}
-
-static size_t push_key(bough_schema_reader *r, const char *name) {
-    return push(r, r->path[0] == '\0' ? "%s" : ".%s", name);
-}
-
-static void pop(bough_schema_reader *r, size_t length) { r->path[length] = '\0'; }
-
-void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
-                        const char *format, ...) {
-    char text[400];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    size_t length = key[0] == '\0' ? strlen(reader->path) : push_key(reader, key);
-    bough_errors_add(reader->errors, node, reader->path, "%s", text);
-    pop(reader, length);
-}
-
-static void expected(bough_schema_reader *r, const bough_node *node, const char *what) {
-    char shown[64];
-    bough_schema_error(r, node, "", "expected %s, got %s", what, bough_node_shown(node, shown));
-}
-
 static int errors_so_far(const bough_schema_reader *r) { return r->errors->n + r->errors->dropped; }
 
-// -- numbers
-// ----------------------------------------------------------------------------------------
-
-static bool is_word(const bough_node *node, const char *word) {
-    return node->kind == BOUGH_SCALAR && strcmp(node->text, word) == 0;
-}
-
-// The column's unit holds for a plain number; a number with its own unit fails with it appended.
-static bool quantity(const bough_schema_reader *r, const char *text, bough_dimension dimension,
-                     double *value, char why[160]) {
-    double plain;
-    char ignored[160], joined[96];
-    if (r->unit == NULL || !bough_quantity(text, BOUGH_PURE_NUMBER, &plain, ignored)) {
-        return bough_quantity(text, dimension, value, why);
-    }
-    snprintf(joined, sizeof joined, "%s %s", text, r->unit);
-    return bough_quantity(joined, dimension, value, why);
-}
-
-double bough_schema_number(bough_schema_reader *reader, const bough_node *node,
-                           bough_dimension dimension) {
-    double value;
-    char why[160] = "", what[96], shown[64];
-    if (node->kind == BOUGH_SCALAR && quantity(reader, node->text, dimension, &value, why)) {
-        return value;
-    }
-    bough_dimension_expected(dimension, what);
-    bough_schema_error(reader, node, "", "expected %s, got %s%s%s", what,
-                       bough_node_shown(node, shown), why[0] == '\0' ? "" : ": ", why);
-    return NAN;
-}
-
-int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int most,
-                         double *values, const char *what) {
-    char shown[64];
-    if (node->kind != BOUGH_SEQUENCE) {
-        expected(reader, node, what);
-        return -1;
-    }
-    if (node->n < 1 || node->n > most) {
-        bough_schema_error(reader, node, "", "expected %s, got %d items", what, node->n);
-        return -1;
-    }
-    char why[160];
-    int n = node->n;
-    for (int i = 0; i < node->n; i++) {
-        const bough_node *item = node->value[i];
-        if (item->kind == BOUGH_SCALAR &&
-            bough_quantity(item->text, BOUGH_PURE_NUMBER, &values[i], why)) {
-            continue;
-        }
-        size_t length = push(reader, "[%d]", i);
-        bough_schema_error(reader, item, "", "expected a plain number in SI units, got %s",
-                           bough_node_shown(item, shown));
-        pop(reader, length);
-        n = -1;
-    }
-    return n;
-}
-
-// Whether the value is in a range "> 0", ">= 0", "[0, 2]"; ranges come from our own tables.
-static bool in_range(double value, const char *range) {
-    if (range == NULL) return true;
-    if (range[0] == '[') {
-        char *end;
-        double low = strtod(range + 1, &end);
-        return value >= low && value <= strtod(end + 1, NULL);
-    }
-    if (range[1] == '=') return value >= strtod(range + 2, NULL);
-    return value > strtod(range + 1, NULL);
-}
-
-static bool check_range(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                        double value) {
-    if (isnan(value) || in_range(value, key->range)) return true;
-    char shown[64];
-    const char *unit = bough_dimension_unit(key->dimension);
-    bough_schema_error(r, node, "", "must be %s%s%s%s, got %s", key->range[0] == '[' ? "in " : "",
-                       key->range, unit[0] == '\0' ? "" : " ", unit, bough_node_shown(node, shown));
-    return false;
-}
-
-static void read_number(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                        double *field) {
-    if (key->word != NULL && is_word(node, key->word)) {
-        *field = 0;
-        return;
-    }
-    double value = bough_schema_number(r, node, key->dimension);
-    *field = check_range(r, key, node, value) ? value : (double)NAN;
-}
-
-static void read_integer(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                         int *field) {
-    if (node->kind != BOUGH_SCALAR || !bough_whole_number(node->text, field)) {
-        expected(r, node, "a whole number");
-    } else {
-        check_range(r, key, node, *field);
-    }
-}
-
-// -- texts
-// ------------------------------------------------------------------------------------------
-
-static void read_text(bough_schema_reader *r, const bough_node *node, const char **field) {
-    if (node->kind != BOUGH_SCALAR || node->text[0] == '\0') {
-        expected(r, node, "text");
-        *field = NULL;
-    } else {
-        *field = node->text;
-    }
-}
-
-static void read_choice(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                        int *field) {
-    char list[200] = "", shown[64];
-    int n = 0;
-    for (; key->choices[n] != NULL; n++) {
-        if (is_word(node, key->choices[n])) {
-            *field = n;
-            return;
-        }
-        size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", n == 0 ? "" : ", ", key->choices[n]);
-    }
-    *field = -1;
-    const char *near =
-        node->kind == BOUGH_SCALAR ? bough_nearest(node->text, key->choices, n) : NULL;
-    bough_schema_error(r, node, "", "expected %s%s, got %s%s%s%s", n > 1 ? "one of " : "", list,
-                       bough_node_shown(node, shown), near == NULL ? "" : " (did you mean '",
-                       near == NULL ? "" : near, near == NULL ? "" : "'?)");
-}
-
-static void read_boolean(bough_schema_reader *r, const bough_node *node, bool *field) {
-    *field = !node->quoted && is_word(node, "true");
-    if (!*field && (node->quoted || !is_word(node, "false"))) expected(r, node, "true or false");
-}
-
-static void *field_at(void *item, size_t offset) { return (char *)item + offset; }
-
-// Memory for the items of a list; NULL (and an error) when the node is not one long enough.
-static void *take_items(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                        size_t size) {
-    if (node->kind != BOUGH_SEQUENCE) {
-        expected(r, node, key->kind == BOUGH_KEY_LIST ? "a list of mappings" : "a list");
-        return NULL;
-    }
-    if (node->n < key->count) {
-        bough_schema_error(r, node, "", "expected at least %d item%s, got %d", key->count,
-                           key->count == 1 ? "" : "s", node->n);
-        return NULL;
-    }
-    if (node->n > MAX_ITEMS) {
-        bough_schema_error(r, node, "", "expected at most %d items, got %d", MAX_ITEMS, node->n);
-        return NULL;
-    }
-    return bough_arena_take(r->arena, (size_t)node->n * size);
-}
-
-static void read_texts(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                       void *item) {
-    const char **texts = take_items(r, key, node, sizeof *texts);
-    if (texts == NULL) return;
-    for (int i = 0; i < node->n; i++) {
-        size_t length = push(r, "[%d]", i);
-        read_text(r, node->value[i], &texts[i]);
-        pop(r, length);
-    }
-    *(const char ***)field_at(item, key->offset) = texts;
-    *(int *)field_at(item, key->count_offset) = node->n;
-}
-
-// -- lists of numbers
-// -------------------------------------------------------------------------------
-
-static void read_components(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                            double *values) {
-    for (int i = 0; i < node->n; i++) {
-        size_t length = push(r, "[%d]", i);
-        read_number(r, key, node->value[i], &values[i]);
-        pop(r, length);
-    }
-}
-
-static void read_vector(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                        double *values) {
-    char what[40];
-    snprintf(what, sizeof what, "a list of %d numbers", key->count);
-    if (node->kind != BOUGH_SEQUENCE) {
-        expected(r, node, what);
-    } else if (node->n != key->count) {
-        bough_schema_error(r, node, "", "expected %s, got %d", what, node->n);
-    } else {
-        read_components(r, key, node, values);
-        return;
-    }
-    for (int i = 0; i < key->count; i++)
-        values[i] = NAN;
-}
-
-static void read_numbers(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                         void *item) {
-    double *values = take_items(r, key, node, sizeof *values);
-    if (values == NULL) return;
-    read_components(r, key, node, values);
-    *(double **)field_at(item, key->offset) = values;
-    *(int *)field_at(item, key->count_offset) = node->n;
-}
-
-// -- lists of mappings
-// ------------------------------------------------------------------------------
+// -- lists of mappings ----------------------------------------------------------------------------
 
 static void read_rows(bough_schema_reader *r, const bough_key *key, const bough_node *node,
                       void *item) {
-    char *items = take_items(r, key, node, key->of->size);
+    char *items = bough_schema_items(r, key, node, key->of->size);
     if (items == NULL) return;
     for (int i = 0; i < node->n; i++) {
-        size_t length = push(r, "[%d]", i);
+        size_t length = bough_schema_push(r, "[%d]", i);
         bough_schema_read(r, key->of, node->value[i], items + (size_t)i * key->of->size);
-        pop(r, length);
+        bough_schema_pop(r, length);
     }
-    *(void **)field_at(item, key->offset) = items;
-    *(int *)field_at(item, key->count_offset) = node->n;
+    *(void **)bough_field_at(item, key->offset) = items;
+    *(int *)bough_field_at(item, key->count_offset) = node->n;
 }
 
 static const bough_key *find_key(const bough_schema *schema, const char *name) {
@@ -322,7 +68,7 @@ typedef struct columns {
 static bool read_column(bough_schema_reader *r, const bough_schema *row, const bough_node *head,
                         bough_node *name, const char **unit) {
     if (head->kind != BOUGH_SCALAR || head->text[0] == '\0') {
-        expected(r, head, "a column's name");
+        bough_schema_expected(r, head, "a column's name");
         return false;
     }
     char *text = bough_arena_string(r->arena, head->text), why[160];
@@ -348,7 +94,7 @@ static bool read_column(bough_schema_reader *r, const bough_schema *row, const b
 static bool read_columns(bough_schema_reader *r, const bough_schema *row, const bough_node *heads,
                          columns *c) {
     if (heads->kind != BOUGH_SEQUENCE || heads->n == 0) {
-        expected(r, heads, "a list of column names");
+        bough_schema_expected(r, heads, "a list of column names");
         return false;
     }
     bough_node *names = bough_arena_take(r->arena, (size_t)heads->n * sizeof *names);
@@ -379,7 +125,7 @@ static bool row_mapping(bough_schema_reader *r, const bough_node *row, const col
     char what[60];
     snprintf(what, sizeof what, "a list of %d values, one a column", c->n);
     if (row->kind != BOUGH_SEQUENCE) {
-        expected(r, row, what);
+        bough_schema_expected(r, row, what);
         return false;
     }
     if (row->n != c->n) {
@@ -394,18 +140,18 @@ static bool row_mapping(bough_schema_reader *r, const bough_node *row, const col
 
 static void read_compact_rows(bough_schema_reader *r, const bough_key *key, const bough_node *rows,
                               const columns *c, void *item) {
-    char *items = take_items(r, key, rows, key->of->size);
+    char *items = bough_schema_items(r, key, rows, key->of->size);
     bough_node *mapping = bough_arena_take(r->arena, (size_t)rows->n * sizeof *mapping);
     if (items == NULL || mapping == NULL) return;
     for (int i = 0; i < rows->n; i++) {
-        size_t length = push(r, "[%d]", i);
+        size_t length = bough_schema_push(r, "[%d]", i);
         if (row_mapping(r, rows->value[i], c, &mapping[i])) {
             read_mapping(r, key->of, &mapping[i], c->unit, items + (size_t)i * key->of->size);
         }
-        pop(r, length);
+        bough_schema_pop(r, length);
     }
-    *(void **)field_at(item, key->offset) = items;
-    *(int *)field_at(item, key->count_offset) = rows->n;
+    *(void **)bough_field_at(item, key->offset) = items;
+    *(int *)bough_field_at(item, key->count_offset) = rows->n;
 }
 
 // {columns: […], rows: [[…], …]}
@@ -424,17 +170,16 @@ static void read_table(bough_schema_reader *r, const bough_key *key, const bough
         return;
     }
     columns c;
-    size_t length = push_key(r, "columns");
+    size_t length = bough_schema_push_key(r, "columns");
     bool good = read_columns(r, key->of, heads, &c);
-    pop(r, length);
+    bough_schema_pop(r, length);
     if (!good) return;
-    length = push_key(r, "rows");
+    length = bough_schema_push_key(r, "rows");
     read_compact_rows(r, key, rows, &c, item);
-    pop(r, length);
+    bough_schema_pop(r, length);
 }
 
-// -- files
-// ------------------------------------------------------------------------------------------
+// -- files ----------------------------------------------------------------------------------------
 
 const char *bough_schema_path(bough_schema_reader *r, const char *name) {
     if (name[0] == '/') return name;
@@ -464,7 +209,7 @@ static void *load(bough_schema_reader *r, const bough_schema *schema, const char
 static void read_file(bough_schema_reader *r, const bough_schema *schema, const bough_node *node,
                       void *field) {
     if (node->kind != BOUGH_SCALAR || node->text[0] == '\0') {
-        expected(r, node, "the name of a file");
+        bough_schema_expected(r, node, "the name of a file");
         return;
     }
     const char *path = bough_schema_path(r, node->text);
@@ -484,21 +229,12 @@ static void read_file(bough_schema_reader *r, const bough_schema *schema, const 
     if (item != NULL) memcpy(field, item, schema->size);
 }
 
-// -- mappings
-// ---------------------------------------------------------------------------------------
+// -- mappings -------------------------------------------------------------------------------------
 
 static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node,
                        void *item) {
-    void *field = field_at(item, key->offset);
+    void *field = bough_field_at(item, key->offset);
     switch (key->kind) {
-    case BOUGH_KEY_NUMBER: read_number(r, key, node, field); break;
-    case BOUGH_KEY_INTEGER: read_integer(r, key, node, field); break;
-    case BOUGH_KEY_TEXT: read_text(r, node, field); break;
-    case BOUGH_KEY_CHOICE: read_choice(r, key, node, field); break;
-    case BOUGH_KEY_BOOLEAN: read_boolean(r, node, field); break;
-    case BOUGH_KEY_VECTOR: read_vector(r, key, node, field); break;
-    case BOUGH_KEY_NUMBERS: read_numbers(r, key, node, item); break;
-    case BOUGH_KEY_TEXTS: read_texts(r, key, node, item); break;
     case BOUGH_KEY_MAPPING: bough_schema_read(r, key->of, node, field); break;
     case BOUGH_KEY_LIST:
         if (node->kind == BOUGH_MAPPING) {
@@ -509,12 +245,13 @@ static void read_value(bough_schema_reader *r, const bough_key *key, const bough
         break;
     case BOUGH_KEY_FILE: read_file(r, key->of, node, field); break;
     case BOUGH_KEY_CUSTOM: key->read(r, node, field); break;
+    default: bough_schema_value(r, key, node, item);
     }
 }
 
 static void read_fallback(bough_schema_reader *r, const bough_key *key, void *item) {
     if (key->kind == BOUGH_KEY_MAPPING) {
-        bough_schema_read(r, key->of, NULL, field_at(item, key->offset));
+        bough_schema_read(r, key->of, NULL, bough_field_at(item, key->offset));
         return;
     }
     if (key->fallback == NULL) return;
@@ -543,7 +280,7 @@ typedef enum relevance { APPLIES, APPLIES_NOT, UNKNOWN } relevance;
 static relevance applies(const bough_schema *schema, const bough_key *key, void *item) {
     if (key->when == NULL) return APPLIES;
     const bough_key *by = find_key(schema, key->when_key);
-    int choice = *(int *)field_at(item, by->offset);
+    int choice = *(int *)bough_field_at(item, by->offset);
     if (choice < 0) return UNKNOWN;
     return is_among(by->choices[choice], key->when) ? APPLIES : APPLIES_NOT;
 }
@@ -578,11 +315,11 @@ static void read_one_key(bough_schema_reader *r, const bough_schema *schema, con
     bough_node *at = key_node(node, key->name, &index);
     relevance use = applies(schema, key, item);
     if (at != NULL && use == APPLIES) {
-        size_t length = push_key(r, key->name);
+        size_t length = bough_schema_push_key(r, key->name);
         r->unit = units == NULL ? NULL : units[index];
         read_value(r, key, node->value[index], item);
         r->unit = NULL;
-        pop(r, length);
+        bough_schema_pop(r, length);
     } else if (at != NULL && use == APPLIES_NOT) {
         refuse_key(r, schema, key, at, item);
     } else if (at == NULL && use == APPLIES) {
@@ -616,7 +353,7 @@ void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema,
     if (node != NULL && node->kind != BOUGH_MAPPING) {
         char what[80];
         snprintf(what, sizeof what, "%s (a mapping of keys)", schema->name);
-        expected(reader, node, what);
+        bough_schema_expected(reader, node, what);
         node = NULL;
     }
     read_mapping(reader, schema, node, NULL, item);
