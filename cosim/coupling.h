@@ -68,6 +68,11 @@ typedef struct bough_coupling {
     int *turn;             // (n_member) the members of the stage in progress
     int failed_member;     // −1, or the member whose move failed
 
+    // by schemes that see outputs within the step: as they turned out at these times, the last t1
+    int n_within;              // 3; 0: others
+    const double *within_time; // (n_within) over the step, in (0, 1]
+    const double *within;      // (n_within × n_output)
+
     // scratch
     double *state_rate;       // (n_state)
     double *seen, *seen_rate; // (n_input)

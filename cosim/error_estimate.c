@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BATCH = 32, PAST = 3 };
+enum { BATCH = 32, PAST = 3, WITHIN = 3 };
 static const double longest_batch = 0.25; // the members are linearised once in it [s]
 static const double longest_step = 0.02;  // of the α method [s]
 
@@ -39,6 +39,7 @@ struct bough_error_estimate {
     double time[PAST];   // synchronisation points before the step, newest first [s]
     double *value[PAST]; // (n_input) inputs there
     bough_signal curve;  // (n_input) through them and the step's end
+    double *cubic;       // (n_input) its last coefficient in the step before, where known within
     int *vector;         // (n_input) first of the up to three inputs that form a vector
     double *size;        // (n_input) of a vector's first: its largest norm so far
     // the error
@@ -63,6 +64,7 @@ static bool take(bough_error_estimate *e, bough_arena *arena) {
     for (int p = 0; p < PAST; p++)
         e->value[p] = bough_arena_doubles(arena, n_input);
     e->curve = bough_port_signal(arena, a->n_input);
+    e->cubic = bough_arena_doubles(arena, n_input);
     e->error = bough_arena_doubles(arena, n);
     e->rate = bough_arena_doubles(arena, n);
     e->input_worst = bough_arena_doubles(arena, n_input);
@@ -104,6 +106,32 @@ bough_status bough_error_estimate_create(bough_arena *arena, const bough_couplin
 
 // -- defects --------------------------------------------------------------------------------------
 
+// What the scheme saw within the step tells more.
+static void reconstruct_within(bough_error_estimate *e, const bough_coupling *c) {
+    const bough_assembly *a = e->assembly;
+    double time[WITHIN + 1] = {c->t0};
+    e->curve.t0 = c->t0;
+    e->curve.t1 = c->t1;
+    const double *value[WITHIN + 1];
+    for (int k = 0; k < WITHIN; k++) time[k + 1] = c->t0 + c->within_time[k] * (c->t1 - c->t0);
+    for (int j = 0; j < a->n_input; j++) {
+        value[0] = e->value[0] + j;
+        for (int k = 0; k < WITHIN; k++) value[k + 1] = c->within + k * a->n_output + a->source[j];
+        bough_port_polynomial(&e->curve, j, 1, WITHIN + 1, time, value);
+    }
+}
+
+// A cubic through Lobatto points misses a quartic, which acts on an oscillation of a radian in a step
+// as this share of its coefficient would, held; less on slower ones. The coefficient is a quarter of
+// the change of the cubics' last ones.
+static const double lobatto_share = 5e-4;
+
+static void add_remainder(bough_error_estimate *e, int j, double *defect) {
+    double cubic = e->curve.coefficient[3 * e->curve.n + j];
+    *defect += lobatto_share * (cubic - e->cubic[j]) / 4;
+    e->cubic[j] = cubic;
+}
+
 // The inputs as they turned out to be: the polynomial through the last synchronisation points, none
 // of them before a jump.
 static void reconstruct(bough_error_estimate *e, const bough_coupling *c) {
@@ -143,6 +171,7 @@ static void keep_defects(bough_error_estimate *e, const bough_coupling *c) {
                 double difference = s->coefficient[p * s->n + j] - e->curve.coefficient[p * n + k];
                 defect[p * n + k] = c->followed[k] ? 0 : difference;
             }
+            if (c->n_within > 0 && !c->followed[k]) add_remainder(e, k, defect + k);
         }
     }
     e->start[e->n_step] = c->t0;
@@ -151,7 +180,11 @@ static void keep_defects(bough_error_estimate *e, const bough_coupling *c) {
 }
 
 void bough_error_estimate_step(bough_error_estimate *e, bough_coupling *c) {
-    reconstruct(e, c);
+    if (c->n_within > 0) {
+        reconstruct_within(e, c);
+    } else {
+        reconstruct(e, c);
+    }
     keep_defects(e, c);
     remember(e, c);
     if (e->n_step == BATCH || c->t1 - e->start[0] >= longest_batch) {
@@ -319,6 +352,7 @@ void bough_error_estimate_snapshot(bough_error_estimate *e, bough_snapshot *s) {
     bough_snapshot_take(s, &e->lost, sizeof e->lost);
     bough_snapshot_take(s, &e->n_point, sizeof e->n_point);
     bough_snapshot_doubles(s, e->time, PAST);
+    bough_snapshot_doubles(s, e->cubic, a->n_input);
     for (int p = 0; p < PAST; p++)
         bough_snapshot_doubles(s, e->value[p], a->n_input);
     bough_snapshot_doubles(s, e->size, a->n_input);

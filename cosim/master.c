@@ -62,6 +62,8 @@ static void judge(bough_master *m) {
 static int defect_order(const bough_scheme_options *o) {
     const bough_scheme *scheme = bough_scheme_find(o->name);
     if (scheme == &bough_scheme_ramp) return 2;
+    bool waveform = o->exchange == BOUGH_EXCHANGE_WAVEFORM;
+    if (scheme == &bough_scheme_iterated && waveform) return 4;
     bool polynomial = scheme == &bough_scheme_extrapolated || scheme == &bough_scheme_iterated;
     return polynomial ? o->order + 1 : 1;
 }

@@ -303,7 +303,8 @@ static bough_interface_energy sum_energy(const bough_monitor *m, int n, bool sin
 }
 
 static bool holds_forces(const bough_monitor *m, const bough_coupling *c) {
-    bool iterated = m->scheme == &bough_scheme_iterated;
+    bool iterated = m->scheme == &bough_scheme_iterated &&
+                    c->options.exchange == BOUGH_EXCHANGE_END_VALUES;
     return m->scheme->explicit_forces || (iterated && c->options.order == 0);
 }
 

@@ -18,8 +18,8 @@ typedef struct bough_scheme {
     void (*snapshot)(bough_coupling *c, bough_snapshot *s);
 } bough_scheme;
 
-// name "ramp", order 1, sequential, Hermite, theta automatic, rtol 1e-6; IQN-ILS from relaxation 1/2
-// to 1e-6 in at most 30 iterations.
+// name "ramp", order 1, sequential, Hermite, theta automatic, rtol 1e-6; end
+// values by IQN-ILS from relaxation 1/2 to 1e-6 in at most 30 iterations.
 bough_scheme_options bough_scheme_options_default(void);
 
 // The scheme of that name; NULL when unknown.

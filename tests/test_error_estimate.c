@@ -33,6 +33,7 @@ static bough_master_def definition(const char *scheme, int order, double macro_s
     def.scheme.name = scheme;
     def.scheme.order = order;
     def.scheme.tolerance = 1e-11;
+    def.scheme.exchange = BOUGH_EXCHANGE_END_VALUES;
     def.macro_step = macro_step;
     def.duration = 10;
     return def;
@@ -66,6 +67,21 @@ static void every_scheme_tells_its_error(void **state) {
         for (double h = .0025; h < .05; h *= 4) check_ratio(def, h, k % 2 == 0);
         if (!def.scheme.parallel) def.scheme.interpolation = BOUGH_POLYNOMIAL;
         check_ratio(def, .02, false);
+    }
+}
+
+// Waveforms err at order 6 and are told at order 4, never too little; what a loose tolerance leaves is
+// told as it is.
+static void waveforms_are_told_enough(void **state) {
+    (void)state;
+    for (double h = .4; h > .02; h /= 2) {
+        bough_master_def def = definition("iterated", 1, h);
+        def.scheme.exchange = BOUGH_EXCHANGE_WAVEFORM;
+        errors e = errors_of(bough_two_mass_default(), def);
+        assert_true(e.estimate > .45 * e.exact && e.estimate < 1e-2 * h * h * h * h);
+        def.scheme.tolerance = 1e-4;
+        e = errors_of(bough_two_mass_default(), def);
+        assert_true(e.estimate > .45 * e.exact && e.estimate < 1.2 * e.exact);
     }
 }
 
@@ -114,6 +130,7 @@ static void monolithic_has_none(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(every_scheme_tells_its_error),
+        cmocka_unit_test(waveforms_are_told_enough),
         cmocka_unit_test(growth_is_told),
         cmocka_unit_test(forces_are_told_too),
         cmocka_unit_test(no_defect_no_error),

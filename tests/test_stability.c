@@ -95,7 +95,7 @@ static void iterated_is_judged_as_if_converged(void **state) {
     build(&m, "ramp", .02);
     options.name = "iterated";
     options.accelerator = BOUGH_ACCELERATE_NONE;
-    options.interpolation = BOUGH_POLYNOMIAL; // as the runs that gave the figures
+    options.exchange = BOUGH_EXCHANGE_END_VALUES;
     options.tolerance = .1;
     check_near(judge(&m, &options, .02).growth, 4.428, .01, 0);
     assert_true(judge(&m, &options, .01).growth < 0);

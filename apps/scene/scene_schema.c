@@ -46,7 +46,7 @@ static const bough_key coupling_keys[] = {
          CHOICES("frozen", "gauss-seidel", "extrapolated", "iterated", "ramp", "monolithic"),
      .help = "how sub-systems exchange their values"},
     {.name = "order", .kind = BOUGH_KEY_INTEGER, .range = "[0, 2]", .fallback = "1",
-     AT(order), .example = "2", .help = "of extrapolated and iterated: degree of the polynomial"},
+     AT(order), .example = "2", .help = "of extrapolated and of iterated end values: degree of the polynomial"},
     {.name = "theta", .kind = BOUGH_KEY_NUMBER, .word = "auto", .range = "[0.5, 1]",
      .fallback = "auto", AT(theta), .example = "0.6", .help = "of ramp: share of the new value"},
     {.name = "exchange", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("end-values", "waveform"),

@@ -175,6 +175,7 @@ static bough_master_def definition(const model *m, const variant *v, int degree,
     def.scheme.parallel = v->parallel;
     def.scheme.reversed = v->reversed;
     def.scheme.interpolation = BOUGH_POLYNOMIAL;
+    def.scheme.exchange = BOUGH_EXCHANGE_END_VALUES;
     def.scheme.tolerance = 1e-11;
     def.macro_step = macro_step;
     def.duration = m->duration;
