@@ -8,23 +8,24 @@ enum { FOLLOWERS, LEADERS, ALL };
 
 typedef struct member_work {
     bough_arrow *arrow;
-    int whom;
+    const int *member;
     void (*work)(bough_arrow *arrow, int member);
 } member_work;
 
-static void run_member(void *data, int i) {
+static void run_member(void *data, int k) {
     const member_work *w = data;
-    bough_arrow *a = w->arrow;
-    a->status[i].code = BOUGH_OK;
-    if (w->whom == ALL || a->interface->of[i].leads == (w->whom == LEADERS)) w->work(a, i);
+    int i = w->member[k];
+    w->arrow->status[i].code = BOUGH_OK;
+    w->work(w->arrow, i);
 }
 
 // work(arrow, member) for every one of them, in parallel; the first failure in member order.
 static bough_status each(bough_arrow *a, int whom, void (*work)(bough_arrow *a, int member)) {
-    int n = a->assembly->n_member;
-    member_work w = {a, whom, work};
+    int n_member = a->assembly->n_member, n_leader = n_member - a->n_follower;
+    int n = whom == ALL ? n_member : whom == LEADERS ? n_leader : a->n_follower;
+    member_work w = {a, whom == LEADERS ? a->order + a->n_follower : a->order, work};
     bough_pool_run(a->pool, n, run_member, &w);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < n_member; i++) {
         if (!bough_is_ok(&a->status[i])) return a->status[i];
     }
     return bough_ok();
@@ -129,6 +130,7 @@ static void solve_leader(bough_arrow *arrow, int i) {
     const bough_answer *w = &arrow->interface->of[i];
     double *x = arrow->x + a->state_offset[i];
     double *coordinate = arrow->interface->coordinate + w->first;
+    if (arrow->user.before) arrow->user.before(arrow->user.self, i);
     s->ops->newton_solve(s->self, x);
     memset(coordinate, 0, (size_t)w->n * sizeof(double));
     if (!w->by_state) {
@@ -153,6 +155,7 @@ static void solve_follower(bough_arrow *arrow, int i) {
     const bough_assembly *a = arrow->assembly;
     const bough_subsystem *s = a->member[i];
     double *x = arrow->x + a->state_offset[i], *change = arrow->change + a->input_offset[i];
+    if (arrow->user.before) arrow->user.before(arrow->user.self, i);
     gather_changes(arrow, i);
     bough_condensed_add_columns(arrow->interface, i, arrow->gamma, change, x);
     s->ops->newton_solve(s->self, x);
@@ -161,13 +164,18 @@ static void solve_follower(bough_arrow *arrow, int i) {
 
 static void finish(bough_arrow *arrow, int i) {
     bough_condensed_add_answer(arrow->interface, i, arrow->x + arrow->assembly->state_offset[i]);
+    if (arrow->user.after) arrow->user.after(arrow->user.self, i);
 }
 
-static void solve_free(bough_arrow *arrow, double *x) { bough_arrow_solve_driven(arrow, NULL, x); }
+static void solve_free(bough_arrow *arrow, double *x) {
+    bough_arrow_solve_driven(arrow, NULL, x, (bough_arrow_user){0});
+}
 
-void bough_arrow_solve_driven(bough_arrow *arrow, const double *outside, double *x) {
+void bough_arrow_solve_driven(bough_arrow *arrow, const double *outside, double *x,
+                              bough_arrow_user user) {
     arrow->x = x;
     arrow->outside = outside;
+    arrow->user = user;
     each(arrow, LEADERS, solve_leader);
     each(arrow, FOLLOWERS, solve_follower);
     for (int i = 0; i < arrow->assembly->n_member; i++) {
@@ -219,6 +227,7 @@ static bool take(bough_arrow *arrow, bough_arena *arena) {
     const bough_assembly *a = arrow->assembly;
     size_t n_input = (size_t)a->n_input, n_output = (size_t)a->n_output;
     arrow->status = bough_arena_take(arena, (size_t)a->n_member * sizeof *arrow->status);
+    arrow->order = bough_arena_take(arena, (size_t)a->n_member * sizeof *arrow->order);
     arrow->setup_state = bough_arena_doubles(arena, (size_t)a->n_state);
     arrow->setup_input = bough_arena_doubles(arena, n_input);
     arrow->input = bough_arena_doubles(arena, n_input);
@@ -226,6 +235,16 @@ static bool take(bough_arrow *arrow, bough_arena *arena) {
     arrow->output = bough_arena_doubles(arena, n_output);
     arrow->output_change = bough_arena_doubles(arena, n_output);
     return !bough_arena_exhausted(arena);
+}
+
+static void order_members(bough_arrow *arrow) {
+    int n = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int i = 0; i < arrow->assembly->n_member; i++) {
+            if (arrow->own->of[i].leads == (pass > 0)) arrow->order[n++] = i;
+        }
+        if (pass == 0) arrow->n_follower = n;
+    }
 }
 
 bough_status bough_arrow_create(bough_arena *arena, const bough_assembly *assembly,
@@ -238,6 +257,7 @@ bough_status bough_arrow_create(bough_arena *arena, const bough_assembly *assemb
     *arrow = a;
     bough_status status = bough_condensed_create(arena, assembly, &a->own);
     a->interface = a->own;
+    if (bough_is_ok(&status)) order_members(a);
     return status;
 }
 

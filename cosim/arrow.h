@@ -8,11 +8,19 @@
 #include "core/pool.h"
 #include "cosim/condense.h"
 
+// What else is to be done for a member by the thread that solves for it: makes its part of x, uses it.
+typedef struct bough_arrow_user {
+    void *self;
+    void (*before)(void *self, int member); // NULL: nothing
+    void (*after)(void *self, int member);
+} bough_arrow_user;
+
 typedef struct bough_arrow {
     const bough_assembly *assembly;
     bough_pool *pool;       // NULL: one thread
     double *output, *input; // (n_output), (n_input) of the last bough_arrow_inputs
     bough_status *status;   // (n_member) of the last work on each
+    int *order, n_follower; // (n_member) the followers, then the leaders
 
     // the evaluation in progress
     double time;
@@ -26,6 +34,7 @@ typedef struct bough_arrow {
     double *setup_input;  // (n_input)
     bough_condensed *interface, *own; // in use, of the arrow
     const double *outside; // (n_input) of the solution in progress; NULL: 0
+    bough_arrow_user user; // of the same
     double *change;        // (n_input) of the inputs with the last solution
     double *output_change; // (n_output) of each member by itself
 
@@ -65,7 +74,8 @@ void bough_arrow_adopt(bough_arrow *arrow, bough_condensed *interface, double t,
 void bough_arrow_solve(bough_arrow *arrow, double *x);
 
 // The same with `outside` (n_input) added to the inputs' changes, δu = P δo + outside; NULL: 0.
-void bough_arrow_solve_driven(bough_arrow *arrow, const double *outside, double *x);
+void bough_arrow_solve_driven(bough_arrow *arrow, const double *outside, double *x,
+                              bough_arrow_user user);
 
 // δu for x = 0 and `outside` (n_input) at the leaders' inputs, in place. Asks no member: their Newton
 // factors may be others by now.

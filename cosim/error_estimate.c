@@ -306,19 +306,30 @@ static void find_mean(bough_error_estimate *e, int *step, double t, double h) {
 
 // One step: x is ε at t + α_f h,
 //     (I − g J) x = ε + (α_f h (1 − γ) − g (1 − α_m)) ε̇ + g B δ.
-static void advance(bough_error_estimate *e) {
+static void begin_member(void *self, int member) {
+    const bough_error_estimate *e = self;
     const alpha_method *a = &e->method;
-    int n = e->assembly->n_state;
-    double h = a->h, kept = a->f * h * (1 - a->f), own = 1 / (a->f * a->f * h);
-    double carried = kept - a->factor * (1 - a->m);
-    for (int k = 0; k < n; k++)
+    const int *offset = e->assembly->state_offset + member;
+    double carried = a->f * a->h * (1 - a->f) - a->factor * (1 - a->m);
+    for (int k = offset[0]; k < offset[1]; k++)
         e->x[k] = e->error[k] + carried * e->rate[k];
-    bough_arrow_solve_driven(e->arrow, e->mean, e->x);
-    for (int k = 0; k < n; k++) {
+}
+
+static void end_member(void *self, int member) {
+    const bough_error_estimate *e = self;
+    const alpha_method *a = &e->method;
+    const int *offset = e->assembly->state_offset + member;
+    double h = a->h, kept = a->f * h * (1 - a->f), own = 1 / (a->f * a->f * h);
+    for (int k = offset[0]; k < offset[1]; k++) {
         double rate = own * (e->x[k] - e->error[k] - kept * e->rate[k]);
         e->error[k] += h * (e->rate[k] + a->f * (rate - e->rate[k]));
         e->rate[k] = rate;
     }
+}
+
+static void advance(bough_error_estimate *e) {
+    bough_arrow_user user = {e, begin_member, end_member};
+    bough_arrow_solve_driven(e->arrow, e->mean, e->x, user);
     for (int j = 0; j < e->assembly->n_input; j++) {
         e->input_worst[j] = fmax(e->input_worst[j], fabs(e->arrow->change[j] - e->mean[j]));
     }

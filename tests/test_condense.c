@@ -137,7 +137,7 @@ static void check(const plan *p) {
     memcpy(input, arrow->input, (size_t)a->n_input * sizeof(double));
     status = bough_arrow_setup(arrow, 0, y, input, gamma);
     assert_true(bough_is_ok(&status));
-    bough_arrow_solve_driven(arrow, outside, x);
+    bough_arrow_solve_driven(arrow, outside, x, (bough_arrow_user){0});
 
     // x = r + γ (A x + B δu) member by member, δu = P (C x + D δu) + outside
     double change[PORTS], answer[PORTS];
