@@ -18,10 +18,12 @@ grep -q '^\.SS study' "$folder/usr/share/man/man1/bough.1"
 completed=$(bash -c '. "$1/usr/share/bash-completion/completions/bough"
     complete_words() { COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _bough "$bough"; echo "${COMPREPLY[*]}"; }
     bough=$1/usr/bin/bough
-    complete_words bough st; complete_words bough run --o; complete_words bough help sce' sh "$folder")
+    complete_words bough st; complete_words bough run --o; complete_words bough help sce
+    complete_words bough import w' sh "$folder")
 [ "$completed" = "static study
 --out
-scene" ]
+scene
+windio" ]
 mkdir "$folder/project"
 cp "$source/apps/api/example.c" "$folder/project"
 cat >"$folder/project/CMakeLists.txt" <<'END'

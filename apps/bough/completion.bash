@@ -7,6 +7,8 @@ _bough() {
     elif [ "$verb" = help ] || [ "$verb" = --help ]; then
         words=$("$1" --help | sed -n 's/^  bough \([a-z][^ ]*\).*/\1/p
             /^topics/,/^$/s/^  \([^ ]*\).*/\1/p') files=
+    elif [ "$verb" = import ] && [ "$COMP_CWORD" -eq 2 ]; then
+        words=$("$1" help import | grep -o "'[a-z]*" | tr -d "'") files=
     elif [ "${word#-}" != "$word" ]; then
         words=$("$1" help "$verb" 2>/dev/null | sed -n 's/^  \(-h, \)\{0,1\}\(--[a-z]*\).*/\2/p') files=
     fi
