@@ -53,13 +53,12 @@ static bough_curve read_coefficient(bough_windio *w, const bough_node *from, con
     }
     x[0] = -180; // files often stop at 3.14
     x[last] = 180;
-    if (y[0] != y[last]) {
+    if (fabs(y[0] - y[last]) > 1e-6) {
         bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "line %d: %g at -180 deg but %g at 180 deg: "
-                         "the mean",
-                         c.node->line, y[0], y[last]);
-        y[0] = y[last] = (y[0] + y[last]) / 2;
+                         "line %d: %g at -180 deg but %g at 180 deg: the mean", c.node->line, y[0],
+                         y[last]);
     }
+    y[0] = y[last] = (y[0] + y[last]) / 2;
     return bough_curve_of(&w->draft, c.node, x, y, c.n);
 }
 
