@@ -25,17 +25,21 @@ completed=$(bash -c '. "$1/usr/share/bash-completion/completions/bough"
 scene
 windio" ]
 mkdir "$folder/project"
-cp "$source/apps/api/example.c" "$folder/project"
+cp "$source/apps/api/example.c" "$source/apps/api/what_if.c" "$folder/project"
 cat >"$folder/project/CMakeLists.txt" <<'END'
 cmake_minimum_required(VERSION 3.20)
 project(example C)
 find_package(bough 0.1 REQUIRED)
 add_executable(example example.c)
 target_link_libraries(example bough::api)
+add_executable(what_if what_if.c)
+target_link_libraries(what_if bough::api)
 END
 cmake -G Ninja -S "$folder/project" -B "$folder/b" -DCMAKE_PREFIX_PATH="$folder/usr" >/dev/null
 cmake --build "$folder/b" >/dev/null
 "$folder/b/example" "$source/apps/mechanisms/pendulum.yaml" bobX >"$folder/rows"
 [ "$(wc -l <"$folder/rows")" -ge 100 ]
 if "$folder/b/example" "$source/apps/mechanisms/pendulum.yaml" nothing 2>/dev/null; then exit 1; fi
+"$folder/b/what_if" "$source/apps/mechanisms/pendulum.yaml" 0.5 'gravity=[0, 0, -1.62]' bobX >"$folder/rows"
+awk '{apart = ($2 - $3) ^ 2} NR == 1 && apart > 1e-6 {exit 1} END {exit !(apart > 1e-4)}' "$folder/rows"
 echo "installed and used"
