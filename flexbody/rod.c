@@ -100,6 +100,7 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
     memcpy(m->span, def->span, vertices * sizeof *m->span);
     memcpy(m->position0, def->position, vertices * sizeof *m->position0);
     memcpy(m->rotation0, def->rotation, vertices * sizeof *m->rotation0);
+    m->root = bough_rotation_matrix(m->rotation0[0]);
     memcpy(m->vertex, def->inertia, vertices * sizeof *m->vertex);
     for (int n = 0; n < m->n_segment; n++) {
         bough_status status = set_segment(m, def, n);

@@ -64,6 +64,7 @@ typedef struct bough_rod_model {
     double *span;               // (N + 1) [m]
     bough_vec3 *position0;      // undeformed (N + 1) [m]
     bough_quaternion *rotation0; // undeformed (N + 1)
+    bough_mat3 root;            // the first of them as a matrix
     double *length;             // segment length h (stride) [m]
     double *inverse_length;     // 1/h (stride) [1/m]
     double *strain0;            // V⁰, U⁰ (6 × stride)

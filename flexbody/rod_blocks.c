@@ -80,10 +80,10 @@ static inline void add_own(const double *restrict own, int s, tile *t) {
     }
 }
 
-static inline void put_mass(const bough_rod_tangent *k, int s, lanes at, int j) {
+static inline void put_mass(const double *mass, lanes at, int j, double *blocks) {
     tile t = {{0}};
-    add_own(k->mass + (size_t)j * s + at.v, 6 * s, &t);
-    put_tile(&t, at, j, false, k->blocks.mass);
+    add_own(mass + j * LANES, 6 * LANES, &t);
+    put_tile(&t, at, j, false, blocks);
 }
 
 // Column j from the segments' tangents t, those at whose left and right ends the vertices are; own
@@ -100,16 +100,16 @@ static inline void put_column(const double *t, int j, lanes left, lanes right, c
     put_tile(&beside, left, j, false, b->upper);
 }
 
-void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k, int first,
-                           const double *velocity) {
-    int s = m->stride, v = first + 1;
-    const double *position = k->variation + (size_t)TANGENTS * first;
-    lanes left = lanes_from(m, first), right = lanes_from(m, v);
+void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k,
+                           const bough_rod_eight *eight) {
+    int s = m->stride, v = eight->first + 1;
+    const double *position = k->variation + (size_t)TANGENTS * eight->first;
+    lanes left = lanes_from(m, v - 1), right = lanes_from(m, v);
     for (int j = 0; j < 6; j++) {
         const double *turned = j < 3 ? NULL : k->local_position + (size_t)6 * (j - 3) * s + v;
         put_column(position, j, left, right, turned, s, &k->blocks.position);
-        put_column(velocity, j, left, right, k->local_velocity + (size_t)j * s + v, 6 * s,
+        put_column(eight->velocity, j, left, right, eight->own_velocity + j * LANES, 6 * LANES,
                    &k->blocks.velocity);
-        put_mass(k, s, right, j);
+        put_mass(eight->mass, right, j, k->blocks.mass);
     }
 }

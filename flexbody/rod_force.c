@@ -10,7 +10,7 @@ static void gather_input(const bough_rod_model *m, const double *input, double *
     int s = m->stride;
     bough_quaternion p0 = m->rotation0[0];
     bough_vec3 omega = {input[3], input[4], input[5]};
-    bough_vec3 w0 = bough_mat3_tmul(bough_rotation_matrix(p0), omega);
+    bough_vec3 w0 = bough_mat3_tmul(m->root, omega);
     const double root[BOUGH_ROD_STATES] = {0,        0,        0,        p0.w, p0.x, p0.y, p0.z,
                                            input[0], input[1], input[2], w0.x, w0.y, w0.z};
     for (int c = 0; c < BOUGH_ROD_STATES; c++) vertex[c * s] = root[c];
@@ -204,8 +204,7 @@ void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *load
     loads_at(m, loads, t, scratch);
     bough_rod_forces(m, 0, 1, scratch);
     const double *f = scratch->segment;
-    bough_vec3 moment = bough_mat3_mul(bough_rotation_matrix(m->rotation0[0]),
-                                       bough_v3(f[3 * s], f[4 * s], f[5 * s]));
+    bough_vec3 moment = bough_mat3_mul(m->root, bough_v3(f[3 * s], f[4 * s], f[5 * s]));
     const double inner[6] = {f[0], f[s], f[2 * s], moment.x, moment.y, moment.z};
     for (int c = 0; c < 6; c++) wrench[c] = inner[c] + scratch->load[c * s];
 }

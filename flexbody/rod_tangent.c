@@ -10,8 +10,6 @@
 bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m) {
     size_t s = (size_t)m->stride;
     k->variation = bough_arena_doubles(arena, TANGENTS * s);
-    k->mass = bough_rod_vertex_rows(arena, m, 36);
-    k->local_velocity = bough_rod_vertex_rows(arena, m, 36);
     k->local_position = bough_rod_vertex_rows(arena, m, 18);
     k->vertex = bough_rod_vertex_rows(arena, m, KEPT);
     k->work = bough_rod_vertex_rows(arena, m, WORK);
@@ -25,11 +23,8 @@ bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
 
 // -- a vertex' own terms --------------------------------------------------------------------------
 
-static inline void store_column(double *restrict block, int s, int v, int row, int column,
-                                bough_vec3 x) {
-    block[(6 * row + column) * s + v] = x.x;
-    block[(6 * (row + 1) + column) * s + v] = x.y;
-    block[(6 * (row + 2) + column) * s + v] = x.z;
+static inline void store_column(double *restrict block, int l, int row, int column, bough_vec3 x) {
+    store3(block + (6 * row + column) * LANES, 6 * LANES, l, x);
 }
 
 static void keep_vertices(const bough_rod_model *m, const double *restrict state,
@@ -54,43 +49,44 @@ static void keep_vertices(const bough_rod_model *m, const double *restrict state
     }
 }
 
-// The mass of (11), force in BRF axes: [mE, −Rξ(s); ξ(s)Rᵀ, Î], column j of each half.
-static void mass_columns(const bough_rod_model *m, bough_rod_tangent *k, int j) {
-    int n = m->n, s = m->stride;
-    const double *restrict kept = k->vertex, *restrict first = m->moment;
-    const double *restrict inertia = m->inertia, *restrict weight = m->mass;
-    double *restrict mass = k->mass;
+// The mass of (11), force in BRF axes: [mE, −Rξ(s); ξ(s)Rᵀ, Î], column j of each half, of eight
+// vertices.
+static void mass_columns(const bough_rod_model *m, const bough_rod_tangent *k, int first, int j,
+                         double *restrict mass) {
+    int s = m->stride;
+    const double *restrict kept = k->vertex + first + 1, *restrict moment = m->moment + first;
+    const double *restrict inertia = m->inertia + first, *restrict weight = m->mass + first;
     bough_vec3 e = unit_vector(j);
 #pragma omp simd
-    for (int v = 1; v <= n; v++) {
-        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, v);
-        bough_vec3 offset = load3(first, s, v - 1);
-        store_column(mass, s, v, 0, j, bough_scale(weight[v - 1], e));
-        store_column(mass, s, v, 3, j, bough_cross(offset, bough_mat3_tmul(r, e)));
-        store_column(mass, s, v, 0, 3 + j, bough_mat3_mul(r, bough_cross(e, offset)));
-        store_column(mass, s, v, 3, 3 + j, inertia_times(inertia, s, v - 1, e));
+    for (int l = 0; l < LANES; l++) {
+        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, l);
+        bough_vec3 offset = load3(moment, s, l);
+        store_column(mass, l, 0, j, bough_scale(weight[l], e));
+        store_column(mass, l, 3, j, bough_cross(offset, bough_mat3_tmul(r, e)));
+        store_column(mass, l, 0, 3 + j, bough_mat3_mul(r, bough_cross(e, offset)));
+        store_column(mass, l, 3, 3 + j, inertia_times(inertia, s, l, e));
     }
 }
 
 // What the velocities change in (11) beyond the segments' forces.
-static void velocity_columns(const bough_rod_model *m, bough_rod_tangent *k, int j) {
-    int n = m->n, s = m->stride;
-    const double *restrict kept = k->vertex, *restrict first = m->moment;
-    const double *restrict inertia = m->inertia, *restrict weight = m->mass;
-    double *restrict out = k->local_velocity;
+static void velocity_columns(const bough_rod_model *m, const bough_rod_tangent *k, int first,
+                             int j, double *restrict out) {
+    int s = m->stride;
+    const double *restrict kept = k->vertex + first + 1, *restrict moment = m->moment + first;
+    const double *restrict inertia = m->inertia + first, *restrict weight = m->mass + first;
     bough_vec3 e = unit_vector(j), turn = bough_cross(k->omega, e);
 #pragma omp simd
-    for (int v = 1; v <= n; v++) {
-        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, v);
-        bough_vec3 offset = load3(first, s, v - 1), w = load3(kept + KEPT_W * s, s, v);
+    for (int l = 0; l < LANES; l++) {
+        bough_mat3 r = load_matrix(kept + KEPT_R * s, s, l);
+        bough_vec3 offset = load3(moment, s, l), w = load3(kept + KEPT_W * s, s, l);
         bough_vec3 centrifugal = bough_add(bough_cross(e, bough_cross(w, offset)),
                                            bough_cross(w, bough_cross(e, offset)));
-        bough_vec3 gyroscopic = bough_add(bough_cross(e, inertia_times(inertia, s, v - 1, w)),
-                                          bough_cross(w, inertia_times(inertia, s, v - 1, e)));
-        store_column(out, s, v, 0, j, bough_scale(-weight[v - 1], turn));
-        store_column(out, s, v, 3, j, bough_cross(bough_mat3_tmul(r, turn), offset));
-        store_column(out, s, v, 0, 3 + j, bough_scale(-1, bough_mat3_mul(r, centrifugal)));
-        store_column(out, s, v, 3, 3 + j, bough_scale(-1, gyroscopic));
+        bough_vec3 gyroscopic = bough_add(bough_cross(e, inertia_times(inertia, s, l, w)),
+                                          bough_cross(w, inertia_times(inertia, s, l, e)));
+        store_column(out, l, 0, j, bough_scale(-weight[l], turn));
+        store_column(out, l, 3, j, bough_cross(bough_mat3_tmul(r, turn), offset));
+        store_column(out, l, 0, 3 + j, bough_scale(-1, bough_mat3_mul(r, centrifugal)));
+        store_column(out, l, 3, 3 + j, bough_scale(-1, gyroscopic));
     }
 }
 
@@ -147,6 +143,23 @@ static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scr
     }
 }
 
+// Segments first..first + 7 and the vertices at their right ends.
+static void linearise_eight(const bough_rod_model *m, const double *vertex, int first,
+                            bough_rod_tangent *k) {
+    _Alignas(64) double base[BOUGH_ROD_BASE * LANES];
+    bough_rod_eight eight;
+    eight.first = first;
+    double *position = k->variation + (size_t)TANGENTS * first;
+    bough_rod_base(m, vertex, first, base);
+    bough_rod_position_variation(m, vertex, first, base, position);
+    bough_rod_velocity_variation(m, first, base, eight.velocity);
+    for (int j = 0; j < 3; j++) {
+        mass_columns(m, k, first, j, eight.mass);
+        velocity_columns(m, k, first, j, eight.own_velocity);
+    }
+    bough_rod_form_blocks(m, k, &eight);
+}
+
 bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                          const double *state, const double *input, bough_rod_scratch *scratch,
                          bough_rod_tangent *k) {
@@ -154,19 +167,10 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
     if (!bough_rod_derivative(m, loads, t, state, input, scratch, rate)) return false;
     k->omega = bough_v3(input[3], input[4], input[5]);
     keep_vertices(m, state, scratch->vertex, k);
-    for (int j = 0; j < 3; j++) {
-        mass_columns(m, k, j);
-        velocity_columns(m, k, j);
-    }
     rotation_columns(m, rate + (size_t)BOUGH_ROD_U * m->n, input, scratch, k);
     if (bough_rod_loads_follow(loads)) add_followers(m, scratch, k);
     for (int first = 0; first < m->n_segment; first += LANES) {
-        _Alignas(64) double base[BOUGH_ROD_BASE * LANES], velocity[TANGENTS * LANES];
-        double *position = k->variation + (size_t)TANGENTS * first;
-        bough_rod_base(m, scratch->vertex, first, base);
-        bough_rod_position_variation(m, scratch->vertex, first, base, position);
-        bough_rod_velocity_variation(m, first, base, velocity);
-        bough_rod_form_blocks(m, k, first, velocity);
+        linearise_eight(m, scratch->vertex, first, k);
     }
     return true;
 }

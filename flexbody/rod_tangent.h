@@ -23,9 +23,7 @@ typedef struct bough_rod_tangent {
     // computed by bough_rod_linearise
     double *variation;      // of segment forces by configuration, eight segments at a time: see
                             // rod_variation.h (padded N × 81)
-    double *mass;           // (11) with force in BRF axes (36 × stride)
-    double *local_velocity; // tangents of a vertex' own terms, by u, W (36 × stride)
-    double *local_position; // by rotation (18 × stride)
+    double *local_position; // tangents of a vertex' own terms, by rotation (18 × stride)
     double *vertex;         // see rod_tangent_layout.h
     bough_vec3 omega;       // of the BRF
     double *rate;           // f (13 × stride)
@@ -49,10 +47,17 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
 // A copy of the blocks of the last linearisation.
 void bough_rod_assemble(const bough_rod_model *m, const bough_rod_tangent *k, bough_rod_blocks *b);
 
-// Puts the tangents of segments first..first + 7 and of the vertices at their right ends into
-// blocks; `velocity` as `variation`, by velocities. To be called in the order of segments.
-void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k, int first,
-                           const double *velocity);
+// What goes into the blocks of eight segments and the vertices at their right ends only, rows of 8.
+typedef struct bough_rod_eight {
+    int first;                               // segment
+    _Alignas(64) double velocity[81 * 8];    // of segment forces, by velocities: as `variation`
+    _Alignas(64) double mass[36 * 8];        // of (11) with force in BRF axes
+    _Alignas(64) double own_velocity[36 * 8]; // tangents of a vertex' own terms, by u, W
+} bough_rod_eight;
+
+// Puts them and the tangents by configuration into blocks. To be called in the order of segments.
+void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k,
+                           const bough_rod_eight *eight);
 
 // Factors I − γ ∂f/∂y of the last linearisation. False when singular.
 bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma);
