@@ -102,8 +102,7 @@ bough_induction bough_induction_solve(const bough_induction_options *options,
     if (bough_induction_is_fixed(options, e->tip_factor, e->hub_factor)) {
         return (bough_induction){.axial = 1};
     }
-    problem posed = problem_of(weights_of(options), e->solidity, e->cone, e->tip_factor,
-                               e->hub_factor, e->twist, e->inflow_x, e->inflow_y);
+    problem posed = problem_of(weights_of(options), *e);
     if (!is_balanced(posed, e->inflow_x, e->inflow_y)) return (bough_induction){0};
     quest q = {options, e->polar, posed, false, 0};
     point p;

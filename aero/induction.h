@@ -45,6 +45,9 @@ typedef struct bough_element {
     double cone;                   // cos² of the blade's angle from the rotor plane [-]
     double twist;                  // of the chord from y [rad]
     double inflow_x, inflow_y;     // relative to the blade, without induction [m/s]
+    // The section, its twist taken out, stands askew to y: its normal's part along y, and what its
+    // chord's is short of 1. 0 unless the blade leans from the rotor plane and y from its chord.
+    double skew_normal, skew_chord;
 } bough_element;
 
 typedef struct bough_induction {
@@ -68,6 +71,7 @@ typedef struct bough_elements {
     int n;                           // a multiple of BOUGH_LANES
     const bough_polar *const *polar; // (n), and so all that follow; each as in bough_element
     const double *solidity, *tip_factor, *hub_factor, *cone, *twist, *inflow_x, *inflow_y;
+    const double *skew_normal, *skew_chord;
 } bough_elements;
 
 // The same for all elements, side by side in vector lanes: `axial`, `tangential`, `loss` (n each).
@@ -75,7 +79,8 @@ void bough_induction_solve_all(const bough_induction_options *options,
                                const bough_elements *elements, double *axial, double *tangential,
                                double *loss);
 
-// The inflow angle in (−π, π] with that induction [rad].
+// The inflow angle in (−π, π] with that induction [rad]. The angle of attack is that in the section's
+// own plane: twist and, of a section askew, a second-order part less.
 double bough_induction_angle(const bough_element *element, double axial, double tangential);
 
 #endif

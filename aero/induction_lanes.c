@@ -9,7 +9,7 @@ typedef double lane[MOST_LANES];
 typedef struct lanes {
     // of the problem; aligned, so that no vector of any lane lies across cache lines
     _Alignas(8 * BOUGH_LANES) lane sign_x;
-    lane sign_y, slope, density, cone, tip_factor, hub_factor, twist;
+    lane sign_y, slope, density, cone, tip_factor, hub_factor, twist, skew_normal, skew_chord;
     lane lift_slope, free_angle;
     lane attached, here; // 1: the guess is the attached angle; the root is taken to be in reach
     // the point last evaluated
@@ -23,8 +23,9 @@ typedef struct lanes {
 } lanes;
 
 static inline problem load_problem(const lanes *x, int i) {
-    return (problem){x->sign_x[i], x->sign_y[i], x->slope[i],      x->density[i],
-                     x->cone[i],   x->tip_factor[i], x->hub_factor[i], x->twist[i]};
+    return (problem){x->sign_x[i],     x->sign_y[i],     x->slope[i], x->density[i],
+                     x->cone[i],       x->tip_factor[i], x->hub_factor[i], x->twist[i],
+                     x->skew_normal[i], x->skew_chord[i]};
 }
 
 static inline flow load_flow(const lanes *x, int i) {
@@ -35,9 +36,17 @@ static inline balance load_balance(const lanes *x, int i) {
     return (balance){x->residual[i], x->axial[i], x->swirl[i]};
 }
 
-static bough_element element_of(const bough_elements *e, int i) {
-    return (bough_element){e->polar[i], e->solidity[i], e->tip_factor[i], e->hub_factor[i],
-                           e->cone[i],  e->twist[i],    e->inflow_x[i],   e->inflow_y[i]};
+// Without its polar.
+static inline bough_element element_of(const bough_elements *e, int i) {
+    return (bough_element){.solidity = e->solidity[i],
+                           .tip_factor = e->tip_factor[i],
+                           .hub_factor = e->hub_factor[i],
+                           .cone = e->cone[i],
+                           .twist = e->twist[i],
+                           .inflow_x = e->inflow_x[i],
+                           .inflow_y = e->inflow_y[i],
+                           .skew_normal = e->skew_normal[i],
+                           .skew_chord = e->skew_chord[i]};
 }
 
 // The stages of an evaluation, each for a group of lanes.
@@ -95,10 +104,8 @@ static void take(const bough_elements *e, int first, lanes *restrict x) {
     }
 #pragma omp simd
     for (int i = 0; i < x->n; i++) {
-        int k = first + i;
-        double vx = e->inflow_x[k], vy = e->inflow_y[k];
-        problem p = problem_of(o, e->solidity[k], e->cone[k], e->tip_factor[k], e->hub_factor[k],
-                               e->twist[k], vx, vy);
+        bough_element element = element_of(e, first + i);
+        problem p = problem_of(o, element);
         double limit = free_angle(p), phi = attached_angle(p, x->lift_slope[i], zero_lift[i], limit);
         x->sign_x[i] = p.sign_x;
         x->sign_y[i] = p.sign_y;
@@ -108,8 +115,10 @@ static void take(const bough_elements *e, int first, lanes *restrict x) {
         x->tip_factor[i] = p.tip_factor;
         x->hub_factor[i] = p.hub_factor;
         x->twist[i] = p.twist;
+        x->skew_normal[i] = p.skew_normal;
+        x->skew_chord[i] = p.skew_chord;
         x->free_angle[i] = limit;
-        x->here[i] = is_balanced(p, vx, vy) ? 1 : 0;
+        x->here[i] = is_balanced(p, element.inflow_x, element.inflow_y) ? 1 : 0;
         x->attached[i] = phi > 0 ? 1 : 0;
         x->phi[i] = phi > 0 ? phi : limit;
     }
@@ -234,6 +243,7 @@ static void solve_some(const bough_elements *e, int first, lanes *restrict x,
     for (int i = 0; i < x->n; i++) {
         if (x->here[i] > 0 && x->axial[i] > 0) continue;
         bough_element element = element_of(e, first + i);
+        element.polar = x->polar[i];
         bough_induction found = bough_induction_solve(x->options, &element);
         axial[i] = found.axial;
         tangential[i] = found.tangential;

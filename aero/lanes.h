@@ -16,6 +16,11 @@ static inline double lane_round(double x) {
     return (x + big) - big;
 }
 
+// An angle less whole turns, in [−π, π].
+static inline double lane_remainder(double x) {
+    return x - 2 * BOUGH_PI * lane_round(x / (2 * BOUGH_PI));
+}
+
 static inline double lane_clamp(double x, double low, double high) {
     x = x > low ? x : low;
     return x < high ? x : high;

@@ -89,7 +89,8 @@ typedef struct bough_station {
     double radius;                   // from the shaft axis [m]
     double inflow_x, inflow_y;       // relative to the station, without induction [m/s]
     double axial, tangential;        // a, a' after the skew correction [-]
-    double alpha, phi, twist;        // angle of attack, inflow angle, chord to the y axis [rad]
+    double alpha;                    // angle of attack in the section's plane [rad]
+    double phi, twist;               // inflow angle, chord to the y axis [rad]
     double speed;                    // relative, with induction [m/s]
     bough_coefficients coefficients; // Cl, Cd, Cm
     double force_x, force_y;         // line force [N/m]

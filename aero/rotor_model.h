@@ -45,7 +45,8 @@ typedef struct blade_rows {
     double *velocity, *wind;         // (3 × stride) of the aerodynamic centre and there [m/s]
     double *place;                   // (3 × stride) the centre, in ground axes [m]
     double *radius, *twist, *turning; // (stride) [m], [rad], rotation nose up [rad/s]
-    double *solidity, *cone;         // (stride)
+    double *normal, *chord;          // (3 × stride) axes of the section, leading to trailing edge
+    double *solidity, *cone, *skew_normal, *skew_chord; // (stride) of the momentum balance
     double *inflow_x, *inflow_y;     // (stride) without induction [m/s]
     double *axial, *tangential, *loss; // (stride)
     double *phi, *alpha, *speed;     // (stride) [rad], [rad], [m/s]

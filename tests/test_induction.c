@@ -198,17 +198,20 @@ static void lanes_give_what_one_gives(void **state) {
         if (n % 5 == 0) options.hub_loss = options.tangential = false;
         bough_element e[N];
         const bough_polar *polar[N];
-        double value[7][N], axial[N], tangential[N], loss[N];
+        double value[9][N], axial[N], tangential[N], loss[N];
         for (int i = 0; i < N; i++) {
             e[i] = random_element(foils, &seed);
+            e[i].skew_normal = uniform(&seed, -0.05, 0.05);
+            e[i].skew_chord = uniform(&seed, 0, 0.01);
             if (n % 4 == 0) e[i].inflow_x = fabs(e[i].inflow_x), e[i].twist *= 0.1;
             polar[i] = e[i].polar;
-            const double row[7] = {e[i].solidity, e[i].tip_factor, e[i].hub_factor, e[i].cone,
-                                   e[i].twist,    e[i].inflow_x,   e[i].inflow_y};
-            for (int c = 0; c < 7; c++) value[c][i] = row[c];
+            const double row[9] = {e[i].solidity, e[i].tip_factor,  e[i].hub_factor,
+                                   e[i].cone,     e[i].twist,       e[i].inflow_x,
+                                   e[i].inflow_y, e[i].skew_normal, e[i].skew_chord};
+            for (int c = 0; c < 9; c++) value[c][i] = row[c];
         }
-        bough_elements all = {N,        polar,    value[0], value[1], value[2],
-                              value[3], value[4], value[5], value[6]};
+        bough_elements all = {N,        polar,    value[0], value[1], value[2], value[3],
+                              value[4], value[5], value[6], value[7], value[8]};
         bough_induction_solve_all(&options, &all, axial, tangential, loss);
         for (int i = 0; i < N; i++) {
             bough_induction one = bough_induction_solve(&options, e + i);

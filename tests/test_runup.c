@@ -208,10 +208,10 @@ static void tip_moves_once_and_speed_three_times_per_revolution(void **context) 
 static void means_are_those_of_the_reference(void **context) {
     (void)context;
     const history *h = default_run;
-    check_near(mean_from(h, h->speed, 30) * 30 / BOUGH_PI, 14.250, 0.02, 0);
-    check_near(mean_from(h, h->out_of_plane, 30), 6.760, 0.02, 0);
-    check_near(mean_from(h, h->thrust, 30), 1085e3, 0.02, 0);
-    check_near(mean_from(h, h->torque, 30), 11676e3, 0.02, 0);
+    check_near(mean_from(h, h->speed, 30) * 30 / BOUGH_PI, 14.250, 0.005, 0);
+    check_near(mean_from(h, h->out_of_plane, 30), 6.760, 0.005, 0);
+    check_near(mean_from(h, h->thrust, 30), 1085e3, 0.005, 0);
+    check_near(mean_from(h, h->torque, 30), 11676e3, 0.005, 0);
 }
 
 // The default against all equations in one implicit system at tight tolerance.
