@@ -83,19 +83,6 @@ static void place_body(bough_tree *tree, const bough_body_def *b, int body) {
     add_inertia(tree, frame, bough_inertia_of(b->mass, b->mass_centre, b->inertia));
 }
 
-// Level by level; levels (n_bodies) is scratch.
-static void place_bodies(bough_tree *tree, const bough_tree_def *def, int *levels) {
-    for (int b = 0; b < def->n_bodies; b++)
-        levels[b] = bough_tree_depth(def, b);
-    for (int placed = 0, level = 0; placed < def->n_bodies; level++) {
-        for (int b = 0; b < def->n_bodies; b++) {
-            if (levels[b] != level) continue;
-            place_body(tree, &def->bodies[b], b);
-            placed++;
-        }
-    }
-}
-
 static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
     for (int m = 0; m < def->n_markers; m++) {
         const bough_marker_def *marker = &def->markers[m];
@@ -240,13 +227,17 @@ static bough_status check_dynamics(bough_arena *arena, const bough_tree_def *def
 bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bough_tree **out) {
     bough_status status = bough_tree_check(def);
     if (!bough_is_ok(&status)) return status;
+    size_t n = (size_t)def->n_bodies;
+    int *scratch = bough_arena_take(arena, (3 * n + 1) * sizeof *scratch), *order = scratch;
+    if (scratch == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory to build the tree");
+    status = bough_tree_order(def, scratch + n, order);
+    if (!bough_is_ok(&status)) return status;
     bough_tree *tree = bough_arena_take(arena, sizeof *tree);
     if (tree == NULL || !take_model(arena, def, tree) || !take_names(arena, def, tree)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for a tree of %d bodies", def->n_bodies);
     }
-    int *levels = bough_arena_take(arena, (size_t)def->n_bodies * sizeof *levels);
-    if (levels == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory to build the tree");
-    place_bodies(tree, def, levels);
+    for (int k = 0; k < def->n_bodies; k++)
+        place_body(tree, &def->bodies[order[k]], order[k]);
     place_attachments(tree, def);
     for (int k = 0; k < def->n_springs; k++)
         tree->springs[k] = def->springs[k];

@@ -107,12 +107,31 @@ static bough_status check_body(const bough_tree_def *def, int body) {
     return bough_is_ok(&status) ? check_placement("joint of body", b->name, b->joint) : status;
 }
 
-int bough_tree_depth(const bough_tree_def *def, int body) {
-    int steps = 0;
-    for (int b = def->bodies[body].parent; b >= 0; b = def->bodies[b].parent) {
-        if (++steps > def->n_bodies) return -1;
+// Levels from 1, 0 where not known yet; false in a cycle. Every body is walked over once.
+static bool find_level(const bough_tree_def *def, int body, int *level) {
+    int steps = 0, top = body;
+    for (; top >= 0 && level[top] == 0; top = def->bodies[top].parent) {
+        if (++steps > def->n_bodies) return false;
     }
-    return steps;
+    int above = top < 0 ? 0 : level[top];
+    for (int b = body; b != top; b = def->bodies[b].parent) level[b] = above + steps--;
+    return true;
+}
+
+bough_status bough_tree_order(const bough_tree_def *def, int *scratch, int *order) {
+    int n = def->n_bodies, *level = scratch, *first = scratch + n; // first (n + 1): of each level
+    for (int b = 0; b < n; b++) {
+        if (!find_level(def, b, level)) {
+            return bough_fail(BOUGH_INVALID,
+                              "body '%s': its chain of parents is a cycle and "
+                              "never reaches the ground",
+                              def->bodies[b].name);
+        }
+        first[level[b]]++;
+    }
+    for (int k = 1; k <= n; k++) first[k] += first[k - 1];
+    for (int b = 0; b < n; b++) order[first[level[b] - 1]++] = b;
+    return bough_ok();
 }
 
 static bool is_increasing(int n, const double *times) {
@@ -190,14 +209,6 @@ bough_status bough_tree_check(const bough_tree_def *def) {
     for (int b = 0; b < def->n_bodies; b++) {
         bough_status status = check_body(def, b);
         if (!bough_is_ok(&status)) return status;
-    }
-    for (int b = 0; b < def->n_bodies; b++) { // every parent exists by now
-        if (bough_tree_depth(def, b) < 0) {
-            return bough_fail(BOUGH_INVALID,
-                              "body '%s': its chain of parents is a cycle and "
-                              "never reaches the ground",
-                              def->bodies[b].name);
-        }
     }
     return check_attachments(def);
 }

@@ -7,7 +7,8 @@
 // BOUGH_INVALID, naming the part that is wrong.
 bough_status bough_tree_check(const bough_tree_def *def);
 
-// Number of bodies between the ground and a body; -1 in a cycle
-int bough_tree_depth(const bough_tree_def *def, int body);
+// The bodies level by level from the ground, within a level in the order of the definition: order
+// (n_bodies). scratch (2·n_bodies + 1) zeros. The parents must exist; BOUGH_INVALID for a cycle.
+bough_status bough_tree_order(const bough_tree_def *def, int *scratch, int *order);
 
 #endif

@@ -3,6 +3,7 @@
 #include <assert.h>
 #include <stdarg.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -29,6 +30,31 @@ bough_status bough_channels_group(bough_channels *list, bough_channel_sample *sa
     return bough_ok();
 }
 
+// Where the channel of that name stands, or would.
+static int *slot_of(const bough_channels *list, const char *name) {
+    uint32_t hash = 2166136261u, mask = 2 * (uint32_t)list->capacity - 1;
+    for (const char *c = name; *c; c++) hash = (hash ^ (unsigned char)*c) * 16777619u;
+    int *slot = &list->slot[hash & mask];
+    while (*slot && strcmp(list->channel[*slot - 1].name, name) != 0) {
+        slot = &list->slot[++hash & mask];
+    }
+    return slot;
+}
+
+static bool make_room(bough_channels *list) {
+    int capacity = list->capacity;
+    bough_channel *channel =
+        grown(list->arena, list->channel, list->count, &capacity, sizeof *channel);
+    if (!channel || capacity == list->capacity) return channel != NULL;
+    int *slot = bough_arena_take(list->arena, 2 * (size_t)capacity * sizeof *slot);
+    if (!slot) return false;
+    list->channel = channel;
+    list->slot = slot;
+    list->capacity = capacity;
+    for (int i = 0; i < list->count; i++) *slot_of(list, channel[i].name) = i + 1;
+    return true;
+}
+
 static bool is_word(const char *text, size_t size) {
     size_t length = strlen(text);
     return length > 0 && length < size && !strpbrk(text, " \t\r\n");
@@ -51,22 +77,19 @@ bough_status bough_channels_add(bough_channels *list, const char *unit, const ch
     if (bough_channels_find(list, name) >= 0) {
         return bough_fail(BOUGH_INVALID, "two output channels are named '%s': rename a body", name);
     }
-    bough_channel *channel =
-        grown(list->arena, list->channel, list->count, &list->capacity, sizeof *channel);
-    if (!channel) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the output channels");
-    list->channel = channel;
-    channel += list->count++;
+    if (!make_room(list)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the output channels");
+    }
+    bough_channel *channel = &list->channel[list->count++];
     memcpy(channel->name, name, BOUGH_CHANNEL_NAME);
     memcpy(channel->unit, unit, strlen(unit) + 1);
+    *slot_of(list, name) = list->count;
     list->group[list->group_count - 1].count++;
     return bough_ok();
 }
 
 int bough_channels_find(const bough_channels *list, const char *name) {
-    for (int i = 0; i < list->count; i++) {
-        if (strcmp(list->channel[i].name, name) == 0) return i;
-    }
-    return -1;
+    return list->capacity > 0 ? *slot_of(list, name) - 1 : -1;
 }
 
 void bough_channels_sample(const bough_channels *list, double t, double *value) {

@@ -27,6 +27,7 @@ typedef struct bough_channels {
     bough_channel *channel;     // (count); time is not among them
     bough_channel_group *group; // (group_count)
     int count, capacity;
+    int *slot; // (2 capacity) channels by the hash of their names: index + 1, 0 where there is none
     int group_count, group_capacity;
 } bough_channels;
 
