@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <threads.h>
 
 extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
@@ -86,6 +87,24 @@ static void solve_small(int n, const double *factor, const int *pivot, double *x
         x[k] /= factor[k * n + k];
         for (int i = 0; i < k; i++) x[i] -= factor[k * n + i] * x[k];
     }
+}
+
+// The first call takes the room and keeps it.
+bool bough_linalg_room(int threads) {
+    enum { WORK = 129 << 20, MOST = 64 };
+    void *volatile block[MOST] = {0};
+    bool room = true;
+    for (int i = 0; i < threads && i < MOST && room; i++) {
+        block[i] = malloc(WORK);
+        room = block[i] != NULL;
+    }
+    for (int i = 0; i < MOST; i++) free(block[i]);
+    if (!room) return false;
+    double a = 1;
+    int n = 1, pivot, info = 0;
+    prepare();
+    dgetrf_(&n, &n, &a, &n, &pivot, &info);
+    return info == 0;
 }
 
 bool bough_dense_factor(int n, double *a, int *pivot) {

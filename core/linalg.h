@@ -5,6 +5,10 @@
 
 #include <stdbool.h>
 
+// Whether the library has room to work in on so many threads; asked once, when a model is built.
+// OpenBLAS wants 128 MB of addresses a thread and, where it does not get them, tries for ever.
+bool bough_linalg_room(int threads);
+
 // LU factors of a (n × n, column-major) in place, with row interchanges in pivot (n). False when a
 // is singular or not finite.
 bool bough_dense_factor(int n, double *a, int *pivot);

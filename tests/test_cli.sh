@@ -230,7 +230,8 @@ failed_run() {
 start_long() {
     rm -rf long
     mkdir long
-    echo stale >long/summary.json
+    echo earlier >long/summary.json
+    echo earlier >long/channels.out
     said="bough run ... --out long"
     "$bough" run "$beam" --set 'simulation.duration=1000000 s' --out long >../stdout 2>../stderr &
     long=$!
@@ -260,8 +261,8 @@ interrupted_run() {
     start_long
     kill -s KILL $long
     wait $long 2>/dev/null
-    missing long/summary.json
-    missing long/channels.out
+    has long/summary.json '^earlier$' # what was there stays until the new run can replace it
+    has long/channels.out '^earlier$'
     has long/channels.out.partial '^INCOMPLETE'
     rm -r long
 }

@@ -2,6 +2,7 @@
 #include "apps/bough/verb.h"
 
 #include <errno.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -77,6 +78,7 @@ static void quiet_threads(char **argv) {
 
 int main(int argc, char **argv) {
     quiet_threads(argv);
+    signal(SIGXFSZ, SIG_IGN); // a file at its limit is a write that fails, and is told
     if (argc < 2) {
         bough_help_overview(stderr);
         return bough_exit_code(BOUGH_INVALID);

@@ -128,16 +128,15 @@ static const char *title(const bough_run *run) {
     return scene->title ? scene->title : scene->file;
 }
 
-// An older summary or checkpoint must not stand beside the new run's channels.
+// What an earlier run has left stays until this one can replace it; of its checkpoint nothing does.
 static bough_status open_results(bough_run *run) {
     run->folder = bough_out_folder(run->arena, run->options);
     if (!run->folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = bough_checkpoint_open(run);
     if (bough_is_ok(&status)) status = bough_folder_make(run->folder);
-    if (bough_is_ok(&status)) status = bough_folder_remove(run->folder, "summary.json");
-    if (bough_is_ok(&status)) status = bough_folder_remove(run->folder, "channels.outb");
-    if (bough_is_ok(&status) && !run->options->resume) {
-        status = bough_checkpoint_remove(run->folder);
+    if (bough_is_ok(&status)) {
+        status = run->options->resume ? bough_folder_remove(run->folder, "summary.json")
+                                      : bough_checkpoint_remove(run->folder);
     }
     if (!bough_is_ok(&status)) return status;
     bough_recorder_def def = {.folder = run->folder,
@@ -173,9 +172,16 @@ static bough_status write_binary(const bough_run *run) {
                                                   .interval = output->interval});
 }
 
-// Ends the files; the first thing that went wrong is the outcome that they tell.
+// Ends the files; the first thing that went wrong is the outcome that they tell. An older summary
+// must not stand beside the new channels, nor a new one beside older channels.
 static bough_status close_results(bough_run *run) {
     bough_status status = bough_recorder_finish(run->recorder, &run->outcome);
+    if (!bough_is_ok(&status)) {
+        if (bough_is_ok(&run->outcome)) run->outcome = status;
+        return run->outcome;
+    }
+    status = bough_folder_remove(run->folder, "summary.json");
+    if (bough_is_ok(&status)) status = bough_folder_remove(run->folder, "channels.outb");
     if (bough_is_ok(&status) && run->frames) status = bough_frames_finish(run->frames);
     if (bough_is_ok(&status)) status = write_binary(run);
     if (bough_is_ok(&run->outcome)) run->outcome = status;

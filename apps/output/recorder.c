@@ -96,9 +96,6 @@ static bough_status reopen(bough_recorder *r, const bough_recorder_def *def) {
 static bough_status create(bough_recorder *r, const bough_recorder_def *def) {
     bough_status status = bough_folder_open_partial(r->path, &r->file);
     if (!bough_is_ok(&status)) return status;
-    if (unlink(r->path) != 0 && errno != ENOENT) {
-        return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", r->path, strerror(errno));
-    }
     setvbuf(r->file, r->buffer, _IOFBF, BUFFER);
     return write_head(r, def->title);
 }

@@ -6,6 +6,7 @@
 #include "apps/scene/drag_link.h"
 #include "apps/scene/load_link.h"
 #include "apps/scene/settle.h"
+#include "core/linalg.h"
 #include "core/tree_subsystem.h"
 
 #include <string.h>
@@ -267,7 +268,8 @@ static bool take_arrays(bough_builder *b) {
 bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
                                     bough_simulation **simulation) {
     bough_builder b = {.arena = arena, .scene = scene};
-    if (!take_arrays(&b)) return out_of_memory();
+    bool room = bough_linalg_room(scene->simulation.threads);
+    if (!room || !take_arrays(&b)) return out_of_memory();
     bough_status status = bough_pool_create(arena, scene->simulation.threads, &b.s->pool);
     if (bough_is_ok(&status)) status = bough_build_bodies(&b);
     if (bough_is_ok(&status)) set_loads(&b);

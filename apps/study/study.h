@@ -113,6 +113,7 @@ typedef struct bough_study {
     int n_channel;
     const char **channel; // (n_channel) of all measures in their order
     uint64_t fingerprint; // of all that the cells' results depend on, besides their settings
+    uint64_t scene_sum;   // of the scene's text, which must stay as it is; 0: may change
 } bough_study;
 
 // Reads a study and checks it with every scene that its runs see. `threads` replaces the scene's

@@ -215,6 +215,8 @@ bough_status bough_study_check(bough_arena *arena, bough_study *s, bough_errors 
         s->duration = scene->simulation.duration;
         s->interval = scene->simulation.output.interval;
         s->fingerprint = fingerprint(s, scene);
+        s->scene_sum = BOUGH_FINGERPRINT_START;
+        bough_mix_file(&s->scene_sum, scene->file);
         status = check_channels(own, s, scene, errors);
     }
     bough_arena_destroy(own);

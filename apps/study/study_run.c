@@ -1,6 +1,7 @@
 #include "apps/study/study_run.h"
 
 #include "apps/scene/error_probe.h"
+#include "apps/scene/fingerprint.h"
 
 #include <assert.h>
 #include <math.h>
@@ -135,11 +136,28 @@ static bough_status find_channels(bough_arena *arena, run *r) {
     return bough_error_probe_create(arena, r->simulation, &r->channels, &r->probe);
 }
 
-static bough_status build(bough_arena *arena, const bough_study_cell *cell, run *r) {
+// Every cell was read when the study began: an error now is none of the cell, nor may a changed scene
+// be compared with runs of the old one.
+static bough_status read_scene(bough_arena *arena, const bough_study *study,
+                               const bough_study_cell *cell, bough_scene **scene) {
     bough_errors errors = {.arena = arena};
-    bough_scene *scene;
     bough_status status =
-        bough_scene_read(arena, r->study->scene, cell->set, cell->n_set, &errors, &scene);
+        bough_scene_read(arena, study->scene, cell->set, cell->n_set, &errors, scene);
+    if (study->scene_sum == 0 || (!bough_is_ok(&status) && status.code != BOUGH_INVALID)) {
+        return status;
+    }
+    uint64_t sum = BOUGH_FINGERPRINT_START;
+    bough_mix_file(&sum, study->scene);
+    if (bough_is_ok(&status) && sum == study->scene_sum) return status;
+    return bough_fail(BOUGH_IO,
+                      "the scene '%.150s' or a file of it has changed or is gone since the study "
+                      "began%s%.100s; runs so far are kept", study->scene,
+                      errors.n > 0 ? ": " : "", errors.n > 0 ? errors.item[0].text : "");
+}
+
+static bough_status build(bough_arena *arena, const bough_study_cell *cell, run *r) {
+    bough_scene *scene;
+    bough_status status = read_scene(arena, r->study, cell, &scene);
     if (!bough_is_ok(&status)) return status;
     if (r->study->kind == BOUGH_STUDY_STABILITY) scene->simulation.threads = 1;
     else if (r->study->threads > 0) scene->simulation.threads = r->study->threads;
