@@ -12,7 +12,7 @@
 enum { MOST_TASKS = 256, LINE = 64 };
 
 static const long patience = 50000; // before sleep [ns]
-static const long courtesy = 2000;  // before a thread takes what is another's turn [ns]
+static const long courtesy = 5000;  // before a thread takes what is another's turn [ns]
 
 // Where threads sleep: until there is a list, or until a task is done.
 typedef struct bedroom {

@@ -92,32 +92,36 @@ bough_status bough_coupling_each(bough_coupling *c, int stage,
 typedef struct led_list {
     bough_coupling *coupling;
     bough_lead_work work;
-    int n_lead;
+    int n_lead, n_follow, shift;
 } led_list;
 
+// Leaders; what followers prepare, gone round by as many, so that with one leader each keeps the
+// thread that it has in a list without leaders; followers.
 static void run_led(void *data, int k) {
     const led_list *w = data;
     bough_coupling *c = w->coupling;
-    int member = c->turn[k];
-    if (k < w->n_lead) {
-        w->work.lead(c, member);
-        return;
+    const int *follower = c->turn + w->n_lead;
+    int place = k - w->n_lead, follow = place - w->n_follow;
+    if (place < 0) {
+        w->work.lead(c, c->turn[k]);
+    } else if (follow < 0) {
+        w->work.prepare(c, follower[(place + w->shift) % w->n_follow]);
+    } else {
+        int prepared = (follow + w->n_follow - w->shift) % w->n_follow;
+        for (int lead = 0; lead < w->n_lead; lead++) bough_pool_await(c->pool, lead);
+        bough_pool_await(c->pool, w->n_lead + prepared);
+        if (bough_is_ok(&c->status[follower[follow]])) w->work.follow(c, follower[follow]);
     }
-    w->work.prepare(c, member);
-    for (int lead = 0; lead < w->n_lead; lead++) bough_pool_await(c->pool, lead);
-    if (bough_is_ok(&c->status[member])) w->work.follow(c, member);
 }
 
-// Leaders first. Followers go round by as many, so that with one leader each keeps the thread that it
-// has in a list without leaders.
 bough_status bough_coupling_each_led(bough_coupling *c, bough_lead_work work) {
     int n = c->assembly->n_member;
-    led_list w = {c, work, list_stage(c, 0)};
-    int n_follow = n - w.n_lead, place = n_follow > 0 ? n_follow - w.n_lead % n_follow : 0;
+    led_list w = {.coupling = c, .work = work, .n_lead = list_stage(c, 0)};
     for (int i = 0; i < n; i++) {
-        if (!in_stage(c, 0, i)) c->turn[w.n_lead + place++ % n_follow] = i;
+        if (!in_stage(c, 0, i)) c->turn[w.n_lead + w.n_follow++] = i;
     }
-    bough_pool_run(c->pool, n, run_led, &w);
+    if (w.n_follow > 0) w.shift = w.n_lead % w.n_follow;
+    bough_pool_run(c->pool, w.n_lead + 2 * w.n_follow, run_led, &w);
     return first_failure(c);
 }
 
