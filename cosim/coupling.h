@@ -37,11 +37,14 @@ typedef struct bough_scheme_options {
 
 enum { BOUGH_HISTORY = 3 };
 
+typedef struct bough_iteration bough_iteration; // see iteration.h
+
 typedef struct bough_coupling {
     const bough_assembly *assembly;
     bough_scheme_options options;
     bough_pool *pool;  // NULL: one thread
     void *scheme_data; // what the scheme created
+    bough_iteration *iteration; // NULL unless steps are repeated
 
     // the step to take, set by the master
     double t0, t1; // [s]

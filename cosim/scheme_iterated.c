@@ -25,6 +25,7 @@
 // restarted and stopped on its way, leaves a hundred times more within the step than at its end.
 #include "cosim/accelerate.h"
 #include "cosim/interface_newton.h"
+#include "cosim/iteration.h"
 #include "cosim/port.h"
 #include "cosim/scheme.h"
 #include "cosim/sequence.h"
@@ -39,7 +40,7 @@ enum { MOST_NODES = 3 };
 static const double end_point[] = {1};
 static const double lobatto[MOST_NODES] = {0.27639320225002103, 0.72360679774997897, 1};
 
-typedef struct iteration {
+struct bough_iteration {
     bough_accelerator *accelerator;
     bough_interface_newton *newton; // NULL: another accelerator
     double span[MOST_NODES];        // of the Newton's Jacobians, over the macro step
@@ -58,7 +59,7 @@ typedef struct iteration {
     double *guess;      // (n_node × n) scaled values told
     double *image;      // (n_node × n) what they turned out to be
     double *change;     // (n_input) scratch
-} iteration;
+};
 
 // -- building -------------------------------------------------------------------------------------
 
@@ -78,7 +79,7 @@ static bough_status check(const bough_scheme_options *o) {
     return bough_ok();
 }
 
-static void find_feedback(iteration *it, const bough_coupling *c) {
+static void find_feedback(bough_iteration *it, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
@@ -94,7 +95,7 @@ static void find_feedback(iteration *it, const bough_coupling *c) {
     }
 }
 
-static bool take(iteration *it, const bough_assembly *a, bough_arena *arena) {
+static bool take(bough_iteration *it, const bough_assembly *a, bough_arena *arena) {
     size_t n = (size_t)a->n_input, n_node = (size_t)it->n_node;
     it->copy = bough_arena_take(arena, (size_t)a->n_member * sizeof *it->copy);
     it->input = bough_arena_take(arena, n * sizeof *it->input);
@@ -115,7 +116,7 @@ static bool take(iteration *it, const bough_assembly *a, bough_arena *arena) {
 
 static void solve_newton(void *self, double *x);
 
-static bough_status create_accelerator(bough_coupling *c, iteration *it, bough_arena *arena) {
+static bough_status create_accelerator(bough_coupling *c, bough_iteration *it, bough_arena *arena) {
     bough_accelerator_def def = {.kind = c->options.accelerator,
                                  .n = it->n_node * it->n,
                                  .relaxation = c->options.relaxation,
@@ -130,10 +131,10 @@ static bough_status create_accelerator(bough_coupling *c, iteration *it, bough_a
     return bough_interface_newton_create(arena, c, it->n_node, &it->newton);
 }
 
-static bough_status create(bough_coupling *c, bough_arena *arena) {
+bough_status bough_iteration_create(bough_coupling *c, bough_arena *arena) {
     bough_status status = check(&c->options);
     if (!bough_is_ok(&status)) return status;
-    iteration *it = bough_arena_take(arena, sizeof *it);
+    bough_iteration *it = bough_arena_take(arena, sizeof *it);
     if (!it) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bool waveform = c->options.exchange == BOUGH_EXCHANGE_WAVEFORM;
     it->n_input = c->assembly->n_input;
@@ -149,7 +150,7 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
         c->within = it->found;
     }
     find_feedback(it, c);
-    c->scheme_data = it;
+    c->iteration = it;
     return create_accelerator(c, it, arena);
 }
 
@@ -157,25 +158,25 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
 
 static void save(bough_coupling *c, int member) {
     const bough_subsystem *s = c->assembly->member[member];
-    const iteration *it = c->scheme_data;
+    const bough_iteration *it = c->iteration;
     s->ops->save(s->self, it->copy[member]);
 }
 
 static void restore(bough_coupling *c, int member) {
     const bough_subsystem *s = c->assembly->member[member];
-    const iteration *it = c->scheme_data;
+    const bough_iteration *it = c->iteration;
     s->ops->restore(s->self, it->copy[member]);
 }
 
 static double node_time(const bough_coupling *c, int k) {
-    const iteration *it = c->scheme_data;
+    const bough_iteration *it = c->iteration;
     return k + 1 < it->n_node ? c->t0 + it->node[k] * (c->t1 - c->t0) : c->t1;
 }
 
 // Input j of the member through its values at the nodes and, of end values, earlier ones.
 static void interpolate(bough_coupling *c, int member, int j) {
     const bough_assembly *a = c->assembly;
-    const iteration *it = c->scheme_data;
+    const bough_iteration *it = c->iteration;
     double time[MOST_NODES + BOUGH_HISTORY];
     const double *value[MOST_NODES + BOUGH_HISTORY];
     int n = it->n_node, earlier = n > 1 ? 1 : c->options.order;
@@ -195,7 +196,7 @@ static void interpolate(bough_coupling *c, int member, int j) {
 static void advance(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const bough_subsystem *s = a->member[member];
-    const iteration *it = c->scheme_data;
+    const bough_iteration *it = c->iteration;
     double *seen = c->seen + a->input_offset[member];
     for (int j = a->input_offset[member]; j < a->input_offset[member + 1]; j++) {
         for (int k = 0; k < it->n_node && !it->is_feedback[j]; k++) {
@@ -228,7 +229,7 @@ static bough_status sweep(bough_coupling *c) {
 // First values: the earlier ones extrapolated, or held where the loads jump.
 static void predict(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    iteration *it = c->scheme_data;
+    bough_iteration *it = c->iteration;
     int degree = c->restart ? 0 : it->n_node > 1 ? BOUGH_HISTORY - 1 : c->options.order;
     for (int i = 0; i < a->n_member; i++) {
         int first = a->input_offset[i];
@@ -245,7 +246,7 @@ static void predict(bough_coupling *c) {
 // Sizes of the ports from what the first sweep found; they hold for the step.
 static void update_scales(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    iteration *it = c->scheme_data;
+    bough_iteration *it = c->iteration;
     const double *found = it->found + (it->n_node - 1) * a->n_output;
     const double *told = it->told + (it->n_node - 1) * a->n_input;
     double largest = 0;
@@ -268,7 +269,7 @@ static void update_scales(bough_coupling *c) {
 // The residual of the sweep just made [1].
 static double evaluate(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    iteration *it = c->scheme_data;
+    bough_iteration *it = c->iteration;
     for (int p = 0; p < it->n_node; p++) {
         const double *told = it->told + p * a->n_input, *found = it->found + p * a->n_output;
         for (int k = 0; k < it->n; k++) {
@@ -281,7 +282,7 @@ static double evaluate(bough_coupling *c) {
 }
 
 static void correct(bough_coupling *c) {
-    iteration *it = c->scheme_data;
+    bough_iteration *it = c->iteration;
     bough_accelerator_next(it->accelerator, it->guess);
     for (int p = 0; p < it->n_node; p++) {
         double *told = it->told + p * c->assembly->n_input;
@@ -293,7 +294,7 @@ static void correct(bough_coupling *c) {
 
 // x (n_node × n), scaled: node by node the change that closes the interface over this residual.
 static void solve_newton(void *self, double *x) {
-    const iteration *it = self;
+    const bough_iteration *it = self;
     for (int p = 0; p < it->n_node; p++, x += it->n) {
         memset(it->change, 0, (size_t)it->n_input * sizeof(double));
         for (int k = 0; k < it->n; k++) it->change[it->input[k]] = it->scale[k] * x[k];
@@ -304,7 +305,7 @@ static void solve_newton(void *self, double *x) {
 
 static bough_status not_converged(const bough_coupling *c, int sweeps, double residual) {
     const bough_assembly *a = c->assembly;
-    const iteration *it = c->scheme_data;
+    const bough_iteration *it = c->iteration;
     int worst = 0, to = 0, last = (it->n_node - 1) * it->n;
     for (int k = 1; k < it->n; k++) {
         double off = fabs(it->image[last + k] - it->guess[last + k]);
@@ -323,8 +324,8 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
                       c->t1, residual, sweeps, contraction, advice);
 }
 
-static bough_status step(bough_coupling *c) {
-    iteration *it = c->scheme_data;
+bough_status bough_iteration_step(bough_coupling *c) {
+    bough_iteration *it = c->iteration;
     bough_coupling_begin(c);
     bough_status status = bough_coupling_each(c, BOUGH_ALL_STAGES, save);
     bough_accelerator_start(it->accelerator);
@@ -349,16 +350,17 @@ static bough_status step(bough_coupling *c) {
     return status;
 }
 
-static void snapshot(bough_coupling *c, bough_snapshot *s) {
-    const iteration *it = c->scheme_data;
+void bough_iteration_snapshot(bough_coupling *c, bough_snapshot *s) {
+    const bough_iteration *it = c->iteration;
     bough_snapshot_doubles(s, it->size, it->n);
 }
 
 const bough_scheme bough_scheme_iterated = {
     .name = "iterated",
-    .summary = "the step repeated until the interface agrees; order 1 to 3 (degree + 1), implicit",
+    .summary = "the step repeated until the interface agrees; order 1 to 3 (degree + 1), of waveforms "
+               "6, implicit",
     .judged = true,
-    .create = create,
-    .step = step,
-    .snapshot = snapshot,
+    .create = bough_iteration_create,
+    .step = bough_iteration_step,
+    .snapshot = bough_iteration_snapshot,
 };

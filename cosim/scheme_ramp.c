@@ -13,9 +13,10 @@
 // θ = 1/2: order 3 with that impulse, 2 without. On an interface body that is light against what
 // hangs on it the first step takes θ = 1, damped and of order 1. Where, as the eigenvalues of the
 // macro step tell, the trapezoidal rule rings there, all steps take the least θ that does not:
-// somewhat above 1/2, of order 1 with an error 2θ − 1 times as large, or 1. The interface is solved
-// as condense.h does, stage 0 leading.
+// somewhat above 1/2, of order 1 with an error 2θ − 1 times as large. Where none does, the step is
+// repeated with waveforms (iteration.h). The interface is solved as condense.h does, stage 0 leading.
 #include "cosim/condense.h"
+#include "cosim/iteration.h"
 #include "cosim/port.h"
 #include "cosim/scheme.h"
 #include "cosim/stability.h"
@@ -35,10 +36,12 @@ typedef struct ramp {
     double final;  // after the damped first steps
     double damped; // steps that begin before are damped [s]
     bool chosen;   // θ is final
+    bool repeats;  // no θ holds: waveforms are iterated
     bool repays;   // impulses
     bool fresh;    // followers are linearised in this step
     int age;       // steps since they were
     double span;   // θH then [s]
+    bough_arena *arena;
 } ramp;
 
 static bool leads(const bough_coupling *c, int member) { return c->assembly->stage[member] == 0; }
@@ -79,6 +82,7 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     r->input = bough_arena_doubles(arena, (size_t)a->n_input);
     c->owed = bough_arena_doubles(arena, (size_t)a->n_input);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    r->arena = arena;
     r->damped = -HUGE_VAL;
     r->chosen = c->options.theta > 0;
     r->theta = r->final = r->chosen ? c->options.theta : 0.5;
@@ -219,23 +223,42 @@ static const double heavy_interface = 0.25;
 static const double weights[] = {0.5, 0.55, 0.6, 0.65, 0.7, 0.8};
 enum { WEIGHTS = sizeof weights / sizeof *weights };
 static const double ringing = 0.05; // growth that does not count [1/s]
+static const double rise = 0.1;     // growth in a macro step that no mechanics has
 static const double untamed = 10;   // growth that no outer load damps [1/s]
 
-// Growth of the fastest oscillation with this weight [1/s].
+// Growth of the fastest oscillation with these options [1/s].
+static bough_status growth_of(const bough_coupling *c, bough_scheme_options options,
+                              bough_stability *stability) {
+    // the light body turns by about 2 √ratio in a macro step; four shadow steps a radian
+    double h = c->t1 - c->t0, part = fmin(8 * sqrt(c->interface_ratio), 64);
+    bough_status status =
+        bough_stability_judge_by(c->assembly, &options, h, fmin(h / part, 5e-3), stability);
+    if (!bough_is_ok(&status)) stability->growth = HUGE_VAL;
+    return status;
+}
+
 static bough_status growth_with(const bough_coupling *c, double theta, double *growth) {
     bough_scheme_options options = c->options;
     bough_stability stability;
     options.theta = theta;
-    // the light body turns by about 2 √ratio in a macro step; four shadow steps a radian
-    double h = c->t1 - c->t0, part = fmin(8 * sqrt(c->interface_ratio), 64);
-    bough_status status =
-        bough_stability_judge_by(c->assembly, &options, h, fmin(h / part, 5e-3), &stability);
+    bough_status status = growth_of(c, options, &stability);
     *growth = stability.growth;
     return status;
 }
 
-// The first weight under which nothing rings; where all do, the least growth. Outer loads may damp
-// slow growth (measured: 2.5 per second on a hub a hundred times too light, damped by the air). A
+// Whether iterated waveforms hold where no weight does.
+static bool waveforms_hold(const bough_coupling *c) {
+    bough_scheme_options options = c->options;
+    bough_stability stability;
+    options.name = bough_scheme_iterated.name;
+    options.exchange = BOUGH_EXCHANGE_WAVEFORM;
+    bough_status status = growth_of(c, options, &stability);
+    bool rises = stability.rising * (c->t1 - c->t0) > rise;
+    return bough_is_ok(&status) && stability.suspected <= ringing && !rises;
+}
+
+// The first weight under which nothing rings. Where all do, no prediction is good enough and steps are
+// repeated with waveforms, if these hold; else the least growth is taken, which outer loads may damp. A
 // held force, θ = 1, loses the solution: it is for what nothing else tames.
 static bough_status choose_weight(bough_coupling *c) {
     ramp *r = c->scheme_data;
@@ -248,6 +271,8 @@ static bough_status choose_weight(bough_coupling *c) {
         least = growth;
         r->final = weights[k];
     }
+    if (least <= ringing || !bough_is_ok(&status)) return status;
+    r->repeats = waveforms_hold(c);
     if (least > untamed) r->final = 1;
     return status;
 }
@@ -266,7 +291,7 @@ static bough_status choose_theta(bough_coupling *c) {
     c->interface_ratio = bough_condensed_radius(r->interface);
     if (!r->chosen && c->interface_ratio > light_interface) {
         status = choose_weight(c);
-        if (!bough_is_ok(&status)) return status;
+        if (!bough_is_ok(&status) || r->repeats) return status;
         r->damped = c->t1;
         status = predict_damped(c);
     }
@@ -309,11 +334,23 @@ static void set_ramps(bough_coupling *c, int member) {
     }
 }
 
+static bough_status repeat(bough_coupling *c) {
+    const ramp *r = c->scheme_data;
+    bough_status status = bough_ok();
+    memset(c->owed, 0, (size_t)c->assembly->n_input * sizeof(double));
+    c->options.exchange = BOUGH_EXCHANGE_WAVEFORM;
+    if (!c->iteration) status = bough_iteration_create(c, r->arena);
+    return bough_is_ok(&status) ? bough_iteration_step(c) : status;
+}
+
 static bough_status step(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
+    const ramp *r = c->scheme_data;
+    if (r->repeats) return repeat(c);
     bough_coupling_begin(c);
     bough_status status = c->theta > 0 ? predict_damped(c) : choose_theta(c);
     if (!bough_is_ok(&status)) return status;
+    if (r->repeats) return repeat(c);
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) set_ramps(c, i);
     }
@@ -340,6 +377,11 @@ static void snapshot(bough_coupling *c, bough_snapshot *s) {
     bough_snapshot_take(s, &r->damped, sizeof r->damped);
     bough_snapshot_take(s, &r->chosen, sizeof r->chosen);
     bough_snapshot_take(s, &r->repays, sizeof r->repays);
+    bough_snapshot_take(s, &r->repeats, sizeof r->repeats);
+    if (!r->repeats) return;
+    c->options.exchange = BOUGH_EXCHANGE_WAVEFORM;
+    if (!c->iteration) bough_iteration_create(c, r->arena);
+    if (c->iteration) bough_iteration_snapshot(c, s);
 }
 
 const bough_scheme bough_scheme_ramp = {

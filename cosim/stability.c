@@ -391,7 +391,11 @@ static bough_status choose(map *m, bough_stability *result) {
         if (!bough_is_ok(&status)) return status;
         bool alternates = candidate.frequency * m->macro_step > 0.25; // no mechanics do within a step
         bool turns = 2 * BOUGH_PI * candidate.frequency > candidate.growth;
-        if (!turns && !alternates) continue;
+        candidate.rising = result->rising;
+        if (!turns && !alternates) {
+            result->rising = fmax(result->rising, candidate.growth);
+            continue;
+        }
         candidate.suspected = fmax(result->suspected, candidate.growth);
         result->suspected = candidate.suspected;
         if (!settled(m, &found[k])) continue;

@@ -16,6 +16,7 @@
 typedef struct bough_stability {
     double growth;    // of the fastest growing oscillation [1/s]; negative: it decays
     double suspected; // the same, including values that are not certain; at least `growth` [1/s]
+    double rising;    // of what grows faster than it turns; the mechanics' own or not [1/s]
     double frequency; // of it [Hz]
     int body;         // the member on an interface that takes most part in it
 } bough_stability;

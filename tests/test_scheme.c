@@ -174,6 +174,27 @@ static void ramp_chooses_its_weight(void **state) {
     bough_two_mass_destroy(&m);
 }
 
+// Light, barely damped and 3.4 rad in a macro step: every prediction rings, whatever its weight. Steps are
+// repeated there.
+static void ramp_repeats_where_no_weight_holds(void **state) {
+    (void)state;
+    for (double theta = 0; theta <= 1; theta += theta > 0 ? .1 : .5) {
+        bough_two_mass m = bough_two_mass_default();
+        m.s1 = (bough_spring_mass){.125, 0, 0};
+        m.k = 2560;
+        m.c = .256;
+        double error = HUGE_VAL;
+        bough_master_def def = definition("ramp", .02);
+        def.scheme.theta = theta;
+        bough_status status = bough_two_mass_build(&m, def);
+        assert_int_equal(status.code, BOUGH_OK);
+        status = bough_two_mass_error(&m, &error, NULL);
+        bool held = bough_is_ok(&status) && error < .1;
+        assert_true(held == (theta == 0) && (m.master->coupling->iteration != NULL) == held);
+        bough_two_mass_destroy(&m);
+    }
+}
+
 static void unstable_run_ends_with_a_diagnosis(void **state) {
     (void)state;
     bough_two_mass m = light_case();
@@ -332,6 +353,7 @@ int main(void) {
         cmocka_unit_test(ramp_is_stable_beyond_every_explicit_limit),
         cmocka_unit_test(ramp_takes_a_light_interface_body),
         cmocka_unit_test(ramp_chooses_its_weight),
+        cmocka_unit_test(ramp_repeats_where_no_weight_holds),
         cmocka_unit_test(unstable_run_ends_with_a_diagnosis),
         cmocka_unit_test(iterated_errors_and_orders),
         cmocka_unit_test(every_accelerator_and_direction_gives_the_same),
