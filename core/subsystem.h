@@ -131,6 +131,8 @@ typedef struct bough_subsystem {
     const double *scale;      // error scale of each state (n_state): tolerance = rtol · scale
     const double *time;       // current time [s]
     const double *state;      // current state (n_state)
+    double *own_error;        // (n_state) what its own steps have erred by, by their estimate, since
+                              // a reader last set it to zero; NULL: it does not tell
     const bough_subsystem_ops *ops;
     void *self;
 } bough_subsystem;

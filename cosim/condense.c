@@ -119,16 +119,39 @@ static bool factor(const bough_condensed *k, int member, const bough_operating_p
     return true;
 }
 
+enum { AT_ONCE = 4 };
+
+// sum += Σ_j share_j column_j, in this order
+static void add_some(int n, const double share[AT_ONCE], const double *const column[AT_ONCE],
+                     double *restrict sum) {
+    const double *restrict c0 = column[0], *restrict c1 = column[1];
+    const double *restrict c2 = column[2], *restrict c3 = column[3];
+    double s0 = share[0], s1 = share[1], s2 = share[2], s3 = share[3];
+#pragma omp simd
+    for (int i = 0; i < n; i++) {
+        sum[i] = sum[i] + s0 * c0[i] + s1 * c1[i] + s2 * c2[i] + s3 * c3[i];
+    }
+}
+
 void bough_condensed_add_columns(const bough_condensed *k, int member, double factor,
                                  const double *weight, double *sum) {
     const bough_subsystem *s = subsystem(k, member);
-    const double *column = k->of[member].column;
+    const double *column = k->of[member].column, *some[AT_ONCE];
+    double share[AT_ONCE];
+    int n = 0;
     for (int j = 0; j < s->n_input; j++, column += s->n_state) {
-        double share = factor * weight[j];
-        if (share == 0) continue;
-        for (int i = 0; i < s->n_state; i++)
-            sum[i] += share * column[i];
+        if (weight[j] == 0) continue;
+        share[n] = factor * weight[j];
+        some[n++] = column;
+        if (n == AT_ONCE) add_some(s->n_state, share, some, sum);
+        n %= AT_ONCE;
     }
+    if (n == 0) return;
+    for (; n < AT_ONCE; n++) {
+        share[n] = 0;
+        some[n] = some[0];
+    }
+    add_some(s->n_state, share, some, sum);
 }
 
 // columns ← (I − γJ)⁻¹ γ columns, by the inverse: there are fewer states than inputs
@@ -355,9 +378,12 @@ void bough_condensed_add_answer(const bough_condensed *k, int member, double *x)
                        : w->leader >= 0 ? k->coordinate[k->of[w->leader].first + d]
                                         : moved(k, input + d);
         if (share == 0) continue;
-        if (w->by_state) x[d] += share;
-        for (int i = 0; i < n_state && !w->by_state; i++)
-            x[i] += share * along[i];
+        if (w->by_state) {
+            x[d] += share;
+            continue;
+        }
+#pragma omp simd
+        for (int i = 0; i < n_state; i++) x[i] += share * along[i];
     }
 }
 

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BATCH = 32, PAST = 3, WITHIN = 3 };
+enum { BATCH = 32, SLOT = 4, SLOTS = BATCH / SLOT, PAST = 3, WITHIN = 3 };
 static const double longest_batch = 0.25; // the members are linearised once in it [s]
 static const double longest_step = 0.02;  // of the α method [s]
 
@@ -32,6 +32,7 @@ struct bough_error_estimate {
     int n_step;
     double start[BATCH], end[BATCH]; // [s]
     double *defect;                  // (BATCH × 4 × n_input) cubics as in bough_signal
+    double *own; // (SLOTS × n_state) what the members' own steps erred by, in SLOT macro steps each
     long batches;
     bool lost; // a member could not be linearised
     // reconstruction of the inputs
@@ -53,6 +54,7 @@ struct bough_error_estimate {
     double *outside, *seen; // (n_input)
     double *mean;           // (n_input) of δ over a step
     alpha_method method;    // of the batch
+    int step;               // of the batch, in progress
 };
 
 // -- building -------------------------------------------------------------------------------------
@@ -65,6 +67,7 @@ static bool take(bough_error_estimate *e, bough_arena *arena) {
         e->value[p] = bough_arena_doubles(arena, n_input);
     e->curve = bough_port_signal(arena, a->n_input);
     e->cubic = bough_arena_doubles(arena, n_input);
+    e->own = bough_arena_doubles(arena, SLOTS * n);
     e->error = bough_arena_doubles(arena, n);
     e->rate = bough_arena_doubles(arena, n);
     e->input_worst = bough_arena_doubles(arena, n_input);
@@ -179,12 +182,28 @@ static void keep_defects(bough_error_estimate *e, const bough_coupling *c) {
     e->n_step++;
 }
 
+// Before the step is counted.
+static void keep_own_errors(bough_error_estimate *e) {
+    const bough_assembly *a = e->assembly;
+    double *slot = e->own + (size_t)(e->n_step / SLOT) * (size_t)a->n_state;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_subsystem *s = a->member[i];
+        double *restrict sum = slot + a->state_offset[i], *restrict error = s->own_error;
+        if (e->n_step % SLOT == 0) memset(sum, 0, (size_t)s->n_state * sizeof *sum);
+        for (int k = 0; k < s->n_state && error != NULL; k++) {
+            sum[k] += error[k];
+            error[k] = 0;
+        }
+    }
+}
+
 void bough_error_estimate_step(bough_error_estimate *e, bough_coupling *c) {
     if (c->n_within > 0) {
         reconstruct_within(e, c);
     } else {
         reconstruct(e, c);
     }
+    keep_own_errors(e);
     keep_defects(e, c);
     remember(e, c);
     if (e->n_step == BATCH || c->t1 - e->start[0] >= longest_batch) {
@@ -288,42 +307,58 @@ static bool linearise(bough_error_estimate *e, bough_coupling *c, double h) {
 
 // The mean of δ over [t, t + h], by Gauss' rule on every macro step that shares in it; `step` is
 // the first of them and on return the last.
-static void find_mean(bough_error_estimate *e, int *step, double t, double h) {
+static void find_mean(bough_error_estimate *e, double t, double h) {
     static const double node[] = {0.2113248654051871, 0.7886751345948129};
     int n = e->assembly->n_input;
     memset(e->mean, 0, (size_t)n * sizeof(double));
-    for (;; (*step)++) {
-        bough_signal defect = defect_of(e, *step);
+    for (;; e->step++) {
+        bough_signal defect = defect_of(e, e->step);
         double a = fmax(t, defect.t0), b = fmin(t + h, defect.t1), share = 0.5 * (b - a) / h;
         for (int g = 0; g < 2; g++) {
             bough_signal_value(&defect, a + node[g] * (b - a), e->outside);
             for (int j = 0; j < n; j++)
                 e->mean[j] += share * e->outside[j];
         }
-        if (defect.t1 >= t + h || *step == e->n_step - 1) return;
+        if (defect.t1 >= t + h || e->step == e->n_step - 1) return;
     }
 }
 
+// The members' own errors in the slot of the macro step in progress, and the time it lasts.
+static const double *own_errors(const bough_error_estimate *e, double *time) {
+    int slot = e->step / SLOT, last = (slot + 1) * SLOT - 1;
+    *time = e->end[last < e->n_step ? last : e->n_step - 1] - e->start[slot * SLOT];
+    return e->own + (size_t)slot * (size_t)e->assembly->n_state;
+}
+
 // One step: x is ε at t + α_f h,
-//     (I − g J) x = ε + (α_f h (1 − γ) − g (1 − α_m)) ε̇ + g B δ.
+//     (I − g J) x = ε + (α_f h (1 − γ) − g (1 − α_m)) ε̇ + g (B δ + s),
+// s the rate at which the members' own steps err in the macro step in progress.
 static void begin_member(void *self, int member) {
     const bough_error_estimate *e = self;
     const alpha_method *a = &e->method;
     const int *offset = e->assembly->state_offset + member;
-    double carried = a->f * a->h * (1 - a->f) - a->factor * (1 - a->m);
-    for (int k = offset[0]; k < offset[1]; k++)
-        e->x[k] = e->error[k] + carried * e->rate[k];
+    double time, carried = a->f * a->h * (1 - a->f) - a->factor * (1 - a->m);
+    const double *restrict erring = own_errors(e, &time);
+    double *restrict x = e->x, added = a->factor / time;
+    const double *restrict error = e->error, *restrict rate = e->rate;
+#pragma omp simd
+    for (int k = offset[0]; k < offset[1]; k++) {
+        x[k] = error[k] + carried * rate[k] + added * erring[k];
+    }
 }
 
 static void end_member(void *self, int member) {
     const bough_error_estimate *e = self;
     const alpha_method *a = &e->method;
     const int *offset = e->assembly->state_offset + member;
-    double h = a->h, kept = a->f * h * (1 - a->f), own = 1 / (a->f * a->f * h);
+    double h = a->h, part = a->f, kept = part * h * (1 - part), own = 1 / (part * part * h);
+    const double *restrict x = e->x;
+    double *restrict error = e->error, *restrict rate = e->rate;
+#pragma omp simd
     for (int k = offset[0]; k < offset[1]; k++) {
-        double rate = own * (e->x[k] - e->error[k] - kept * e->rate[k]);
-        e->error[k] += h * (e->rate[k] + a->f * (rate - e->rate[k]));
-        e->rate[k] = rate;
+        double now = own * (x[k] - error[k] - kept * rate[k]);
+        error[k] += h * (rate[k] + part * (now - rate[k]));
+        rate[k] = now;
     }
 }
 
@@ -339,8 +374,9 @@ static bool propagate(bough_error_estimate *e, bough_coupling *c) {
     double start = e->start[0], span = e->end[e->n_step - 1] - start;
     double steps = fmax(e->n_step, ceil(span / longest_step - 1e-6)), h = span / steps;
     if (!linearise(e, c, h)) return false;
-    for (int k = 0, step = 0; k < (int)steps; k++) {
-        find_mean(e, &step, start + k * h, h);
+    e->step = 0;
+    for (int k = 0; k < (int)steps; k++) {
+        find_mean(e, start + k * h, h);
         advance(e);
     }
     return true;
@@ -359,6 +395,7 @@ void bough_error_estimate_snapshot(bough_error_estimate *e, bough_snapshot *s) {
     bough_snapshot_doubles(s, e->start, BATCH);
     bough_snapshot_doubles(s, e->end, BATCH);
     bough_snapshot_doubles(s, e->defect, BATCH * 4 * a->n_input);
+    bough_snapshot_doubles(s, e->own, SLOTS * a->n_state);
     bough_snapshot_take(s, &e->batches, sizeof e->batches);
     bough_snapshot_take(s, &e->lost, sizeof e->lost);
     bough_snapshot_take(s, &e->n_point, sizeof e->n_point);

@@ -2,15 +2,16 @@
 // member under inputs ũ(t) that differ from what the others really put out, u(t), by the defect
 // δ = ũ − u, which is known at the end of each macro step. To first order its states therefore err
 // from those of one monolithic system by ε with
-//     ε̇ = J ε + B υ,   υ = P (C ε + D υ) + δ,   ε(0) = 0,
-// the linearised members coupled without any delay. The defects of a batch of steps are kept, then
+//     ε̇ = J ε + B υ + s,   υ = P (C ε + D υ) + δ,   ε(0) = 0,
+// the linearised members coupled without any delay; s is the rate at which the members' own steps
+// err, by the estimate of those that have one. The defects of a batch of steps are kept, then
 // ε is taken through it by the generalised-α method, one solution a step, its Newton matrix condensed
 // as in condense.h: with the factors of the ramp's predictions where these are at hand, else the
 // members are linearised once. Each step takes the mean of δ over it, so that impulses are exact. So
 // defects do not merely add up: they excite, ring and die as the mechanics let them.
 //
 // Not seen: the damping by loads from outside the members, so that of the air: ε errs on the safe
-// side; the members' own integration errors; second order in ε.
+// side; own errors of members that do not tell them; second order in ε.
 #ifndef BOUGH_COSIM_ERROR_ESTIMATE_H
 #define BOUGH_COSIM_ERROR_ESTIMATE_H
 

@@ -188,6 +188,7 @@ bough_status bough_shadow_create(bough_arena *arena, const bough_subsystem *real
     shadow_of->solver = "SDIRK2";
     shadow_of->time = &s->time;
     shadow_of->state = s->state;
+    shadow_of->own_error = NULL;
     shadow_of->ops = &operations;
     shadow_of->self = s;
     return bough_ok();

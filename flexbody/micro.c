@@ -46,7 +46,8 @@ static bough_status create_cvode(bough_arena *arena, const bough_ode *ode, const
                                  bough_micro_options options, bough_micro *micro) {
     bough_micro_cvode *self = NULL;
     bough_status status = bough_micro_cvode_create(arena, ode, scale, options.rtol, &self);
-    *micro = (bough_micro){"CVODE BDF", self, advance_cvode, count_cvode, NULL};
+    *micro = (bough_micro){"CVODE BDF", self, advance_cvode, count_cvode, NULL,
+                           bough_micro_cvode_error(self)};
     return status;
 }
 
@@ -54,7 +55,7 @@ static bough_status create_arkode(bough_arena *arena, const bough_ode *ode, cons
                                   bough_micro_options options, bough_micro *micro) {
     bough_micro_arkode *self = NULL;
     bough_status status = bough_micro_arkode_create(arena, ode, scale, options.rtol, &self);
-    *micro = (bough_micro){"ARKODE ESDIRK", self, advance_arkode, count_arkode, NULL};
+    *micro = (bough_micro){"ARKODE ESDIRK", self, advance_arkode, count_arkode, NULL, NULL};
     return status;
 }
 
@@ -63,7 +64,7 @@ static bough_status create_alpha(bough_arena *arena, const bough_ode *ode, const
     bough_micro_alpha *self = NULL;
     bough_micro_alpha_options alpha = {options.step, options.rho, options.rtol};
     bough_status status = bough_micro_alpha_create(arena, ode, scale, alpha, &self);
-    *micro = (bough_micro){"generalised-α", self, advance_alpha, count_alpha, NULL};
+    *micro = (bough_micro){"generalised-α", self, advance_alpha, count_alpha, NULL, NULL};
     return status;
 }
 
@@ -74,7 +75,7 @@ static bough_status create_rosenbrock(bough_arena *arena, const bough_ode *ode,
     bough_micro_rosenbrock_options own = {options.step, options.rtol};
     bough_status status = bough_micro_rosenbrock_create(arena, ode, scale, own, &self);
     *micro = (bough_micro){"Rosenbrock", self, advance_rosenbrock, count_rosenbrock,
-                           advance_rosenbrock_part};
+                           advance_rosenbrock_part, bough_micro_rosenbrock_error(self)};
     return status;
 }
 

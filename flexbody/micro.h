@@ -45,6 +45,9 @@ typedef struct bough_micro {
     // NULL: cannot stop on the way.
     bough_status (*advance_part)(void *self, double *t, double pause, double t1, bool restart,
                                  double *y);
+    // (n) sum of the errors of all steps, by the method's own estimate; readers set it to zero. NULL:
+    // it has none.
+    double *own_error;
 } bough_micro;
 
 // The sub-solver of the options' kind in the arena; scale (n) is borrowed.

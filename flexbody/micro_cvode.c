@@ -12,6 +12,8 @@ struct bough_micro_cvode {
     bough_newton_handle newton;
     void *cvode;
     bool started;
+    double *own_error;     // (n)
+    N_Vector step_error;   // (n)
     bough_statistics past; // of the integrations before the last restart
 };
 
@@ -27,6 +29,7 @@ static int linear_system(sunrealtype t, N_Vector y, N_Vector fy, SUNMatrix m, su
 static void destroy(void *object) {
     bough_micro_cvode *micro = object;
     if (micro->cvode != NULL) CVodeFree(&micro->cvode);
+    if (micro->step_error != NULL) N_VDestroy(micro->step_error);
     bough_newton_handle_destroy(&micro->newton);
 }
 
@@ -53,10 +56,12 @@ bough_status bough_micro_cvode_create(bough_arena *arena, const bough_ode *ode,
     bough_micro_cvode *m = bough_arena_take(arena, sizeof *m);
     if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
     bough_arena_on_destroy(arena, destroy, m);
+    m->own_error = bough_arena_doubles(arena, (size_t)ode->n);
     bool ok = !bough_arena_exhausted(arena) &&
               bough_newton_handle_create(&m->newton, ode, scale, rtol);
     if (ok) m->cvode = CVodeCreate(CV_BDF, m->newton.context);
-    if (!ok || m->cvode == NULL) {
+    if (ok) m->step_error = bough_vector_create(ode->n, m->newton.context);
+    if (!ok || m->cvode == NULL || m->step_error == NULL) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory for CVODE", ode->name);
     }
     if (!configure(m)) {
@@ -113,6 +118,23 @@ static const char *reason(const bough_micro_cvode *micro, int flag) {
     }
 }
 
+// All steps to t1, CVODE's to the last bit, with their local errors.
+static int cross(bough_micro_cvode *micro, double t1, double *reached) {
+    int n = micro->newton.ode.n, flag = CV_SUCCESS;
+    const double *error = bough_vector_data(micro->step_error);
+    for (int k = 0; flag >= 0 && *reached < t1; k++) {
+        if (k == MOST_STEPS) return CV_TOO_MUCH_WORK;
+        flag = CVode(micro->cvode, t1, micro->newton.y, reached, CV_ONE_STEP);
+        if (flag < 0 || CVodeGetEstLocalErrors(micro->cvode, micro->step_error) != 0) break;
+        for (int i = 0; i < n; i++) micro->own_error[i] += error[i];
+    }
+    return flag;
+}
+
+double *bough_micro_cvode_error(const bough_micro_cvode *micro) {
+    return micro != NULL ? micro->own_error : NULL;
+}
+
 bough_status bough_micro_cvode_advance(bough_micro_cvode *micro, double t, double t1, bool restart,
                                        double *y) {
     double *own = bough_vector_data(micro->newton.y), reached = t;
@@ -123,7 +145,7 @@ bough_status bough_micro_cvode_advance(bough_micro_cvode *micro, double t, doubl
     }
     micro->newton.refused = false;
     CVodeSetStopTime(micro->cvode, t1);
-    int flag = CVode(micro->cvode, t1, micro->newton.y, &reached, CV_NORMAL);
+    int flag = cross(micro, t1, &reached);
     if (flag < 0) {
         CVodeGetCurrentTime(micro->cvode, &reached);
         return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: CVODE BDF cannot go on: %s",

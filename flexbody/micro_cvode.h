@@ -16,6 +16,9 @@ bough_status bough_micro_cvode_create(bough_arena *arena, const bough_ode *ode,
 bough_status bough_micro_cvode_advance(bough_micro_cvode *micro, double t, double t1, bool restart,
                                        double *y);
 
+// (n) sum of the local errors of all steps, which a reader sets to zero; NULL without integrator.
+double *bough_micro_cvode_error(const bough_micro_cvode *micro);
+
 void bough_micro_cvode_statistics(const bough_micro_cvode *micro, bough_statistics *sum);
 
 #endif

@@ -32,6 +32,11 @@ bough_status bough_micro_rosenbrock_advance(bough_micro_rosenbrock *micro, doubl
 bough_status bough_micro_rosenbrock_advance_part(bough_micro_rosenbrock *micro, double *t,
                                                  double pause, double t1, bool restart, double *y);
 
+// (n) sum of the errors of all steps, which a reader sets to zero; NULL without integrator. The
+// embedded solution is of order 2, so of its error a twentieth is counted: measured on blades, whose
+// stiffness takes both orders down, the run errs by 0.04 to 0.1 of it at steps of 2.5 to 20 ms.
+double *bough_micro_rosenbrock_error(const bough_micro_rosenbrock *micro);
+
 void bough_micro_rosenbrock_statistics(const bough_micro_rosenbrock *micro,
                                        bough_statistics *sum);
 

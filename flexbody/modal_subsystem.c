@@ -114,17 +114,24 @@ static void save(void *self, void *copy) {
     memcpy((char *)copy + sizeof b->time, b->state, state_bytes(b));
 }
 
+// The state is another's now: its own steps have made no error in it.
+static void begin_anew(bough_modal_body *b, double t) {
+    b->time = t;
+    b->moved = true;
+    if (b->micro.own_error != NULL) memset(b->micro.own_error, 0, state_bytes(b));
+}
+
 static void restore(void *self, const void *copy) {
     bough_modal_body *b = self;
-    memcpy(&b->time, copy, sizeof b->time);
-    memcpy(b->state, (const char *)copy + sizeof b->time, state_bytes(b));
-    b->moved = true;
+    double t;
+    memcpy(&t, copy, sizeof t);
+    begin_anew(b, t);
+    memcpy(b->state, (const char *)copy + sizeof t, state_bytes(b));
 }
 
 static void set_state(void *self, double t, const double *state) {
     bough_modal_body *b = self;
-    b->time = t;
-    b->moved = true;
+    begin_anew(b, t);
     if (state != b->state) memcpy(b->state, state, state_bytes(b));
 }
 
@@ -196,6 +203,7 @@ bough_subsystem bough_modal_body_subsystem(bough_modal_body *body) {
                              .scale = body->scale,
                              .time = &body->time,
                              .state = body->state,
+                             .own_error = body->micro.own_error,
                              .ops = &ops,
                              .self = body};
 }

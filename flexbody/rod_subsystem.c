@@ -152,18 +152,25 @@ static void save(void *self, void *copy) {
     memcpy((char *)copy + sizeof b->time, b->state, state_bytes(b));
 }
 
-static void set_state(void *self, double t, const double *state) {
-    bough_rod_body *b = self;
+// The state is another's now: its own steps have made no error in it.
+static void begin_anew(bough_rod_body *b, double t) {
     b->time = t;
     b->moved = true;
+    if (b->micro.own_error != NULL) memset(b->micro.own_error, 0, state_bytes(b));
+}
+
+static void set_state(void *self, double t, const double *state) {
+    bough_rod_body *b = self;
+    begin_anew(b, t);
     if (state != b->state) memcpy(b->state, state, state_bytes(b));
 }
 
 static void restore(void *self, const void *copy) {
     bough_rod_body *b = self;
-    memcpy(&b->time, copy, sizeof b->time);
-    memcpy(b->state, (const char *)copy + sizeof b->time, state_bytes(b));
-    b->moved = true;
+    double t;
+    memcpy(&t, copy, sizeof t);
+    begin_anew(b, t);
+    memcpy(b->state, (const char *)copy + sizeof t, state_bytes(b));
 }
 
 static void statistics(void *self, bough_statistics *sum) {
@@ -244,6 +251,7 @@ bough_subsystem bough_rod_body_subsystem(bough_rod_body *body) {
                              .scale = body->scale,
                              .time = &body->time,
                              .state = body->state,
+                             .own_error = body->micro.own_error,
                              .ops = &ops,
                              .self = body};
 }

@@ -14,11 +14,12 @@ typedef struct recorded {
     double estimate[MOST];      // told
     bool known[MOST];
     int hub;                    // the channel hubVel
+    char unit[MOST][48];
 } recorded;
 
-static recorded *run(const char *scheme, bool probing) {
-    const char *const sets[] = {scheme, "simulation.macro_step=2 ms", "simulation.duration=200 ms",
-                                "simulation.micro.rtol=1e-8", "simulation.master.rtol=1e-9", NULL};
+static recorded *run_with(const char *scheme, const char *micro, bool probing) {
+    const char *const sets[] = {scheme, micro, "simulation.macro_step=2 ms",
+                                "simulation.duration=200 ms", "simulation.master.rtol=1e-9", NULL};
     recorded *r = calloc(1, sizeof *r);
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, scene_path, sets);
@@ -30,6 +31,9 @@ static recorded *run(const char *scheme, bool probing) {
     assert_true(channels.count <= MOST);
     r->n = channels.count;
     r->hub = bough_channels_find(&channels, "hubVel");
+    for (int i = 0; i < r->n; i++) {
+        snprintf(r->unit[i], sizeof r->unit[i], "%s", channels.channel[i].unit);
+    }
     for (int k = 0; k < STEPS; k++) {
         scene_step(s);
         if (probing) bough_error_probe_update(&probe);
@@ -42,6 +46,10 @@ static recorded *run(const char *scheme, bool probing) {
     }
     bough_arena_destroy(arena);
     return r;
+}
+
+static recorded *run(const char *scheme, bool probing) {
+    return run_with(scheme, "simulation.micro.rtol=1e-8", probing);
 }
 
 static double largest_error(const recorded *r, const recorded *reference, int channel) {
@@ -72,6 +80,31 @@ static void channels_err_by_what_is_told(void **state) {
     free(r);
 }
 
+// The ramp's own error is far below what loose sub-solvers do. Of all places the largest component.
+static void errors_of_sub_solvers_are_told(void **state) {
+    (void)state;
+    recorded *reference = run("simulation.coupling.scheme=monolithic", true);
+    static const char *const micro[] = {
+        "simulation.micro={solver: cvode-bdf, rtol: 1e-5}",
+        "simulation.micro={solver: rosenbrock, step: 2 ms, rtol: 0.1}"};
+    for (size_t k = 0; k < sizeof micro / sizeof *micro; k++) {
+        recorded *r = run_with("simulation.coupling.scheme=ramp", micro[k], true);
+        double hub = largest_error(r, reference, r->hub), tips = 0, told = 0;
+        for (int i = 0; i < r->n; i++) {
+            if (strcmp(r->unit[i], "m") != 0) continue;
+            tips = fmax(tips, largest_error(r, reference, i));
+            told = fmax(told, r->estimate[i]);
+        }
+        print_message("%s: hub %.2f, tips %.2f told/true\n", micro[k], r->estimate[r->hub] / hub,
+                      told / tips);
+        assert_true(hub > 1e-5 && tips > 1e-6); // far above the reference's own
+        if (tips > 4 * told || told > 4 * tips) fail_msg("tips: %g told, %g true", told, tips);
+        if (hub > 4 * r->estimate[r->hub] || r->estimate[r->hub] > 4 * hub) fail_msg("hub");
+        free(r);
+    }
+    free(reference);
+}
+
 static void probing_changes_nothing(void **state) {
     (void)state;
     recorded *with = run("simulation.coupling.scheme=ramp", true);
@@ -84,6 +117,7 @@ static void probing_changes_nothing(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(channels_err_by_what_is_told),
+        cmocka_unit_test(errors_of_sub_solvers_are_told),
         cmocka_unit_test(probing_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
