@@ -1,11 +1,12 @@
 // Feeds a target without libFuzzer: every seed as it is, then mutations of them, always the same.
-// BOUGH_FUZZ_COUNT is their number. driver STATE SEED...; what a crash was fed stays in the file
+// BOUGH_FUZZ_COUNT is their number, or BOUGH_FUZZ_SECONDS the time. driver STATE SEED...; what a crash was fed stays in the file
 // STATE, and `driver STATE STATE` with a count of 0 feeds it again.
 #include "tests/fuzz/fuzz.h"
 
 #include <dirent.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 
 enum { MOST_SEEDS = 200, MOST_BYTES = 1 << 16, COUNT = 1500, CHANGES = 6 };
 
@@ -129,7 +130,9 @@ static void start_from(fuzzer *f, const seed *s) {
 int main(int argc, char **argv) {
     static fuzzer f = {.random = UINT64_C(88172645463325252)};
     const char *count = getenv("BOUGH_FUZZ_COUNT");
-    long n = count ? strtol(count, NULL, 10) : COUNT;
+    const char *seconds = getenv("BOUGH_FUZZ_SECONDS");
+    long n = count ? strtol(count, NULL, 10) : COUNT, done = 0;
+    time_t end = seconds ? time(NULL) + strtol(seconds, NULL, 10) : 0;
     fuzz_demand(argc > 2, "usage: driver STATE SEED...");
     f.state = argv[1];
     for (int i = 2; i < argc; i++)
@@ -138,7 +141,7 @@ int main(int argc, char **argv) {
         start_from(&f, &f.item[i]);
         feed(&f);
     }
-    for (long i = 0; i < n; i++) {
+    for (; seconds ? time(NULL) < end : done < n; done++) {
         start_from(&f, &f.item[below(&f, (size_t)f.n)]);
         for (size_t changes = 1 + below(&f, CHANGES); changes > 0; changes--)
             change(&f);
@@ -147,6 +150,6 @@ int main(int argc, char **argv) {
     for (int i = 0; i < f.n; i++)
         free(f.item[i].data);
     remove(f.state);
-    printf("%d seeds, %ld mutations\n", f.n, n);
+    printf("%d seeds, %ld mutations\n", f.n, done);
     return 0;
 }
