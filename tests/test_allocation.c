@@ -183,6 +183,17 @@ static void extrapolated_steps_take_no_memory(void **context) {
 
 static void iterated_steps_take_no_memory(void **context) { turbine_steps(context, "iterated"); }
 
+static void waveforms_by_newton_take_no_memory(void **context) {
+    if (!CAN_COUNT) skip();
+    const char *sets[] = {"simulation.duration=2 s",
+                          "simulation.threads=1",
+                          "simulation.coupling.scheme=iterated",
+                          "simulation.coupling.exchange=waveform",
+                          "simulation.coupling.accelerator=interface-newton",
+                          NULL};
+    count_steps(*context, "apps/turbine/runup.yaml", sets);
+}
+
 static void ramp_steps_take_no_memory(void **context) { turbine_steps(context, "ramp"); }
 
 static void monolithic_steps_take_no_memory(void **context) {
@@ -225,6 +236,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(gauss_seidel_steps_take_no_memory, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(extrapolated_steps_take_no_memory, scratch_make,
+                                        scratch_remove),
+        cmocka_unit_test_setup_teardown(waveforms_by_newton_take_no_memory, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(iterated_steps_take_no_memory, scratch_make,
                                         scratch_remove),
