@@ -109,11 +109,12 @@ bough_status bough_monitor_create(bough_arena *arena, const bough_scheme *scheme
 
 // -- non-finite values ----------------------------------------------------------------------------
 
+// In vector lanes: what is not finite leaves a NaN.
 static bool all_finite(const double *x, int n) {
-    for (int i = 0; i < n; i++) {
-        if (!isfinite(x[i])) return false;
-    }
-    return true;
+    double sum = 0;
+#pragma omp simd reduction(+ : sum)
+    for (int i = 0; i < n; i++) sum += x[i] - x[i];
+    return sum == 0;
 }
 
 static bough_status check_finite(const bough_monitor *m, const bough_coupling *c) {

@@ -50,10 +50,32 @@ static void stable_runs_raise_no_alarm(void **state) {
     }
 }
 
+static void what_is_not_finite_is_told(void **state) {
+    (void)state;
+    const double values[] = {NAN, (double)INFINITY, -(double)INFINITY, 1e308, -1e308};
+    bough_two_mass m = bough_two_mass_default();
+    bough_master_def def = bough_master_def_default();
+    def.macro_step = .01;
+    def.duration = 1;
+    bough_status status = bough_two_mass_build(&m, def);
+    if (bough_is_ok(&status)) status = bough_step(m.master);
+    assert_true(bough_is_ok(&status));
+    bough_coupling *c = m.master->coupling;
+    for (int k = 0; k < 5; k++) {
+        c->output[c->assembly->n_output - 1] = values[k];
+        status = bough_monitor_step(m.master->monitor, c);
+        assert_int_equal(bough_is_ok(&status), isfinite(values[k]) != 0);
+        if (bough_is_ok(&status)) continue;
+        assert_non_null(strstr(status.message, "no finite state or output"));
+    }
+    bough_two_mass_destroy(&m);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slow_growth_is_diagnosed),
         cmocka_unit_test(stable_runs_raise_no_alarm),
+        cmocka_unit_test(what_is_not_finite_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
