@@ -89,10 +89,11 @@ static inline double loss_at(problem p, double s) {
 }
 
 // (s, c) is the inflow in the element's axes, along the section's normal s + g c and its chord
-// (1 − h) c: the tangent of the angle between, and the angle by a series good to 1e-6 up to 0.1.
+// (1 − h) c: the angle between by its tangent, with series for 1/(1 + e), sine, cosine and angle that
+// are good to 1e-6 up to 0.03.
 static inline section_flow seen_by_section(problem p, double s, double c) {
     double g = p.skew_normal, h = p.skew_chord;
-    double t = c * (s * h + c * g) / (1 + s * c * g - c * c * h), t2 = t * t;
+    double e = c * (s * g - c * h), t = c * (s * h + c * g) * (1 - e + e * e), t2 = t * t;
     double sine = t * (1 - t2 / 2), cosine = 1 - t2 / 2;
     return (section_flow){s * cosine + c * sine, c * cosine - s * sine, t * (1 - t2 / 3)};
 }

@@ -5,9 +5,9 @@
 // The blade elements follow the polar formulation of the reference code (AeroDyn v5): y is
 // tangential at the element's own place, x normal to the bent but unswept, unpitched, untwisted
 // blade, and momentum is balanced over the element's projection on the rotor plane. Lift and drag act
-// in the section's own plane, where the angle of attack is taken. Axes of the
-// blade root instead gave 0.4 % less thrust on a blade bent by 3 m. Loss factors are those of the
-// undeformed rotor; forces are per length of the reference axis.
+// in the section's own plane, where the angle of attack is taken. Axes of the blade root instead gave
+// 0.4 % less thrust on a blade bent by 3 m. Loss factors are those of the undeformed rotor; forces are
+// per length of the reference axis.
 //
 // Everything of a blade is reckoned in its frame's axes, stations side by side in vector lanes.
 
@@ -96,8 +96,10 @@ static bough_vec3 blow(const bough_rotor *rotor, double time, blade_rows *rows) 
     int s = rotor->stride;
     for (int j = 0; j < rotor->n_station; j++) {
         bough_vec3 place = lane_load(rows->place, s, j);
-        bough_vec3 wind = bough_tower_disturbed(&rotor->tower, place,
-                                                bough_wind_at(&rotor->wind, place, time));
+        bough_vec3 wind = bough_wind_at(&rotor->wind, place, time);
+        if (bough_tower_reaches(&rotor->tower, place)) {
+            wind = bough_tower_disturbed(&rotor->tower, place, wind);
+        }
         lane_store(rows->wind, s, j, wind);
         sum = bough_add(sum, wind);
     }

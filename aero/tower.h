@@ -12,6 +12,8 @@
 #include "core/status.h"
 #include "core/vec3.h"
 
+#include <stdbool.h>
+
 typedef enum bough_tower_influence {
     BOUGH_TOWER_POTENTIAL,
     BOUGH_TOWER_BAK,
@@ -47,6 +49,12 @@ bough_status bough_tower_build(bough_arena *arena, const bough_tower_def *def, b
 // and velocity against the tower [m/s]; only what blows across counts [N/m].
 bough_vec3 bough_tower_drag(const bough_tower *tower, double density, bough_vec3 position,
                             bough_vec3 axis, bough_vec3 inflow);
+
+// Whether a point is low enough for the tower to matter.
+static inline bool bough_tower_reaches(const bough_tower *tower, bough_vec3 position) {
+    int n = tower->n;
+    return n > 0 && position.z - tower->base.z < tower->height[n - 1] + tower->radius[n - 1];
+}
 
 // The undisturbed wind at a point, as the tower leaves it.
 bough_vec3 bough_tower_disturbed(const bough_tower *tower, bough_vec3 position, bough_vec3 wind);

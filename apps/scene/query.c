@@ -126,20 +126,18 @@ static void put_vertex(vertex v, bough_quaternion p, int i, int n, double *rows)
     for (int c = 0; c < BOUGH_BLADE_ROWS; c++) rows[c * n + i] = values[c];
 }
 
+// The inner vertices of a flexible beam are in its state as they are; the root, the end of a rod that
+// carries bodies and a rigid beam's vertices one by one.
 void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *beam, double *rows) {
     bough_twist twist = bough_tree_frame_twist(s->view, &s->tree->markers[beam->marker]);
-    int n = beam->def.n_segment + 1, inner = 0;
-    if (beam->port >= 0) {
-        const double *state = bough_beam_state(s, beam, 1);
-        inner = bough_beam_mesh(beam)->n;
-        for (int c = 0; c < BOUGH_BLADE_ROWS; c++)
-            memcpy(rows + c * n + 1, state + c * inner, (size_t)inner * sizeof *rows);
-    }
+    const double *state = beam->port < 0 ? NULL : bough_beam_state(s, beam, 1);
+    int n = beam->def.n_segment + 1, inner = state ? bough_beam_mesh(beam)->n : 0;
+    for (int c = 0; state && c < BOUGH_BLADE_ROWS; c++)
+        memcpy(rows + c * n + 1, state + c * inner, (size_t)inner * sizeof *rows);
     put_vertex(rigid_vertex(beam, 0, twist), beam->def.rotation[0], 0, n, rows);
     for (int i = inner + 1; i < n; i++) {
-        bough_quaternion p = beam->def.rotation[i];
-        if (beam->port >= 0) bough_simulation_beam_tip(s, beam, &p);
-        put_vertex(beam->port >= 0 ? end_vertex(s, beam) : rigid_vertex(beam, i, twist), p, i, n,
+        vertex v = vertex_of(s, beam, state, i, twist);
+        put_vertex(v, state ? bough_quaternion_of_matrix(v.rotation) : beam->def.rotation[i], i, n,
                    rows);
     }
 }
