@@ -85,6 +85,8 @@ owned_by("^(core|flexbody)/" "${include}(sundials|nvector|sunmatrix|sunlinsol)"
   "only core/ and flexbody/ use SUNDIALS")
 owned_by("^apps/scene/text\\.c$" "${include}yaml\\.h" "only apps/scene/text.c uses libyaml")
 
+owned_by("^apps/output/vertices\\.c$" "${include}hdf5\\.h" "only apps/output/vertices.c uses HDF5")
+
 if(found)
   message(FATAL_ERROR "${found} violation(s) of the layers")
 endif()

@@ -90,6 +90,10 @@ static bough_status check_interval(const bough_run *run, double interval) {
     const bough_master *m = run->simulation->master;
     bough_status status = bough_simulation_storable(run->simulation);
     if (!bough_is_ok(&status)) return status;
+    if (run->simulation->scene->simulation.output.vertices > 0) {
+        return bough_fail(BOUGH_INVALID, "--checkpoint: vertices.h5 cannot be continued; leave out "
+                                         "simulation.output.vertices, or store frames");
+    }
     if (bough_master_multiple(interval, m->macro_step) == 0) {
         return bough_fail(BOUGH_INVALID,
                           "--checkpoint %.9g s is not a multiple of the macro step %.9g s",

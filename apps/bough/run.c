@@ -52,6 +52,18 @@ static bough_status record_frame(bough_run *run) {
     return bough_frames_sample(run->frames, now);
 }
 
+static bough_status record_vertices(bough_run *run) {
+    double interval = run->simulation->scene->simulation.output.vertices;
+    double now = run->simulation->master->time;
+    if (!run->vertices || now < (double)run->next_vertices * interval - resolution(run)) {
+        return bough_ok();
+    }
+    while ((double)run->next_vertices * interval <= now + resolution(run))
+        run->next_vertices++;
+    bough_simulation_update(run->simulation);
+    return bough_vertices_sample(run->vertices, now);
+}
+
 // -- stepping -------------------------------------------------------------------------------------
 
 static bough_status step(bough_run *run) {
@@ -66,6 +78,7 @@ static bough_status step(bough_run *run) {
     bough_error_probe_update(&run->probe);
     if (bough_is_ok(&status) && row_is_due(run)) status = record(run);
     if (bough_is_ok(&status)) status = record_frame(run);
+    if (bough_is_ok(&status)) status = record_vertices(run);
     return bough_is_ok(&status) ? bough_checkpoint_update(run) : status;
 }
 
@@ -88,7 +101,8 @@ void bough_run_settle_clock(bough_run *run) {
 static bough_status record_start(bough_run *run) {
     if (run->options->resume) return bough_ok();
     bough_status status = record(run);
-    return bough_is_ok(&status) ? record_frame(run) : status;
+    if (bough_is_ok(&status)) status = record_frame(run);
+    return bough_is_ok(&status) ? record_vertices(run) : status;
 }
 
 static bough_status step_all(bough_run *run) {
@@ -110,10 +124,23 @@ static bough_status step_all(bough_run *run) {
 
 // -- results --------------------------------------------------------------------------------------
 
+static bough_status open_vertices(bough_run *run) {
+    bough_polyline *body = bough_shape_bodies(run->arena, &run->shape);
+    if (!body) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_vertices_def def = {.folder = run->folder,
+                              .n_body = run->shape.n_line,
+                              .body = body,
+                              .motion = bough_shape_motion,
+                              .self = &run->shape};
+    return bough_vertices_open(run->arena, &def, &run->vertices);
+}
+
 static bough_status open_frames(bough_run *run) {
-    if (!(run->simulation->scene->simulation.output.frames > 0)) return bough_ok();
+    const bough_scene_output *output = &run->simulation->scene->simulation.output;
+    if (!(output->frames > 0 || output->vertices > 0)) return bough_ok();
     bough_status status = bough_shape_create(run->arena, run->simulation, &run->shape);
-    if (!bough_is_ok(&status)) return status;
+    if (bough_is_ok(&status) && output->vertices > 0) status = open_vertices(run);
+    if (!bough_is_ok(&status) || !(output->frames > 0)) return status;
     bough_frames_def def = {.folder = run->folder,
                             .n_line = run->shape.n_line,
                             .line = run->shape.line,
@@ -181,6 +208,9 @@ static bough_status close_results(bough_run *run) {
         return run->outcome;
     }
     status = bough_folder_remove(run->folder, "summary.json");
+    if (bough_is_ok(&status)) status = bough_folder_remove(run->folder, "vertices.h5");
+    bool whole = bough_is_ok(&status) && bough_is_ok(&run->outcome);
+    if (whole && run->vertices) status = bough_vertices_finish(run->vertices);
     if (bough_is_ok(&status)) status = bough_folder_remove(run->folder, "channels.outb");
     if (bough_is_ok(&status) && run->frames) status = bough_frames_finish(run->frames);
     if (bough_is_ok(&status)) status = write_binary(run);

@@ -6,6 +6,7 @@
 #include "apps/bough/options.h"
 #include "apps/output/channels.h"
 #include "apps/output/recorder.h"
+#include "apps/output/vertices.h"
 #include "apps/scene/error_probe.h"
 #include "apps/scene/shape.h"
 
@@ -18,6 +19,8 @@ typedef struct bough_run {
     bough_recorder *recorder;
     bough_shape shape;
     bough_frames *frames; // NULL: none are stored
+    bough_vertices *vertices; // NULL: none are stored
+    long next_vertices;   // multiple of their interval that is due next
     long next_frame;      // multiple of the frames' interval that is due next
     const char *folder;
     long next_row;   // multiple of the output interval that is due next

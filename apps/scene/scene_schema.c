@@ -81,6 +81,11 @@ static const bough_key output_keys[] = {
      .offset = offsetof(bough_scene_output, frames),
      .example = "0.1 s",
      .help = "between shapes stored for ParaView and `bough report`; default none"},
+    {.name = "vertices", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
+     .offset = offsetof(bough_scene_output, vertices),
+     .example = "0.1 s",
+     .help = "between positions and rotations of all vertices stored in vertices.h5, by a program "
+             "built with -DBOUGH_HDF5=ON; default none"},
     {.name = "binary", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false",
      .offset = offsetof(bough_scene_output, binary),
      .help = "at the end also channels.outb, OpenFAST's binary form: one scale and 16 bits a "

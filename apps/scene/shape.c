@@ -1,5 +1,7 @@
 #include "apps/scene/shape.h"
 
+#include <string.h>
+
 enum { RIGID_POINTS = 3 };
 
 static int beam_points(const bough_simulation *s, int body) {
@@ -49,6 +51,44 @@ void bough_shape_points(void *self, double *point) {
         }
         for (int k = 0; k < shape->line[i].n_point; k++, point += 3) {
             point[0] = x[k].x, point[1] = x[k].y, point[2] = x[k].z;
+        }
+    }
+}
+
+bough_polyline *bough_shape_bodies(bough_arena *arena, const bough_shape *shape) {
+    bough_polyline *body = bough_arena_take(arena, (size_t)shape->n_line * sizeof *body);
+    for (int i = 0; body && i < shape->n_line; i++) {
+        body[i] = shape->line[i];
+        if (!bough_simulation_beam(shape->simulation, i)) body[i].n_point = 1;
+    }
+    return body;
+}
+
+// Returns the number of vertices.
+static int move_body(bough_shape *shape, int body) {
+    const bough_simulation *s = shape->simulation;
+    const bough_beam *beam = bough_simulation_beam(s, body);
+    if (beam) {
+        bough_simulation_beam_motion(s, beam, shape->motion);
+        return shape->line[body].n_point;
+    }
+    bough_transform own = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
+    shape->motion.position[0] = own.position;
+    shape->motion.rotation[0] = own.rotation;
+    return 1;
+}
+
+void bough_shape_motion(void *self, double *position, double *rotation) {
+    bough_shape *shape = self;
+    for (int i = 0; i < shape->n_line; i++) {
+        int n = move_body(shape, i);
+        for (int k = 0; k < n; k++, position += 3, rotation += 9) {
+            bough_vec3 x = shape->motion.position[k];
+            bough_mat3 m = shape->motion.rotation[k];
+            const double row[] = {m.c1.x, m.c2.x, m.c3.x, m.c1.y, m.c2.y,
+                                  m.c3.y, m.c1.z, m.c2.z, m.c3.z};
+            position[0] = x.x, position[1] = x.y, position[2] = x.z;
+            memcpy(rotation, row, sizeof row);
         }
     }
 }

@@ -18,4 +18,12 @@ bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_s
 // The points of all lines (Σ n_point × 3) [m], from the simulation's `view`. `self`: the shape.
 void bough_shape_points(void *self, double *point);
 
+// Of each body, what vertices.h5 holds: the vertices of its rod, or the one of its origin (n_line).
+// NULL when memory is exhausted.
+bough_polyline *bough_shape_bodies(bough_arena *arena, const bough_shape *shape);
+
+// Their positions (Σ n_point × 3) [m] and rotations (Σ n_point × 9, row by row), from the simulation's
+// `view`. `self`: the shape.
+void bough_shape_motion(void *self, double *position, double *rotation);
+
 #endif
