@@ -58,8 +58,8 @@ static point root(quest *q, point low, point high) {
     return a;
 }
 
-// The windmill state, φ in (0, π/2]: the root next to the attached angle, whatever other roots there
-// are, without one that next to the angle without induction; else any.
+// The windmill state, φ in (0, π/2]: the root next to the attached angle, whatever other roots
+// there are, without one that next to the angle without induction; else any.
 static bool search_near(quest *q, double phi0, point *found) {
     const bough_polar *polar = q->polar;
     double guess = attached_angle(q->problem, polar->slope, polar->zero_lift, phi0);

@@ -4,8 +4,8 @@
 // The solver keeps no memory: where a stalled polar gives several roots, a start from the last
 // answer would make the next depend on the past, and a repeated step would not repeat its loads. It
 // starts where linear lift would balance and takes the root of attached flow whatever others there
-// are; without attached flow it starts from no induction; where neither start has a root close by it
-// brackets as Ning does.
+// are; without attached flow it starts from no induction; where neither start has a root close by
+// it brackets as Ning does.
 //
 // S. A. Ning, "A simple solution method for the blade element momentum equations with guaranteed
 // convergence", Wind Energy 17 (2014).
@@ -79,8 +79,8 @@ void bough_induction_solve_all(const bough_induction_options *options,
                                const bough_elements *elements, double *axial, double *tangential,
                                double *loss);
 
-// The inflow angle in (−π, π] with that induction [rad]. The angle of attack is that in the section's
-// own plane: twist and, of a section askew, a second-order part less.
+// The inflow angle in (−π, π] with that induction [rad]. The angle of attack is that in the
+// section's own plane: twist and, of a section askew, a second-order part less.
 double bough_induction_angle(const bough_element *element, double axial, double tangential);
 
 #endif

@@ -89,8 +89,8 @@ static inline double loss_at(problem p, double s) {
 }
 
 // (s, c) is the inflow in the element's axes, along the section's normal s + g c and its chord
-// (1 − h) c: the angle between by its tangent, with series for 1/(1 + e), sine, cosine and angle that
-// are good to 1e-6 up to 0.03.
+// (1 − h) c: the angle between by its tangent, with series for 1/(1 + e), sine, cosine and angle
+// that are good to 1e-6 up to 0.03.
 static inline section_flow seen_by_section(problem p, double s, double c) {
     double g = p.skew_normal, h = p.skew_chord;
     double e = c * (s * g - c * h), t = c * (s * h + c * g) * (1 - e + e * e), t2 = t * t;
@@ -158,7 +158,7 @@ static inline double free_angle(problem p) {
 }
 
 // Where a windmill element with linear lift, no drag and no swirl would balance: 4F φ (φ₀ − φ) =
-// σ c_lα (φ − θ − α₀) for small angles, φ₀ that without induction; 0 unless in (0, φ₀) and attached.
+// σ c_lα (φ − θ − α₀) for small angles, φ₀ that without induction; 0 unless attached and in (0, φ₀).
 static inline double attached_angle(problem p, double lift_slope, double zero_lift, double phi0) {
     double zero = p.twist + zero_lift;
     double k = p.density * p.cone * lift_slope / loss_at(p, lane_sine_cosine(0.7 * phi0).sine);

@@ -19,7 +19,7 @@ typedef struct lanes {
     const bough_induction_options *options;
     const bough_polar *const *polar;
     int n;
-    int n_live, live[MOST_LANES / BOUGH_LANES]; // groups of lanes, by their first, not yet done with
+    int n_live, live[MOST_LANES / BOUGH_LANES]; // groups of lanes, by their first, still to do
 } lanes;
 
 static inline problem load_problem(const lanes *x, int i) {
@@ -106,7 +106,8 @@ static void take(const bough_elements *e, int first, lanes *restrict x) {
     for (int i = 0; i < x->n; i++) {
         bough_element element = element_of(e, first + i);
         problem p = problem_of(o, element);
-        double limit = free_angle(p), phi = attached_angle(p, x->lift_slope[i], zero_lift[i], limit);
+        double limit = free_angle(p);
+        double phi = attached_angle(p, x->lift_slope[i], zero_lift[i], limit);
         x->sign_x[i] = p.sign_x;
         x->sign_y[i] = p.sign_y;
         x->slope[i] = p.slope;

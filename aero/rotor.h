@@ -133,8 +133,8 @@ void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *moti
 
 // The same in four stages, each after the one before it for all blades. Within the first and the
 // third, blades are independent and may be given to different threads.
-//   approach: where the blade's stations are, the wind they meet and the induction there; almost all
-//             of the work; reads only what `motion` tells of the blade, and hub and shaft
+//   approach: where the blade's stations are, the wind they meet and the induction there; almost
+//             all of the work; reads only what `motion` tells of the blade, and hub and shaft
 //   survey:   what the whole rotor tells each station
 //   load:     the loads on the blade's vertices
 //   conclude: the rotor's sums, the memory's clock

@@ -269,11 +269,11 @@ static void take_memory(bough_arena *arena, const bough_rotor *rotor, bough_roto
 static void take_rows(bough_arena *arena, int stride, blade_rows *rows) {
     double **const vectors[] = {&rows->arm, &rows->x, &rows->y, &rows->z, &rows->velocity,
                                 &rows->wind, &rows->place, &rows->normal, &rows->chord};
-    double **const scalars[] = {&rows->radius, &rows->twist, &rows->turning, &rows->solidity,
-                                &rows->cone, &rows->skew_normal, &rows->skew_chord, &rows->inflow_x, &rows->inflow_y, &rows->axial,
-                                &rows->tangential, &rows->loss, &rows->phi, &rows->alpha,
-                                &rows->speed, &rows->lift, &rows->drag, &rows->moment,
-                                &rows->force_x, &rows->force_y};
+    double **const scalars[] = {
+        &rows->radius,      &rows->twist,      &rows->turning,  &rows->solidity, &rows->cone,
+        &rows->skew_normal, &rows->skew_chord, &rows->inflow_x, &rows->inflow_y, &rows->axial,
+        &rows->tangential,  &rows->loss,       &rows->phi,      &rows->alpha,    &rows->speed,
+        &rows->lift,        &rows->drag,       &rows->moment,   &rows->force_x,  &rows->force_y};
     size_t n = (size_t)stride;
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
         *vectors[i] = bough_arena_doubles(arena, 3 * n);

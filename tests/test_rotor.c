@@ -268,8 +268,8 @@ static void rigid_turbine_matches_reference(void **state) {
     }
 }
 
-// In calm air a coned blade meets only its own motion. Where the aerodynamic centre is off the axis,
-// that is not square to the section's normal: the blade turns about its own axis, too.
+// In calm air a coned blade meets only its own motion. Where the aerodynamic centre is off the
+// axis, that is not square to the section's normal: the blade turns about its own axis, too.
 static void angle_of_attack_is_in_the_plane_of_the_section(void **state) {
     (void)state;
     rig *r = create_rig(true);

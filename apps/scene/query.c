@@ -126,8 +126,8 @@ static void put_vertex(vertex v, bough_quaternion p, int i, int n, double *rows)
     for (int c = 0; c < BOUGH_BLADE_ROWS; c++) rows[c * n + i] = values[c];
 }
 
-// The inner vertices of a flexible beam are in its state as they are; the root, the end of a rod that
-// carries bodies and a rigid beam's vertices one by one.
+// The inner vertices of a flexible beam are in its state as they are; the root, the end of a rod
+// that carries bodies and a rigid beam's vertices one by one.
 void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *beam, double *rows) {
     bough_twist twist = bough_tree_frame_twist(s->view, &s->tree->markers[beam->marker]);
     const double *state = beam->port < 0 ? NULL : bough_beam_state(s, beam, 1);
