@@ -181,7 +181,10 @@ void bough_rotor_conclude(const bough_rotor *rotor, const bough_rotor_motion *mo
 
 void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
                         bough_rotor_data *data) {
-    for (int b = 0; b < rotor->n_blade; b++) bough_rotor_approach(rotor, motion, b, data);
+    for (int b = 0; b < rotor->n_blade; b++) {
+        bough_rotor_approach(rotor, motion, b, data);
+        bough_rotor_induce(rotor, motion, b, data);
+    }
     bough_rotor_survey(rotor, motion, data);
     for (int b = 0; b < rotor->n_blade; b++) bough_rotor_load(rotor, motion, b, data);
     bough_rotor_conclude(rotor, motion, data);

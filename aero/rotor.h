@@ -131,15 +131,18 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
 void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
                         bough_rotor_data *data);
 
-// The same in four stages, each after the one before it for all blades. Within the first and the
-// third, blades are independent and may be given to different threads.
-//   approach: where the blade's stations are, the wind they meet and the induction there; almost
-//             all of the work; reads only what `motion` tells of the blade, and hub and shaft
+// The same in stages, each after the one before it for all blades, but induce only after the same
+// blade's approach. In those of one blade, blades are independent and may be given to different threads.
+//   approach: where the blade's stations are and the wind they meet; reads only what `motion` tells of
+//             the blade, and hub and shaft
+//   induce:   the induction there, most of the work
 //   survey:   what the whole rotor tells each station
 //   load:     the loads on the blade's vertices
 //   conclude: the rotor's sums, the memory's clock
 void bough_rotor_approach(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
                           bough_rotor_data *data);
+void bough_rotor_induce(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
+                        bough_rotor_data *data);
 void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *motion,
                         bough_rotor_data *data);
 void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,

@@ -145,10 +145,15 @@ static void delay(const bough_rotor *rotor, double time, int blade, bough_rotor_
 void bough_rotor_approach(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
                           bough_rotor_data *data) {
     blade_rows *r = data->scratch->blade + blade;
-    const station_rows *m = &rotor->station;
     move_stations(rotor, motion, blade, r);
     data->scratch->wind[blade] = blow(rotor, motion->time, r);
     meet_wind(rotor, motion, blade, r);
+}
+
+void bough_rotor_induce(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
+                        bough_rotor_data *data) {
+    const blade_rows *r = data->scratch->blade + blade;
+    const station_rows *m = &rotor->station;
     bough_elements elements = {rotor->stride, m->polar, r->solidity, m->tip_factor, m->hub_factor,
                                r->cone,       r->twist, r->inflow_x, r->inflow_y,
                                r->skew_normal, r->skew_chord};

@@ -126,7 +126,7 @@ static int owner(const bough_pool *p, int k) {
 }
 
 // A thread's own tasks, then those of threads that do not come.
-static void work(bough_pool *p, uint64_t list, int self) {
+static void do_list(bough_pool *p, uint64_t list, int self) {
     for (int k = 0; k < count_of(list); k++) {
         if (owner(p, k) == self) do_task(p, list, k);
     }
@@ -144,7 +144,7 @@ static void *live(void *self) {
         wait_until(p, &p->idle, has_news, list);
         if (atomic_load(&p->ended)) return NULL;
         list = atomic_load(&p->list);
-        work(p, list, w->number);
+        do_list(p, list, w->number);
     }
 }
 
@@ -155,7 +155,7 @@ static void run_portion(bough_pool *p, int first, int n, bough_task task, void *
     uint64_t number = number_of(atomic_load(&p->list)) + 1, list = number << 16 | (uint64_t)n;
     atomic_store(&p->list, list);
     wake(p, &p->idle);
-    work(p, list, 0);
+    do_list(p, list, 0);
     for (int k = 0; k < n; k++) wait_until(p, &p->waiting, is_done, (uint64_t)k);
 }
 
@@ -167,6 +167,37 @@ void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data) {
     for (int first = 0; first < n; first += MOST_TASKS) {
         run_portion(pool, first, n - first < MOST_TASKS ? n - first : MOST_TASKS, task, data);
     }
+}
+
+typedef struct turns {
+    bough_pool *pool;
+    int n, rest, before; // before: items in the first turn that are done as a whole
+    void (*work)(void *data, int item, bough_part part);
+    void *data;
+} turns;
+
+static void take_turn(void *self, int k) {
+    const turns *w = self;
+    int split = w->n - w->rest; // the first item that is
+    if (k < w->before) {
+        w->work(w->data, k, BOUGH_WHOLE);
+    } else if (k < w->before + w->rest) {
+        w->work(w->data, split + k - w->before, BOUGH_FIRST_HALF);
+    } else if (k < w->n) {
+        w->work(w->data, k - w->rest, BOUGH_WHOLE);
+    } else {
+        bough_pool_await(w->pool, w->before + k - w->n);
+        w->work(w->data, split + k - w->n, BOUGH_SECOND_HALF);
+    }
+}
+
+void bough_pool_run_turns(bough_pool *pool, int n,
+                          void (*work)(void *data, int item, bough_part part), void *data) {
+    int threads = bough_pool_threads(pool);
+    turns w = {.pool = pool, .n = n, .work = work, .data = data};
+    if (n > threads) w.rest = n % threads;
+    if (w.rest > 0) w.before = threads - w.rest;
+    bough_pool_run(pool, n + w.rest, take_turn, &w);
 }
 
 void bough_pool_await(bough_pool *pool, int earlier) {

@@ -168,37 +168,24 @@ static void advance_second_half(bough_coupling *c, int member) {
     if (bough_is_ok(&c->status[member]) && !arrived) advance(c, member, false);
 }
 
-// The members c->turn of a stage (n). The last of them, which fill no whole turn of all threads, are
-// advanced in two halves (rest): the first ones in the first turn, the second ones last, so that three
-// members keep two threads busy.
-typedef struct turns {
+typedef struct stage_work {
     bough_coupling *coupling;
     bool restart;
-    int n, rest, before; // before: members in the first turn that are advanced as a whole
-} turns;
+} stage_work;
 
-static void take_turn(void *data, int k) {
-    const turns *w = data;
-    bough_coupling *c = w->coupling;
-    const int *split = c->turn + w->n - w->rest;
-    if (k < w->before) {
-        advance(c, c->turn[k], w->restart);
-    } else if (k < w->before + w->rest) {
-        advance_first_half(c, split[k - w->before], w->restart);
-    } else if (k < w->n) {
-        advance(c, c->turn[k - w->rest], w->restart);
-    } else {
-        bough_pool_await(c->pool, w->before + k - w->n);
-        advance_second_half(c, split[k - w->n]);
+static void advance_turn(void *data, int k, bough_part part) {
+    const stage_work *w = data;
+    int member = w->coupling->turn[k];
+    switch (part) {
+    case BOUGH_WHOLE: advance(w->coupling, member, w->restart); break;
+    case BOUGH_FIRST_HALF: advance_first_half(w->coupling, member, w->restart); break;
+    case BOUGH_SECOND_HALF: advance_second_half(w->coupling, member); break;
     }
 }
 
 bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart) {
-    turns w = {c, restart, list_stage(c, stage), 0, 0};
-    int threads = bough_pool_threads(c->pool);
-    if (w.n > threads) w.rest = w.n % threads;
-    if (w.rest > 0) w.before = threads - w.rest;
-    bough_pool_run(c->pool, w.n + w.rest, take_turn, &w);
+    stage_work w = {c, restart};
+    bough_pool_run_turns(c->pool, list_stage(c, stage), advance_turn, &w);
     return first_failure(c);
 }
 

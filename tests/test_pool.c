@@ -4,6 +4,7 @@
 #include "tests/check.h"
 
 #include <stdatomic.h>
+#include <string.h>
 #include <time.h>
 
 enum { MOST = 3000 };
@@ -66,6 +67,33 @@ static void tasks_wait_for_earlier_ones(void **state) {
     }
 }
 
+// Two units of work each: a whole counts two, a second half only after its first one.
+static void count_parts(void *data, int item, bough_part part) {
+    list *l = data;
+    if (part == BOUGH_SECOND_HALF) assert_int_equal(l->sum[item], 1);
+    l->sum[item] += part == BOUGH_WHOLE ? 2 : 1;
+    atomic_fetch_add(&l->count[part], 1);
+}
+
+static void items_that_fill_no_turn_are_halved(void **state) {
+    (void)state;
+    list l;
+    for (int threads = 1; threads <= 8; threads++) {
+        bough_arena *arena = make(threads, &l);
+        for (int n = 0; n < 20; n++) {
+            reset(&l);
+            memset(l.sum, 0, sizeof l.sum);
+            bough_pool_run_turns(l.pool, n, count_parts, &l);
+            int halved = n > threads ? n % threads : 0;
+            for (int i = 0; i < MOST; i++) assert_int_equal(l.sum[i], i < n ? 2 : 0);
+            assert_int_equal(atomic_load(&l.count[BOUGH_WHOLE]), n - halved);
+            assert_int_equal(atomic_load(&l.count[BOUGH_FIRST_HALF]), halved);
+            assert_int_equal(atomic_load(&l.count[BOUGH_SECOND_HALF]), halved);
+        }
+        bough_arena_destroy(arena);
+    }
+}
+
 static void nap(long ns) {
     nanosleep(&(struct timespec){.tv_nsec = ns}, NULL);
 }
@@ -117,6 +145,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(each_task_is_done_once),
         cmocka_unit_test(tasks_wait_for_earlier_ones),
+        cmocka_unit_test(items_that_fill_no_turn_are_halved),
         cmocka_unit_test(sleepers_wake),
         cmocka_unit_test(lists_follow_at_once),
         cmocka_unit_test(one_thread_takes_no_memory),

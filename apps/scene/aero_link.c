@@ -311,10 +311,13 @@ typedef struct sample_work {
     double span; // until the next sample [s]
 } sample_work;
 
-static void approach_blade(void *self, int b) {
+static void approach_blade(void *self, int b, bough_part part) {
     bough_aero_link *l = ((const sample_work *)self)->link;
-    gather_blade(l, b);
-    bough_rotor_approach(l->rotor, &l->motion, b, &l->data);
+    if (part != BOUGH_SECOND_HALF) {
+        gather_blade(l, b);
+        bough_rotor_approach(l->rotor, &l->motion, b, &l->data);
+    }
+    if (part != BOUGH_FIRST_HALF) bough_rotor_induce(l->rotor, &l->motion, b, &l->data);
 }
 
 static void load_blade(void *self, int b) {
@@ -330,7 +333,7 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     l->factor = ramp_factor(aero->ramp, t);
     l->start = t;
     gather_rotor(l, t);
-    bough_pool_run(l->simulation->pool, l->n_blade, approach_blade, &w);
+    bough_pool_run_turns(l->simulation->pool, l->n_blade, approach_blade, &w);
     bough_rotor_survey(l->rotor, &l->motion, &l->data);
     bough_pool_run(l->simulation->pool, l->n_blade, load_blade, &w);
     bough_rotor_conclude(l->rotor, &l->motion, &l->data);
