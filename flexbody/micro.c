@@ -64,7 +64,8 @@ static bough_status create_alpha(bough_arena *arena, const bough_ode *ode, const
     bough_micro_alpha *self = NULL;
     bough_micro_alpha_options alpha = {options.step, options.rho, options.rtol};
     bough_status status = bough_micro_alpha_create(arena, ode, scale, alpha, &self);
-    *micro = (bough_micro){"generalised-α", self, advance_alpha, count_alpha, NULL, NULL};
+    *micro = (bough_micro){"generalised-α", self, advance_alpha, count_alpha, NULL,
+                           bough_micro_alpha_error(self)};
     return status;
 }
 

@@ -1,7 +1,6 @@
 #include "flexbody/micro_alpha.h"
 
 #include <math.h>
-#include <string.h>
 
 enum { MOST_ITERATIONS = 10, MOST_HALVINGS = 8 };
 
@@ -21,6 +20,9 @@ struct bough_micro_alpha {
     bool started;
     double *rate;          // ẏ₀ (n)
     double *next, *next_rate, *middle, *residual; // y₁, ẏ₁, y_f, work (n)
+    double *own_error;     // (n)
+    double *slope;         // (n) of ẏ over the last step
+    double last;           // its length, 0: there is none since the start [s]
     bough_statistics sum;
 };
 
@@ -41,6 +43,8 @@ bough_status bough_micro_alpha_create(bough_arena *arena, const bough_ode *ode,
     m->next_rate = bough_arena_doubles(arena, n);
     m->middle = bough_arena_doubles(arena, n);
     m->residual = bough_arena_doubles(arena, n);
+    m->own_error = bough_arena_doubles(arena, n);
+    m->slope = bough_arena_doubles(arena, n);
     if (bough_arena_exhausted(arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
     }
@@ -133,6 +137,25 @@ static bool converge(bough_micro_alpha *m, double t, const double *y, double h) 
     return false;
 }
 
+// y, ẏ₀ ← y₁, ẏ₁
+static void accept(bough_micro_alpha *m, double h, double *restrict y) {
+    double af = m->af, am = m->am, s = af - am;
+    double constant = 1.0 / 12 - 0.5 * s * s + 0.5 * (af * (1 - af) - am * (1 - am));
+    double factor = m->last > 0 ? constant * h * h * h * 2 / (h + m->last) : 0;
+    const double *restrict next = m->next, *restrict next_rate = m->next_rate;
+    double *restrict rate = m->rate, *restrict slope = m->slope, *restrict error = m->own_error;
+#pragma omp simd
+    for (int i = 0; i < m->ode.n; i++) {
+        double now = (next_rate[i] - rate[i]) / h;
+        error[i] += factor * (now - slope[i]);
+        slope[i] = now;
+        y[i] = next[i];
+        rate[i] = next_rate[i];
+    }
+    m->last = h;
+    m->sum.steps++;
+}
+
 // One step from y at t; y receives y₁. With stale tangents a failed step is tried once more.
 static bool take_step(bough_micro_alpha *m, double t, double h, double *y) {
     double gamma = m->af * m->gamma * h / m->am;
@@ -142,9 +165,7 @@ static bool take_step(bough_micro_alpha *m, double t, double h, double *y) {
         predict(m, y, h);
         if (!renew_factors(m, t, y, gamma)) return false;
         if (converge(m, t, y, h)) {
-            memcpy(y, m->next, (size_t)m->ode.n * sizeof *y);
-            memcpy(m->rate, m->next_rate, (size_t)m->ode.n * sizeof *y);
-            m->sum.steps++;
+            accept(m, h, y);
             return true;
         }
         m->sum.failed_steps++;
@@ -157,6 +178,7 @@ static bool start(bough_micro_alpha *m, double t, const double *y) {
     if (m->started) m->sum.restarts++;
     m->started = true;
     m->stale = true;
+    m->last = 0;
     m->sum.derivatives++;
     return m->ode.derivative(m->ode.self, t, y, m->rate);
 }
@@ -181,6 +203,10 @@ bough_status bough_micro_alpha_advance(bough_micro_alpha *micro, double t, doubl
     return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: generalised-α cannot go on: Newton's method"
                       " does not converge with steps of %.2g s; try a shorter micro step",
                       m->ode.name, at, longest);
+}
+
+double *bough_micro_alpha_error(const bough_micro_alpha *micro) {
+    return micro != NULL ? micro->own_error : NULL;
 }
 
 void bough_micro_alpha_statistics(const bough_micro_alpha *micro, bough_statistics *sum) {

@@ -26,6 +26,11 @@ bough_status bough_micro_alpha_create(bough_arena *arena, const bough_ode *ode,
 bough_status bough_micro_alpha_advance(bough_micro_alpha *micro, double t, double t1, bool restart,
                                        double *y);
 
+// (n) sum of the errors of all steps, which a reader sets to zero; NULL without integrator. A step that
+// starts exact errs by C h³ y‴ with C = 1/12 − ½(α_f − α_m)² + ½(α_f(1 − α_f) − α_m(1 − α_m)); y‴ is the
+// difference of the slopes of ẏ in the last two steps, so that the first after a restart tells nothing.
+double *bough_micro_alpha_error(const bough_micro_alpha *micro);
+
 void bough_micro_alpha_statistics(const bough_micro_alpha *micro, bough_statistics *sum);
 
 #endif
