@@ -132,9 +132,9 @@ void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *moti
                         bough_rotor_data *data);
 
 // The same in stages, each after the one before it for all blades, but induce only after the same
-// blade's approach. In those of one blade, blades are independent and may be given to different threads.
-//   approach: where the blade's stations are and the wind they meet; reads only what `motion` tells of
-//             the blade, and hub and shaft
+// blade's approach. Blades are independent within a stage and may be given to different threads.
+//   approach: where the blade's stations are and the wind they meet; reads only what `motion` tells
+//             of the blade, and hub and shaft
 //   induce:   the induction there, most of the work
 //   survey:   what the whole rotor tells each station
 //   load:     the loads on the blade's vertices

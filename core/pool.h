@@ -1,9 +1,9 @@
 // Threads that share out lists of short tasks: a few microseconds each, many lists per step.
 //
-// Each task is some thread's own, in lists alike the same one's, so that what it works on stays in that
-// processor's cache: of three tasks the caller has the first and one thread the others. A thread does
-// its own in order, then those of threads that do not come; so nobody waits for a thread that does not
-// run. Results do not depend on who does what as long as no sum crosses tasks.
+// Each task is some thread's own, in lists alike the same one's, so that what it works on stays in
+// that processor's cache: of three tasks the caller has the first and one thread the others. A
+// thread does its own in order, then those of threads that do not come; so nobody waits for one
+// that does not run. Results do not depend on who does what as long as no sum crosses tasks.
 //
 // Who waits looks again for some 50 µs and then sleeps: at once where there are more threads than
 // processors. Threads are not bound to processors: two runs side by side would bind to the same.
@@ -24,15 +24,15 @@ bough_status bough_pool_create(bough_arena *arena, int threads, bough_pool **poo
 // The caller included.
 int bough_pool_threads(const bough_pool *pool);
 
-// Does task(data, 0 … n − 1) and returns when all are done. One list at a time; no task may call it.
+// Does task(data, 0 … n − 1) and returns when all are done. One list at a time: no task may call it.
 void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data);
 
 // Part of an item's work.
 typedef enum bough_part { BOUGH_WHOLE, BOUGH_FIRST_HALF, BOUGH_SECOND_HALF } bough_part;
 
-// Does items 0 … n − 1 of about equal work. The last of them, which fill no whole turn of all threads,
-// are done in two halves: the first ones in the first turn, the second ones last, so that three items
-// keep two threads busy.
+// Does items 0 … n − 1 of about equal work. The last of them, which fill no whole turn of all
+// threads, are done in two halves: the first ones in the first turn, the second ones last, so that
+// three items keep two threads busy.
 void bough_pool_run_turns(bough_pool *pool, int n,
                           void (*work)(void *data, int item, bough_part part), void *data);
 

@@ -106,8 +106,8 @@ enum { BOUGH_ALL_STAGES = -1 };
 bough_status bough_coupling_each(bough_coupling *c, int stage,
                                  void (*work)(bough_coupling *c, int member));
 
-// The same for lead(c, member) of stage 0 beside prepare(c, member) of all others; follow(c, member)
-// of those once all of stage 0 are done. Nobody follows who has failed to prepare.
+// The same for lead(c, member) of stage 0 beside prepare(c, member) of all others, and then
+// follow(c, member) of those. Nobody follows who has failed to prepare.
 typedef struct bough_lead_work {
     void (*lead)(bough_coupling *c, int member);
     void (*prepare)(bough_coupling *c, int member);
