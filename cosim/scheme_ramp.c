@@ -11,7 +11,7 @@
 // third order at no cost; on heavy interface bodies only, because elsewhere late payment rings.
 //
 // θ = 1/2: order 3 with that impulse, 2 without. On an interface body that is light against what
-// hangs on it the first step takes θ = 1, damped and of order 1. Where, as the eigenvalues of the
+// hangs on it, or with θ > 1/2, the first step takes θ = 1, damped and of order 1. Where, as the eigenvalues of the
 // macro step tell, the trapezoidal rule rings there, all steps take the least θ that does not:
 // somewhat above 1/2, of order 1 with an error 2θ − 1 times as large. Where none does, the step is
 // repeated with waveforms (iteration.h). The interface is solved as condense.h does, stage 0 leading.
@@ -289,10 +289,10 @@ static bough_status choose_theta(bough_coupling *c) {
     bough_status status = predict(c);
     if (!bough_is_ok(&status)) return status;
     c->interface_ratio = bough_condensed_radius(r->interface);
-    if (!r->chosen && c->interface_ratio > light_interface) {
+    if (!r->chosen && c->interface_ratio > heavy_interface) {
         status = choose_weight(c);
         if (!bough_is_ok(&status) || r->repeats) return status;
-        r->damped = c->t1;
+        if (r->final > 0.5 || c->interface_ratio > light_interface) r->damped = c->t1;
         status = predict_damped(c);
     }
     r->chosen = true;
