@@ -3,6 +3,7 @@
 #include "core/linalg.h"
 
 #include <math.h>
+#include <stdatomic.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <threads.h>
@@ -89,9 +90,11 @@ static void solve_small(int n, const double *factor, const int *pivot, double *x
     }
 }
 
-// The first call takes the room and keeps it.
+// The library keeps what the first call takes: for the process, and so is this.
 bool bough_linalg_room(int threads) {
     enum { WORK = 129 << 20, MOST = 64 };
+    static atomic_bool kept;
+    if (atomic_load(&kept)) return true;
     void *volatile block[MOST] = {0};
     bool room = true;
     for (int i = 0; i < threads && i < MOST && room; i++) {
@@ -104,7 +107,8 @@ bool bough_linalg_room(int threads) {
     int n = 1, pivot, info = 0;
     prepare();
     dgetrf_(&n, &n, &a, &n, &pivot, &info);
-    return info == 0;
+    atomic_store(&kept, true);
+    return true;
 }
 
 bool bough_dense_factor(int n, double *a, int *pivot) {

@@ -5,7 +5,7 @@
 
 #include <stdbool.h>
 
-// Whether the library has room to work in on so many threads; asked once, when a model is built.
+// Whether the library has room to work in on so many threads; asked when a model is built.
 // OpenBLAS wants 128 MB of addresses a thread and, where it does not get them, tries for ever.
 bool bough_linalg_room(int threads);
 
