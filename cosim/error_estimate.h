@@ -17,8 +17,8 @@
 
 #include "cosim/coupling.h"
 
-// What is told to people is ε times this: measured against monolithic runs, ε alone is 0.8 to 2.2 of
-// the error on oscillators and 0.3 to 1.1 on a rotor in the wind, whose air amplifies errors.
+// What is told to people is ε times this: measured against monolithic runs, ε alone is 0.8 to 2.3 of
+// the error on oscillators and 0.3 to 1.4 on a rotor in the wind, whose air amplifies errors.
 enum { BOUGH_ERROR_SAFETY = 2 };
 
 typedef struct bough_error_estimate bough_error_estimate;
