@@ -120,7 +120,7 @@ static void check(const plan *p) {
     }
     bough_assembly_def def = {MEMBERS, part, p->n_connection, p->connection};
     bough_assembly *a;
-    bough_arrow *arrow;
+    bough_arrow *arrow = NULL;
     bough_status status = bough_assembly_build(arena, &def, &a);
     if (bough_is_ok(&status)) status = bough_arrow_create(arena, a, NULL, &arrow);
     if (!bough_is_ok(&status)) fail_msg("%s: %s", p->what, status.message);

@@ -42,11 +42,11 @@ static void coupled_masses_have_their_eigenvalues(void **state) {
     assert_int_equal(s.found, 2);
     for (int k = 0; k < 2; k++) {
         const bough_eigen_pair *p = &s.pair[k];
-        double complex l = CMPLX(p->real, p->imaginary), link = .5 * l + 10;
+        double complex l = p->real + p->imaginary * (double complex)I, link = .5 * l + 10;
         double complex first = l * l + .7 * l + 20, second = l * l + .8 * l + 30;
         assert_true(cabs(first * second - link * link) < 1e-6);
-        double complex x1 = CMPLX(p->shape_real[0], p->shape_imag[0]);
-        double complex x2 = CMPLX(p->shape_real[2], p->shape_imag[2]);
+        double complex x1 = p->shape_real[0] + p->shape_imag[0] * (double complex)I;
+        double complex x2 = p->shape_real[2] + p->shape_imag[2] * (double complex)I;
         assert_true(cabs(first * x1 - link * x2) < 1e-6 * cabs(link * x2));
         assert_true(p->real < 0 && p->imaginary > 0);
     }

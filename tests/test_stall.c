@@ -96,7 +96,7 @@ static void attached_lift_is_indicial(void **state) {
     check_near(foil.slope, 2 * BOUGH_PI, 1e-9, 0);
     check_near(foil.zero_lift, degree, 1e-9, 0);
     const double speed = 40, chord = 2, amplitude = degree;
-    const double complex i1 = CMPLX(0, 1);
+    const double complex i1 = I;
     for (double k = 0.02; k < 0.7; k *= 2) {
         enum { PER_CYCLE = 400, CYCLES = 60 };
         double omega = 2 * k * speed / chord, step = 2 * BOUGH_PI / omega / PER_CYCLE;
