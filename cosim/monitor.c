@@ -12,6 +12,11 @@
 // An instability that the start-up's own error hides, or that saturates before it has grown so far,
 // is caught by the bound on the error itself (error_bound.h). That the coupling is the cause is
 // confirmed by its eigenvalues about the current state before the run is ended.
+//
+// Implicit couplings may grow without a defect, and few long steps fill no run of windows. So a force
+// that has grown a hundredfold since its first steps is looked into, again after each further
+// hundredfold: the coupling is the cause when its eigenvalues explain that growth and those of a
+// shorter macro step do not.
 #include "cosim/monitor.h"
 
 #include "cosim/error_bound.h"
@@ -23,6 +28,8 @@
 enum { N_SCALE = 2, RING = 128, SHORTEST = 6 };
 static const int window_steps[N_SCALE] = {16, 64};
 static const double total_growth = 1e3;
+enum { FIRST_STEPS = 8 };
+static const double suspicious_growth = 100;
 
 typedef struct window {
     double current;       // maximum so far in the open window
@@ -40,6 +47,9 @@ typedef struct group {
     double defect_max, defect_sum; // Σ of squares over the steps
     double magnitude;   // largest norm of the obtained value so far
     double window_sum;  // Σ of squares over the open window of the error bound
+    double small;       // largest norm of the first steps with one, or when last looked into
+    double small_time;  // then [s]
+    int first_steps;    // of these so far
     window scale[N_SCALE];
 } group;
 
@@ -198,17 +208,69 @@ static double norm(const double *x, int n) {
     return sqrt(sum);
 }
 
-static bough_status judge_group(const bough_monitor *m, const bough_coupling *c, group *g) {
+// What the scheme really does: the ramp with its weight, or with repeated steps.
+static bough_scheme_options options_in_use(const bough_monitor *m, const bough_coupling *c) {
+    bough_scheme_options options = c->options;
+    if (c->theta > 0) options.theta = c->theta;
+    if (m->scheme != &bough_scheme_ramp || !c->iteration) return options;
+    options.name = bough_scheme_iterated.name;
+    return options;
+}
+
+// Growth of whatever grows fastest [1/s], about the current state; negative: nothing, or unknown.
+static double fastest_growth(const bough_coupling *c, const bough_scheme_options *options,
+                             double macro_step) {
+    bough_stability s = {0};
+    double fine = macro_step / 32; // what members ring at within a step counts too
+    bough_status status = bough_stability_judge_by(c->assembly, options, macro_step, fine, &s);
+    return bough_is_ok(&status) ? fmax(s.growth, s.rising) : -1;
+}
+
+static bough_status look_into(const bough_monitor *m, bough_coupling *c, const group *g) {
+    static const int shorter[] = {8, 64};
+    bough_scheme_options options = options_in_use(m, c);
+    double h = c->t1 - c->t0, growth = fastest_growth(c, &options, h), own = growth / 2;
+    double needed = log(suspicious_growth) / (c->t1 - g->small_time); // for what was seen
+    c->refactor = true;
+    for (int k = 0; k < 2 && growth > needed / 2 && own >= growth / 2; k++) {
+        own = fastest_growth(c, &options, h / shorter[k]);
+    }
+    if (own >= growth / 2) return bough_ok();
+    const bough_assembly *a = c->assembly;
+    return bough_fail(BOUGH_FAILED,
+                      "coupling of %s and %s is unstable at %.6g s: scheme %s, macro step %.6g s, "
+                      "their force has grown a hundredfold and more, by %.3g per second; try a "
+                      "smaller macro step%s",
+                      a->member[g->from]->name, a->member[g->to]->name, c->t1, m->scheme->name, h,
+                      growth, m->scheme->explicit_forces ? " or scheme: ramp" : "");
+}
+
+static bough_status watch_size(const bough_monitor *m, bough_coupling *c, group *g, double size) {
+    if (g->first_steps < FIRST_STEPS) {
+        g->first_steps += size > 0;
+        g->small = fmax(g->small, size);
+        g->small_time = c->t1;
+    } else if (!g->kinematic && size > suspicious_growth * g->small) {
+        bough_status status = look_into(m, c, g);
+        g->small = size;
+        g->small_time = c->t1;
+        return status;
+    }
+    return bough_ok();
+}
+
+static bough_status judge_group(const bough_monitor *m, bough_coupling *c, group *g) {
     double difference[3];
     for (int i = 0; i < g->count; i++) {
         difference[i] = c->input[g->first + i] - c->used[g->first + i];
     }
-    double defect = norm(difference, g->count);
-    g->magnitude = fmax(g->magnitude, norm(c->input + g->first, g->count));
+    double defect = norm(difference, g->count), size = norm(c->input + g->first, g->count);
+    g->magnitude = fmax(g->magnitude, size);
     g->defect_max = fmax(g->defect_max, defect);
     g->defect_sum += defect * defect;
     g->window_sum += defect * defect;
-    return watch(m, c, g, defect);
+    bough_status status = watch(m, c, g, defect);
+    return bough_is_ok(&status) ? watch_size(m, c, g, size) : status;
 }
 
 // -- energy ---------------------------------------------------------------------------------------
@@ -274,10 +336,9 @@ static bough_status lost(const bough_monitor *m, const bough_coupling *c, int in
 // The eigenvalues about the current state tell a coupling that is unstable from one that is coarse.
 static bough_status confirm(const bough_monitor *m, bough_coupling *c, int interface) {
     c->refactor = true;
-    bough_scheme_options options = c->options;
+    bough_scheme_options options = options_in_use(m, c);
     bough_stability_advice advice = {0};
     double h = c->t1 - c->t0;
-    if (c->theta > 0) options.theta = c->theta;
     bough_status status = bough_stability_advise(c->assembly, &options, h, &advice);
     bool unstable = bough_is_ok(&status) && advice.unstable;
     if (!unstable && !bough_error_bound_hopeless(&m->account[interface].bound)) return bough_ok();
