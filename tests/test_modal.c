@@ -118,8 +118,8 @@ static void compare(pair *p, double small, double *rates, double *wrenches) {
 static void check_second_order(int pieces) {
     double rates[2], wrenches[2];
     pair p = make_pair(pieces);
-    compare(&p, 2e-3, &rates[0], &wrenches[0]);
-    compare(&p, 1e-3, &rates[1], &wrenches[1]);
+    compare(&p, 1e-2, &rates[0], &wrenches[0]);
+    compare(&p, 5e-3, &rates[1], &wrenches[1]);
     check_near(rates[0] / rates[1], 4, 0.1, 0);
     check_near(wrenches[0] / wrenches[1], 4, 0.1, 0);
     bough_arena_destroy(p.arena);
@@ -352,7 +352,7 @@ static void few_shapes_keep_momentum(void **context) {
     lost(1e-2, &force[0], &moment[0]);
     lost(5e-3, &force[1], &moment[1]);
     assert_true(force[0] < 1e-7 && moment[1] < 1e-3);
-    check_near(moment[0] / moment[1], 4, 0.1, 0);
+    check_near(moment[0] / moment[1], 4, 0.2, 0);
 }
 
 int main(void) {
