@@ -35,4 +35,14 @@ static inline void scene_step(bough_simulation *s) {
     assert_int_equal(status.code, BOUGH_OK);
 }
 
+// The value now of a channel of that name, of at most 64.
+static inline double scene_channel(bough_simulation *s, bough_channels *list, const char *name) {
+    double value[64];
+    int index = bough_channels_find(list, name);
+    assert_true(index >= 0 && list->count <= 64);
+    bough_simulation_update(s);
+    bough_channels_sample(list, s->master->time, value);
+    return value[index];
+}
+
 #endif

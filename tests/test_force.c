@@ -2,42 +2,15 @@
 // conservation, scenes.
 #include "tests/built_scene.h"
 #include "tests/contract.h"
+#include "tests/rigid_tree.h"
 
-#include "core/dynamics.h"
 #include "core/force.h"
-#include "core/rotation.h"
-#include "core/tree_subsystem.h"
 
 #include <string.h>
 
-typedef struct fixture {
-    bough_arena *arena;
-    bough_tree *tree;
-    bough_tree_data *data;
-    bough_subsystem s;
-} fixture;
-
-static fixture build(const bough_tree_def *def, double rtol) {
-    fixture f = {.arena = bough_arena_create()};
-    bough_status status = bough_tree_create(f.arena, def, &f.tree);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_data_create(f.arena, f.tree, &f.data);
-    assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0, BOUGH_TREE_IDA, rtol, &f.s);
-    assert_int_equal(status.code, BOUGH_OK);
-    return f;
-}
-
-static void advance(fixture *f, double t1) {
-    bough_status status = f->s.ops->advance(f->s.self, t1, NULL, false);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
+static void go_to(fixture *f, double t1) {
+    advance(f, t1, false);
     bough_tree_kinematics(f->tree, f->s.state, f->data);
-}
-
-static bough_mat3 diagonal(double a, double b, double c) {
-    return (bough_mat3){{a, 0, 0}, {0, b, 0}, {0, 0, c}};
 }
 
 static bough_transform placed(double x, double y, double z, double turn) {
@@ -47,7 +20,7 @@ static bough_transform placed(double x, double y, double z, double turn) {
 
 // Two free bodies with a spring and a bushing between them, a spring and a bushing to the ground, a
 // wrench in ground axes and one in the body's.
-static fixture everything(double rtol, bool damped) {
+static fixture mounted(double rtol, bool damped) {
     bough_body_def b[2];
     for (int i = 0; i < 2; i++) {
         b[i] = bough_body_def_default();
@@ -94,7 +67,7 @@ static void bushing_is_linear_along_and_about_an_axis(void **state) {
                           .n_bushings = 1, .bushings = &bushing};
     fixture f = build(&def, 1e-10);
     double t = 2.3, delta = 0.2, w = sqrt(25 - delta * delta);
-    advance(&f, t);
+    go_to(&f, t);
     check_near(f.s.state[2], 0.7 * exp(-delta * t) * (cos(w * t) + delta / w * sin(w * t)), 0, 1e-8);
     delta = 0.4, w = sqrt(16 - delta * delta);
     bough_vec3 turn = bough_quaternion_logarithm(
@@ -107,12 +80,12 @@ static void bushing_is_linear_along_and_about_an_axis(void **state) {
 // Undamped elements keep the energy at large turns about changing axes, with unequal stiffnesses.
 static void elements_conserve(void **state) {
     (void)state;
-    fixture f = everything(1e-10, false);
+    fixture f = mounted(1e-10, false);
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     bough_tree_sums before = bough_tree_sum(f.tree, f.data);
     double largest = 0;
     for (int k = 1; k <= 20; k++) {
-        advance(&f, 0.1 * k);
+        go_to(&f, 0.1 * k);
         bough_tree_sums now = bough_tree_sum(f.tree, f.data);
         check_near(now.kinetic + now.potential + now.elastic,
                    before.kinetic + before.potential + before.elastic, 1e-7, 1e-7);
@@ -125,7 +98,7 @@ static void elements_conserve(void **state) {
 // Action and reaction: the wrenches of an element in the ground about the ground's origin.
 static void elements_act_and_react(void **state) {
     (void)state;
-    fixture f = everything(1e-6, true);
+    fixture f = mounted(1e-6, true);
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     for (int e = 0; e < bough_tree_n_elements(f.tree); e++) {
         double energy, sum[6], size = 0;
@@ -154,7 +127,7 @@ static bough_transform shifted(bough_transform x, bough_twist by) {
 // The change along poses and twists against central differences with the links' data changed.
 static void changes_are_derivatives(void **state) {
     (void)state;
-    fixture f = everything(1e-6, true);
+    fixture f = mounted(1e-6, true);
     double direction[24], h = 1e-6, t = 0.4;
     for (int i = 0; i < 24; i++) direction[i] = sin(1.3 * i + 0.4);
     bough_tree_kinematics(f.tree, f.s.state, f.data);
@@ -207,7 +180,7 @@ static void changes_are_derivatives(void **state) {
 
 static void tree_with_forces_fulfils_the_contract(void **state) {
     (void)state;
-    fixture f = everything(1e-8, true);
+    fixture f = mounted(1e-8, true);
     double y[26], none[1] = {0};
     memcpy(y, f.s.state, sizeof y);
     contract_point at = {0.2, y, none, 1e-5};
@@ -231,24 +204,15 @@ static void wrench_in_ground_axes_pushes_straight(void **state) {
     bough_tree_def def = {.n_bodies = 1, .bodies = &b, .n_markers = 1, .markers = &marker,
                           .n_applied = 1, .applied = &applied};
     fixture f = build(&def, 1e-10);
-    advance(&f, 1);
+    go_to(&f, 1);
     check_near(f.s.state[0], 3.0 / 6, 1e-8, 0); // ∫∫ 3t
     check_near(f.s.state[1], 0, 0, 1e-8);
-    advance(&f, 2);
+    go_to(&f, 2);
     check_near(f.s.state[0], 0.5 + 1.5 + 1.5 - 0.5, 1e-7, 0);
     bough_arena_destroy(f.arena);
 }
 
 // -- scenes ----------------------------------------------------------------------------------
-
-static double channel(bough_simulation *s, bough_channels *list, const char *name) {
-    double value[64];
-    int index = bough_channels_find(list, name);
-    assert_true(index >= 0 && list->count <= 64);
-    bough_simulation_update(s);
-    bough_channels_sample(list, s->master->time, value);
-    return value[index];
-}
 
 // A machine on its mounts, turned against the ground, sinks by m g/k; a second body is lifted by
 // exactly its weight; a wheel is spun up by a force that turns with it.
@@ -259,14 +223,14 @@ static void scenes_mount_and_load_bodies(void **state) {
     bough_simulation *s = scene_build(arena, "tests/scenes/mounts.yaml", none);
     bough_channels list = bough_channels_start(arena);
     assert_int_equal(bough_simulation_channels(s, &list).code, BOUGH_OK);
-    check_near(channel(s, &list, "mountFrcX"), 0, 0, 1e-12);
+    check_near(scene_channel(s, &list, "mountFrcX"), 0, 0, 1e-12);
     assert_int_equal(s->master->n_event, 2);
     while (s->master->time < 4) scene_step(s);
-    check_near(channel(s, &list, "mountFrcX"), -10 * 9.81, 1e-6, 0); // x points down
-    check_near(channel(s, &list, "engineX"), 1, 0, 1e-9);
-    check_near(channel(s, &list, "engineZ"), 2 - 10 * 9.81 / 5000, 0, 1e-7);
-    check_near(channel(s, &list, "liftedPos"), 0, 0, 1e-9);
-    double angle = channel(s, &list, "wheelPos") * acos(-1.0) / 180;
+    check_near(scene_channel(s, &list, "mountFrcX"), -10 * 9.81, 1e-6, 0); // x points down
+    check_near(scene_channel(s, &list, "engineX"), 1, 0, 1e-9);
+    check_near(scene_channel(s, &list, "engineZ"), 2 - 10 * 9.81 / 5000, 0, 1e-7);
+    check_near(scene_channel(s, &list, "liftedPos"), 0, 0, 1e-9);
+    double angle = scene_channel(s, &list, "wheelPos") * acos(-1.0) / 180;
     check_near(angle, 0.6 * (0.5 * 3.85 * 3.85 + 0.01 / 24), 1e-6, 0);
     bough_arena_destroy(arena);
 }

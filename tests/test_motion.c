@@ -1,9 +1,7 @@
 // Prescribed motion of joints: the functions of time, the tree that is driven by them, scenes.
 #include "tests/built_scene.h"
 #include "tests/contract.h"
-
-#include "core/dynamics.h"
-#include "core/tree_subsystem.h"
+#include "tests/rigid_tree.h"
 
 #include <string.h>
 
@@ -83,31 +81,6 @@ static void speeds_and_accelerations_are_derivatives(void **state) {
 
 // -- the driven tree -------------------------------------------------------------------------
 
-enum { MOST = 40 };
-
-typedef struct fixture {
-    bough_arena *arena;
-    bough_tree *tree;
-    bough_tree_data *data;
-    bough_subsystem s;
-} fixture;
-
-static fixture build(const bough_tree_def *def, double rtol) {
-    fixture f = {.arena = bough_arena_create()};
-    bough_status status = bough_tree_create(f.arena, def, &f.tree);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_data_create(f.arena, f.tree, &f.data);
-    assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0, BOUGH_TREE_IDA, rtol, &f.s);
-    assert_int_equal(status.code, BOUGH_OK);
-    return f;
-}
-
-static bough_mat3 diagonal(double a, double b, double c) {
-    return (bough_mat3){{a, 0, 0}, {0, b, 0}, {0, 0, c}};
-}
-
 // A satellite, free or clamped, with a wheel on a driven shaft, a boom driven out along z from the
 // wheel and a sprung hinge with a port at its end.
 static fixture satellite(bough_joint_kind base, double rtol) {
@@ -135,11 +108,6 @@ static fixture satellite(bough_joint_kind base, double rtol) {
     return build(&def, rtol);
 }
 
-static void advance(fixture *f, double t1) {
-    bough_status status = f->s.ops->advance(f->s.self, t1, NULL, false);
-    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
-    assert_int_equal(status.code, BOUGH_OK);
-}
 
 // What drives the wheel is an inner torque: momenta stay, and the motion is the given one exactly.
 static void driven_joints_keep_the_momenta(void **state) {
@@ -147,7 +115,7 @@ static void driven_joints_keep_the_momenta(void **state) {
     fixture f = satellite(BOUGH_JOINT_FREE, 1e-10);
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     bough_tree_sums before = bough_tree_sum(f.tree, f.data);
-    for (int k = 1; k <= 15; k++) advance(&f, 0.1 * k);
+    for (int k = 1; k <= 15; k++) advance(&f, 0.1 * k, false);
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     bough_tree_sums after = bough_tree_sum(f.tree, f.data);
     bough_vec3 l = bough_sub(after.angular_momentum, before.angular_momentum);
@@ -168,7 +136,7 @@ static void energy_is_what_the_drives_put_in(void **state) {
     double work = 0, power = 0, h = 0.01, acceleration[8];
     bough_tree_sums first = {0}, last = {0};
     for (int k = 0; k <= 100; k++) {
-        if (k > 0) advance(&f, h * k);
+        if (k > 0) advance(&f, h * k, false);
         bough_tree_kinematics(f.tree, f.s.state, f.data);
         assert_true(
             bough_tree_forward_dynamics(f.tree, f.data, h * k, NULL, acceleration));
@@ -225,7 +193,7 @@ static void locked_joint_reports_its_torque(void **state) {
     bough_tree_def def = {.gravity = {0, 0, -9.81}, .n_bodies = 1, .bodies = &b};
     fixture f = build(&def, 1e-8);
     double acceleration;
-    advance(&f, 3);
+    advance(&f, 3, false);
     check_near(f.s.state[0], 0, 0, 0);
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     assert_true(bough_tree_forward_dynamics(f.tree, f.data, 3, NULL, &acceleration));
@@ -241,15 +209,6 @@ static void locked_joint_reports_its_torque(void **state) {
 
 // -- scenes ----------------------------------------------------------------------------------
 
-static double channel(bough_simulation *s, bough_channels *list, const char *name) {
-    double value[64];
-    int index = bough_channels_find(list, name);
-    assert_true(index >= 0 && list->count <= 64);
-    bough_simulation_update(s);
-    bough_channels_sample(list, s->master->time, value);
-    return value[index];
-}
-
 static void scenes_drive_joints(void **state) {
     (void)state;
     static const char *const none[] = {NULL};
@@ -260,23 +219,23 @@ static void scenes_drive_joints(void **state) {
     assert_int_equal(s->master->n_event, 2 + 3 + 2 + 2);
     check_near(s->master->event[3], 0.105, 1e-15, 0);
     while (s->master->time < 1) scene_step(s);
-    check_near(channel(s, &list, "tablePos"), 90, 1e-14, 0);
-    check_near(channel(s, &list, "fanVel"), 12.1 * 6, 1e-14, 0);
-    check_near(channel(s, &list, "fanPos"), 12.1 * 6, 1e-13, 0);
-    check_near(channel(s, &list, "fanTrq"), 0, 0, 1e-12);
-    check_near(channel(s, &list, "ramPos"), 3, 1e-15, 0);
-    check_near(channel(s, &list, "ramAngPos") * pi / 180, 2, 1e-8, 0); // it spins on freely
-    check_near(channel(s, &list, "ramFrc"), 4 * 9.80665, 1e-12, 0);
-    check_near(channel(s, &list, "gimbalAng1Pos"), 30, 1e-14, 0);
-    check_near(channel(s, &list, "gimbalAng2Pos"), 90, 1e-14, 0);
+    check_near(scene_channel(s, &list, "tablePos"), 90, 1e-14, 0);
+    check_near(scene_channel(s, &list, "fanVel"), 12.1 * 6, 1e-14, 0);
+    check_near(scene_channel(s, &list, "fanPos"), 12.1 * 6, 1e-13, 0);
+    check_near(scene_channel(s, &list, "fanTrq"), 0, 0, 1e-12);
+    check_near(scene_channel(s, &list, "ramPos"), 3, 1e-15, 0);
+    check_near(scene_channel(s, &list, "ramAngPos") * pi / 180, 2, 1e-8, 0); // it spins on freely
+    check_near(scene_channel(s, &list, "ramFrc"), 4 * 9.80665, 1e-12, 0);
+    check_near(scene_channel(s, &list, "gimbalAng1Pos"), 30, 1e-14, 0);
+    check_near(scene_channel(s, &list, "gimbalAng2Pos"), 90, 1e-14, 0);
     // the mass stands up from the gimbal's x, leaned by 30 degrees: at (0, cos, sin) of them
     double lean = pi / 6;
-    check_near(channel(s, &list, "gimbalTrq1"), 2 * 9.80665 * cos(lean), 1e-12, 0);
-    check_near(channel(s, &list, "gimbalTrq2"), 0, 0, 1e-12);
+    check_near(scene_channel(s, &list, "gimbalTrq1"), 2 * 9.80665 * cos(lean), 1e-12, 0);
+    check_near(scene_channel(s, &list, "gimbalTrq2"), 0, 0, 1e-12);
     // the lift stands still, held against 4 kg
-    check_near(channel(s, &list, "liftVel"), 0, 0, 0);
-    check_near(channel(s, &list, "liftFrc"), 4 * 9.80665, 1e-12, 0);
-    check_near(channel(s, &list, "liftPos"), 0.5 * 0.105 * 2 + 0.5 * 0.295 * 2, 1e-12, 0);
+    check_near(scene_channel(s, &list, "liftVel"), 0, 0, 0);
+    check_near(scene_channel(s, &list, "liftFrc"), 4 * 9.80665, 1e-12, 0);
+    check_near(scene_channel(s, &list, "liftPos"), 0.5 * 0.105 * 2 + 0.5 * 0.295 * 2, 1e-12, 0);
     bough_arena_destroy(arena);
 }
 
