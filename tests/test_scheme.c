@@ -259,6 +259,31 @@ static void waveforms_are_of_order_six(void **state) {
     check_near(log2(error[1] / error[2]), 6, 0, .2);
 }
 
+static double sweeps_per_step(bough_two_mass m, bough_master_def def) {
+    bough_status status = bough_two_mass_build(&m, def);
+    assert_true(bough_is_ok(&status));
+    two_mass_error(&m);
+    double sweeps = (double)m.master->coupling->sweeps / (double)m.master->steps;
+    bough_two_mass_destroy(&m);
+    return sweeps;
+}
+
+// On linear members its Jacobian closes the interface in one correction; differences alone need two.
+static void newton_saves_a_sweep(void **state) {
+    (void)state;
+    bough_two_mass m = bough_two_mass_default();
+    m.s1.m = .1;
+    m.cut = BOUGH_CUT_DISPLACEMENT_DISPLACEMENT;
+    for (int waveform = 0; waveform < 2; waveform++) {
+        bough_master_def def = iterated(BOUGH_ACCELERATE_NEWTON, .04);
+        def.scheme.exchange = waveform ? BOUGH_EXCHANGE_WAVEFORM : BOUGH_EXCHANGE_END_VALUES;
+        def.scheme.tolerance = 1e-5;
+        assert_true(sweeps_per_step(m, def) < 2.3);
+        def.scheme.accelerator = BOUGH_ACCELERATE_IQN_ILS;
+        assert_true(sweeps_per_step(m, def) > 2.9);
+    }
+}
+
 // Two undamped masses, 1 and 3 Hz, each holding the coupling spring and told the other's motion. An
 // independent program gives 1.03e-2 for end values, 2.84e-7 for cubics on 4 sub-steps of a window.
 static void waveforms_gain_six_digits_on_end_values(void **state) {
@@ -362,6 +387,7 @@ int main(void) {
         cmocka_unit_test(iterated_errors_and_orders),
         cmocka_unit_test(every_accelerator_and_direction_gives_the_same),
         cmocka_unit_test(waveforms_are_of_order_six),
+        cmocka_unit_test(newton_saves_a_sweep),
         cmocka_unit_test(waveforms_gain_six_digits_on_end_values),
         cmocka_unit_test(stiff_ends_want_waveforms),
         cmocka_unit_test(iterated_takes_a_light_interface_body),
