@@ -3,7 +3,7 @@
 #include "core/base.h"
 #include "core/dynamics.h"
 #include "core/linalg.h"
-#include "core/loop_parts.h"
+#include "core/loop_internal.h"
 
 #include <string.h>
 

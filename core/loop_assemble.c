@@ -1,7 +1,7 @@
 // The initial state of a tree with closures: coordinates and speeds that satisfy them.
 #include "core/base.h"
 #include "core/dynamics.h"
-#include "core/loop_parts.h"
+#include "core/loop_internal.h"
 
 #include <string.h>
 

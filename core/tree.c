@@ -4,7 +4,7 @@
 #include "core/base.h"
 #include "core/dynamics.h"
 #include "core/loop.h"
-#include "core/tree_parts.h"
+#include "core/tree_internal.h"
 
 #include <string.h>
 

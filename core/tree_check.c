@@ -1,5 +1,5 @@
 // What is wrong with a def, before a tree is built from it.
-#include "core/tree_parts.h"
+#include "core/tree_internal.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "core/tree_newton_parts.h"
+#include "core/tree_newton_internal.h"
 
 #include "core/dynamics.h"
 #include "core/force.h"

@@ -1,6 +1,6 @@
 // Springs and bushings in Newton's systems of the tree: the changes c of the wrenches at their ends
 // are J ζ, and ζ those of the tree without them under c: (E − J T⁻¹ Eᵀ) c = J T⁻¹ r.
-#include "core/tree_newton_parts.h"
+#include "core/tree_newton_internal.h"
 
 #include "core/force.h"
 #include "core/linalg.h"

@@ -2,7 +2,7 @@
 #ifndef BOUGH_TESTS_BUILT_SCENE_H
 #define BOUGH_TESTS_BUILT_SCENE_H
 
-#include "apps/scene/build.h"
+#include "apps/simulation/build.h"
 #include "tests/check.h"
 
 // Reads the scene at `path` within the sources; `sets` ends with NULL.

@@ -4,8 +4,8 @@
 
 #include "tests/check.h"
 
+#include "apps/config/text.h"
 #include "apps/import/import.h"
-#include "apps/scene/text.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -65,12 +65,31 @@ layer(flexbody core flexbody)
 layer(aero core aero)
 layer(cosim core cosim)
 
-# Output knows the core only; among the apps it stands below the others.
+# An app folder includes of the apps only those given.
+function(app folder)
+  file(GLOB files RELATIVE ${ROOT} ${ROOT}/apps/${folder}/*.[ch])
+  foreach(file IN LISTS files)
+    foreach(other config scene output simulation analysis report import study api bough)
+      if(NOT other STREQUAL folder AND NOT other IN_LIST ARGN)
+        forbid(${file} "^[ \t]*#[ \t]*include[ \t]*\"apps/${other}/"
+          "apps/${folder}/ may not include apps/${other}/")
+      endif()
+    endforeach()
+  endforeach()
+  set(found ${found} PARENT_SCOPE)
+endfunction()
+
+layer(apps/config core apps)
 layer(apps/output core apps)
-file(GLOB files RELATIVE ${ROOT} ${ROOT}/apps/output/*.[ch])
-foreach(file IN LISTS files)
-  forbid(${file} "^[ \t]*#[ \t]*include[ \t]*\"apps/(scene|bough)/" "apps/output/ may not include it")
-endforeach()
+app(config)
+app(output)
+app(scene config)
+app(simulation config scene output)
+app(analysis config scene output simulation)
+app(report output)
+app(import config scene output)
+app(api config scene output simulation)
+app(study config scene output simulation analysis)
 
 file(GLOB files RELATIVE ${ROOT} ${ROOT}/cosim/*.[ch])
 foreach(file IN LISTS files)
@@ -83,7 +102,7 @@ owned_by("^core/integrator_ida\\.c$" "${include}ida/" "only core/integrator_ida.
 owned_by("^flexbody/[^/]*\\.c$" "${include}(cvode|arkode)/" "only flexbody/*.c uses CVODE and ARKODE")
 owned_by("^(core|flexbody)/" "${include}(sundials|nvector|sunmatrix|sunlinsol)"
   "only core/ and flexbody/ use SUNDIALS")
-owned_by("^apps/scene/text\\.c$" "${include}yaml\\.h" "only apps/scene/text.c uses libyaml")
+owned_by("^apps/config/text\\.c$" "${include}yaml\\.h" "only apps/config/text.c uses libyaml")
 
 owned_by("^apps/output/vertices\\.c$" "${include}hdf5\\.h" "only apps/output/vertices.c uses HDF5")
 

@@ -2,7 +2,7 @@
 // samples. The scene has a flexible and a rigid blade.
 #include "tests/built_scene.h"
 
-#include "apps/scene/aero_link.h"
+#include "apps/simulation/aero_link.h"
 
 #include <stdlib.h>
 #include <string.h>

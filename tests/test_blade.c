@@ -2,7 +2,7 @@
 // and the rigid inertia of its table.
 #include "tests/check.h"
 
-#include "apps/scene/build.h"
+#include "apps/simulation/build.h"
 #include "flexbody/rod_modes.h"
 #include "flexbody/rod_static.h"
 #include "flexbody/section.h"

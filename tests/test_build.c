@@ -1,7 +1,7 @@
 // What is built of a scene: everything it names, in the right place, and nothing else.
 #include "tests/built_scene.h"
 
-#include "apps/scene/aero_link.h"
+#include "apps/simulation/aero_link.h"
 #include "flexbody/section.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 // Rods that carry bodies, as scenes: statics, frequencies, conservation against theory, and every
 // coupling scheme against the monolithic one.
-#include "apps/scene/settle.h"
+#include "apps/simulation/settle.h"
 #include "core/base.h"
 #include "tests/built_scene.h"
 

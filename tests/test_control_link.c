@@ -1,7 +1,7 @@
 // Between controller and turbine: torque on the rotor's joint, blades steered by their pitch joints.
 #include "tests/built_scene.h"
 
-#include "apps/scene/control_link.h"
+#include "apps/simulation/control_link.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
 // Drag of tower and hub on the bodies of a simulation.
 #include "tests/built_scene.h"
 
-#include "apps/scene/drag_link.h"
+#include "apps/simulation/drag_link.h"
 
 #include <stdlib.h>
 #include <string.h>

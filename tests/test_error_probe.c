@@ -1,6 +1,6 @@
 // The estimated coupling error of a scene's channels against the true one, the difference to the
 // monolithic run.
-#include "apps/scene/error_probe.h"
+#include "apps/simulation/error_probe.h"
 #include "tests/built_scene.h"
 
 #include <stdlib.h>

@@ -2,9 +2,9 @@
 #include "apps/output/folder.h"
 #include "apps/output/frames.h"
 #include "apps/output/recorder.h"
-#include "apps/scene/build.h"
-#include "apps/scene/error_probe.h"
-#include "apps/scene/shape.h"
+#include "apps/simulation/build.h"
+#include "apps/simulation/error_probe.h"
+#include "apps/simulation/shape.h"
 #include "tests/check.h"
 #include "tests/scratch.h"
 

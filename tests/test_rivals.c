@@ -1,6 +1,6 @@
 // The study that compares a blade's models: what it finds of a small clamped blade and a short run.
 #include "apps/study/study_perform.h"
-#include "apps/study/study_rivals_parts.h"
+#include "apps/study/study_rivals_internal.h"
 #include "tests/scratch.h"
 
 static const char head[] = "title: Two models\nkind: rivals\n"

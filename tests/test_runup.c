@@ -3,8 +3,8 @@
 // solution and the reference of an independent code.
 #include "tests/check.h"
 
-#include "apps/scene/aero_link.h"
-#include "apps/scene/build.h"
+#include "apps/simulation/aero_link.h"
+#include "apps/simulation/build.h"
 
 #include <stdlib.h>
 #include <string.h>

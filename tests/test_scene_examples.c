@@ -1,7 +1,7 @@
 // Every key of a scene has an example, which the key reads.
 #include "tests/check.h"
 
-#include "apps/scene/scene_parts.h"
+#include "apps/scene/scene_internal.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "apps/scene/schema.h"
+#include "apps/config/schema.h"
 
 #include "tests/check.h"
 

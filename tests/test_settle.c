@@ -1,6 +1,6 @@
 // Equilibrium of whole scenes.
-#include "apps/scene/settle.h"
-#include "apps/scene/steady.h"
+#include "apps/analysis/steady.h"
+#include "apps/simulation/settle.h"
 #include "tests/built_scene.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 // Studies of kind timing: all cells in every turn, their errors, and a clock that changes no bit.
-#include "apps/scene/build.h"
+#include "apps/simulation/build.h"
 #include "apps/study/study_timing.h"
 #include "tests/scratch.h"
 

@@ -4,7 +4,7 @@
 // beside an independent solution.
 #include "tests/check.h"
 
-#include "apps/scene/build.h"
+#include "apps/simulation/build.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "apps/scene/text.h"
+#include "apps/config/text.h"
 
 #include "tests/check.h"
 

@@ -1,6 +1,6 @@
 // Modes of whole scenes.
-#include "apps/scene/steady.h"
-#include "apps/scene/vibration.h"
+#include "apps/analysis/steady.h"
+#include "apps/analysis/vibration.h"
 #include "tests/built_scene.h"
 
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "apps/api/bough.h"
 
-#include "apps/scene/build.h"
 #include "apps/scene/fingerprint.h"
+#include "apps/simulation/build.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 #include "apps/bough/checkpoint.h"
 
 #include "apps/bough/run.h"
+#include "apps/config/schema.h"
 #include "apps/output/folder.h"
 #include "apps/scene/fingerprint.h"
-#include "apps/scene/schema.h"
 
 #include <ctype.h>
 #include <errno.h>

@@ -1,11 +1,11 @@
 // bough modes: frequencies, damping and shapes of the whole scene (modes_whole.c), or of each rod,
 // clamped at its root, about equilibrium at rest or in steady rotation.
+#include "apps/analysis/steady.h"
+#include "apps/analysis/vibration.h"
 #include "apps/bough/modes_whole.h"
 #include "apps/bough/open.h"
 #include "apps/bough/verb.h"
 #include "apps/output/folder.h"
-#include "apps/scene/steady.h"
-#include "apps/scene/vibration.h"
 #include "flexbody/rod_modes.h"
 
 // One rod and what was found.

@@ -1,8 +1,8 @@
 #include "apps/bough/modes_whole.h"
 
+#include "apps/analysis/vibration.h"
 #include "apps/bough/open.h"
 #include "apps/output/folder.h"
-#include "apps/scene/vibration.h"
 
 static const double unstable = 1e-6; // growth relative to |λ| above it is no rounding
 

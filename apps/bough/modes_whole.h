@@ -3,7 +3,7 @@
 #define BOUGH_APPS_BOUGH_MODES_WHOLE_H
 
 #include "apps/bough/options.h"
-#include "apps/scene/build.h"
+#include "apps/simulation/build.h"
 
 // Finds, prints and writes them.
 bough_status bough_modes_whole(bough_arena *arena, const bough_options *options,

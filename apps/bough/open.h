@@ -3,7 +3,7 @@
 #define BOUGH_APPS_BOUGH_OPEN_H
 
 #include "apps/bough/options.h"
-#include "apps/scene/build.h"
+#include "apps/simulation/build.h"
 
 // Reads the scene with the options' replacements and builds it. Errors in the scene are written to
 // stderr, one a line, and the status then has no message.

@@ -1,6 +1,6 @@
 #include "apps/bough/options.h"
 
-#include "apps/scene/schema.h"
+#include "apps/config/schema.h"
 
 #include <errno.h>
 #include <getopt.h>

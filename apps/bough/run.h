@@ -7,8 +7,8 @@
 #include "apps/output/channels.h"
 #include "apps/output/recorder.h"
 #include "apps/output/vertices.h"
-#include "apps/scene/error_probe.h"
-#include "apps/scene/shape.h"
+#include "apps/simulation/error_probe.h"
+#include "apps/simulation/shape.h"
 
 typedef struct bough_run {
     const bough_options *options;

@@ -1,10 +1,10 @@
 // bough static: the shape of each rod and the angles of the joints at rest, or in steady rotation,
 // under gravity and the whole of the scene's loads.
+#include "apps/analysis/steady.h"
 #include "apps/bough/open.h"
 #include "apps/bough/verb.h"
 #include "apps/output/folder.h"
-#include "apps/scene/settle.h"
-#include "apps/scene/steady.h"
+#include "apps/simulation/settle.h"
 
 enum { MOTION = 6 }; // displacement and rotation, or force and moment
 

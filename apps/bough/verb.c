@@ -1,6 +1,6 @@
 #include "apps/bough/verb.h"
 
-#include "apps/scene/schema.h"
+#include "apps/config/schema.h"
 
 #include <string.h>
 

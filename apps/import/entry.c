@@ -1,6 +1,6 @@
 #include "apps/import/entry.h"
 
-#include "apps/scene/schema.h"
+#include "apps/config/schema.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -6,8 +6,8 @@
 #ifndef BOUGH_IMPORT_ENTRY_H
 #define BOUGH_IMPORT_ENTRY_H
 
+#include "apps/config/text.h"
 #include "apps/import/draft.h"
-#include "apps/scene/text.h"
 
 #include <stdbool.h>
 

@@ -1,6 +1,6 @@
 #include "apps/scene/fingerprint.h"
 
-#include "apps/scene/schema.h"
+#include "apps/config/schema.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 // Reading a scene: text, replacements, tables, links. All errors are collected before it gives up.
-#include "apps/scene/scene_parts.h"
+#include "apps/scene/scene_internal.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 // A scene as the user said it: plain structs in SI units and radians, names resolved to indices,
-// every value checked. Read from a YAML file by the tables of scene_schema*.c; apps/scene/build
+// every value checked. Read from a YAML file by the tables of scene_schema*.c; apps/simulation
 // makes the model of it. Examples of every form: tests/scenes/example-*.yaml.
 //
 // All memory belongs to the arena given to bough_scene_read. Every struct begins with its place in
@@ -13,7 +13,7 @@
 #define BOUGH_APPS_SCENE_SCENE_H
 
 #include "aero/controller.h"
-#include "apps/scene/text.h"
+#include "apps/config/text.h"
 #include "core/arena.h"
 #include "core/status.h"
 

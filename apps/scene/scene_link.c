@@ -1,7 +1,7 @@
 // Names become indices, and what spans several parts of the scene is checked. Runs also after other
 // errors, so that all are shown at once: wrong values are NaN, −1 or NULL here and raise no second
 // error.
-#include "apps/scene/scene_parts.h"
+#include "apps/scene/scene_internal.h"
 
 #include <math.h>
 #include <stdarg.h>

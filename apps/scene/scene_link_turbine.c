@@ -1,5 +1,5 @@
 // Names of the turbine, its air and its control become indices; see scene_link.c.
-#include "apps/scene/scene_parts.h"
+#include "apps/scene/scene_internal.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 // A rod that is a stretch of its table: a new table that begins and ends between the old one's
 // stations, so that rods in a row are the whole and bodies may hang where two of them meet.
-#include "apps/scene/scene_parts.h"
+#include "apps/scene/scene_internal.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 // Bodies in a row: a body with `repeat: n` becomes n, each hung on the one before by the same
 // joint, named with numbers from 1. The first stays where it is in the list, the others come last, so that
 // places in the text keep their index.
-#include "apps/scene/scene_parts.h"
+#include "apps/scene/scene_internal.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 // Replacements from the command line: "bodies[2].pitch=5 deg". They change the tree of the text
 // before it is read, so that they are checked like everything else.
-#include "apps/scene/scene_parts.h"
+#include "apps/scene/scene_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

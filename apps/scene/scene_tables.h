@@ -2,7 +2,7 @@
 #ifndef BOUGH_APPS_SCENE_SCENE_TABLES_H
 #define BOUGH_APPS_SCENE_SCENE_TABLES_H
 
-#include "apps/scene/scene_parts.h"
+#include "apps/scene/scene_internal.h"
 
 #include <stddef.h>
 

@@ -1,5 +1,5 @@
 // Values of a scene that are lists of their own kind, and checks within one table.
-#include "apps/scene/scene_parts.h"
+#include "apps/scene/scene_internal.h"
 
 #include "core/base.h"
 

@@ -1,9 +1,9 @@
 // The keys of a study and their reading.
 #include "apps/study/study.h"
 
-#include "apps/scene/schema.h"
-#include "apps/study/study_parts.h"
+#include "apps/config/schema.h"
 #include "apps/study/study_added_mass.h"
+#include "apps/study/study_internal.h"
 #include "apps/study/study_rivals.h"
 #include "apps/study/study_two_mass.h"
 #include "apps/study/study_verify.h"

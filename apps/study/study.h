@@ -6,7 +6,7 @@
 #ifndef BOUGH_APPS_STUDY_STUDY_H
 #define BOUGH_APPS_STUDY_STUDY_H
 
-#include "apps/scene/text.h"
+#include "apps/config/text.h"
 #include "core/arena.h"
 #include "core/status.h"
 

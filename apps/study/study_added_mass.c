@@ -1,7 +1,7 @@
 #include "apps/study/study_added_mass.h"
 
+#include "apps/config/schema.h"
 #include "apps/output/folder.h"
-#include "apps/scene/schema.h"
 #include "apps/study/study_map.h"
 #include "apps/study/study_store.h"
 #include "apps/study/two_mass.h"

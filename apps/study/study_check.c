@@ -1,11 +1,11 @@
 // What cannot be seen in the study file alone: whether the scene takes every replacement, whether
 // all runs share their output times, and whether the channels exist. Found before the first run,
 // since the last one may start hours later.
-#include "apps/study/study_parts.h"
+#include "apps/study/study_internal.h"
 
-#include "apps/scene/build.h"
+#include "apps/config/schema.h"
 #include "apps/scene/fingerprint.h"
-#include "apps/scene/schema.h"
+#include "apps/simulation/build.h"
 
 #include <assert.h>
 #include <math.h>

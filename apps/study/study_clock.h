@@ -2,7 +2,7 @@
 #ifndef BOUGH_APPS_STUDY_STUDY_CLOCK_H
 #define BOUGH_APPS_STUDY_STUDY_CLOCK_H
 
-#include "apps/scene/build.h"
+#include "apps/simulation/build.h"
 
 typedef enum bough_clock_part {
     BOUGH_CLOCK_LEADERS,         // own steps of stage 0, the tree

@@ -1,5 +1,5 @@
 // From the grid to the runs: the cartesian product of its values.
-#include "apps/study/study_parts.h"
+#include "apps/study/study_internal.h"
 
 #include <assert.h>
 #include <stdio.h>

@@ -1,10 +1,10 @@
 #include "apps/study/study_rivals.h"
 
+#include "apps/config/schema.h"
 #include "apps/output/folder.h"
 #include "apps/scene/scene.h"
-#include "apps/scene/schema.h"
-#include "apps/study/study_parts.h"
-#include "apps/study/study_rivals_parts.h"
+#include "apps/study/study_internal.h"
+#include "apps/study/study_rivals_internal.h"
 #include "apps/study/study_store.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "apps/study/study_run.h"
 
-#include "apps/scene/error_probe.h"
 #include "apps/scene/fingerprint.h"
+#include "apps/simulation/error_probe.h"
 
 #include <assert.h>
 #include <math.h>

@@ -3,7 +3,7 @@
 
 #include "apps/output/progress.h"
 #include "apps/output/recorder.h"
-#include "apps/scene/error_probe.h"
+#include "apps/simulation/error_probe.h"
 
 #include <time.h>
 

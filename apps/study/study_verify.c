@@ -1,9 +1,9 @@
 // The keys of a study of kind verify and their reading.
 #include "apps/study/study_verify.h"
 
-#include "apps/scene/build.h"
-#include "apps/scene/schema.h"
-#include "apps/study/study_parts.h"
+#include "apps/config/schema.h"
+#include "apps/simulation/build.h"
+#include "apps/study/study_internal.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,9 @@
 // One case of a study of kind verify on one mesh: its quantities.
 #include "apps/study/study_verify.h"
 
-#include "apps/scene/settle.h"
-#include "apps/scene/steady.h"
-#include "apps/scene/vibration.h"
+#include "apps/analysis/steady.h"
+#include "apps/analysis/vibration.h"
+#include "apps/simulation/settle.h"
 #include "flexbody/rod_modes.h"
 
 #include <assert.h>

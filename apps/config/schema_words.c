@@ -1,0 +1,58 @@
+// Words in messages: what a value looks like, and which known word a misspelt one is near to.
+#include "apps/config/schema.h"
+
+#include <string.h>
+
+const char *bough_node_shown(const bough_node *node, char buffer[64]) {
+    if (node->kind == BOUGH_MAPPING) return "a mapping";
+    if (node->kind == BOUGH_SEQUENCE) return "a list";
+    if (node->text[0] == '\0') return node->quoted ? "''" : "nothing";
+    size_t length = strlen(node->text);
+    if (length <= 48) {
+        snprintf(buffer, 64, "'%s'", node->text);
+        return buffer;
+    }
+    length = 45;
+    while (((unsigned char)node->text[length] & 0xC0) == 0x80)
+        length--; // not inside a character
+    snprintf(buffer, 64, "'%.*s...'", (int)length, node->text);
+    return buffer;
+}
+
+enum { WORD = 40 };
+
+// Edit distance of two words shorter than WORD, an exchange of neighbours counting as one edit.
+static int edit_distance(const char *a, const char *b) {
+    int n = (int)strlen(a), m = (int)strlen(b), d[WORD + 1][WORD + 1];
+    for (int i = 0; i <= n; i++)
+        d[i][0] = i;
+    for (int j = 0; j <= m; j++)
+        d[0][j] = j;
+    for (int i = 1; i <= n; i++) {
+        for (int j = 1; j <= m; j++) {
+            int best = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+            if (d[i - 1][j] + 1 < best) best = d[i - 1][j] + 1;
+            if (d[i][j - 1] + 1 < best) best = d[i][j - 1] + 1;
+            bool swap = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+            if (swap && d[i - 2][j - 2] + 1 < best) best = d[i - 2][j - 2] + 1;
+            d[i][j] = best;
+        }
+    }
+    return d[n][m];
+}
+
+const char *bough_nearest(const char *word, const char *const *candidates, int n) {
+    size_t length = strlen(word);
+    if (length >= WORD) return NULL;
+    int best = length < 4 ? 2 : length < 8 ? 3 : 4; // one more than what counts as near
+    const char *nearest = NULL;
+    for (int i = 0; i < n; i++) {
+        if (candidates[i] == NULL || strlen(candidates[i]) >= WORD) continue;
+        int distance = edit_distance(word, candidates[i]);
+        if (distance < best) {
+            best = distance;
+            nearest = candidates[i];
+        }
+    }
+    return nearest;
+}

@@ -1,0 +1,83 @@
+// What the files that read a scene share among themselves.
+#ifndef BOUGH_APPS_SCENE_SCENE_INTERNAL_H
+#define BOUGH_APPS_SCENE_SCENE_INTERNAL_H
+
+#include "apps/config/schema.h"
+#include "apps/scene/scene.h"
+
+// The table of a whole scene; fills a bough_scene.
+extern const bough_schema bough_scene_schema;
+
+// Those of its parts.
+extern const bough_schema bough_scene_micro_schema, bough_scene_body_schema,
+    bough_scene_load_schema, bough_scene_spring_schema, bough_scene_bushing_schema,
+    bough_scene_closure_schema, bough_scene_marker_schema, bough_scene_turbine_schema,
+    bough_scene_aero_schema, bough_scene_control_schema;
+
+// Readers of values that are lists of their own kind. `field` is named in the body.
+void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_steps(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_axis_offset(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_torque(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_factor(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
+
+// Checks within one mapping or file; `item` is the struct that was read.
+void bough_scene_check_structure(bough_schema_reader *r, void *item);
+void bough_scene_check_rod(bough_schema_reader *r, void *item);
+
+// Makes the stretch `part` of a structure of it; `given` is where it is written.
+void bough_scene_take_part(bough_schema_reader *r, const bough_node *given, const double part[2],
+                           bough_scene_structure *structure);
+
+void bough_scene_check_aero_blade(bough_schema_reader *r, void *item);
+void bough_scene_check_polar(bough_schema_reader *r, void *item);
+void bough_scene_check_polars(bough_schema_reader *r, void *item);
+void bough_scene_check_wind_table(bough_schema_reader *r, void *item);
+void bough_scene_check_wind(bough_schema_reader *r, void *item);
+void bough_scene_check_tower(bough_schema_reader *r, void *item);
+void bough_scene_check_joint(bough_schema_reader *r, void *item);
+void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint);
+void bough_scene_check_load(bough_schema_reader *r, void *item);
+void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]);
+
+// Checks a load against the body, load->body, that it acts on.
+void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scene,
+                                 const bough_scene_load *load);
+
+// Makes single bodies of those in a row.
+void bough_scene_repeat(bough_schema_reader *reader, bough_scene *scene);
+
+// Resolves names and checks what spans several parts of the scene.
+void bough_scene_link(bough_schema_reader *r, bough_scene *scene);
+
+enum { BOUGH_UNRESOLVED = -2 }; // the index of a name that no body has
+
+// Sets the path of the next errors.
+void bough_link_at(bough_schema_reader *r, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+
+// The index of a named body; BOUGH_UNRESOLVED after an error at the key of `node`.
+int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node,
+                    const char *key, const char *name);
+
+// The value of a key, where an error about it stands; the mapping where it is left out.
+const bough_node *bough_link_value(const bough_node *node, const char *key);
+
+// Parts of bough_scene_link, in this order.
+void bough_link_turbine(bough_schema_reader *r, bough_scene *s);
+void bough_link_aero(bough_schema_reader *r, bough_scene *s);
+void bough_link_control(bough_schema_reader *r, bough_scene *s);
+
+// Replaces or adds the value that "path.to[2].key=value" names; the new root, or NULL after an
+// error. Nodes that an alias shares are copied before they change.
+bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *set,
+                            bough_errors *errors);
+
+#endif

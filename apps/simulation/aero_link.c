@@ -1,0 +1,402 @@
+#include "apps/simulation/aero_link.h"
+
+#include "core/base.h"
+
+#include <string.h>
+
+// A blade's loads at the last sample and the value the load signal has reached, in the body's axes:
+// per vertex force and moment (6 × vertices) of a rod, or the resultant (6) on a rigid body.
+typedef struct blade_loads {
+    const bough_beam *beam;
+    double *sampled, *reached; // (n)
+    double *value, *rate;      // (n) of the signal that the body has, since the last sample
+    int n;
+} blade_loads;
+
+struct bough_aero_link {
+    bough_simulation *simulation;
+    const bough_rotor *rotor;
+    bough_rotor_data data;
+    bough_rotor_motion motion;
+    bough_blade_motion *moving; // (n_blade), what `motion` points to …
+    double *vertex;             // (n_blade × BOUGH_BLADE_ROWS × n_vertex) … and these
+    int n_blade, n_vertex;
+    blade_loads *blade; // (n_blade)
+    double factor;      // of the ramp at the last sample
+    double start;       // of the signals, the last sample's time [s]
+    bool started;
+};
+
+// -- build ----------------------------------------------------------------------------------------
+
+static bough_status same_mesh(const bough_aero_link *l, const bough_beam *beam) {
+    const bough_beam *first = l->blade[0].beam;
+    if (beam->def.n_segment == first->def.n_segment) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "blades %s and %s have %d and %d segments; the aerodynamics"
+                      " wants the same mesh on all blades", first->body->name, beam->body->name,
+                      first->def.n_segment, beam->def.n_segment);
+}
+
+static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
+    const bough_scene_turbine *turbine = &l->simulation->scene->turbine;
+    l->n_blade = turbine->n_blade;
+    l->blade = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->blade);
+    if (l->blade == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
+    for (int b = 0; b < l->n_blade; b++) {
+        blade_loads *blade = &l->blade[b];
+        blade->beam = bough_simulation_beam(l->simulation, turbine->blade[b]);
+        bough_status status = same_mesh(l, blade->beam);
+        if (!bough_is_ok(&status)) return status;
+        l->n_vertex = blade->beam->def.n_segment + 1;
+        blade->n = blade->beam->port < 0 ? 6 : 6 * l->n_vertex;
+        blade->sampled = bough_arena_doubles(arena, (size_t)blade->n);
+        blade->reached = bough_arena_doubles(arena, (size_t)blade->n);
+        blade->value = bough_arena_doubles(arena, (size_t)blade->n);
+        blade->rate = bough_arena_doubles(arena, (size_t)blade->n);
+    }
+    return bough_ok();
+}
+
+static void take_motion(bough_arena *arena, bough_aero_link *l) {
+    size_t n = (size_t)l->n_vertex * BOUGH_BLADE_ROWS;
+    l->moving = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->moving);
+    l->vertex = bough_arena_doubles(arena, (size_t)l->n_blade * n);
+    l->motion.blade = l->moving;
+    for (int b = 0; l->moving && l->vertex && b < l->n_blade; b++)
+        l->moving[b].vertex = l->vertex + (size_t)b * n;
+}
+
+// Tables of the scene in the rotor's form.
+typedef struct tables {
+    bough_polar_def *polar;
+    bough_station_def *station;
+    bough_mat3 *rotation;
+    double *drag; // of the tower
+} tables;
+
+static bool take_tables(bough_arena *arena, const bough_aero_link *l, tables *t) {
+    const bough_scene_aero *aero = &l->simulation->scene->aero;
+    t->polar = bough_arena_take(arena, (size_t)aero->polars.n_polar * sizeof *t->polar);
+    t->station = bough_arena_take(arena, (size_t)aero->blade.n_station * sizeof *t->station);
+    t->rotation = bough_arena_take(arena, (size_t)l->n_vertex * sizeof *t->rotation);
+    t->drag = bough_arena_doubles(arena, (size_t)aero->tower.n_height);
+    if (bough_arena_exhausted(arena)) return false;
+    for (int k = 0; k < aero->polars.n_polar; k++) {
+        const bough_scene_polar *from = &aero->polars.polar[k];
+        double *row = bough_arena_doubles(arena, 4 * (size_t)from->n_row);
+        if (row == NULL) return false;
+        for (int i = 0; i < from->n_row; i++) {
+            const bough_scene_polar_row *r = &from->row[i];
+            const double values[4] = {r->alpha * (180 / BOUGH_PI), r->cl, r->cd, r->cm};
+            memcpy(row + 4 * i, values, sizeof values);
+        }
+        t->polar[k] = (bough_polar_def){from->name, from->n_row, row};
+    }
+    for (int k = 0; k < aero->blade.n_station; k++) {
+        const bough_scene_aero_station *from = &aero->blade.station[k];
+        t->station[k] = (bough_station_def){.span = from->span,
+                                            .chord = from->chord,
+                                            .twist = from->twist,
+                                            .centre_x = from->ac[0],
+                                            .centre_y = from->ac[1],
+                                            .polar = from->polar,
+                                            .second = from->second,
+                                            .share = from->share};
+    }
+    for (int i = 0; i < aero->tower.n_height; i++) {
+        t->drag[i] = aero->tower.drag[aero->tower.n_drag == 1 ? 0 : i];
+    }
+    for (int i = 0; i < l->n_vertex; i++) {
+        t->rotation[i] = bough_rotation_matrix(l->blade[0].beam->def.rotation[i]);
+    }
+    return true;
+}
+
+static bough_tower_def tower_def(const bough_scene_tower *tower, const double *drag) {
+    bool bak = tower->influence == BOUGH_SCENE_BAK, powles = tower->shadow == BOUGH_SCENE_POWLES;
+    return (bough_tower_def){
+        .n = tower->n_height,
+        .height = tower->height,
+        .diameter = tower->diameter,
+        .drag = drag,
+        .influence = bak ? BOUGH_TOWER_BAK : BOUGH_TOWER_POTENTIAL,
+        .shadow = powles ? BOUGH_TOWER_SHADOW_POWLES : BOUGH_TOWER_SHADOW_NONE,
+    };
+}
+
+static bough_wind_def wind_def(const bough_scene_wind *wind, double duration) {
+    static const bough_wind_shear shears[] = {
+        [BOUGH_SCENE_WIND_UNIFORM] = BOUGH_WIND_UNIFORM,
+        [BOUGH_SCENE_WIND_POWER] = BOUGH_WIND_POWER,
+        [BOUGH_SCENE_WIND_LOG] = BOUGH_WIND_LOG,
+        [BOUGH_SCENE_WIND_WND] = BOUGH_WIND_UNIFORM,
+        [BOUGH_SCENE_WIND_BTS] = BOUGH_WIND_UNIFORM,
+    };
+    static const bough_wind_source sources[] = {
+        [BOUGH_SCENE_WIND_WND] = BOUGH_WIND_HUB_FILE,
+        [BOUGH_SCENE_WIND_BTS] = BOUGH_WIND_BOX_FILE,
+    };
+    return (bough_wind_def){
+        .speed = wind->speed,
+        .vertical = wind->vertical,
+        .direction = wind->direction,
+        .shear = shears[wind->kind],
+        .exponent = wind->exponent,
+        .roughness = wind->roughness,
+        .reference_height = wind->reference_height,
+        .n_time = wind->table.n_time,
+        .time = wind->table.time,
+        .speed_at_time = wind->table.speed,
+        .source = sources[wind->kind],
+        .file = wind->file,
+        .reference_length = wind->reference_length,
+        .until = duration,
+    };
+}
+
+static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
+    const bough_scene_aero *aero = &l->simulation->scene->aero;
+    const bough_rod_def *mesh = &l->blade[0].beam->def;
+    bough_rotor_def def = bough_rotor_def_default();
+    def.n_blade = l->n_blade;
+    def.density = aero->air_density;
+    def.hub_radius = aero->hub_radius;
+    def.skew = aero->induction.skew == BOUGH_SCENE_PITT_PETERS;
+    def.induction.tip_loss = aero->induction.tip_loss;
+    def.induction.hub_loss = aero->induction.hub_loss;
+    def.induction.tangential = aero->induction.tangential;
+    if (aero->induction.high_thrust == BOUGH_SCENE_BUHL) {
+        def.induction.high_thrust = BOUGH_HIGH_THRUST_BUHL;
+    }
+    def.induction.axial_drag = def.induction.tangential_drag = aero->induction.drag;
+    if (aero->induction.inflow == BOUGH_SCENE_OYE) {
+        def.inflow = (bough_inflow_def){BOUGH_INFLOW_OYE, aero->induction.inflow_time};
+    }
+    def.smooth_polars = aero->interpolation == BOUGH_SCENE_POLARS_SMOOTH;
+    def.pitching_moment = aero->pitching_moment;
+    if (aero->dynamic_stall == BOUGH_SCENE_STALL_HGM) def.stall = BOUGH_STALL_HGM;
+    def.wind = wind_def(&aero->wind, l->simulation->scene->simulation.duration);
+    if (aero->tower.node != NULL) def.tower = tower_def(&aero->tower, t->drag);
+    def.n_polar = aero->polars.n_polar;
+    def.polar = t->polar;
+    def.n_station = aero->blade.n_station;
+    def.station = t->station;
+    def.n_vertex = l->n_vertex;
+    def.vertex_span = mesh->span;
+    def.vertex_position = mesh->position;
+    def.vertex_rotation = t->rotation;
+    return def;
+}
+
+// A box must reach over the undeformed rotor.
+static bough_status check_reach(const bough_aero_link *l) {
+    const bough_scene *scene = l->simulation->scene;
+    const bough_frame *rotor = &l->simulation->tree->bodies[scene->turbine.rotor];
+    const bough_scene_aero_blade *blade = &scene->aero.blade;
+    bough_vec3 hub = bough_tree_frame_pose(l->simulation->view, rotor).position;
+    double radius = scene->aero.hub_radius + blade->station[blade->n_station - 1].span;
+    if (bough_rotor_in_wind(l->rotor, hub, radius)) return bough_ok();
+    return bough_fail(BOUGH_INVALID,
+                      "aero.wind: the box of %s is too small for a rotor of %g m radius at %g m",
+                      scene->aero.wind.file, radius, hub.z);
+}
+
+bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation,
+                                   bough_aero_link **link) {
+    bough_aero_link *l = bough_arena_take(arena, sizeof *l);
+    tables t;
+    if (l == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
+    l->simulation = simulation;
+    bough_status status = take_blades(arena, l);
+    if (!bough_is_ok(&status)) return status;
+    take_motion(arena, l);
+    if (!take_tables(arena, l, &t)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
+    }
+    bough_rotor_def def = rotor_def(l, &t);
+    status = bough_rotor_build(arena, &def, &l->rotor);
+    if (bough_is_ok(&status)) status = check_reach(l);
+    if (bough_is_ok(&status)) status = bough_rotor_data_build(arena, l->rotor, &l->data);
+    if (bough_is_ok(&status)) *link = l;
+    return status;
+}
+
+// -- sample ---------------------------------------------------------------------------------------
+
+static void gather_rotor(bough_aero_link *l, double t) {
+    bough_simulation *s = l->simulation;
+    const bough_scene_turbine *turbine = &s->scene->turbine;
+    bough_simulation_update(s);
+    bough_transform rotor = bough_tree_frame_pose(s->view, &s->tree->bodies[turbine->rotor]);
+    const bough_vec3 axes[3] = {rotor.rotation.c1, rotor.rotation.c2, rotor.rotation.c3};
+    l->motion.time = t;
+    l->motion.hub = rotor.position;
+    l->motion.shaft = axes[s->scene->body[turbine->rotor].joint.axis];
+}
+
+static void gather_blade(bough_aero_link *l, int b) {
+    bough_simulation *s = l->simulation;
+    const bough_beam *beam = l->blade[b].beam;
+    l->moving[b].frame = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
+    bough_simulation_beam_rows(s, beam, l->vertex + b * BOUGH_BLADE_ROWS * l->n_vertex);
+}
+
+static double ramp_factor(const double ramp[2], double t) {
+    if (ramp[1] <= ramp[0]) return 1;
+    return bough_clamp((t - ramp[0]) / (ramp[1] - ramp[0]), 0, 1);
+}
+
+// Value at `start` and rate until `span` later of the signal of fresh loads. Linear: from what was
+// reached to the value extrapolated from the last two samples, so that loads are continuous and not
+// late.
+static void follow(const bough_aero_link *l, const double *restrict fresh, double span,
+                   blade_loads *blade) {
+    bool held = l->simulation->scene->aero.hold == BOUGH_SCENE_CONSTANT || !l->started;
+    double *restrict value = blade->value, *restrict rate = blade->rate;
+    double *restrict reached = blade->reached, *restrict sampled = blade->sampled;
+    double factor = l->factor;
+    for (int k = 0; k < blade->n; k++) {
+        double now = factor * fresh[k];
+        value[k] = held ? now : reached[k];
+        rate[k] = held ? 0 : (2 * now - sampled[k] - value[k]) / span;
+        reached[k] = value[k] + span * rate[k];
+        sampled[k] = now;
+    }
+}
+
+// Hands a blade's signal to its body.
+static void put(bough_aero_link *l, int b) {
+    blade_loads *blade = &l->blade[b];
+    if (blade->beam->port < 0) {
+        bough_tree_set_wrench(l->simulation->tree, blade->beam->marker, l->start, blade->value,
+                              blade->rate);
+        return;
+    }
+    bough_rod_loads *rod = bough_beam_loads(blade->beam);
+    size_t stride = (size_t)bough_beam_mesh(blade->beam)->stride, n = (size_t)l->n_vertex;
+    for (size_t c = 0; c < 6; c++) {
+        memcpy(rod->value + c * stride, blade->value + c * n, n * sizeof(double));
+        memcpy(rod->rate + c * stride, blade->rate + c * n, n * sizeof(double));
+    }
+    rod->start = l->start;
+}
+
+// The resultant of the loads on a rigid blade's vertices.
+static void sum_loads(const bough_aero_link *l, int b, double sum[6]) {
+    const double *load = l->data.load + 6 * b * l->n_vertex;
+    bough_wrench total = {{0, 0, 0}, {0, 0, 0}};
+    for (int i = 0; i < l->n_vertex; i++) {
+        double here[6];
+        for (int c = 0; c < 6; c++) here[c] = load[c * l->n_vertex + i];
+        bough_transform at = {l->blade[b].beam->def.position[i], bough_mat3_identity()};
+        total = bough_wrench_add(total, bough_wrench_to_parent(&at, bough_wrench_load(here)));
+    }
+    bough_wrench_store(total, sum);
+}
+
+static void apply(bough_aero_link *l, int b, double span) {
+    double resultant[6];
+    const double *fresh = l->data.load + 6 * b * l->n_vertex;
+    if (l->blade[b].beam->port < 0) {
+        sum_loads(l, b, resultant);
+        fresh = resultant;
+    }
+    follow(l, fresh, span, &l->blade[b]);
+    put(l, b);
+}
+
+// Tasks, a blade each.
+typedef struct sample_work {
+    bough_aero_link *link;
+    double span; // until the next sample [s]
+} sample_work;
+
+static void approach_blade(void *self, int b, bough_part part) {
+    bough_aero_link *l = ((const sample_work *)self)->link;
+    if (part != BOUGH_SECOND_HALF) {
+        gather_blade(l, b);
+        bough_rotor_approach(l->rotor, &l->motion, b, &l->data);
+    }
+    if (part != BOUGH_FIRST_HALF) bough_rotor_induce(l->rotor, &l->motion, b, &l->data);
+}
+
+static void load_blade(void *self, int b) {
+    const sample_work *w = self;
+    bough_rotor_load(w->link->rotor, &w->link->motion, b, &w->link->data);
+    apply(w->link, b, w->span);
+}
+
+static bough_status sample(void *self, double t, double t_next, bool *jumped) {
+    bough_aero_link *l = self;
+    const bough_scene_aero *aero = &l->simulation->scene->aero;
+    sample_work w = {l, t_next - t};
+    l->factor = ramp_factor(aero->ramp, t);
+    l->start = t;
+    gather_rotor(l, t);
+    bough_pool_run_turns(l->simulation->pool, l->n_blade, approach_blade, &w);
+    bough_rotor_survey(l->rotor, &l->motion, &l->data);
+    bough_pool_run(l->simulation->pool, l->n_blade, load_blade, &w);
+    bough_rotor_conclude(l->rotor, &l->motion, &l->data);
+    *jumped = !l->started || aero->hold == BOUGH_SCENE_CONSTANT;
+    l->started = true;
+    return bough_ok();
+}
+
+void bough_aero_link_hold(bough_aero_link *link, double t) {
+    bool jumped;
+    link->started = false;
+    bough_rotor_forget(link->rotor, &link->data);
+    sample(link, t, t + 1, &jumped); // constant: there is none before it
+    link->started = false;
+    bough_rotor_forget(link->rotor, &link->data);
+}
+
+bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
+    return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample};
+}
+
+const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link) { return link->rotor; }
+
+const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor) {
+    *factor = link->factor;
+    return &link->data;
+}
+
+// -- saving ---------------------------------------------------------------------------------------
+
+enum { SCALARS = 3, PER_LOAD = 4 };
+
+int bough_aero_link_size(const bough_aero_link *link) {
+    int n = SCALARS + bough_rotor_memory_size(link->rotor);
+    for (int b = 0; b < link->n_blade; b++)
+        n += PER_LOAD * link->blade[b].n;
+    return n;
+}
+
+void bough_aero_link_save(const bough_aero_link *link, double *to) {
+    *to++ = link->factor;
+    *to++ = link->start;
+    *to++ = link->started;
+    for (int b = 0; b < link->n_blade; b++) {
+        const blade_loads *blade = &link->blade[b];
+        const double *const part[PER_LOAD] = {blade->sampled, blade->reached, blade->value,
+                                              blade->rate};
+        for (int i = 0; i < PER_LOAD; i++, to += blade->n)
+            memcpy(to, part[i], (size_t)blade->n * sizeof *to);
+    }
+    bough_rotor_save(link->rotor, &link->data, to);
+}
+
+void bough_aero_link_restore(bough_aero_link *link, const double *from) {
+    link->factor = *from++;
+    link->start = *from++;
+    link->started = *from++ != 0;
+    for (int b = 0; b < link->n_blade; b++) {
+        const blade_loads *blade = &link->blade[b];
+        double *const part[PER_LOAD] = {blade->sampled, blade->reached, blade->value, blade->rate};
+        for (int i = 0; i < PER_LOAD; i++, from += blade->n)
+            memcpy(part[i], from, (size_t)blade->n * sizeof *from);
+        if (link->started) put(link, b);
+    }
+    bough_rotor_restore(link->rotor, from, &link->data);
+}

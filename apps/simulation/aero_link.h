@@ -1,0 +1,32 @@
+// Joins the rotor's aerodynamics to the bodies of a simulation: motion of the blades' vertices in,
+// loads on them out, sampled at the scene's rate and held or joined linearly between samples.
+#ifndef BOUGH_APPS_SIMULATION_AERO_LINK_H
+#define BOUGH_APPS_SIMULATION_AERO_LINK_H
+
+#include "aero/rotor.h"
+#include "apps/simulation/build.h"
+
+typedef struct bough_aero_link bough_aero_link;
+
+// Builds the rotor of the scene's aero block for the simulation's blades.
+bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation,
+                                   bough_aero_link **link);
+
+// The sampled load for the master's loop.
+bough_sampled_load bough_aero_link_load(bough_aero_link *link);
+
+// Samples the blades as they are and holds the loads from t on; the next sample starts anew.
+void bough_aero_link_hold(bough_aero_link *link, double t);
+
+// All that the next samples depend on as a row of numbers, and the loads that the bodies have, for
+// schemes that repeat samples: restoring puts the loads back. The results below are not in it.
+int bough_aero_link_size(const bough_aero_link *link);
+void bough_aero_link_save(const bough_aero_link *link, double *to);
+void bough_aero_link_restore(bough_aero_link *link, const double *from);
+
+const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link);
+
+// Results of the last sample, with the ramp's factor at its time.
+const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor);
+
+#endif

@@ -1,0 +1,164 @@
+#include "apps/simulation/control_link.h"
+
+#include "aero/discon.h"
+#include "apps/simulation/aero_link.h"
+#include "core/base.h"
+
+#include <string.h>
+
+enum { BLADES = BOUGH_DISCON_BLADES };
+
+// Doubles only.
+typedef struct memory {
+    bough_controller_state law;
+    double torque;                            // of the generator, reached at the next sample [N m]
+    double speed;                             // of the generator at the last sample [rad/s]
+    bough_motion_point pitch_joint[BLADES];   // reached at the next sample
+    double started;
+} memory;
+
+struct bough_control_link {
+    bough_simulation *simulation;
+    const bough_scene_control *control;
+    bough_discon *discon; // NULL: the law
+    int load, n_blade;
+    bool steers; // the blades have pitch joints
+    memory now;
+};
+
+static int blade_body(const bough_control_link *l, int b) {
+    return l->simulation->scene->turbine.blade[b];
+}
+
+static bough_motion_point joint_point(const bough_simulation *s, int body) {
+    int q, v;
+    bough_tree_joint_rows(s->tree, body, &q, &v);
+    return (bough_motion_point){s->trunk.state[q], s->trunk.state[v], 0};
+}
+
+bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation, int load,
+                                      bough_control_link **link) {
+    const bough_scene *scene = simulation->scene;
+    bough_control_link *l = bough_arena_take(arena, sizeof *l);
+    if (l == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "control: out of memory");
+    l->simulation = simulation;
+    l->control = &scene->control;
+    l->load = load;
+    l->n_blade = scene->turbine.n_blade < BLADES ? scene->turbine.n_blade : BLADES;
+    l->steers = scene->body[scene->turbine.blade[0]].joint.motion.node != NULL;
+    for (int b = 0; b < l->n_blade && l->steers; b++)
+        l->now.pitch_joint[b] = joint_point(simulation, blade_body(l, b));
+    *link = l;
+    if (l->control->kind == BOUGH_SCENE_VARIABLE_SPEED) {
+        return bough_controller_check(&l->control->law);
+    }
+    return bough_discon_open(arena, l->control->library, l->control->input, &l->discon);
+}
+
+// -- sample ---------------------------------------------------------------------------------------
+
+static double root_moment(const bough_control_link *l, int b, double t) {
+    const bough_beam *beam = bough_simulation_beam(l->simulation, blade_body(l, b));
+    double root[BOUGH_ROD_MOST_OUTPUTS], pitch = bough_simulation_pitch(l->simulation, beam);
+    bough_simulation_root(l->simulation, beam, t, root);
+    return root[4] * cos(pitch) - root[3] * sin(pitch);
+}
+
+static double hub_wind(const bough_simulation *s) {
+    double factor;
+    if (s->aero == NULL) return 0;
+    return bough_norm(bough_aero_link_data(s->aero, &factor)->disk_wind);
+}
+
+static bough_discon_sensed sense(const bough_control_link *l, double t, double step, double speed,
+                                 double azimuth) {
+    const bough_simulation *s = l->simulation;
+    bough_discon_sensed x = {.time = t,
+                             .step = step,
+                             .last = t + step > s->master->duration - 1e-6 * step,
+                             .n_blade = l->n_blade,
+                             .generator_speed = speed,
+                             .rotor_speed = speed / l->control->gear_ratio,
+                             .torque = l->now.torque,
+                             .shaft_power = speed * l->now.torque,
+                             .electrical_power = l->control->efficiency * speed * l->now.torque,
+                             .wind = hub_wind(s),
+                             .azimuth = azimuth - 2 * BOUGH_PI * floor(azimuth / 2 / BOUGH_PI)};
+    for (int b = 0; b < l->n_blade; b++) {
+        x.pitch[b] = bough_simulation_pitch(s, bough_simulation_beam(s, blade_body(l, b)));
+        x.root_moment[b] = root_moment(l, b, t);
+    }
+    return x;
+}
+
+static bough_status decide(bough_control_link *l, const bough_discon_sensed *x,
+                           bough_discon_demand *demand) {
+    if (l->discon) return bough_discon_call(l->discon, x, demand);
+    bough_controller_state *law = &l->now.law;
+    bough_controller_advance(&l->control->law, x->generator_speed, x->pitch[0], x->step, law);
+    demand->torque = law->torque;
+    for (int b = 0; b < BLADES; b++)
+        demand->pitch[b] = law->pitch;
+    return bough_ok();
+}
+
+// To the demanded pitch, as fast as it may turn.
+static void steer(bough_control_link *l, int b, double t, double step, double pitch) {
+    bough_simulation *s = l->simulation;
+    int body = blade_body(l, b);
+    double reach = l->control->law.pitch_rate * step;
+    bough_motion_point from = l->now.pitch_joint[b], to;
+    to.q = bough_clamp(s->scene->body[body].pitch - pitch, from.q - reach, from.q + reach);
+    to.v = (to.q - from.q) / step;
+    to.a = 0;
+    bough_tree_steer(s->tree, body, t, step, from, to);
+    l->now.pitch_joint[b] = to;
+}
+
+static bough_status sample(void *self, double t, double t_next, bool *jumped) {
+    bough_control_link *l = self;
+    bough_simulation *s = l->simulation;
+    const bough_scene_control *control = l->control;
+    double step = t_next - t;
+    bough_simulation_update(s);
+    bough_motion_point rotor = joint_point(s, s->scene->turbine.rotor);
+    double speed = control->gear_ratio * rotor.v;
+    bough_discon_sensed sensed = sense(l, t, step, speed, rotor.q);
+    bough_discon_demand demand;
+    bough_status status = decide(l, &sensed, &demand);
+    if (!bough_is_ok(&status)) return status;
+    double before = l->now.started != 0 ? l->now.torque : demand.torque;
+    bough_tree_steer_load(s->tree, l->load, t, step, -control->gear_ratio * before,
+                          -control->gear_ratio * demand.torque);
+    for (int b = 0; b < l->n_blade && l->steers; b++)
+        steer(l, b, t, step, demand.pitch[b]);
+    *jumped = l->now.started == 0;
+    l->now.torque = demand.torque;
+    l->now.speed = speed;
+    l->now.started = 1;
+    return bough_ok();
+}
+
+bough_sampled_load bough_control_link_load(bough_control_link *link) {
+    return (bough_sampled_load){1 / link->control->rate, link, sample};
+}
+
+void bough_control_link_generator(const bough_control_link *l, double *speed, double *torque,
+                                  double *power) {
+    *speed = l->now.speed;
+    *torque = l->now.torque;
+    *power = l->control->efficiency * l->now.speed * l->now.torque;
+}
+
+int bough_control_link_size(const bough_control_link *link) {
+    (void)link;
+    return sizeof(memory) / sizeof(double);
+}
+
+void bough_control_link_save(const bough_control_link *link, double *to) {
+    memcpy(to, &link->now, sizeof link->now);
+}
+
+void bough_control_link_restore(bough_control_link *link, const double *from) {
+    memcpy(&link->now, from, sizeof link->now);
+}

@@ -1,0 +1,29 @@
+// Joins a controller to the turbine of a simulation: rotor speed and pitch in, generator torque and
+// pitch out, sampled at the scene's rate. Between samples torque goes linearly to what was demanded,
+// and the blades' pitch joints by cubics without a jump in speed: both arrive one sample late.
+#ifndef BOUGH_APPS_SIMULATION_CONTROL_LINK_H
+#define BOUGH_APPS_SIMULATION_CONTROL_LINK_H
+
+#include "apps/simulation/build.h"
+
+typedef struct bough_control_link bough_control_link;
+
+// Takes the load `load` of the simulation's tree, on the rotor's joint, for the generator.
+bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation, int load,
+                                      bough_control_link **link);
+
+// The sampled load for the master's loop.
+bough_sampled_load bough_control_link_load(bough_control_link *link);
+
+// At the last sample: generator speed [rad/s], torque on the fast shaft [N m] and electrical power
+// [W].
+void bough_control_link_generator(const bough_control_link *link, double *speed, double *torque,
+                                  double *power);
+
+// The memory as a row of numbers, for schemes that repeat a sample. A shared library's own is not
+// in it.
+int bough_control_link_size(const bough_control_link *link);
+void bough_control_link_save(const bough_control_link *link, double *to);
+void bough_control_link_restore(bough_control_link *link, const double *from);
+
+#endif

@@ -1,0 +1,82 @@
+#include "apps/simulation/error_probe.h"
+
+#include <math.h>
+#include <string.h>
+
+bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s,
+                                      const bough_channels *channels, bough_error_probe *probe) {
+    size_t n = (size_t)channels->count;
+    *probe = (bough_error_probe){.simulation = s, .channels = channels};
+    probe->difference = bough_arena_doubles(arena, n);
+    probe->largest = bough_arena_doubles(arena, n);
+    probe->low = bough_arena_doubles(arena, n);
+    probe->high = bough_arena_doubles(arena, n);
+    probe->value = bough_arena_doubles(arena, n);
+    probe->own = bough_arena_take(arena, (size_t)s->master->assembly->n_member * sizeof *probe->own);
+    probe->state = bough_arena_doubles(arena, (size_t)s->master->assembly->n_state);
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    for (size_t i = 0; i < n; i++) {
+        probe->low[i] = HUGE_VAL;
+        probe->high[i] = -HUGE_VAL;
+    }
+    return bough_ok();
+}
+
+static bough_subsystem *member(bough_simulation *s, int i) {
+    return i == 0 ? &s->trunk : &s->rod[i - 1];
+}
+
+static void sample(const bough_error_probe *p, double *value) {
+    bough_simulation_update(p->simulation);
+    bough_channels_sample(p->channels, p->simulation->master->time, value);
+}
+
+// The channels without the error: the queries see other states for a moment.
+static void sample_corrected(bough_error_probe *p, const double *error) {
+    bough_simulation *s = p->simulation;
+    const bough_assembly *a = s->master->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        double *state = p->state + a->state_offset[i];
+        p->own[i] = member(s, i)->state;
+        for (int k = 0; k < a->member[i]->n_state; k++) {
+            state[k] = p->own[i][k] - error[a->state_offset[i] + k];
+        }
+        member(s, i)->state = state;
+    }
+    sample(p, p->difference);
+    for (int i = 0; i < a->n_member; i++) member(s, i)->state = p->own[i];
+}
+
+// An azimuth near its jump differs by a whole turn.
+static double unturned(const char *unit, double difference) {
+    return strcmp(unit, "deg") == 0 ? remainder(difference, 360) : difference;
+}
+
+bool bough_error_probe_update(bough_error_probe *p) {
+    const bough_error_estimate *estimate = p->simulation->master->estimate;
+    if (!estimate || bough_error_estimate_batches(estimate) == p->batches) return false;
+    p->batches = bough_error_estimate_batches(estimate);
+    const double *error = bough_error_estimate_states(estimate);
+    if (error) sample_corrected(p, error);
+    sample(p, p->value);
+    for (int i = 0; i < p->simulation->n_motion_channel; i++) {
+        double corrected = error ? p->difference[i] : (double)NAN;
+        const char *unit = p->channels->channel[i].unit;
+        p->difference[i] = BOUGH_ERROR_SAFETY * unturned(unit, p->value[i] - corrected);
+        bool grows = !(fabs(p->difference[i]) <= p->largest[i]); // a NaN wins and stays
+        if (grows && !isnan(p->largest[i])) p->largest[i] = fabs(p->difference[i]);
+        p->low[i] = fmin(p->low[i], p->value[i]);
+        p->high[i] = fmax(p->high[i], p->value[i]);
+    }
+    return true;
+}
+
+bool bough_error_probe_knows(const bough_error_probe *p, int channel) {
+    return p->batches > 0 && channel < p->simulation->n_motion_channel &&
+           isfinite(p->largest[channel]);
+}
+
+double bough_error_probe_relative(const bough_error_probe *p, int channel) {
+    double range = p->high[channel] - p->low[channel];
+    return range > 0 ? p->largest[channel] / range : (double)NAN;
+}

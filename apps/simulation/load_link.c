@@ -1,0 +1,48 @@
+#include "apps/simulation/load_link.h"
+
+#include "flexbody/rod_load.h"
+
+#include <string.h>
+
+static bough_rod_reach reach_of(const bough_scene_load *load, const bough_rod_model *m) {
+    switch ((bough_scene_load_place)load->place) {
+    case BOUGH_SCENE_AT_VERTEX:
+        return (bough_rod_reach){m->span[load->vertex], m->span[load->vertex]};
+    case BOUGH_SCENE_AT_SPAN: return (bough_rod_reach){load->span[0], load->span[0]};
+    case BOUGH_SCENE_ALONG: return (bough_rod_reach){load->span[0], load->span[1]};
+    case BOUGH_SCENE_AT_TIP: break;
+    }
+    return (bough_rod_reach){m->span[m->n_segment], m->span[m->n_segment]};
+}
+
+// Force and moment in the axes that the rod wants.
+static void resolve(const bough_simulation *s, const bough_beam *beam, const bough_scene_load *load,
+                    double wrench[6]) {
+    bough_vec3 force = {load->force[0], load->force[1], load->force[2]};
+    bough_vec3 moment = {load->moment[0], load->moment[1], load->moment[2]};
+    if (load->frame == BOUGH_SCENE_LOAD_GROUND) {
+        bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
+        force = bough_mat3_tmul(r, force);
+        moment = bough_mat3_tmul(r, moment);
+    }
+    const double values[6] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
+    memcpy(wrench, values, sizeof values);
+}
+
+bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s) {
+    for (int k = 0; k < s->scene->n_load; k++) {
+        const bough_scene_load *load = &s->scene->load[k];
+        if (load->body_name == NULL) continue;
+        if (s->scene->body[load->body].fidelity == BOUGH_SCENE_RIGID) continue; // force_link.h
+        const bough_beam *beam = bough_simulation_beam(s, load->body);
+        const bough_rod_model *m = bough_beam_mesh(beam);
+        bool follower = load->frame == BOUGH_SCENE_LOAD_FOLLOWER;
+        double *value = bough_rod_loads_ramped(bough_beam_loads(beam), arena, m, follower,
+                                               load->ramp);
+        if (value == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "loads: out of memory");
+        double wrench[6];
+        resolve(s, beam, load, wrench);
+        bough_rod_lump(m, reach_of(load, m), wrench, follower, value);
+    }
+    return bough_ok();
+}

@@ -1,0 +1,496 @@
+// The channels of a simulation: what each part of the scene gives to be recorded. OpenFAST's names
+// where the quantity is the same.
+#include "apps/simulation/aero_link.h"
+#include "apps/simulation/build.h"
+#include "apps/simulation/control_link.h"
+#include "core/dynamics.h"
+#include "core/force.h"
+#include "core/loop.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define DEGREE (BOUGH_PI / 180)
+#define RPM (BOUGH_PI / 30)
+
+// -- joints ---------------------------------------------------------------------------------------
+
+static void joint_state(const bough_simulation *s, int body, double *coordinate, double *speed) {
+    int q, v;
+    bough_tree_joint_rows(s->tree, body, &q, &v);
+    *coordinate = s->trunk.state[q];
+    *speed = s->trunk.state[v];
+}
+
+static void sample_rotor(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    double angle, speed;
+    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
+    double turn = fmod(angle / DEGREE, 360);
+    value[0] = speed / RPM;
+    value[1] = turn < 0 ? turn + 360 : turn;
+}
+
+static bool is_rotor(const bough_scene *scene, int body) {
+    return scene->turbine.node != NULL && scene->turbine.rotor == body;
+}
+
+// What is recorded of a joint with axes: each coordinate and its rate.
+static const struct {
+    int n;
+    struct {
+        const char *name; // after the body's, before Pos and Vel
+        bool angle;
+    } coordinate[3];
+} joint_channels[BOUGH_SCENE_PLANAR + 1] = {
+    [BOUGH_SCENE_REVOLUTE] = {1, {{"", true}}},
+    [BOUGH_SCENE_PRISMATIC] = {1, {{"", false}}},
+    [BOUGH_SCENE_CYLINDRICAL] = {2, {{"", false}, {"Ang", true}}},
+    [BOUGH_SCENE_UNIVERSAL] = {2, {{"Ang1", true}, {"Ang2", true}}},
+    [BOUGH_SCENE_PLANAR] = {3, {{"1", false}, {"2", false}, {"Ang", true}}},
+};
+
+static int n_recorded(const bough_scene *scene, int body) {
+    return is_rotor(scene, body) ? 0 : joint_channels[scene->body[body].joint.kind].n;
+}
+
+// q̇ of the joints with axes: all speeds but the planar joint's are it.
+static void joint_rates(const bough_simulation *s, int body, const double *q, double *rate) {
+    int coordinate, speed;
+    bough_tree_joint_rows(s->tree, body, &coordinate, &speed);
+    const double *v = s->trunk.state + speed;
+    int n = joint_channels[s->scene->body[body].joint.kind].n;
+    if (s->scene->body[body].joint.kind == BOUGH_SCENE_PLANAR) {
+        bough_joint_rate(&s->tree->links[s->tree->bodies[body].link].joint, q, v, rate);
+    } else {
+        memcpy(rate, v, (size_t)n * sizeof *v);
+    }
+}
+
+static void sample_joints(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    for (int i = 0; i < s->scene->n_body; i++) {
+        int n = n_recorded(s->scene, i), coordinate, speed;
+        if (n == 0) continue;
+        double rate[3];
+        bough_tree_joint_rows(s->tree, i, &coordinate, &speed);
+        const double *q = s->trunk.state + coordinate;
+        joint_rates(s, i, q, rate);
+        for (int k = 0; k < n; k++, value += 2) {
+            bool angle = joint_channels[s->scene->body[i].joint.kind].coordinate[k].angle;
+            value[0] = q[k] / (angle ? DEGREE : 1);
+            value[1] = rate[k] / (angle ? DEGREE : 1);
+        }
+    }
+}
+
+static bough_status add_joint(const bough_scene *scene, int body, bough_channels *list) {
+    const char *name = scene->body[body].name;
+    int kind = scene->body[body].joint.kind;
+    bough_status status = bough_ok();
+    for (int k = 0; k < n_recorded(scene, body) && bough_is_ok(&status); k++) {
+        bool angle = joint_channels[kind].coordinate[k].angle;
+        const char *which = joint_channels[kind].coordinate[k].name;
+        status = bough_channels_add(list, angle ? "deg" : "m", "%s%sPos", name, which);
+        if (!bough_is_ok(&status)) break;
+        status = bough_channels_add(list, angle ? "deg/s" : "m/s", "%s%sVel", name, which);
+    }
+    return status;
+}
+
+static bough_status add_joints(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_joints, s);
+    for (int i = 0; i < s->scene->n_body && bough_is_ok(&status); i++) {
+        status = add_joint(s->scene, i, list);
+    }
+    return status;
+}
+
+static bough_status add_rotor(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_rotor, s);
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "rpm", "RotSpeed");
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "deg", "Azimuth");
+    return status;
+}
+
+// Whether coordinate k of a joint is prescribed
+static bool is_driven(const bough_scene_joint *joint, int k) {
+    return (k == 0 ? &joint->motion : &joint->second_motion)->node != NULL;
+}
+
+// What the joints with prescribed motion take, under the rods' present forces.
+static void sample_drives(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
+    for (int i = 0; i < s->scene->n_body; i++) {
+        for (int k = 0, q, v; k < 2; k++) {
+            if (!is_driven(&s->scene->body[i].joint, k)) continue;
+            bough_tree_joint_rows(s->tree, i, &q, &v);
+            *value++ = s->view->drive[v - s->tree->n_q + k];
+        }
+    }
+}
+
+static bool has_motion(const bough_scene *scene) {
+    for (int i = 0; i < scene->n_body; i++) {
+        if (is_driven(&scene->body[i].joint, 0) || is_driven(&scene->body[i].joint, 1)) return true;
+    }
+    return false;
+}
+
+static bough_status add_drive(const bough_scene_body *body, int k, bough_channels *list) {
+    int kind = body->joint.kind;
+    bool force = kind == BOUGH_SCENE_PRISMATIC || (kind == BOUGH_SCENE_CYLINDRICAL && k == 0);
+    if (kind == BOUGH_SCENE_UNIVERSAL) {
+        return bough_channels_add(list, "N-m", "%sTrq%d", body->name, k + 1);
+    }
+    return bough_channels_add(list, force ? "N" : "N-m", force ? "%sFrc" : "%sTrq", body->name);
+}
+
+static bough_status add_drives(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_drives, s);
+    for (int i = 0; i < 2 * s->scene->n_body && bough_is_ok(&status); i++) {
+        const bough_scene_body *body = &s->scene->body[i / 2];
+        if (is_driven(&body->joint, i % 2)) status = add_drive(body, i % 2, list);
+    }
+    return status;
+}
+
+static void sample_springs(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    bough_vec3 direction;
+    for (int k = 0; k < s->tree->n_springs; k++, value += 2)
+        value[0] = bough_tree_spring(s->tree, s->view, k, &value[1], &direction);
+}
+
+static bough_status add_springs(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_springs, s);
+    for (int k = 0; k < s->scene->n_spring && bough_is_ok(&status); k++) {
+        const char *name = s->scene->spring[k].name;
+        status = bough_channels_add(list, "m", "%sLen", name);
+        if (bough_is_ok(&status)) status = bough_channels_add(list, "N", "%sFrc", name);
+    }
+    return status;
+}
+
+static void sample_bushings(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    for (int k = 0; k < s->tree->n_bushings; k++, value += 6) {
+        double energy;
+        int element = s->tree->n_springs + k;
+        bough_force_pair pair = bough_element_force(s->tree, s->view, element, &energy);
+        bough_transform first =
+            bough_tree_frame_pose(s->view, bough_element_frame(s->tree, element, 0));
+        bough_transform second =
+            bough_tree_frame_pose(s->view, bough_element_frame(s->tree, element, 1));
+        bough_mat3 r = bough_mat3_product(bough_mat3_transpose(first.rotation), second.rotation);
+        bough_wrench w = {bough_mat3_mul(r, pair.on[1].force),
+                          bough_mat3_mul(r, pair.on[1].moment)};
+        bough_wrench_store(w, value);
+    }
+}
+
+static bough_status add_bushings(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_bushings, s);
+    for (int k = 0; k < s->scene->n_bushing; k++) {
+        for (int c = 0; c < 6 && bough_is_ok(&status); c++) {
+            status = bough_channels_add(list, c < 3 ? "N" : "N-m", "%s%s%c",
+                                        s->scene->bushing[k].name, c < 3 ? "Frc" : "Mom",
+                                        "XYZ"[c % 3]);
+        }
+    }
+    return status;
+}
+
+// What closures carry, under the rods' present forces.
+static void sample_closures(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
+    for (int k = 0; k < s->tree->n_closures; k++, value += 6)
+        bough_wrench_store(bough_loops_wrench(s->tree, s->view, k), value);
+}
+
+static bough_status add_closures(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_closures, s);
+    for (int k = 0; k < s->scene->n_closure; k++) {
+        for (int c = 0; c < 6 && bough_is_ok(&status); c++) {
+            status = bough_channels_add(list, c < 3 ? "N" : "N-m", "%s%c%c",
+                                        s->scene->closure[k].name, c < 3 ? 'F' : 'M', "xyz"[c % 3]);
+        }
+    }
+    return status;
+}
+
+static void sample_markers(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    for (int k = 0; k < s->scene->n_marker; k++, value += 3) {
+        const bough_frame *marker = &s->tree->markers[s->first_marker + k];
+        bough_vec3 x = bough_tree_frame_pose(s->view, marker).position;
+        value[0] = x.x, value[1] = x.y, value[2] = x.z;
+    }
+}
+
+static bough_status add_markers(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_markers, s);
+    for (int k = 0; k < s->scene->n_marker; k++) {
+        for (int c = 0; c < 3 && bough_is_ok(&status); c++) {
+            status = bough_channels_add(list, "m", "%s%c", s->scene->marker[k].name, "XYZ"[c]);
+        }
+    }
+    return status;
+}
+
+// -- beams ----------------------------------------------------------------------------------------
+
+// Displacement of the tip and rotation vector of its section against the undeformed one, in the
+// body's axes.
+static void tip(const bough_simulation *s, const bough_beam *beam, bough_vec3 *displacement,
+                bough_vec3 *rotation) {
+    int n = beam->def.n_segment;
+    bough_quaternion p, undeformed = bough_quaternion_conjugate(beam->def.rotation[n]);
+    bough_vec3 x = bough_simulation_beam_tip(s, beam, &p);
+    *displacement = bough_sub(x, beam->def.position[n]);
+    *rotation = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
+}
+
+enum { BLADE_CHANNELS = 12 };
+
+// The root wrench is the blade's on the hub, in blade-root axes; out of and in plane are the tip's
+// displacement along the axes before the pitch.
+static void sample_blades(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    for (int b = 0; b < s->scene->turbine.n_blade; b++, value += BLADE_CHANNELS) {
+        const bough_beam *beam = bough_simulation_beam(s, s->scene->turbine.blade[b]);
+        double pitch = bough_simulation_pitch(s, beam), c = cos(pitch), sine = sin(pitch);
+        double root[BOUGH_ROD_MOST_OUTPUTS];
+        bough_vec3 d, turn;
+        tip(s, beam, &d, &turn);
+        bough_simulation_root(s, beam, t, root);
+        const double values[BLADE_CHANNELS] = {
+            d.x * c + d.y * sine, d.y * c - d.x * sine, turn.z / DEGREE, d.x, d.y, d.z,
+            root[0] / 1e3, root[1] / 1e3, root[2] / 1e3,
+            root[3] / 1e3, root[4] / 1e3, root[5] / 1e3};
+        for (int k = 0; k < BLADE_CHANNELS; k++) value[k] = values[k];
+    }
+}
+
+static bough_status add_blades(bough_simulation *s, bough_channels *list) {
+    static const struct {
+        const char *name, *unit;
+    } channels[BLADE_CHANNELS] = {
+        {"OoPDefl", "m"},  {"IPDefl", "m"},   {"TwstDefl", "deg"}, {"TipDxb", "m"},
+        {"TipDyb", "m"},   {"TipDzb", "m"},   {"RootFxb", "kN"},   {"RootFyb", "kN"},
+        {"RootFzb", "kN"}, {"RootMxb", "kN-m"}, {"RootMyb", "kN-m"}, {"RootMzb", "kN-m"}};
+    bough_status status = bough_channels_group(list, sample_blades, s);
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) {
+        for (int k = 0; k < BLADE_CHANNELS && bough_is_ok(&status); k++) {
+            status = bough_channels_add(list, channels[k].unit, "%s%d", channels[k].name, b + 1);
+        }
+    }
+    return status;
+}
+
+// The rod nearest to the rotor that carries it, and the last of the rods that carry that one.
+static void find_tower(bough_simulation *s) {
+    const bough_scene *scene = s->scene;
+    if (scene->turbine.node == NULL) return;
+    for (int i = scene->turbine.rotor; i >= 0; i = scene->body[i].joint.parent) {
+        const bough_beam *beam = bough_simulation_beam(s, i);
+        bool carries = beam != NULL && beam->end >= 0;
+        if (!carries && s->tower_top != NULL) break;
+        if (!carries) continue;
+        if (s->tower_top == NULL) s->tower_top = beam;
+        s->tower_foot = beam;
+    }
+}
+
+// The section of the top in the frame of the foot, `tip` being that in its own body's.
+static bough_transform top_at_foot(const bough_simulation *s, bough_transform tip) {
+    const bough_frame *markers = s->tree->markers;
+    bough_transform foot = bough_tree_frame_pose(s->view, &markers[s->tower_foot->marker]);
+    bough_transform top = bough_tree_frame_pose(s->view, &markers[s->tower_top->marker]);
+    return bough_transform_compose(bough_transform_inverse(foot),
+                                   bough_transform_compose(top, tip));
+}
+
+enum { TOWER_CHANNELS = 12 };
+
+// Displacement and rotation of the top and the wrench on the foundation, all in the tower's axes.
+static void sample_tower(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    double root[BOUGH_ROD_MOST_OUTPUTS];
+    bough_quaternion p;
+    bough_vec3 x = bough_simulation_beam_tip(s, s->tower_top, &p);
+    bough_transform top = top_at_foot(s, (bough_transform){x, bough_rotation_matrix(p)});
+    bough_vec3 d = bough_sub(top.position, s->tower_rest.position);
+    bough_mat3 turned =
+        bough_mat3_product(top.rotation, bough_mat3_transpose(s->tower_rest.rotation));
+    bough_vec3 turn = bough_quaternion_logarithm(bough_quaternion_of_matrix(turned));
+    const double values[6] = {d.x, d.y, d.z, turn.x / DEGREE, turn.y / DEGREE, turn.z / DEGREE};
+    memcpy(value, values, sizeof values);
+    bough_simulation_root(s, s->tower_foot, t, root);
+    for (int k = 0; k < 6; k++) value[6 + k] = root[k] / 1e3;
+}
+
+static bough_status add_tower(bough_simulation *s, bough_channels *list) {
+    static const char *const name[TOWER_CHANNELS] = {
+        "TTDspFA",  "TTDspSS",  "TTDspAx",  "TTDspRoll", "TTDspPtch", "TTDspTwst",
+        "TwrBsFxt", "TwrBsFyt", "TwrBsFzt", "TwrBsMxt",  "TwrBsMyt",  "TwrBsMzt"};
+    static const char *const unit[] = {"m", "deg", "kN", "kN-m"};
+    const bough_rod_def *top = &s->tower_top->def;
+    int n = top->n_segment;
+    bough_tree_kinematics(s->tree, s->tree->initial, s->view); // where no rod is bent
+    s->tower_rest = top_at_foot(
+        s, (bough_transform){top->position[n], bough_rotation_matrix(top->rotation[n])});
+    bough_simulation_update(s);
+    bough_status status = bough_channels_group(list, sample_tower, s);
+    for (int k = 0; k < TOWER_CHANNELS && bough_is_ok(&status); k++) {
+        status = bough_channels_add(list, unit[k / 3], "%s", name[k]);
+    }
+    return status;
+}
+
+static bool is_blade(const bough_scene *scene, const bough_scene_body *body) {
+    for (int b = 0; scene->turbine.node != NULL && b < scene->turbine.n_blade; b++) {
+        if (&scene->body[scene->turbine.blade[b]] == body) return true;
+    }
+    return false;
+}
+
+// Where the tip of a rod that is no blade is, in ground axes.
+static void sample_tips(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        if (is_blade(s->scene, beam->body)) continue;
+        bough_transform pose =
+            bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
+        bough_vec3 d, turn;
+        tip(s, beam, &d, &turn);
+        bough_vec3 x = bough_add(beam->def.position[beam->def.n_segment], d);
+        x = bough_add(pose.position, bough_mat3_mul(pose.rotation, x));
+        value[0] = x.x;
+        value[1] = x.y;
+        value[2] = x.z;
+        value += 3;
+    }
+}
+
+static bough_status add_tips(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_tips, s);
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        if (is_blade(s->scene, beam->body)) continue;
+        for (int c = 0; c < 3 && bough_is_ok(&status); c++) {
+            status = bough_channels_add(list, "m", "%sTip%c", beam->body->name, "XYZ"[c]);
+        }
+    }
+    return status;
+}
+
+// -- aerodynamics ---------------------------------------------------------------------------------
+
+static void sample_aero(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    double factor, angle, speed;
+    const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
+    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
+    value[0] = factor * data->thrust;
+    value[1] = factor * data->torque;
+    value[2] = factor * data->torque * speed;
+}
+
+enum { NODE_CHANNELS = 10 };
+
+static void sample_nodes(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    const bough_scene_aero *aero = &s->scene->aero;
+    double factor;
+    const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
+    for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++, value += NODE_CHANNELS) {
+        int node = (int)aero->nodes[k % aero->n_node] - 1;
+        bough_station x = bough_rotor_station(data, k / aero->n_node, node);
+        const double values[NODE_CHANNELS] = {
+            x.speed, x.alpha / DEGREE, x.phi / DEGREE, x.axial, x.tangential,
+            x.coefficients.lift, x.coefficients.drag, x.coefficients.moment,
+            factor * x.force_x, factor * x.force_y};
+        memcpy(value, values, sizeof values);
+    }
+}
+
+static bough_status add_nodes(bough_simulation *s, bough_channels *list) {
+    static const char *const channels[NODE_CHANNELS][2] = {
+        {"VRel", "m/s"}, {"Alpha", "deg"}, {"Phi", "deg"}, {"AxInd", "-"}, {"TnInd", "-"},
+        {"Cl", "-"},     {"Cd", "-"},      {"Cm", "-"},    {"Fx", "N/m"},  {"Fy", "N/m"}};
+    const bough_scene_aero *aero = &s->scene->aero;
+    bough_status status = bough_channels_group(list, sample_nodes, s);
+    for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++) {
+        int blade = k / aero->n_node + 1, node = (int)aero->nodes[k % aero->n_node];
+        for (int c = 0; c < NODE_CHANNELS && bough_is_ok(&status); c++)
+            status = bough_channels_add(list, channels[c][1], "AB%dN%03d%s", blade, node,
+                                        channels[c][0]);
+    }
+    return status;
+}
+
+static bough_status add_aero(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_aero, s);
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "N", "RtAeroFxh");
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "N-m", "RtAeroMxh");
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "W", "RtAeroPwr");
+    if (bough_is_ok(&status) && s->scene->aero.n_node > 0) status = add_nodes(s, list);
+    return status;
+}
+
+// -- control --------------------------------------------------------------------------------------
+
+static void sample_control(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    double speed, torque, power;
+    bough_control_link_generator(s->control, &speed, &torque, &power);
+    value[0] = speed / RPM;
+    value[1] = torque / 1e3;
+    value[2] = power / 1e3;
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) {
+        const bough_beam *blade = bough_simulation_beam(s, s->scene->turbine.blade[b]);
+        value[3 + b] = bough_simulation_pitch(s, blade) / DEGREE;
+    }
+}
+
+static bough_status add_control(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_control, s);
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "rpm", "GenSpeed");
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "kN-m", "GenTq");
+    if (bough_is_ok(&status)) status = bough_channels_add(list, "kW", "GenPwr");
+    for (int b = 0; b < s->scene->turbine.n_blade && bough_is_ok(&status); b++)
+        status = bough_channels_add(list, "deg", "BldPitch%d", b + 1);
+    return status;
+}
+
+bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels) {
+    bough_status status = bough_ok();
+    if (s->scene->turbine.node != NULL) status = add_rotor(s, channels);
+    if (bough_is_ok(&status)) status = add_joints(s, channels);
+    if (bough_is_ok(&status) && has_motion(s->scene)) status = add_drives(s, channels);
+    if (bough_is_ok(&status) && s->scene->n_spring > 0) status = add_springs(s, channels);
+    if (bough_is_ok(&status) && s->scene->n_bushing > 0) status = add_bushings(s, channels);
+    if (bough_is_ok(&status) && s->scene->n_closure > 0) status = add_closures(s, channels);
+    if (bough_is_ok(&status) && s->scene->n_marker > 0) status = add_markers(s, channels);
+    if (bough_is_ok(&status) && s->scene->turbine.node != NULL) status = add_blades(s, channels);
+    find_tower(s);
+    if (bough_is_ok(&status) && s->tower_top != NULL) status = add_tower(s, channels);
+    if (bough_is_ok(&status)) status = add_tips(s, channels);
+    s->n_motion_channel = channels->count;
+    if (bough_is_ok(&status) && s->aero != NULL) status = add_aero(s, channels);
+    if (bough_is_ok(&status) && s->control != NULL) status = add_control(s, channels);
+    return status;
+}

@@ -1,0 +1,194 @@
+#include "apps/simulation/settle.h"
+
+#include "apps/simulation/aero_link.h"
+#include "apps/simulation/drag_link.h"
+#include "cosim/equilibrium.h"
+#include "flexbody/rod_linear.h"
+
+#include <string.h>
+
+enum { SAMPLES = 60 }; // of the air, most
+
+// Changes between samples of the air below it are none, in units of the states' scales.
+static const double still = 1e-8;
+
+bool bough_settle_apart(const bough_simulation *s) {
+    return s->tree->n_v == 0 && s->aero == NULL;
+}
+
+double bough_settle_loaded(const bough_simulation *s) {
+    double last = 0;
+    for (int i = 0; i < s->master->n_event; i++) last = fmax(last, s->master->event[i]);
+    return last;
+}
+
+void bough_settle_state(const bough_assembly *assembly, double *state) {
+    for (int i = 0; i < assembly->n_member; i++) {
+        const bough_subsystem *m = assembly->member[i];
+        memcpy(state + assembly->state_offset[i], m->state, (size_t)m->n_state * sizeof *state);
+    }
+}
+
+static void set_state(bough_simulation *s, const bough_assembly *assembly, const double *state) {
+    for (int i = 0; i < assembly->n_member; i++) {
+        const bough_subsystem *m = assembly->member[i];
+        m->ops->set_state(m->self, 0, state + assembly->state_offset[i]);
+    }
+    bough_simulation_update(s);
+}
+
+// The tree's states are the first of all.
+int bough_settle_held(const bough_tree *tree, bool turning, int *row) {
+    int n = 0;
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        const double *speed = tree->initial + tree->n_q + link->first_speed;
+        bool held = link->motion != NULL;
+        for (int k = 0; k < link->n_speeds; k++) held = held || (turning && speed[k] != 0);
+        if (!held) continue;
+        for (int k = 0; k < link->n_coordinates; k++) row[n++] = link->first_coordinate + k;
+        for (int k = 0; k < link->n_speeds; k++) row[n++] = tree->n_q + link->first_speed + k;
+    }
+    return n;
+}
+
+// The body that a row of the states belongs to.
+static const char *body_of(const bough_simulation *s, const bough_assembly *assembly, int row) {
+    const bough_tree *tree = s->tree;
+    int member = 0;
+    while (row >= assembly->state_offset[member + 1]) member++;
+    if (member > 0) return assembly->member[member]->name;
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        int q = row - link->first_coordinate, v = row - tree->n_q - link->first_speed;
+        if ((q >= 0 && q < link->n_coordinates) || (v >= 0 && v < link->n_speeds)) {
+            return tree->bodies[link->body].name;
+        }
+    }
+    return assembly->member[0]->name;
+}
+
+static bough_status explain(const bough_simulation *s, const bough_assembly *assembly,
+                            const bough_equilibrium_report *report) {
+    return bough_fail(BOUGH_FAILED,
+                      "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale in"
+                      " a step, at a rate of %.3g; a free joint needs a spring, a speed or a"
+                      " motion, a load may be too large (try a part of it), a mesh too coarse",
+                      body_of(s, assembly, report->row), report->steps, report->change,
+                      report->rate);
+}
+
+static double change_of(const bough_assembly *assembly, const double *a, const double *b) {
+    double change = 0;
+    for (int i = 0; i < assembly->n_member; i++) {
+        int first = assembly->state_offset[i];
+        for (int k = 0; k < assembly->member[i]->n_state; k++) {
+            double size = fabs(a[first + k] - b[first + k]) / assembly->member[i]->scale[k];
+            change = fmax(change, size);
+        }
+    }
+    return change;
+}
+
+// The states in equilibrium under the air's forces as sampled last.
+static bough_status settle(bough_arena *arena, bough_simulation *s, bough_arrow *arrow,
+                           bough_equilibrium_def *def, double *state, bough_settling *settling) {
+    bough_equilibrium_report report;
+    bough_status status = bough_equilibrium_find(arena, arrow, def, state, &report);
+    settling->steps += report.steps;
+    if (status.code == BOUGH_FAILED) return explain(s, arrow->assembly, &report);
+    if (bough_is_ok(&status)) set_state(s, arrow->assembly, state);
+    def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now
+    return status;
+}
+
+static bough_status settle_in_air(bough_arena *arena, bough_simulation *s, bough_arrow *arrow,
+                                  bough_equilibrium_def *def, double *state,
+                                  bough_settling *settling) {
+    double *before = bough_arena_doubles(arena, (size_t)arrow->assembly->n_state), change = 0;
+    if (!before) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    while (settling->samples < SAMPLES) {
+        memcpy(before, state, (size_t)arrow->assembly->n_state * sizeof *state);
+        bough_aero_link_hold(s->aero, def->time);
+        if (s->drag != NULL) bough_drag_link_hold(s->drag, def->time);
+        settling->samples++;
+        bough_status status = settle(arena, s, arrow, def, state, settling);
+        if (!bough_is_ok(&status)) return status;
+        change = change_of(arrow->assembly, state, before);
+        if (change < still) return status;
+    }
+    return bough_fail(BOUGH_FAILED,
+                      "no equilibrium in the air: the bodies still move by %.3g of their scales"
+                      " after %d samples of its forces; they may flutter or stall: try another wind"
+                      " speed or pitch",
+                      change, settling->samples);
+}
+
+// What settles.
+typedef struct settler {
+    bough_simulation *simulation;
+    bough_arrow *arrow;
+    double time;
+} settler;
+
+// Joints rest but for those held, and the rods ride on them. Where something turns the search must
+// not follow the vibration: Coriolis forces lead it astray.
+static void calm(void *self, double *state) {
+    const settler *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_assembly *a = x->arrow->assembly;
+    const bough_tree *tree = s->tree;
+    for (int k = tree->n_q; k < tree->n_q + tree->n_v; k++) {
+        bool held = false;
+        for (int i = 0; i < x->arrow->n_held; i++) held = held || x->arrow->held[i] == k;
+        if (!held) state[k] = 0;
+    }
+    bough_arrow_inputs(x->arrow, x->time, state);
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        int member = beam->port + 1;
+        if (beam->port < 0) continue;
+        bough_beam_ride(beam, x->arrow->input + a->input_offset[member],
+                        state + a->state_offset[member]);
+    }
+}
+
+static bool turns(const bough_arrow *arrow, const bough_tree *tree, const double *state) {
+    for (int i = 0; i < arrow->n_held; i++) {
+        if (arrow->held[i] >= tree->n_q && state[arrow->held[i]] != 0) return true;
+    }
+    return false;
+}
+
+static bough_status settle_members(bough_arena *arena, bough_simulation *s,
+                                   const bough_assembly *assembly, double time,
+                                   bough_settling *settling) {
+    bough_arrow *arrow;
+    bough_equilibrium_def def = bough_equilibrium_def_default();
+    double *state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
+    int *row = bough_arena_take(arena, ((size_t)s->trunk.n_state + 1) * sizeof *row);
+    if (!state || !row) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_status status = bough_arrow_create(arena, assembly, NULL, &arrow);
+    if (!bough_is_ok(&status)) return status;
+    def.time = time;
+    status = bough_arrow_hold(arena, arrow, bough_settle_held(s->tree, true, row), row);
+    if (!bough_is_ok(&status)) return status;
+    bough_settle_state(assembly, state);
+    bough_tree_prescribe(s->tree, time, state);
+    settler self = {s, arrow, time};
+    def.self = &self;
+    calm(&self, state);
+    if (turns(arrow, s->tree, state)) def.calm = calm;
+    return s->aero ? settle_in_air(arena, s, arrow, &def, state, settling)
+                   : settle(arena, s, arrow, &def, state, settling);
+}
+
+bough_status bough_settle(bough_simulation *s, const bough_assembly *assembly, double time,
+                          bough_settling *settling) {
+    bough_arena *arena = bough_arena_create();
+    *settling = (bough_settling){0};
+    if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_status status = settle_members(arena, s, assembly, time, settling);
+    bough_arena_destroy(arena);
+    return status;
+}

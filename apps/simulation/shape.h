@@ -1,0 +1,29 @@
+// The shape of a simulation as polylines in the ground: the axis of each rod; of a rigid body the
+// line from where it hangs on its parent over its origin to its mass centre.
+#ifndef BOUGH_APPS_SIMULATION_SHAPE_H
+#define BOUGH_APPS_SIMULATION_SHAPE_H
+
+#include "apps/output/frames.h"
+#include "apps/simulation/build.h"
+
+typedef struct bough_shape {
+    bough_simulation *simulation;
+    int n_line;
+    bough_polyline *line;     // (n_line) one for each body of the scene, in its order
+    bough_beam_motion motion; // scratch of the longest beam
+} bough_shape;
+
+bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape);
+
+// The points of all lines (Σ n_point × 3) [m], from the simulation's `view`. `self`: the shape.
+void bough_shape_points(void *self, double *point);
+
+// Of each body, what vertices.h5 holds: the vertices of its rod, or the one of its origin (n_line).
+// NULL when memory is exhausted.
+bough_polyline *bough_shape_bodies(bough_arena *arena, const bough_shape *shape);
+
+// Their positions (Σ n_point × 3) [m] and rotations (Σ n_point × 9, row by row), from the simulation's
+// `view`. `self`: the shape.
+void bough_shape_motion(void *self, double *position, double *rotation);
+
+#endif

@@ -1,0 +1,16 @@
+// What the files that read a study share among themselves.
+#ifndef BOUGH_APPS_STUDY_STUDY_INTERNAL_H
+#define BOUGH_APPS_STUDY_STUDY_INTERNAL_H
+
+#include "apps/study/study.h"
+
+// A scene's path from that of the study which names it.
+const char *bough_study_path(bough_arena *arena, const char *study, const char *scene);
+
+// Makes the cells of the grid and the reference cell.
+void bough_study_expand(bough_arena *arena, bough_study *study, bough_errors *errors);
+
+// Reads the scene with every cell's replacements and looks up the measures' channels.
+bough_status bough_study_check(bough_arena *arena, bough_study *study, bough_errors *errors);
+
+#endif
