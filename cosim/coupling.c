@@ -271,14 +271,14 @@ static void settle(bough_coupling *c, int member) {
         int j = a->input_offset[member] + k, n = s->n;
         double curvature = bough_coupling_curvature(c, j, c->input[j]);
         double was = 0.5 * (c->past[0][j] + c->input[j]) - h * h / 12 * curvature;
-        c->owed[j] += h * (was - seen[0] - seen[n] / 2 - seen[2 * n] / 3 - seen[3 * n] / 4);
+        c->deficit[j] += h * (was - seen[0] - seen[n] / 2 - seen[2 * n] / 3 - seen[3 * n] / 4);
     }
 }
 
 void bough_coupling_exchange(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     bough_assembly_outputs(a, c->t1, c->output, c->input);
-    for (int i = 0; i < a->n_member && c->owed != NULL; i++) {
+    for (int i = 0; i < a->n_member && c->deficit != NULL; i++) {
         if (a->stage[i] == 0) settle(c, i);
     }
     for (int i = 0; i < a->n_member; i++) {
@@ -306,7 +306,7 @@ void bough_coupling_snapshot(bough_coupling *c, bough_snapshot *s) {
     bough_snapshot_doubles(s, c->output, a->n_output);
     bough_snapshot_doubles(s, c->input, a->n_input);
     bough_snapshot_doubles(s, c->used, a->n_input);
-    if (c->owed) bough_snapshot_doubles(s, c->owed, a->n_input);
+    if (c->deficit) bough_snapshot_doubles(s, c->deficit, a->n_input);
     for (int p = 0; p < BOUGH_HISTORY; p++) bough_snapshot_doubles(s, c->past[p], a->n_input);
     bough_snapshot_doubles(s, c->past_time, BOUGH_HISTORY);
     bough_snapshot_take(s, &c->n_past, sizeof c->n_past);

@@ -55,8 +55,8 @@ typedef struct bough_coupling {
     double *output; // (n_output) of all members at their current states
     double *input;  // (n_input) the same, as their receivers see it
     double *used;   // (n_input) what the receivers saw on the step, at its end
-    double *owed;   // (n_input) ∫ of what a port was − what its receiver saw, over all steps;
-                    // of stage 0; NULL unless the scheme pays it back
+    double *deficit; // (n_input) ∫ of what a port was − what its receiver saw, over all steps;
+                     // of stage 0; NULL unless the scheme pays it back
     int n_past;     // valid entries of the two below
     double past_time[BOUGH_HISTORY]; // the last synchronisation points, newest first [s]
     double *past[BOUGH_HISTORY];     // (n_input each) inputs there

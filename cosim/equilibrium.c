@@ -16,7 +16,7 @@ bough_equilibrium_def bough_equilibrium_def_default(void) {
 }
 
 typedef struct search {
-    bough_arrow *arrow;
+    bough_coupled *coupled;
     const bough_equilibrium_def *def;
     int n;                                // states
     double *scale, *rate, *first, *second, *trial; // (n)
@@ -34,7 +34,7 @@ static bool take(search *s, bough_arena *arena) {
 }
 
 static bool find_rate(search *s, const double *state) {
-    bough_status status = bough_arrow_rate(s->arrow, s->def->time, state, s->rate);
+    bough_status status = bough_coupled_rate(s->coupled, s->def->time, state, s->rate);
     return bough_is_ok(&status);
 }
 
@@ -52,26 +52,26 @@ static double size_of(const search *s, const double *x, int *row) {
 // is of the first, infinite when the step leads nowhere. s->rate belongs to `state`.
 static double step(search *s, const double *state, bough_equilibrium_report *report) {
     int row = 0;
-    bough_status status = bough_arrow_setup(s->arrow, s->def->time, state, s->arrow->input,
-                                            s->gamma);
+    bough_status status =
+        bough_coupled_setup(s->coupled, s->def->time, state, s->coupled->input, s->gamma);
     if (!bough_is_ok(&status)) return INFINITY;
     for (int k = 0; k < s->n; k++) s->first[k] = s->gamma * s->rate[k];
-    bough_arrow_solve(s->arrow, s->first);
+    bough_coupled_solve(s->coupled, s->first);
     report->change = size_of(s, s->first, &report->row);
     report->rate = s->rate[report->row];
     if (!isfinite(report->change)) return INFINITY;
     for (int k = 0; k < s->n; k++) s->trial[k] = state[k] + s->first[k];
     if (!find_rate(s, s->trial)) return INFINITY;
     for (int k = 0; k < s->n; k++) s->second[k] = s->gamma * s->rate[k] - s->first[k];
-    bough_arrow_solve(s->arrow, s->second);
+    bough_coupled_solve(s->coupled, s->second);
     return size_of(s, s->second, &row) / (report->change + DBL_MIN);
 }
 
-bough_status bough_equilibrium_find(bough_arena *arena, bough_arrow *arrow,
+bough_status bough_equilibrium_find(bough_arena *arena, bough_coupled *coupled,
                                     const bough_equilibrium_def *def, double *state,
                                     bough_equilibrium_report *report) {
-    const bough_assembly *a = arrow->assembly;
-    search s = {.arrow = arrow, .def = def, .n = a->n_state, .gamma = def->step};
+    const bough_assembly *a = coupled->assembly;
+    search s = {.coupled = coupled, .def = def, .n = a->n_state, .gamma = def->step};
     *report = (bough_equilibrium_report){0};
     if (!take(&s, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {

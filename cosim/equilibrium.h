@@ -1,12 +1,12 @@
-// Equilibrium of the coupled system, F(t, y) = 0 at a fixed time, but for the states that the arrow
-// holds: an angle that goes on turning and its speed, say, whose rates need not vanish. Method:
-// implicit Euler steps with one linearisation each and growing length γ, which follow the damped
-// motion from the initial state until, at the longest, they are Newton's method. An equilibrium
-// near the initial state may be found though it is unstable.
+// Equilibrium of the coupled system, F(t, y) = 0 at a fixed time, but for the states that it holds:
+// an angle that goes on turning and its speed, say, whose rates need not vanish. Method: implicit
+// Euler steps with one linearisation each and growing length γ, which follow the damped motion from
+// the initial state until, at the longest, they are Newton's method. An equilibrium near the
+// initial state may be found though it is unstable.
 #ifndef BOUGH_COSIM_EQUILIBRIUM_H
 #define BOUGH_COSIM_EQUILIBRIUM_H
 
-#include "cosim/arrow.h"
+#include "cosim/coupled.h"
 
 typedef struct bough_equilibrium_def {
     double time;     // [s]
@@ -33,7 +33,7 @@ typedef struct bough_equilibrium_report {
 
 // Brings `state` (n_state) to equilibrium. BOUGH_FAILED when it is not found: the report tells
 // where it did not settle, the state is the last one reached.
-bough_status bough_equilibrium_find(bough_arena *arena, bough_arrow *arrow,
+bough_status bough_equilibrium_find(bough_arena *arena, bough_coupled *coupled,
                                     const bough_equilibrium_def *def, double *state,
                                     bough_equilibrium_report *report);
 

@@ -1,6 +1,6 @@
 #include "cosim/error_estimate.h"
 
-#include "cosim/arrow.h"
+#include "cosim/coupled.h"
 #include "cosim/port.h"
 
 #include <math.h>
@@ -47,7 +47,7 @@ struct bough_error_estimate {
     double *error, *rate; // (n_state) ε, ε̇
     double *input_worst;  // (n_input) largest |P (C ε + D υ)|
     // linearisation
-    bough_arrow *arrow;
+    bough_coupled *coupled;
     double *at; // (n_state) where
     // scratch
     double *x;              // (n_state)
@@ -104,7 +104,7 @@ bough_status bough_error_estimate_create(bough_arena *arena, const bough_couplin
     e->time[0] = c->t1;
     memcpy(e->value[0], c->input, (size_t)c->assembly->n_input * sizeof(double));
     *estimate = e;
-    return bough_arrow_create(arena, c->assembly, c->pool, &e->arrow);
+    return bough_coupled_create(arena, c->assembly, c->pool, &e->coupled);
 }
 
 // -- defects --------------------------------------------------------------------------------------
@@ -287,7 +287,7 @@ static bool adopt(bough_error_estimate *e, const bough_coupling *c, double h) {
     if (fabs(ratio - 1) > 0.011) return false;
     e->method.h *= ratio;
     e->method.factor *= ratio;
-    bough_arrow_adopt(e->arrow, c->interface, c->t1, e->at, c->input, e->method.factor);
+    bough_coupled_adopt(e->coupled, c->interface, c->t1, e->at, c->input, e->method.factor);
     return true;
 }
 
@@ -301,7 +301,7 @@ static bool linearise(bough_error_estimate *e, bough_coupling *c, double h) {
     if (adopt(e, c, h)) return true;
     e->method = method_of(h, own_radius);
     c->refactor = true;
-    bough_status status = bough_arrow_setup(e->arrow, c->t1, e->at, c->input, e->method.factor);
+    bough_status status = bough_coupled_setup(e->coupled, c->t1, e->at, c->input, e->method.factor);
     return bough_is_ok(&status);
 }
 
@@ -363,10 +363,10 @@ static void end_member(void *self, int member) {
 }
 
 static void advance(bough_error_estimate *e) {
-    bough_arrow_user user = {e, begin_member, end_member};
-    bough_arrow_solve_driven(e->arrow, e->mean, e->x, user);
+    bough_coupled_user user = {e, begin_member, end_member};
+    bough_coupled_solve_driven(e->coupled, e->mean, e->x, user);
     for (int j = 0; j < e->assembly->n_input; j++) {
-        e->input_worst[j] = fmax(e->input_worst[j], fabs(e->arrow->change[j] - e->mean[j]));
+        e->input_worst[j] = fmax(e->input_worst[j], fabs(e->coupled->change[j] - e->mean[j]));
     }
 }
 

@@ -1,6 +1,6 @@
 #include "cosim/interface_newton.h"
 
-#include "cosim/arrow.h"
+#include "cosim/coupled.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,7 +9,7 @@ enum { MOST_AGE = 12 }; // steps: as the ramp keeps its tangents
 
 struct bough_interface_newton {
     int n_span;
-    bough_arrow **arrow; // (n_span)
+    bough_coupled **coupled; // (n_span)
     double *state;       // (n_state) where
     double length;       // of the macro step they were made for [s]; 0: none
     int age;             // steps since
@@ -20,13 +20,13 @@ bough_status bough_interface_newton_create(bough_arena *arena, const bough_coupl
     bough_interface_newton *n = bough_arena_take(arena, sizeof *n);
     if (!n) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     n->n_span = n_span;
-    n->arrow = bough_arena_take(arena, (size_t)n_span * sizeof *n->arrow);
+    n->coupled = bough_arena_take(arena, (size_t)n_span * sizeof *n->coupled);
     n->state = bough_arena_doubles(arena, (size_t)c->assembly->n_state);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     *newton = n;
     bough_status status = bough_ok();
     for (int k = 0; k < n_span && bough_is_ok(&status); k++) {
-        status = bough_arrow_create(arena, c->assembly, c->pool, &n->arrow[k]);
+        status = bough_coupled_create(arena, c->assembly, c->pool, &n->coupled[k]);
     }
     return status;
 }
@@ -47,11 +47,11 @@ bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coup
     }
     bough_status status = bough_ok();
     for (int k = 0; k < n->n_span && bough_is_ok(&status); k++) {
-        status = bough_arrow_setup(n->arrow[k], c->t0, n->state, c->input, span[k] * length);
+        status = bough_coupled_setup(n->coupled[k], c->t0, n->state, c->input, span[k] * length);
     }
     return status;
 }
 
 void bough_interface_newton_solve(const bough_interface_newton *n, int span, double *change) {
-    bough_arrow_close(n->arrow[span], change);
+    bough_coupled_close(n->coupled[span], change);
 }

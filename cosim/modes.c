@@ -10,7 +10,7 @@ enum { TERMS = 400 }; // of the series for the spin
 static const double series = 1e-13; // share of a solution below which its terms count for nothing
 
 typedef struct modes {
-    bough_arrow *arrow;
+    bough_coupled *coupled;
     const bough_modes_def *def;
     double *term, *turned; // (n_state)
     double *rate;          // S (n_part × n_part)
@@ -42,7 +42,7 @@ static void set_rate(const bough_modes_def *def, double *rate) {
 }
 
 static void project(const modes *m, double *x) {
-    const bough_assembly *a = m->arrow->assembly;
+    const bough_assembly *a = m->coupled->assembly;
     for (int i = 0; i < a->n_member; i++) {
         const bough_subsystem *s = a->member[i];
         int at = a->state_offset[i];
@@ -54,7 +54,7 @@ static void project(const modes *m, double *x) {
 static void turn(const modes *m, const double *x, double *turned) {
     const bough_modes_def *def = m->def;
     int n = def->n_part;
-    memset(turned, 0, (size_t)m->arrow->assembly->n_state * sizeof *turned);
+    memset(turned, 0, (size_t)m->coupled->assembly->n_state * sizeof *turned);
     for (int k = 0; k < n; k++) {
         for (int l = 0; l < n; l++) {
             double factor = -m->rate[k * n + l] / def->point;
@@ -73,9 +73,9 @@ static double largest(const double *x, int n) {
 // (I − γ(J − S))⁻¹ z = Σ (−(I − γJ)⁻¹ γS)ᵏ (I − γJ)⁻¹ z
 static void apply(void *self, const double *z, double *image) {
     modes *m = self;
-    int n = m->arrow->assembly->n_state;
+    int n = m->coupled->assembly->n_state;
     memcpy(image, z, (size_t)n * sizeof *image);
-    bough_arrow_solve(m->arrow, image);
+    bough_coupled_solve(m->coupled, image);
     project(m, image);
     if (m->def->spin == 0) return;
     double size = largest(image, n);
@@ -83,7 +83,7 @@ static void apply(void *self, const double *z, double *image) {
     for (int k = 0; k < TERMS; k++) {
         turn(m, m->term, m->turned);
         memcpy(m->term, m->turned, (size_t)n * sizeof *m->term);
-        bough_arrow_solve(m->arrow, m->term);
+        bough_coupled_solve(m->coupled, m->term);
         project(m, m->term);
         for (int i = 0; i < n; i++) image[i] += m->term[i];
         if (largest(m->term, n) <= series * size) return;
@@ -92,7 +92,7 @@ static void apply(void *self, const double *z, double *image) {
 }
 
 static bool take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
-    const bough_assembly *a = m->arrow->assembly;
+    const bough_assembly *a = m->coupled->assembly;
     size_t n = (size_t)a->n_state, parts = (size_t)m->def->n_part;
     m->term = bough_arena_doubles(arena, n);
     m->turned = bough_arena_doubles(arena, n);
@@ -108,18 +108,19 @@ static bool take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
     return true;
 }
 
-bough_status bough_modes_find(bough_arena *arena, bough_arrow *arrow, const bough_modes_def *def,
-                              int wanted, bough_eigen_pair *pair, int *found) {
-    modes m = {.arrow = arrow, .def = def};
+bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled,
+                              const bough_modes_def *def, int wanted, bough_eigen_pair *pair,
+                              int *found) {
+    modes m = {.coupled = coupled, .def = def};
     bough_eigen_operator op = {.name = "whole scene",
-                               .length = arrow->assembly->n_state,
-                               .n_shape = arrow->assembly->n_state,
+                               .length = coupled->assembly->n_state,
+                               .n_shape = coupled->assembly->n_state,
                                .gamma = 1 / def->point,
                                .self = &m,
                                .apply = apply};
     if (!take(arena, &m, &op)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (def->spin != 0) set_rate(def, m.rate);
-    bough_status status = bough_arrow_setup(arrow, def->time, def->state, def->input, op.gamma);
+    bough_status status = bough_coupled_setup(coupled, def->time, def->state, def->input, op.gamma);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
     status = bough_eigen_nearest(arena, &op, wanted, pair, found);
     if (m.diverged) {

@@ -1,15 +1,15 @@
 // Monolithic reference: the states of all members in one implicit system ẏ − F(t, y) = 0,
-// integrated by the master integrator across macro steps; Newton's matrix is the arrow of arrow.h.
+// integrated by the master integrator across macro steps; Newton's matrix is that of coupled.h.
 // No coupling error: every error figure is measured against it.
 #include "core/integrator_ida.h"
-#include "cosim/arrow.h"
+#include "cosim/coupled.h"
 #include "cosim/port.h"
 #include "cosim/scheme.h"
 
 #include <string.h>
 
 typedef struct monolith {
-    bough_arrow *arrow;
+    bough_coupled *coupled;
     bough_ida *ida;
     double *scale, *state, *rate; // (n_state)
     double *f;                    // (n_state) rate of change at the evaluation's state
@@ -19,9 +19,10 @@ typedef struct monolith {
 
 static bool residual(void *self, double t, const double *y, const double *rate, double *result) {
     monolith *m = self;
-    bough_status status = bough_arrow_rate(m->arrow, t, y, m->f);
+    bough_status status = bough_coupled_rate(m->coupled, t, y, m->f);
     if (!bough_is_ok(&status)) return false;
-    for (int k = 0; k < m->arrow->assembly->n_state; k++) result[k] = rate[k] - m->f[k];
+    for (int k = 0; k < m->coupled->assembly->n_state; k++)
+        result[k] = rate[k] - m->f[k];
     return true;
 }
 
@@ -29,16 +30,17 @@ static bool setup(void *self, double t, const double *y, const double *rate, dou
     (void)rate;
     monolith *m = self;
     m->gamma = 1 / cj;
-    bough_arrow_inputs(m->arrow, t, y);
-    bough_status status = bough_arrow_setup(m->arrow, t, y, m->arrow->input, m->gamma);
+    bough_coupled_inputs(m->coupled, t, y);
+    bough_status status = bough_coupled_setup(m->coupled, t, y, m->coupled->input, m->gamma);
     return bough_is_ok(&status);
 }
 
 // (cj − J)⁻¹ x
 static void solve(void *self, double *x) {
     monolith *m = self;
-    for (int k = 0; k < m->arrow->assembly->n_state; k++) x[k] *= m->gamma;
-    bough_arrow_solve(m->arrow, x);
+    for (int k = 0; k < m->coupled->assembly->n_state; k++)
+        x[k] *= m->gamma;
+    bough_coupled_solve(m->coupled, x);
 }
 
 static bool take(monolith *m, bough_arena *arena, size_t n) {
@@ -56,7 +58,7 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     }
     c->scheme_data = m;
-    bough_status status = bough_arrow_create(arena, a, c->pool, &m->arrow);
+    bough_status status = bough_coupled_create(arena, a, c->pool, &m->coupled);
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < a->n_member; i++) {
         size_t size = (size_t)a->member[i]->n_state * sizeof(double);
@@ -77,7 +79,7 @@ static bough_status start(bough_coupling *c, monolith *m) {
         size_t size = (size_t)a->member[i]->n_state * sizeof(double);
         memcpy(m->state + a->state_offset[i], a->member[i]->state, size);
     }
-    bough_status status = bough_arrow_rate(m->arrow, c->t0, m->state, m->rate);
+    bough_status status = bough_coupled_rate(m->coupled, c->t0, m->state, m->rate);
     if (!bough_is_ok(&status)) return status;
     m->started = true;
     return bough_ida_start(m->ida, c->t0, m->state, m->rate);
@@ -96,10 +98,10 @@ static bough_status step(bough_coupling *c) {
         s->ops->set_state(s->self, c->t1, m->state + a->state_offset[i]);
     }
     bough_coupling_begin(c);
-    bough_arrow_inputs(m->arrow, c->t1, m->state);
+    bough_coupled_inputs(m->coupled, c->t1, m->state);
     for (int i = 0; i < a->n_member; i++) {
         int first = a->input_offset[i], count = a->member[i]->n_input;
-        bough_port_linear(&c->signal[i], 0, count, c->input + first, m->arrow->input + first);
+        bough_port_linear(&c->signal[i], 0, count, c->input + first, m->coupled->input + first);
     }
     return bough_ok();
 }

@@ -80,7 +80,7 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     r->output = bough_arena_doubles(arena, (size_t)a->n_output);
     r->change = bough_arena_doubles(arena, (size_t)a->n_input);
     r->input = bough_arena_doubles(arena, (size_t)a->n_input);
-    c->owed = bough_arena_doubles(arena, (size_t)a->n_input);
+    c->deficit = bough_arena_doubles(arena, (size_t)a->n_input);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     r->arena = arena;
     r->damped = -HUGE_VAL;
@@ -229,7 +229,7 @@ static const double untamed = 10;   // growth that no outer load damps [1/s]
 // Growth of the fastest oscillation with these options [1/s].
 static bough_status growth_of(const bough_coupling *c, bough_scheme_options options,
                               bough_stability *stability) {
-    // the light body turns by about 2 √ratio in a macro step; four shadow steps a radian
+    // the light body turns by about 2 √ratio in a macro step; four linear member steps a radian
     double h = c->t1 - c->t0, part = fmin(8 * sqrt(c->interface_ratio), 64);
     bough_status status =
         bough_stability_judge_by(c->assembly, &options, h, fmin(h / part, 5e-3), stability);
@@ -309,7 +309,7 @@ static bool held(const ramp *r) { return r->theta >= 1; }
 // The ramp with its parabola.
 static void set_repaying(bough_coupling *c, bough_signal *signal, int local, int j, double end) {
     double h = c->t1 - c->t0, start = c->used[j];
-    double impulse = c->owed[j] - h * h * h / 12 * bough_coupling_curvature(c, j, end);
+    double impulse = c->deficit[j] - h * h * h / 12 * bough_coupling_curvature(c, j, end);
     double middle = 0.5 * (start + end) + 1.5 * impulse / h;
     const double time[] = {c->t0, c->t0 + 0.5 * h, c->t1};
     const double *const value[] = {&start, &middle, &end};
@@ -323,7 +323,7 @@ static void set_ramps(bough_coupling *c, int member) {
     for (int j = a->input_offset[member], local = 0; j < a->input_offset[member + 1];
          j++, local++) {
         double start = c->used[j], end = start + r->change[j];
-        if (!r->repays) c->owed[j] = 0;
+        if (!r->repays) c->deficit[j] = 0;
         if (held(r)) {
             bough_port_hold(signal, local, 1, &end);
         } else if (r->repays) {
@@ -337,7 +337,7 @@ static void set_ramps(bough_coupling *c, int member) {
 static bough_status repeat(bough_coupling *c) {
     const ramp *r = c->scheme_data;
     bough_status status = bough_ok();
-    memset(c->owed, 0, (size_t)c->assembly->n_input * sizeof(double));
+    memset(c->deficit, 0, (size_t)c->assembly->n_input * sizeof(double));
     c->options.exchange = BOUGH_EXCHANGE_WAVEFORM;
     if (!c->iteration) status = bough_iteration_create(c, r->arena);
     return bough_is_ok(&status) ? bough_iteration_step(c) : status;

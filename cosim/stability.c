@@ -2,8 +2,8 @@
 
 #include "core/base.h"
 #include "core/linalg.h"
+#include "cosim/linear_member.h"
 #include "cosim/scheme.h"
-#include "cosim/shadow.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,18 +12,18 @@
 
 enum { DIMENSION = 48, WARM_UP = 2, MOST_REPEATED = 24 };
 static const double span = 0.06;      // this time passes per Arnoldi vector [s]
-static const double sub_step = 5e-3;  // of the shadows at most [s]; a quarter of a macro step, so that
-                                      // their own damping does not hide what rings
+static const double sub_step = 5e-3;  // of the linear members at most [s]; a quarter of a macro
+                                     // step, so that their own damping does not hide what rings
 static const double exact = 1e-4;     // share of an eigenvalue
 static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
 
 // The map z → z after `repeat` macro steps; z = (states, inputs one and two steps ago, used inputs,
-// owed impulses).
+// deficit impulses).
 typedef struct map {
     bough_arena *arena;
     const bough_scheme *scheme;
-    bough_assembly assembly;    // of the shadows
-    bough_subsystem *shadow;    // (n_member)
+    bough_assembly assembly; // of the linear members
+    bough_subsystem *linear; // (n_member)
     bough_coupling *coupling;
     double macro_step, sub_step;
     int repeat;
@@ -44,17 +44,16 @@ typedef struct map {
 
 // -- building -------------------------------------------------------------------------------------
 
-static bough_status build_shadows(map *m, const bough_assembly *a, const double *input) {
+static bough_status build_linear_members(map *m, const bough_assembly *a, const double *input) {
     m->assembly = *a;
-    m->shadow = bough_arena_take(m->arena, (size_t)a->n_member * sizeof *m->shadow);
+    m->linear = bough_arena_take(m->arena, (size_t)a->n_member * sizeof *m->linear);
     m->assembly.member = bough_arena_take(m->arena, (size_t)a->n_member * sizeof(void *));
     if (bough_arena_exhausted(m->arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {
-        bough_status status = bough_shadow_create(m->arena, a->member[i],
-                                                  input + a->input_offset[i], m->sub_step,
-                                                  &m->shadow[i]);
+        bough_status status = bough_linear_member_create(
+            m->arena, a->member[i], input + a->input_offset[i], m->sub_step, &m->linear[i]);
         if (!bough_is_ok(&status)) return status;
-        m->assembly.member[i] = &m->shadow[i];
+        m->assembly.member[i] = &m->linear[i];
     }
     return bough_ok();
 }
@@ -92,7 +91,7 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     double *input = bough_arena_doubles(m->arena, (size_t)a->n_input);
     if (bough_arena_exhausted(m->arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_assembly_outputs(a, *a->member[0]->time, output, input);
-    bough_status status = build_shadows(m, a, input);
+    bough_status status = build_linear_members(m, a, input);
     if (!bough_is_ok(&status)) return status;
     bough_coupling *c = NULL;
     status = bough_coupling_create(m->arena, &m->assembly, &judged, NULL, &c);
@@ -101,7 +100,7 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     m->scheme = bough_scheme_find(options->name);
     if (m->scheme->create) status = m->scheme->create(c, m->arena);
     if (!bough_is_ok(&status)) return status;
-    m->n = a->n_state + (c->owed != NULL ? 4 : 3) * a->n_input;
+    m->n = a->n_state + (c->deficit != NULL ? 4 : 3) * a->n_input;
     m->repeat = (int)fmin(ceil(span / m->macro_step - 1e-6), MOST_REPEATED);
     return take(m);
 }
@@ -121,9 +120,9 @@ static void load(map *m, const double *z) {
     memcpy(c->past[1], z + a->n_state, size);
     memcpy(c->past[2], z + a->n_state + a->n_input, size);
     memcpy(c->used, z + a->n_state + 2 * a->n_input, size);
-    for (int j = 0; j < a->n_input && c->owed != NULL; j++) {
+    for (int j = 0; j < a->n_input && c->deficit != NULL; j++) {
         bool paid = j < a->input_offset[1];
-        c->owed[j] = paid ? z[a->n_state + 3 * a->n_input + j] : 0;
+        c->deficit[j] = paid ? z[a->n_state + 3 * a->n_input + j] : 0;
     }
     for (int p = 0; p < BOUGH_HISTORY; p++) c->past_time[p] = -p * m->macro_step;
     c->n_past = BOUGH_HISTORY;
@@ -141,7 +140,7 @@ static void store(const map *m, double *z) {
     memcpy(z + a->n_state, c->past[1], size);
     memcpy(z + a->n_state + a->n_input, c->past[2], size);
     memcpy(z + a->n_state + 2 * a->n_input, c->used, size);
-    if (c->owed != NULL) memcpy(z + a->n_state + 3 * a->n_input, c->owed, size);
+    if (c->deficit != NULL) memcpy(z + a->n_state + 3 * a->n_input, c->deficit, size);
 }
 
 // image = z after `count` macro steps
@@ -152,7 +151,7 @@ static bough_status apply(map *m, int count, const double *z, double *image) {
     for (int k = 0; k < count && bough_is_ok(&status); k++) {
         c->t0 = c->t1;
         c->t1 = (k + 1) * m->macro_step;
-        c->refactor = true; // a shadow advances by the same factors
+        c->refactor = true; // a linear member advances by the same factors
         status = m->scheme->step(c);
         bough_coupling_exchange(c);
     }
@@ -203,7 +202,7 @@ static void choose_weights(map *m, const double *z) {
         double weight = largest > 0 ? sqrt(sum / a->n_input) / largest : 1;
         for (int j = first; j < last; j++) {
             for (int p = 0; p < 3; p++) m->weight[a->n_state + p * a->n_input + j] = weight;
-            if (m->coupling->owed == NULL) continue;
+            if (m->coupling->deficit == NULL) continue;
             m->weight[a->n_state + 3 * a->n_input + j] = weight / m->macro_step;
         }
     }

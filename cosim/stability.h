@@ -1,8 +1,9 @@
 // Verdict on a coupling before it is run: the fastest growing oscillation of the linearised macro
-// step. The scheme itself is run on linear shadows of the members (shadow.h), so that one macro step
-// is a linear map of the perturbations: states, and what the scheme remembers of earlier inputs. The
-// largest eigenvalues come from Arnoldi's method (modified Gram–Schmidt, twice), applied to as many
-// macro steps as it takes for the stiff modes to die out and the slow ones to turn visibly.
+// step. The scheme itself is run on linear members in place of the members (linear_member.h), so
+// that one macro step is a linear map of the perturbations: states, and what the scheme remembers
+// of earlier inputs. The largest eigenvalues come from Arnoldi's method (modified Gram–Schmidt,
+// twice), applied to as many macro steps as it takes for the stiff modes to die out and the slow
+// ones to turn visibly.
 //
 // What it does not see: loads from outside the members, so no aerodynamic damping (it errs on the
 // safe side), changes of the state along the run, and growth without oscillation, which is left to
@@ -27,7 +28,8 @@ typedef struct bough_stability {
 bough_status bough_stability_judge(const bough_assembly *a, const bough_scheme_options *options,
                                    double macro_step, bough_stability *result);
 
-// The same with shadows that step by at most `sub_step` [s]: what they do not resolve, they damp.
+// The same with linear members that step by at most `sub_step` [s]: what they do not resolve, they
+// damp.
 bough_status bough_stability_judge_by(const bough_assembly *a, const bough_scheme_options *options,
                                       double macro_step, double sub_step, bough_stability *result);
 

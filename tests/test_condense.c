@@ -1,6 +1,6 @@
 // Condensed interfaces of random linear members against the system as a whole.
 #include "core/linalg.h"
-#include "cosim/arrow.h"
+#include "cosim/coupled.h"
 #include "tests/check.h"
 
 #include <math.h>
@@ -120,11 +120,11 @@ static void check(const plan *p) {
     }
     bough_assembly_def def = {MEMBERS, part, p->n_connection, p->connection};
     bough_assembly *a;
-    bough_arrow *arrow = NULL;
+    bough_coupled *coupled = NULL;
     bough_status status = bough_assembly_build(arena, &def, &a);
-    if (bough_is_ok(&status)) status = bough_arrow_create(arena, a, NULL, &arrow);
+    if (bough_is_ok(&status)) status = bough_coupled_create(arena, a, NULL, &coupled);
     if (!bough_is_ok(&status)) fail_msg("%s: %s", p->what, status.message);
-    assert_int_equal(arrow->interface->n, p->unknowns);
+    assert_int_equal(coupled->interface->n, p->unknowns);
 
     unsigned seed = 3;
     double y[STATES], r[STATES], x[STATES], before[STATES], after[STATES];
@@ -133,23 +133,23 @@ static void check(const plan *p) {
         y[k] = noise(&seed), r[k] = x[k] = noise(&seed);
     for (int j = 0; j < a->n_input; j++)
         outside[j] = noise(&seed);
-    bough_arrow_rate(arrow, 0, y, before);
-    memcpy(input, arrow->input, (size_t)a->n_input * sizeof(double));
-    status = bough_arrow_setup(arrow, 0, y, input, gamma);
+    bough_coupled_rate(coupled, 0, y, before);
+    memcpy(input, coupled->input, (size_t)a->n_input * sizeof(double));
+    status = bough_coupled_setup(coupled, 0, y, input, gamma);
     assert_true(bough_is_ok(&status));
-    bough_arrow_solve_driven(arrow, outside, x, (bough_arrow_user){0});
+    bough_coupled_solve_driven(coupled, outside, x, (bough_coupled_user){0});
 
     // x = r + γ (A x + B δu) member by member, δu = P (C x + D δu) + outside
     double change[PORTS], answer[PORTS];
     for (int i = 0; i < MEMBERS; i++) {
-        const double *du = arrow->change + a->input_offset[i], *dx = x + a->state_offset[i];
+        const double *du = coupled->change + a->input_offset[i], *dx = x + a->state_offset[i];
         output(&m[i], 0, dx, du, answer + a->output_offset[i]);
         derivative(&m[i], 0, dx, du, after + a->state_offset[i]);
     }
     for (int j = 0; j < a->n_input; j++)
         change[j] = answer[a->source[j]] + outside[j];
     for (int j = 0; j < a->n_input; j++)
-        check_near(arrow->change[j], change[j], 0, 1e-9);
+        check_near(coupled->change[j], change[j], 0, 1e-9);
     for (int k = 0; k < a->n_state; k++)
         check_near(x[k] - gamma * after[k], r[k], 0, 1e-9);
     bough_arena_destroy(arena);

@@ -5,7 +5,7 @@ enum { N = 4 };
 
 typedef struct setup {
     bough_two_mass m;
-    bough_arrow *arrow;
+    bough_coupled *coupled;
     double y[N];
 } setup;
 
@@ -15,14 +15,14 @@ static void build(setup *s) {
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(&s->m, def);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-    status = bough_arrow_create(s->m.arena, s->m.master->assembly, NULL, &s->arrow);
+    status = bough_coupled_create(s->m.arena, s->m.master->assembly, NULL, &s->coupled);
     assert_true(bough_is_ok(&status));
     memcpy(s->y, s->m.y0, sizeof s->y);
 }
 
 static bough_equilibrium_report find(setup *s, bough_equilibrium_def def, bough_code code) {
     bough_equilibrium_report report;
-    bough_status status = bough_equilibrium_find(s->m.arena, s->arrow, &def, s->y, &report);
+    bough_status status = bough_equilibrium_find(s->m.arena, s->coupled, &def, s->y, &report);
     assert_int_equal(status.code, code);
     return report;
 }
@@ -43,7 +43,7 @@ static void held_states_stay(void **state) {
     setup s;
     build(&s);
     s.y[0] = .3;
-    bough_status status = bough_arrow_hold(s.m.arena, s.arrow, 2, held);
+    bough_status status = bough_coupled_hold(s.m.arena, s.coupled, 2, held);
     assert_true(bough_is_ok(&status));
     find(&s, bough_equilibrium_def_default(), BOUGH_OK);
     check_near(s.y[0], .3, 0, 0);

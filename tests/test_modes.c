@@ -9,7 +9,7 @@ enum { N = 4 };
 
 typedef struct setup {
     bough_two_mass m;
-    bough_arrow *arrow;
+    bough_coupled *coupled;
     bough_modes_def def;
     bough_eigen_pair pair[N];
     int found;
@@ -21,15 +21,15 @@ static void build(setup *s, bough_two_mass masses) {
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(&s->m, def);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-    status = bough_arrow_create(s->m.arena, s->m.master->assembly, NULL, &s->arrow);
+    status = bough_coupled_create(s->m.arena, s->m.master->assembly, NULL, &s->coupled);
     assert_true(bough_is_ok(&status));
-    bough_arrow_inputs(s->arrow, 0, s->m.y0);
-    s->def = (bough_modes_def){.state = s->m.y0, .input = s->arrow->input, .point = 1};
+    bough_coupled_inputs(s->coupled, 0, s->m.y0);
+    s->def = (bough_modes_def){.state = s->m.y0, .input = s->coupled->input, .point = 1};
 }
 
 static void find(setup *s, int wanted) {
     bough_status status =
-        bough_modes_find(s->m.arena, s->arrow, &s->def, wanted, s->pair, &s->found);
+        bough_modes_find(s->m.arena, s->coupled, &s->def, wanted, s->pair, &s->found);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
 }
 

@@ -1,6 +1,6 @@
 // The verdict on a coupling by its eigenvalues: the limits of the two-mass oscillator, which long
 // runs confirm (test_scheme.c), within 2 %.
-#include "cosim/shadow.h"
+#include "cosim/linear_member.h"
 #include "tests/contract.h"
 #include "tests/two_mass.h"
 
@@ -155,12 +155,13 @@ static void shadows_fulfil_the_contract(void **state) {
     bough_two_mass m = bough_two_mass_default();
     build(&m, "ramp", .02);
     for (int i = 0; i < 2; i++) {
-        bough_subsystem shadow;
-        bough_status status = bough_shadow_create(m.arena, &m.subsystem[i], u, 5e-3, &shadow);
+        bough_subsystem linear_member;
+        bough_status status =
+            bough_linear_member_create(m.arena, &m.subsystem[i], u, 5e-3, &linear_member);
         assert_true(bough_is_ok(&status));
         contract_point at = {.t = 0, .state = y, .input = u, .tolerance = 1e-5};
-        contract_check(&shadow, at, .05, .1);
-        contract_set_state(&shadow, at, 1e-4);
+        contract_check(&linear_member, at, .05, .1);
+        contract_set_state(&linear_member, at, 1e-4);
     }
     bough_two_mass_destroy(&m);
 }

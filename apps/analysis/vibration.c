@@ -46,7 +46,7 @@ static bool is_frozen(const bough_simulation *s, const bough_blade_group *group)
 
 // What a solution needs.
 typedef struct solution {
-    bough_arrow *arrow;
+    bough_coupled *coupled;
     bough_blade_group group;
     double *state; // (n_state)
     double *mean;  // (n_state) work
@@ -61,10 +61,10 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, solution *x
     x->held = bough_arena_take(arena, ((size_t)s->trunk.n_state + 1) * sizeof *x->held);
     if (!x->state || !x->mean || !x->held) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_settle_state(a, x->state);
-    bough_status status = bough_arrow_create(arena, a, NULL, &x->arrow);
+    bough_status status = bough_coupled_create(arena, a, NULL, &x->coupled);
     if (!bough_is_ok(&status)) return status;
     int n_held = bough_settle_held(s->tree, false, x->held);
-    status = bough_arrow_hold(arena, x->arrow, n_held, x->held);
+    status = bough_coupled_hold(arena, x->coupled, n_held, x->held);
     if (!bough_is_ok(&status)) return status;
     return bough_blade_group_find(arena, s, a, &x->group);
 }
@@ -73,16 +73,16 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, solution *x
 // the blades bend in their mean.
 static void define(double time, solution *x) {
     const bough_blade_group *g = &x->group;
-    bough_arrow_inputs(x->arrow, time, x->state);
+    bough_coupled_inputs(x->coupled, time, x->state);
     x->def = (bough_modes_def){.time = time,
                                .state = x->state,
-                               .input = x->arrow->input,
+                               .input = x->coupled->input,
                                .point = least_point,
                                .n_part = g->n,
                                .n_row = g->n_row,
                                .row = g->row};
     if (g->n == 0 || fabs(g->speed) < at_rest) return;
-    bough_blade_group_average(g, x->arrow->input, x->mean, x->state);
+    bough_blade_group_average(g, x->coupled->input, x->mean, x->state);
     x->def.spin = g->speed;
     x->def.point = fmax(least_point, spins * ((g->n - 1) / 2) * fabs(g->speed));
 }
@@ -143,10 +143,10 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, double time, 
     v->n_blade = x.group.n;
     v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
     v->frozen = is_frozen(s, &x.group);
-    status = bough_modes_find(arena, x.arrow, &x.def, wanted, v->pair, &v->found);
+    status = bough_modes_find(arena, x.coupled, &x.def, wanted, v->pair, &v->found);
     while (status.code == BOUGH_FAILED && wanted > 1) { // the highest may be beyond rounding
         wanted /= 2;
-        status = bough_modes_find(arena, x.arrow, &x.def, wanted, v->pair, &v->found);
+        status = bough_modes_find(arena, x.coupled, &x.def, wanted, v->pair, &v->found);
     }
     drop_other_motions(s->tree, x.def.point, count, v);
     return bough_is_ok(&status) ? describe(arena, s, &x, v) : status;

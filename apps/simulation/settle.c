@@ -91,30 +91,30 @@ static double change_of(const bough_assembly *assembly, const double *a, const d
 }
 
 // The states in equilibrium under the air's forces as sampled last.
-static bough_status settle(bough_arena *arena, bough_simulation *s, bough_arrow *arrow,
+static bough_status settle(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
                            bough_equilibrium_def *def, double *state, bough_settling *settling) {
     bough_equilibrium_report report;
-    bough_status status = bough_equilibrium_find(arena, arrow, def, state, &report);
+    bough_status status = bough_equilibrium_find(arena, coupled, def, state, &report);
     settling->steps += report.steps;
-    if (status.code == BOUGH_FAILED) return explain(s, arrow->assembly, &report);
-    if (bough_is_ok(&status)) set_state(s, arrow->assembly, state);
+    if (status.code == BOUGH_FAILED) return explain(s, coupled->assembly, &report);
+    if (bough_is_ok(&status)) set_state(s, coupled->assembly, state);
     def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now
     return status;
 }
 
-static bough_status settle_in_air(bough_arena *arena, bough_simulation *s, bough_arrow *arrow,
+static bough_status settle_in_air(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
                                   bough_equilibrium_def *def, double *state,
                                   bough_settling *settling) {
-    double *before = bough_arena_doubles(arena, (size_t)arrow->assembly->n_state), change = 0;
+    double *before = bough_arena_doubles(arena, (size_t)coupled->assembly->n_state), change = 0;
     if (!before) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     while (settling->samples < SAMPLES) {
-        memcpy(before, state, (size_t)arrow->assembly->n_state * sizeof *state);
+        memcpy(before, state, (size_t)coupled->assembly->n_state * sizeof *state);
         bough_aero_link_hold(s->aero, def->time);
         if (s->drag != NULL) bough_drag_link_hold(s->drag, def->time);
         settling->samples++;
-        bough_status status = settle(arena, s, arrow, def, state, settling);
+        bough_status status = settle(arena, s, coupled, def, state, settling);
         if (!bough_is_ok(&status)) return status;
-        change = change_of(arrow->assembly, state, before);
+        change = change_of(coupled->assembly, state, before);
         if (change < still) return status;
     }
     return bough_fail(BOUGH_FAILED,
@@ -127,7 +127,7 @@ static bough_status settle_in_air(bough_arena *arena, bough_simulation *s, bough
 // What settles.
 typedef struct settler {
     bough_simulation *simulation;
-    bough_arrow *arrow;
+    bough_coupled *coupled;
     double time;
 } settler;
 
@@ -136,26 +136,27 @@ typedef struct settler {
 static void calm(void *self, double *state) {
     const settler *x = self;
     const bough_simulation *s = x->simulation;
-    const bough_assembly *a = x->arrow->assembly;
+    const bough_assembly *a = x->coupled->assembly;
     const bough_tree *tree = s->tree;
     for (int k = tree->n_q; k < tree->n_q + tree->n_v; k++) {
         bool held = false;
-        for (int i = 0; i < x->arrow->n_held; i++) held = held || x->arrow->held[i] == k;
+        for (int i = 0; i < x->coupled->n_held; i++)
+            held = held || x->coupled->held[i] == k;
         if (!held) state[k] = 0;
     }
-    bough_arrow_inputs(x->arrow, x->time, state);
+    bough_coupled_inputs(x->coupled, x->time, state);
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         int member = beam->port + 1;
         if (beam->port < 0) continue;
-        bough_beam_ride(beam, x->arrow->input + a->input_offset[member],
+        bough_beam_ride(beam, x->coupled->input + a->input_offset[member],
                         state + a->state_offset[member]);
     }
 }
 
-static bool turns(const bough_arrow *arrow, const bough_tree *tree, const double *state) {
-    for (int i = 0; i < arrow->n_held; i++) {
-        if (arrow->held[i] >= tree->n_q && state[arrow->held[i]] != 0) return true;
+static bool turns(const bough_coupled *coupled, const bough_tree *tree, const double *state) {
+    for (int i = 0; i < coupled->n_held; i++) {
+        if (coupled->held[i] >= tree->n_q && state[coupled->held[i]] != 0) return true;
     }
     return false;
 }
@@ -163,24 +164,24 @@ static bool turns(const bough_arrow *arrow, const bough_tree *tree, const double
 static bough_status settle_members(bough_arena *arena, bough_simulation *s,
                                    const bough_assembly *assembly, double time,
                                    bough_settling *settling) {
-    bough_arrow *arrow;
+    bough_coupled *coupled;
     bough_equilibrium_def def = bough_equilibrium_def_default();
     double *state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
     int *row = bough_arena_take(arena, ((size_t)s->trunk.n_state + 1) * sizeof *row);
     if (!state || !row) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_status status = bough_arrow_create(arena, assembly, NULL, &arrow);
+    bough_status status = bough_coupled_create(arena, assembly, NULL, &coupled);
     if (!bough_is_ok(&status)) return status;
     def.time = time;
-    status = bough_arrow_hold(arena, arrow, bough_settle_held(s->tree, true, row), row);
+    status = bough_coupled_hold(arena, coupled, bough_settle_held(s->tree, true, row), row);
     if (!bough_is_ok(&status)) return status;
     bough_settle_state(assembly, state);
     bough_tree_prescribe(s->tree, time, state);
-    settler self = {s, arrow, time};
+    settler self = {s, coupled, time};
     def.self = &self;
     calm(&self, state);
-    if (turns(arrow, s->tree, state)) def.calm = calm;
-    return s->aero ? settle_in_air(arena, s, arrow, &def, state, settling)
-                   : settle(arena, s, arrow, &def, state, settling);
+    if (turns(coupled, s->tree, state)) def.calm = calm;
+    return s->aero ? settle_in_air(arena, s, coupled, &def, state, settling)
+                   : settle(arena, s, coupled, &def, state, settling);
 }
 
 bough_status bough_settle(bough_simulation *s, const bough_assembly *assembly, double time,

@@ -138,14 +138,14 @@ bough_status bough_two_mass_error(bough_two_mass *m, double *worst, double *told
 
 enum { STATES = 4, INPUTS = 6, MOST = STATES + 4 * INPUTS };
 
-static int parts(const bough_two_mass *m) { return m->master->coupling->owed ? 4 : 3; }
+static int parts(const bough_two_mass *m) { return m->master->coupling->deficit ? 4 : 3; }
 
 // What a macro step depends on, from z or into it: the states, inputs one and two steps ago, the
 // inputs used last, and what the ramp owes.
 static void exchange_memory(bough_two_mass *m, double *z, bool load) {
     bough_coupling *c = m->master->coupling;
     size_t size = (size_t)m->master->assembly->n_input * sizeof(double);
-    double *const part[4] = {c->past[1], c->past[2], c->used, c->owed};
+    double *const part[4] = {c->past[1], c->past[2], c->used, c->deficit};
     for (int i = 0; i < 2; i++) {
         if (load) m->subsystem[i].ops->set_state(&m->mass[i], 0, z + 2 * i);
         if (!load) memcpy(z + 2 * i, m->mass[i].y, sizeof m->mass[i].y);

@@ -1,11 +1,11 @@
-#include "cosim/shadow.h"
+#include "cosim/linear_member.h"
 
 #include <math.h>
 #include <string.h>
 
 static const double sdirk_gamma = 0.29289321881345248; // 1 − 1/√2
 
-typedef struct shadow {
+typedef struct linear_member {
     const bough_subsystem *real;
     double sub_step;
     double *at, *input_at; // (n_state), (n_input) where the subsystem is linearised
@@ -15,23 +15,25 @@ typedef struct shadow {
     double time, *state;   // (n_state) the perturbation
     double *plus, *minus;  // (n_state) scratch
     double *seen;          // (n_input) scratch
-} shadow;
+} linear_member;
 
 // -- model exchange -------------------------------------------------------------------------------
 
-static void add_inputs(const shadow *s, double factor, const double *input, double *sum) {
+static void add_inputs(const linear_member *s, double factor, const double *input, double *sum) {
     int n = s->real->n_state;
     for (int j = 0; j < s->real->n_input; j++) {
         double weight = factor * input[j];
         const double *column = s->column + (size_t)j * (size_t)n;
         if (weight == 0) continue;
-        for (int k = 0; k < n; k++) sum[k] += weight * column[k];
+        for (int k = 0; k < n; k++)
+            sum[k] += weight * column[k];
     }
 }
 
-static bool shifted_rate(shadow *s, double factor, const double *state, double *rate) {
+static bool shifted_rate(linear_member *s, double factor, const double *state, double *rate) {
     const bough_subsystem *r = s->real;
-    for (int k = 0; k < r->n_state; k++) s->plus[k] = s->at[k] + factor * state[k];
+    for (int k = 0; k < r->n_state; k++)
+        s->plus[k] = s->at[k] + factor * state[k];
     return r->ops->derivative(r->self, *r->time, s->plus, s->input_at, rate);
 }
 
@@ -39,16 +41,18 @@ static bool shifted_rate(shadow *s, double factor, const double *state, double *
 static bool derivative(void *self, double t, const double *state, const double *input,
                        double *rate) {
     (void)t;
-    shadow *s = self;
+    linear_member *s = self;
     const bough_subsystem *r = s->real;
     double largest = 0;
-    for (int k = 0; k < r->n_state; k++) largest = fmax(largest, fabs(state[k]) / r->scale[k]);
+    for (int k = 0; k < r->n_state; k++)
+        largest = fmax(largest, fabs(state[k]) / r->scale[k]);
     memset(rate, 0, (size_t)r->n_state * sizeof(double));
     if (largest > 0) {
         double step = 6e-6 / largest; // the cube root of the rounding error
         if (!shifted_rate(s, step, state, rate)) return false;
         if (!shifted_rate(s, -step, state, s->minus)) return false;
-        for (int k = 0; k < r->n_state; k++) rate[k] = (rate[k] - s->minus[k]) / (2 * step);
+        for (int k = 0; k < r->n_state; k++)
+            rate[k] = (rate[k] - s->minus[k]) / (2 * step);
     }
     add_inputs(s, 1, input, rate);
     return true;
@@ -58,7 +62,7 @@ static bool derivative(void *self, double t, const double *state, const double *
 static void output_tangent(void *self, double t, const double *state, const double *input,
                            const double *state_rate, const double *input_rate, double *rate) {
     (void)t, (void)state, (void)input;
-    const shadow *s = self;
+    const linear_member *s = self;
     const bough_subsystem *r = s->real;
     r->ops->output_tangent(r->self, *r->time, s->at, s->input_at, state_rate, input_rate, rate);
 }
@@ -70,7 +74,7 @@ static void output(void *self, double t, const double *state, const double *inpu
 static void input_columns(void *self, double t, const double *state, const double *input,
                           double *column) {
     (void)t, (void)state, (void)input;
-    const shadow *s = self;
+    const linear_member *s = self;
     size_t count = (size_t)s->real->n_input * (size_t)s->real->n_state;
     memcpy(column, s->column, count * sizeof(double));
 }
@@ -78,7 +82,7 @@ static void input_columns(void *self, double t, const double *state, const doubl
 static bool newton_setup(void *self, double t, const double *state, const double *input,
                          double gamma) {
     (void)t, (void)state, (void)input;
-    shadow *s = self;
+    linear_member *s = self;
     const bough_subsystem *r = s->real;
     if (gamma == s->gamma) return true;
     bool again = s->linearised && r->ops->newton_refactor != NULL;
@@ -90,21 +94,22 @@ static bool newton_setup(void *self, double t, const double *state, const double
 }
 
 static void newton_solve(void *self, double *x) {
-    const shadow *s = self;
+    const linear_member *s = self;
     s->real->ops->newton_solve(s->real->self, x);
 }
 
 // -- own steps ------------------------------------------------------------------------------------
 
 // One SDIRK step of length h: with x1 = y + γh f1, x2 = y + (1 − γ)h f1 + γh f2 = the new state.
-static void step(shadow *s, const bough_signal *input, double t, double h) {
+static void step(linear_member *s, const bough_signal *input, double t, double h) {
     int n = s->real->n_state;
     double part = (1 - sdirk_gamma) / sdirk_gamma;
     memcpy(s->plus, s->state, (size_t)n * sizeof(double));
     bough_signal_value(input, t + sdirk_gamma * h, s->seen);
     add_inputs(s, s->gamma, s->seen, s->plus);
     newton_solve(s, s->plus);
-    for (int k = 0; k < n; k++) s->state[k] += part * (s->plus[k] - s->state[k]);
+    for (int k = 0; k < n; k++)
+        s->state[k] += part * (s->plus[k] - s->state[k]);
     bough_signal_value(input, t + h, s->seen);
     add_inputs(s, s->gamma, s->seen, s->state);
     newton_solve(s, s->state);
@@ -112,7 +117,7 @@ static void step(shadow *s, const bough_signal *input, double t, double h) {
 
 static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
     (void)restart;
-    shadow *s = self;
+    linear_member *s = self;
     double t0 = s->time;
     int n_step = (int)ceil((t1 - t0) / s->sub_step - 1e-6);
     double h = (t1 - t0) / n_step;
@@ -120,24 +125,25 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
     if (!newton_setup(s, t0, NULL, NULL, (double)(float)(sdirk_gamma * h))) {
         return bough_fail(BOUGH_FAILED, "%s: singular Newton matrix", s->real->name);
     }
-    for (int k = 0; k < n_step; k++) step(s, input, t0 + k * h, h);
+    for (int k = 0; k < n_step; k++)
+        step(s, input, t0 + k * h, h);
     s->time = t1;
     return bough_ok();
 }
 
 static size_t save_size(void *self) {
-    const shadow *s = self;
+    const linear_member *s = self;
     return (1 + (size_t)s->real->n_state) * sizeof(double);
 }
 
 static void save(void *self, void *copy) {
-    const shadow *s = self;
+    const linear_member *s = self;
     memcpy(copy, &s->time, sizeof(double));
     memcpy((double *)copy + 1, s->state, (size_t)s->real->n_state * sizeof(double));
 }
 
 static void set_state(void *self, double t, const double *state) {
-    shadow *s = self;
+    linear_member *s = self;
     s->time = t;
     memmove(s->state, state, (size_t)s->real->n_state * sizeof(double));
 }
@@ -167,12 +173,13 @@ static const bough_subsystem_ops operations = {
     .statistics = statistics,
 };
 
-bough_status bough_shadow_create(bough_arena *arena, const bough_subsystem *real,
-                                 const double *input, double sub_step, bough_subsystem *shadow_of) {
+bough_status bough_linear_member_create(bough_arena *arena, const bough_subsystem *real,
+                                        const double *input, double sub_step,
+                                        bough_subsystem *linear) {
     size_t n = (size_t)real->n_state, n_input = (size_t)real->n_input;
-    shadow *s = bough_arena_take(arena, sizeof *s);
+    linear_member *s = bough_arena_take(arena, sizeof *s);
     if (!s) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    *s = (shadow){.real = real, .sub_step = sub_step, .time = *real->time};
+    *s = (linear_member){.real = real, .sub_step = sub_step, .time = *real->time};
     s->at = bough_arena_doubles(arena, n);
     s->input_at = bough_arena_doubles(arena, n_input);
     s->column = bough_arena_doubles(arena, n_input * n);
@@ -184,12 +191,12 @@ bough_status bough_shadow_create(bough_arena *arena, const bough_subsystem *real
     memcpy(s->at, real->state, n * sizeof(double));
     memcpy(s->input_at, input, n_input * sizeof(double));
     real->ops->input_columns(real->self, *real->time, s->at, s->input_at, s->column);
-    *shadow_of = *real;
-    shadow_of->solver = "SDIRK2";
-    shadow_of->time = &s->time;
-    shadow_of->state = s->state;
-    shadow_of->own_error = NULL;
-    shadow_of->ops = &operations;
-    shadow_of->self = s;
+    *linear = *real;
+    linear->solver = "SDIRK2";
+    linear->time = &s->time;
+    linear->state = s->state;
+    linear->own_error = NULL;
+    linear->ops = &operations;
+    linear->self = s;
     return bough_ok();
 }

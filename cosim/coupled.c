@@ -1,0 +1,278 @@
+#include "cosim/coupled.h"
+
+#include "core/linalg.h"
+
+#include <string.h>
+
+enum { FOLLOWERS, LEADERS, ALL };
+
+typedef struct member_work {
+    bough_coupled *coupled;
+    const int *member;
+    void (*work)(bough_coupled *coupled, int member);
+} member_work;
+
+static void run_member(void *data, int k) {
+    const member_work *w = data;
+    int i = w->member[k];
+    w->coupled->status[i].code = BOUGH_OK;
+    w->work(w->coupled, i);
+}
+
+// work(coupled, member) for every one of them, in parallel; the first failure in member order.
+static bough_status each(bough_coupled *a, int whom, void (*work)(bough_coupled *a, int member)) {
+    int n_member = a->assembly->n_member, n_leader = n_member - a->n_follower;
+    int n = whom == ALL ? n_member : whom == LEADERS ? n_leader : a->n_follower;
+    member_work w = {a, whom == LEADERS ? a->order + a->n_follower : a->order, work};
+    bough_pool_run(a->pool, n, run_member, &w);
+    for (int i = 0; i < n_member; i++) {
+        if (!bough_is_ok(&a->status[i])) return a->status[i];
+    }
+    return bough_ok();
+}
+
+// -- evaluation -----------------------------------------------------------------------------------
+
+void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state) {
+    const bough_assembly *a = coupled->assembly;
+    for (int n = 0; n < a->n_member; n++) {
+        int i = a->order[n];
+        const bough_subsystem *s = a->member[i];
+        bough_assembly_gather(a, i, coupled->output, coupled->input);
+        s->ops->output(s->self, t, state + a->state_offset[i], coupled->input + a->input_offset[i],
+                       coupled->output + a->output_offset[i]);
+    }
+    for (int i = 0; i < a->n_member; i++)
+        bough_assembly_gather(a, i, coupled->output, coupled->input);
+}
+
+static void evaluate(bough_coupled *coupled, int i) {
+    const bough_assembly *a = coupled->assembly;
+    const bough_subsystem *s = a->member[i];
+    if (!s->ops->derivative(s->self, coupled->time, coupled->at + a->state_offset[i],
+                            coupled->input + a->input_offset[i], coupled->x + a->state_offset[i])) {
+        coupled->status[i] =
+            bough_fail(BOUGH_FAILED, "%s: no finite rate of change at %.6g s", s->name, *s->time);
+    }
+}
+
+bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state,
+                                double *rate) {
+    bough_coupled_inputs(coupled, t, state);
+    coupled->time = t;
+    coupled->at = state;
+    coupled->x = rate;
+    return each(coupled, ALL, evaluate);
+}
+
+// -- factors --------------------------------------------------------------------------------------
+
+static bough_operating_point operating_point(const bough_coupled *coupled, int i) {
+    const bough_assembly *a = coupled->assembly;
+    return (bough_operating_point){coupled->setup_time, coupled->setup_state + a->state_offset[i],
+                                   coupled->setup_input + a->input_offset[i], coupled->gamma};
+}
+
+static void factored(bough_coupled *coupled, int i, bool good) {
+    if (good) return;
+    coupled->status[i] =
+        bough_fail(BOUGH_RETRY, "%s: singular Newton matrix", coupled->assembly->member[i]->name);
+}
+
+static void factor_leader(bough_coupled *coupled, int i) {
+    bough_operating_point at = operating_point(coupled, i);
+    factored(coupled, i, bough_condensed_factor_leader(coupled->interface, i, &at));
+}
+
+static void factor_follower(bough_coupled *coupled, int i) {
+    bough_operating_point at = operating_point(coupled, i);
+    factored(coupled, i, bough_condensed_factor_follower(coupled->interface, i, &at));
+}
+
+static bool factor_border(bough_coupled *coupled);
+
+void bough_coupled_adopt(bough_coupled *coupled, bough_condensed *interface, double t,
+                         const double *state, const double *input, double gamma) {
+    const bough_assembly *a = coupled->assembly;
+    memcpy(coupled->setup_state, state, (size_t)a->n_state * sizeof(double));
+    memcpy(coupled->setup_input, input, (size_t)a->n_input * sizeof(double));
+    coupled->setup_time = t;
+    coupled->gamma = gamma;
+    coupled->interface = interface;
+}
+
+bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state,
+                                 const double *input, double gamma) {
+    bough_coupled_adopt(coupled, coupled->own, t, state, input, gamma);
+    bough_status status = each(coupled, LEADERS, factor_leader);
+    if (!bough_is_ok(&status)) return status;
+    status = each(coupled, FOLLOWERS, factor_follower);
+    if (!bough_is_ok(&status)) return status;
+    if (bough_condensed_close(coupled->interface) && factor_border(coupled)) return status;
+    return bough_fail(BOUGH_RETRY, "the interface's Newton matrix is singular");
+}
+
+// -- solution -------------------------------------------------------------------------------------
+
+// The outputs' change with x and the inputs' change δu, which may be NULL.
+static void find_output_change(bough_coupled *coupled, int i, const double *x,
+                               const double *change) {
+    const bough_assembly *a = coupled->assembly;
+    const bough_subsystem *s = a->member[i];
+    s->ops->output_tangent(s->self, coupled->setup_time, coupled->setup_state + a->state_offset[i],
+                           coupled->setup_input + a->input_offset[i], x, change,
+                           coupled->output_change + a->output_offset[i]);
+}
+
+// x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held; where the states are the
+// coordinates they take part in the interface as a whole.
+static void solve_leader(bough_coupled *coupled, int i) {
+    const bough_assembly *a = coupled->assembly;
+    const bough_subsystem *s = a->member[i];
+    const bough_answer *w = &coupled->interface->of[i];
+    double *x = coupled->x + a->state_offset[i];
+    double *coordinate = coupled->interface->coordinate + w->first;
+    if (coupled->user.before) coupled->user.before(coupled->user.self, i);
+    s->ops->newton_solve(s->self, x);
+    memset(coordinate, 0, (size_t)w->n * sizeof(double));
+    if (!w->by_state) {
+        find_output_change(coupled, i, x, NULL);
+        return;
+    }
+    memcpy(coordinate, x, (size_t)s->n_state * sizeof(double));
+    memset(x, 0, (size_t)s->n_state * sizeof(double));
+    memset(coupled->output_change + a->output_offset[i], 0, (size_t)s->n_output * sizeof(double));
+}
+
+static void gather_changes(bough_coupled *coupled, int i) {
+    const bough_assembly *a = coupled->assembly;
+    for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+        coupled->change[j] = coupled->output_change[a->source[j]];
+        if (coupled->outside) coupled->change[j] += coupled->outside[j];
+    }
+}
+
+// The same of a follower, under what the leaders do by themselves.
+static void solve_follower(bough_coupled *coupled, int i) {
+    const bough_assembly *a = coupled->assembly;
+    const bough_subsystem *s = a->member[i];
+    double *x = coupled->x + a->state_offset[i], *change = coupled->change + a->input_offset[i];
+    if (coupled->user.before) coupled->user.before(coupled->user.self, i);
+    gather_changes(coupled, i);
+    bough_condensed_add_columns(coupled->interface, i, coupled->gamma, change, x);
+    s->ops->newton_solve(s->self, x);
+    find_output_change(coupled, i, x, change);
+}
+
+static void finish(bough_coupled *coupled, int i) {
+    bough_condensed_add_answer(coupled->interface, i,
+                               coupled->x + coupled->assembly->state_offset[i]);
+    if (coupled->user.after) coupled->user.after(coupled->user.self, i);
+}
+
+static void solve_free(bough_coupled *coupled, double *x) {
+    bough_coupled_solve_driven(coupled, NULL, x, (bough_coupled_user){0});
+}
+
+void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
+                                bough_coupled_user user) {
+    coupled->x = x;
+    coupled->outside = outside;
+    coupled->user = user;
+    each(coupled, LEADERS, solve_leader);
+    each(coupled, FOLLOWERS, solve_follower);
+    for (int i = 0; i < coupled->assembly->n_member; i++) {
+        if (coupled->interface->of[i].leads) gather_changes(coupled, i);
+    }
+    bough_condensed_solve(coupled->interface, coupled->change);
+    each(coupled, ALL, finish);
+}
+
+void bough_coupled_close(bough_coupled *coupled, double *outside) {
+    memset(coupled->interface->coordinate, 0, (size_t)coupled->interface->n * sizeof(double));
+    bough_condensed_solve(coupled->interface, outside);
+}
+
+// The border's multipliers make the held entries of its solutions vanish.
+static bool factor_border(bough_coupled *coupled) {
+    int n = coupled->assembly->n_state, held = coupled->n_held;
+    for (int j = 0; j < held; j++) {
+        double *column = coupled->border + (size_t)j * n;
+        memset(column, 0, (size_t)n * sizeof *column);
+        column[coupled->held[j]] = 1;
+        solve_free(coupled, column);
+        for (int i = 0; i < held; i++) {
+            coupled->multiplier[j * held + i] = column[coupled->held[i]];
+        }
+    }
+    return held == 0 || bough_dense_factor(held, coupled->multiplier, coupled->held_pivot);
+}
+
+void bough_coupled_solve(bough_coupled *coupled, double *x) {
+    int n = coupled->assembly->n_state, held = coupled->n_held;
+    solve_free(coupled, x);
+    if (held == 0) return;
+    for (int i = 0; i < held; i++)
+        coupled->share[i] = x[coupled->held[i]];
+    bough_dense_solve(held, 1, coupled->multiplier, coupled->held_pivot, coupled->share);
+    for (int j = 0; j < held; j++) {
+        const double *column = coupled->border + (size_t)j * n;
+        for (int k = 0; k < n; k++)
+            x[k] -= coupled->share[j] * column[k];
+    }
+    for (int i = 0; i < held; i++)
+        x[coupled->held[i]] = 0;
+}
+
+// -- memory ---------------------------------------------------------------------------------------
+
+static bool take(bough_coupled *coupled, bough_arena *arena) {
+    const bough_assembly *a = coupled->assembly;
+    size_t n_input = (size_t)a->n_input, n_output = (size_t)a->n_output;
+    coupled->status = bough_arena_take(arena, (size_t)a->n_member * sizeof *coupled->status);
+    coupled->order = bough_arena_take(arena, (size_t)a->n_member * sizeof *coupled->order);
+    coupled->setup_state = bough_arena_doubles(arena, (size_t)a->n_state);
+    coupled->setup_input = bough_arena_doubles(arena, n_input);
+    coupled->input = bough_arena_doubles(arena, n_input);
+    coupled->change = bough_arena_doubles(arena, n_input);
+    coupled->output = bough_arena_doubles(arena, n_output);
+    coupled->output_change = bough_arena_doubles(arena, n_output);
+    return !bough_arena_exhausted(arena);
+}
+
+static void order_members(bough_coupled *coupled) {
+    int n = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        for (int i = 0; i < coupled->assembly->n_member; i++) {
+            if (coupled->own->of[i].leads == (pass > 0)) coupled->order[n++] = i;
+        }
+        if (pass == 0) coupled->n_follower = n;
+    }
+}
+
+bough_status bough_coupled_create(bough_arena *arena, const bough_assembly *assembly,
+                                  bough_pool *pool, bough_coupled **coupled) {
+    bough_coupled *a = bough_arena_take(arena, sizeof *a);
+    if (!a) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    a->assembly = assembly;
+    a->pool = pool;
+    if (!take(a, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    *coupled = a;
+    bough_status status = bough_condensed_create(arena, assembly, &a->own);
+    a->interface = a->own;
+    if (bough_is_ok(&status)) order_members(a);
+    return status;
+}
+
+bough_status bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n,
+                                const int *held) {
+    size_t count = (size_t)n;
+    coupled->n_held = n;
+    coupled->held = held;
+    coupled->border = bough_arena_doubles(arena, count * (size_t)coupled->assembly->n_state);
+    coupled->multiplier = bough_arena_doubles(arena, count * count);
+    coupled->share = bough_arena_doubles(arena, count);
+    coupled->held_pivot = bough_arena_take(arena, (count + 1) * sizeof(int));
+    return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
+                                        : bough_ok();
+}

@@ -1,0 +1,87 @@
+// All members of an assembly as one system ẏ = F(t, y), the inputs found from the outputs: its
+// rate, and solutions of (I − γ ∂F/∂y) x = r. That matrix has the shape of an arrow, solved by
+// static condensation,
+//     (I − γJ_i) x_i = r_i + γ B_i δu_i,   δo_i = C_i x_i + D_i δu_i,   δu = P δo,
+// so each member is factored by itself and the interface system is that of condense.h.
+#ifndef BOUGH_COSIM_COUPLED_H
+#define BOUGH_COSIM_COUPLED_H
+
+#include "core/pool.h"
+#include "cosim/condense.h"
+
+// What else is to be done for a member by the thread that solves for it: makes its part of x, uses
+// it.
+typedef struct bough_coupled_user {
+    void *self;
+    void (*before)(void *self, int member); // NULL: nothing
+    void (*after)(void *self, int member);
+} bough_coupled_user;
+
+typedef struct bough_coupled {
+    const bough_assembly *assembly;
+    bough_pool *pool;       // NULL: one thread
+    double *output, *input; // (n_output), (n_input) of the last bough_coupled_inputs
+    bough_status *status;   // (n_member) of the last work on each
+    int *order, n_follower; // (n_member) the followers, then the leaders
+
+    // the evaluation in progress
+    double time;
+    const double *at; // (n_state)
+    double gamma;
+    double *x;
+
+    // factors
+    double setup_time;
+    double *setup_state;              // (n_state) where the matrix was taken
+    double *setup_input;              // (n_input)
+    bough_condensed *interface, *own; // in use, its own
+    const double *outside;            // (n_input) of the solution in progress; NULL: 0
+    bough_coupled_user user;          // of the same
+    double *change;                   // (n_input) of the inputs with the last solution
+    double *output_change;            // (n_output) of each member by itself
+
+    // states that are held
+    int n_held;
+    const int *held;    // (n_held)
+    double *border;     // (n_held × n_state): (I − γJ)⁻¹ of each held state's unit vector
+    double *multiplier; // (n_held × n_held) their held entries, factored
+    double *share;      // (n_held)
+    int *held_pivot;    // (n_held)
+} bough_coupled;
+
+// Builds the memory in the arena; members are shared out by the pool.
+bough_status bough_coupled_create(bough_arena *arena, const bough_assembly *assembly,
+                                  bough_pool *pool, bough_coupled **coupled);
+
+// From now on solutions keep these states (n, borrowed): x is 0 there, whatever force that takes.
+bough_status bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n, const int *held);
+
+// Outputs and inputs at a state (n_state) into coupled->output and coupled->input.
+void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state);
+
+// F: rate (n_state). BOUGH_FAILED names the member whose rate is not finite.
+bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state,
+                                double *rate);
+
+// Linearises about (t, state, input) and factors I − γJ; input (n_input), usually coupled->input.
+// BOUGH_RETRY when it is singular.
+bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state,
+                                 const double *input, double gamma);
+
+// The same with the factors that members hold and the interface that belongs to them, for the next
+// solutions without held states; outputs are linearised about (t, state, input).
+void bough_coupled_adopt(bough_coupled *coupled, bough_condensed *interface, double t,
+                         const double *state, const double *input, double gamma);
+
+// x ← (I − γJ)⁻¹ x, x (n_state); coupled->change is then the change of the inputs with it.
+void bough_coupled_solve(bough_coupled *coupled, double *x);
+
+// The same with `outside` (n_input) added to the inputs' changes, δu = P δo + outside; NULL: 0.
+void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
+                                bough_coupled_user user);
+
+// δu for x = 0 and `outside` (n_input) at the leaders' inputs, in place. Asks no member: their
+// Newton factors may be others by now.
+void bough_coupled_close(bough_coupled *coupled, double *outside);
+
+#endif
