@@ -358,7 +358,7 @@ modes() {
     expect 0 modes "$beam" --set 'loads=[{body: beam, at: tip, force: [0, 0, -3 kN], frame: follower}]'
     has ../stdout '^unstable beam: mode [23] grows at '
     rm -r out turning
-    refused 'no revolute joint carries it' modes "$blade" --set 'modes.speed=1'
+    refused 'no revolute joint carries it' modes "$blade" --set 'modes.speed=1 rad/s'
     refused "modes.about: the joint of 'nacelle' must be revolute" modes "$turbine" \
         --set 'modes.about=nacelle'
     refused "modes.speed: only used with 'of: rods'" modes "$turbine" \

@@ -74,7 +74,7 @@ static void library_steers_the_turbine(void **state) {
 
 static void library_may_pitch_each_blade(void **state) {
     (void)state;
-    static const char *const sets[] = {RIGID, BLADED, "control.law={pitch_rate: 1}", NULL};
+    static const char *const sets[] = {RIGID, BLADED, "control.law={pitch_rate: 1 rad/s}", NULL};
     bough_arena *arena = bough_arena_create();
     bough_scene *scene = scene_read(arena, turbine, sets);
     scene->control.input = "individual"; // of no folder

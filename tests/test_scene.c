@@ -184,7 +184,7 @@ static void joints_of_several_axes_are_read(void **state) {
                "     angular_speeds: [0, 1 rpm]}}\n"
                "  - {name: b, fidelity: rigid, mass: 1, inertia: [1, 2, 3], joint: {kind: planar,\n"
                "     parent: a, axis: z, positions: [1, 2 cm], angle: 3 deg, speeds: [4, 5],\n"
-               "     angular_speed: 6}}\n"
+               "     angular_speed: 6 rad/s}}\n"
                "  - {name: c, fidelity: rigid, mass: 1, inertia: [1, 2, 3], joint: {kind:\n"
                "     cylindrical, parent: b, axis: z, position: 2 cm, angle: 90 deg, speed: 3,\n"
                "     angular_speed: 1 rpm}}\n");
@@ -215,9 +215,9 @@ static void stops_need_a_stiffness_and_an_order(void **state) {
     SIMULATION "bodies:\n  - name: a\n    fidelity: rigid\n    inertia: [1, 1, 1]\n    joint:\n"     \
                "      {kind: revolute, parent: ground, axis: x, " more "}\n"
     accepts(HINGE("rest: 5 deg, stiffness: 3, stop: [-10 deg, 10 deg], stop_stiffness: 4"));
-    refuses(HINGE("stop: [0, 1]"), "s.yaml:7:55: error: bodies[0].joint.stop: 'stop' and "
+    refuses(HINGE("stop: [0, 1 rad]"), "s.yaml:7:55: error: bodies[0].joint.stop: 'stop' and "
                                    "'stop_stiffness' go together\n");
-    refuses(HINGE("stop: [1, 1], stop_stiffness: 4"),
+    refuses(HINGE("stop: [1 rad, 1 rad], stop_stiffness: 4"),
             "s.yaml:7:55: error: bodies[0].joint.stop: the second must be greater than the "
             "first\n");
     refuses(HINGE("stiffness: -1"),

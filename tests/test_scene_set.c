@@ -77,9 +77,8 @@ static void bad_replacements_are_refused(void **state) {
                         "--set: error: title: expected ',' or ']' to end the list\n"
                         "--set: error: simulation.macro_step: must be > 0 s, got '0'\n"
                         "--set: error: simulation: unknown key 'thread' (did you mean 'threads'?)\n"
-                        "--set: error: bodies[3].pitch: expected an angle (in rad, or with a unit, "
-                        "as '5 deg'), got "
-                        "'5 kg': the unit 'kg' does not fit\n");
+                        "--set: error: bodies[3].pitch: expected an angle with its unit, as '5 deg', "
+                        "got '5 kg': the unit 'kg' does not fit\n");
     assert_int_equal(f.status.code, BOUGH_INVALID);
     assert_null(f.scene);
     stop(&f);

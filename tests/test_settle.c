@@ -133,12 +133,12 @@ static void turning_rotor_starts_smoothly(void **context) {
     (void)context;
     const char *sets[] = {"simulation.initial=equilibrium",
                           "simulation.threads=1",
-                          "bodies[2].joint.speed=1.49",
+                          "bodies[2].joint.speed=1.49 rad/s",
                           "loads[0].ramp=[0, 0]",
                           "aero.ramp=[0, 0]",
                           "gravity=[0, 0, 0]",
                           NULL};
-    const char *undeformed[] = {"simulation.threads=1", "bodies[2].joint.speed=1.49",
+    const char *undeformed[] = {"simulation.threads=1", "bodies[2].joint.speed=1.49 rad/s",
                                 "loads[0].ramp=[0, 0]", "aero.ramp=[0, 0]",
                                 "gravity=[0, 0, 0]",    NULL};
     double moved[2] = {0, 0};

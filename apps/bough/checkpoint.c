@@ -5,7 +5,6 @@
 #include "apps/output/folder.h"
 #include "apps/scene/fingerprint.h"
 
-#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <string.h>
@@ -72,16 +71,9 @@ static void move(bough_run *run, bough_snapshot_move direction) {
 
 // -- options --------------------------------------------------------------------------------------
 
-// "5 s" or, in one word, "5s".
 static bough_status read_interval(const char *text, double *interval) {
-    char why[160], spaced[64];
-    size_t length = strlen(text), unit = length;
-    while (unit > 0 && isalpha((unsigned char)text[unit - 1])) unit--;
-    snprintf(spaced, sizeof spaced, "%.*s%s%.30s", (int)(unit < 30 ? unit : 30), text,
-             unit < length && unit > 0 && text[unit - 1] != ' ' ? " " : "", text + unit);
-    if (length < 30 && bough_quantity(spaced, BOUGH_TIME, interval, why) && *interval > 0) {
-        return bough_ok();
-    }
+    char why[160];
+    if (bough_quantity(text, BOUGH_TIME, interval, why) && *interval > 0) return bough_ok();
     return bough_fail(BOUGH_INVALID, "--checkpoint expects a time such as 5s, got '%.80s'", text);
 }
 

@@ -7,7 +7,7 @@
 // "rad/s"; "" for a pure number.
 const char *bough_dimension_unit(bough_dimension dimension);
 
-// "an angle (in rad, or with a unit, as '5 deg')"
+// "a length (in m, or with a unit, as '61.5 m')"
 void bough_dimension_expected(bough_dimension dimension, char text[96]);
 
 // Whether the text is a unit of the dimension; `why` then says why not.

@@ -72,6 +72,12 @@ void bough_dimension_expected(bough_dimension dimension, char text[96]) {
         strcpy(text, "a number");
         return;
     }
+    bool angular = dimension == BOUGH_ANGLE || dimension == BOUGH_ANGULAR_SPEED;
+    if (angular) {
+        snprintf(text, 96, "%s with its unit, as '%s'", dimensions[dimension].name,
+                 dimensions[dimension].example);
+        return;
+    }
     snprintf(text, 96, "%s (in %s, or with a unit, as '%s')", dimensions[dimension].name,
              dimensions[dimension].si, dimensions[dimension].example);
 }
@@ -206,6 +212,23 @@ static bool convert(const char *text, size_t length, double *value) {
     return isfinite(*value);
 }
 
+// Angles without a unit: radians to one reader, degrees to the next. 0 is the same to both.
+static bool is_ambiguous(const char *number, bough_dimension dimension, double value,
+                         char why[160]) {
+    if (value == 0) return false;
+    if (dimension == BOUGH_ANGLE) {
+        snprintf(why, 160, "%.30s rad is %.4g deg; write '%.30s deg' or '%.30s rad'", number,
+                 value * 180 / BOUGH_PI, number, number);
+        return true;
+    }
+    if (dimension == BOUGH_ANGULAR_SPEED) {
+        snprintf(why, 160, "%.30s rad/s is %.4g rpm; write '%.30s rpm' or '%.30s rad/s'", number,
+                 value * 30 / BOUGH_PI, number, number);
+        return true;
+    }
+    return false;
+}
+
 bool bough_quantity(const char *text, bough_dimension dimension, double *value, char why[160]) {
     size_t length = number_length(text);
     why[0] = '\0';
@@ -215,17 +238,9 @@ bool bough_quantity(const char *text, bough_dimension dimension, double *value, 
         return false;
     }
     const char *rest = text + length;
-    if (*rest == '\0') return true;
+    if (*rest == '\0') return !is_ambiguous(text, dimension, *value, why);
+    if (*rest != ' ' && strspn(rest, "0123456789.+-*/") > 0) return false;
     double factor;
-    if (*rest != ' ') {
-        bool unit_follows = dimension != BOUGH_PURE_NUMBER && strspn(rest, "0123456789.+-") == 0;
-        if (unit_follows && unit_factor(rest, dimension, &factor, why)) {
-            snprintf(why, 160, "put a space before the unit");
-        } else {
-            why[0] = '\0';
-        }
-        return false;
-    }
     if (!unit_factor(rest, dimension, &factor, why)) return false;
     *value *= factor;
     return isfinite(*value);

@@ -240,9 +240,9 @@ static void put_pitch(bough_windio *w, double ratio) {
     double rate = bough_windio_control(w, "pitch.max_pitch_rate", "max_pitch_rate", degree, 0.1);
     double gain = w->inertia * w->rated_speed * omega / (ratio * pitch_effect * w->rated_power);
     fprintf(w->draft.file[BOUGH_IMPORT_SCENE],
-            "    reference_speed: %.10g\n    proportional: %.10g\n    integral: %.10g\n"
-            "    halving_pitch: %.10g\n    least_pitch: %.10g rad\n    most_pitch: %.10g rad\n"
-            "    pitch_rate: %.10g\n",
+            "    reference_speed: %.10g rad/s\n    proportional: %.10g\n    integral: %.10g\n"
+            "    halving_pitch: %.10g rad\n    least_pitch: %.10g rad\n    most_pitch: %.10g rad\n"
+            "    pitch_rate: %.10g rad/s\n",
             w->rated_speed * ratio, 2 * zeta * gain, omega * gain, doubling_pitch, least, most,
             rate);
     bough_draft_note(&w->draft, BOUGH_TAKEN, "pitch from %.4g to %.4g deg by at most %.3g deg/s",
@@ -271,8 +271,8 @@ void bough_windio_law(bough_windio *w) {
     double rate = bough_windio_control(w, "torque.max_torque_rate", "max_torque_rate", 1, 1e9);
     fprintf(d->file[BOUGH_IMPORT_SCENE],
             "control:\n  kind: variable-speed\n  rate: 50 Hz\n  gear_ratio: %.10g\n"
-            "  efficiency: %.10g\n  law:\n    cut_in: 0\n    optimal_from: 1e-3\n"
-            "    optimal_gain: %.10g\n    rated_speed: %.10g\n    rated_power: %.10g\n"
+            "  efficiency: %.10g\n  law:\n    cut_in: 0\n    optimal_from: 1e-3 rad/s\n"
+            "    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n    rated_power: %.10g\n"
             "    most_torque: %.10g\n    torque_rate: %.10g\n",
             ratio, efficiency, 0.99 * power / (rated * rated * rated), rated, power,
             1.1 * power / rated, rate);
