@@ -2,7 +2,7 @@
 #ifndef BOUGH_TESTS_TWO_MASS_H
 #define BOUGH_TESTS_TWO_MASS_H
 
-#include "apps/study/two_mass.h"
+#include "tests/verification/two_mass.h"
 #include "tests/check.h"
 
 #include <string.h>

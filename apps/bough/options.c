@@ -150,8 +150,8 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
     const char *last = syntax->operand == BOUGH_OPERAND_TWO ? options->second : options->operand;
     bool needed = syntax->operand == BOUGH_OPERAND_REQUIRED || syntax->operand == BOUGH_OPERAND_TWO;
     if (bough_is_ok(&status) && needed && !last && !options->help) {
-        return bough_fail(BOUGH_INVALID, "%s: missing %s; see bough %s --help", argv[0],
-                          syntax->operand_name, argv[0]);
+        return bough_fail(BOUGH_INVALID, "%s: missing %s; see --help", argv[0],
+                          syntax->operand_name);
     }
     return status;
 }

@@ -2,11 +2,7 @@
 #include "apps/study/study.h"
 
 #include "apps/config/schema.h"
-#include "apps/study/study_added_mass.h"
 #include "apps/study/study_internal.h"
-#include "apps/study/study_rivals.h"
-#include "apps/study/study_two_mass.h"
-#include "apps/study/study_verify.h"
 
 #include <errno.h>
 #include <string.h>
@@ -220,14 +216,10 @@ static const bough_key study_keys[] = {
     {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
      .help = "file of the scene, relative to the study"},
     {.name = "kind", .kind = BOUGH_KEY_CHOICE,
-     .choices = CHOICES("work-precision", "verify", "two-mass", "added-mass", "timing",
-                        "rivals", "stability"),
-     .required = true, AT(kind),
+     .choices = CHOICES("work-precision", "timing", "stability"), .required = true, AT(kind),
      .help = "work-precision: time and difference to the reference of every cell of the grid; "
-             "rivals: one blade modelled in several ways; "
-             "verify: cases against what they should give; two-mass, added-mass: coupling schemes on "
-             "masses and springs; timing: what the cells cost, in turns; stability: map of errors and "
-             "diagnoses, each against a reference with its own model parameters"},
+             "timing: what the cells cost, in turns; stability: map of errors and diagnoses, each "
+             "against a reference with its own model parameters"},
     {.name = "reference", .kind = BOUGH_KEY_CUSTOM, .read = read_settings, .required = true,
      .form = "{KEY: VALUE, ...}", AT(reference), .help = "replacements that make the reference"},
     {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = read_grid, .required = true,
@@ -289,30 +281,18 @@ static bough_status finish(const char *path, bough_arena *arena, bough_errors *e
     return bough_fail(BOUGH_INVALID, "%s: %d error%s in the study", path, n, n == 1 ? "" : "s");
 }
 
-static bool is_kind(const bough_node *root, const char *name) {
+// The kinds of the project's verification of itself, which no installed program runs.
+static bool is_verification(const bough_node *root, bough_errors *errors) {
+    static const char *const kinds[] = {"verify", "two-mass", "added-mass", "rivals"};
     const bough_node *kind = bough_node_find(root, "kind");
-    return kind && kind->kind == BOUGH_SCALAR && strcmp(kind->text, name) == 0;
-}
-
-// The kinds without a grid have their own keys. False: it is none of them.
-static bool read_own_kind(bough_arena *arena, const char *path, const bough_node *root,
-                          bough_errors *errors, bough_study *s) {
-    if (is_kind(root, "verify")) {
-        s->kind = BOUGH_STUDY_VERIFY;
-        s->verify = bough_verify_read(arena, path, root, errors);
-    } else if (is_kind(root, "two-mass")) {
-        s->kind = BOUGH_STUDY_TWO_MASS;
-        s->two_mass = bough_two_mass_read(arena, root, errors);
-    } else if (is_kind(root, "rivals")) {
-        s->kind = BOUGH_STUDY_RIVALS;
-        s->rivals = bough_rivals_read(arena, path, root, errors);
-    } else if (is_kind(root, "added-mass")) {
-        s->kind = BOUGH_STUDY_ADDED_MASS;
-        s->added_mass = bough_added_mass_read(arena, root, errors);
-    } else {
-        return false;
+    for (size_t i = 0; kind && kind->kind == BOUGH_SCALAR && i < sizeof kinds / sizeof *kinds; i++) {
+        if (strcmp(kind->text, kinds[i]) != 0) continue;
+        bough_errors_add(errors, kind, "kind",
+                         "'%s' is a kind of bough's own verification, which another program runs: "
+                         "build/release/tests/bough-verify FILE, built with the tests", kinds[i]);
+        return true;
     }
-    return true;
+    return false;
 }
 
 bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
@@ -323,10 +303,7 @@ bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
     if (!s || !root) return finish(path, arena, errors);
     s->file = bough_arena_string(arena, path);
     s->threads = threads;
-    if (read_own_kind(arena, path, root, errors, s)) {
-        *study = errors->n + errors->dropped == 0 ? s : NULL;
-        return finish(path, arena, errors);
-    }
+    if (is_verification(root, errors)) return finish(path, arena, errors);
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
     bough_schema_read(&reader, &study_schema, root, s);
     bough_status status = finish(path, arena, errors);

@@ -16,11 +16,7 @@ enum { BOUGH_STUDY_AXES = 6, BOUGH_STUDY_MEASURES = 8, BOUGH_STUDY_CELLS = 10000
 
 typedef enum bough_study_kind {
     BOUGH_STUDY_WORK_PRECISION,
-    BOUGH_STUDY_VERIFY,
-    BOUGH_STUDY_TWO_MASS,
-    BOUGH_STUDY_ADDED_MASS,
     BOUGH_STUDY_TIMING,
-    BOUGH_STUDY_RIVALS,
     BOUGH_STUDY_STABILITY,
 } bough_study_kind;
 
@@ -96,11 +92,6 @@ typedef struct bough_study {
     bough_study_measure *measure; // (n_measure)
     int repeat;                   // runs of each cell; times are their medians
     int threads;                  // 0: as the scene says
-    // all there is of the kinds without a grid, else NULL
-    struct bough_verify *verify;
-    struct bough_two_mass_study *two_mass;
-    struct bough_added_mass_study *added_mass;
-    struct bough_rivals *rivals;
 
     // by bough_study_expand
     int n_reference; // 1; of kind stability one for each combination of the model's parameters
@@ -121,6 +112,9 @@ typedef struct bough_study {
 // NULL.
 bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
                               bough_errors *errors, bough_study **study);
+
+// A scene's path from that of the study which names it.
+const char *bough_study_path(bough_arena *arena, const char *study, const char *scene);
 
 // The value of a grid key in a cell; for the reference what its replacements say, "" if nothing.
 const char *bough_study_value(const bough_study *study, const bough_study_cell *cell, int axis);

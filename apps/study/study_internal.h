@@ -4,9 +4,6 @@
 
 #include "apps/study/study.h"
 
-// A scene's path from that of the study which names it.
-const char *bough_study_path(bough_arena *arena, const char *study, const char *scene);
-
 // Makes the cells of the grid and the reference cell.
 void bough_study_expand(bough_arena *arena, bough_study *study, bough_errors *errors);
 

@@ -2,13 +2,9 @@
 
 #include "apps/output/folder.h"
 #include "apps/study/study_plot.h"
-#include "apps/study/study_added_mass.h"
-#include "apps/study/study_rivals.h"
 #include "apps/study/study_stability.h"
 #include "apps/study/study_store.h"
 #include "apps/study/study_timing.h"
-#include "apps/study/study_two_mass.h"
-#include "apps/study/study_verify.h"
 
 #include <errno.h>
 #include <string.h>
@@ -125,10 +121,6 @@ typedef bough_status perform_function(bough_arena *arena, const bough_study *stu
                                       const bough_study_options *options);
 
 static perform_function *const kinds[] = {[BOUGH_STUDY_WORK_PRECISION] = work_precision,
-                                          [BOUGH_STUDY_VERIFY] = bough_verify_perform,
-                                          [BOUGH_STUDY_TWO_MASS] = bough_two_mass_perform,
-                                          [BOUGH_STUDY_RIVALS] = bough_rivals_perform,
-                                          [BOUGH_STUDY_ADDED_MASS] = bough_added_mass_perform,
                                           [BOUGH_STUDY_TIMING] = bough_timing_perform,
                                           [BOUGH_STUDY_STABILITY] = bough_stability_perform};
 

@@ -1,5 +1,6 @@
 #include "apps/study/study.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/verification/verification.h"
 
 #include <string.h>
 
@@ -18,6 +19,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     const char *path = fuzz_file("study.yaml", data, size);
     bough_status status = bough_study_read(arena, path, 1, &errors, &study);
     fuzz_demand((study == NULL) == !bough_is_ok(&status), "a study, or why there is none");
+    bough_arena_destroy(arena);
+    arena = bough_arena_create();
+    errors = (bough_errors){.arena = arena};
+    bough_verification verification;
+    status = bough_verification_read(arena, path, &errors, &verification);
+    fuzz_demand((errors.n == 0) == bough_is_ok(&status), "a verification, or why there is none");
     bough_arena_destroy(arena);
     return 0;
 }

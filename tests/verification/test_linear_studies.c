@@ -1,20 +1,20 @@
 // The shipped studies of coupling schemes on masses and springs: every figure is the expected one.
-#include "apps/study/study_perform.h"
 #include "tests/check.h"
 #include "tests/scratch.h"
+#include "tests/verification/verification.h"
 
 static void perform(const char *folder, const char *name, const char *csv, int rows) {
     char path[512];
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {.arena = arena};
-    bough_study *study;
+    bough_verification study;
     FILE *stream = tmpfile();
     snprintf(path, sizeof path, BOUGH_SOURCE_DIR "/apps/studies/%s", name);
-    bough_status status = bough_study_read(arena, path, 0, &errors, &study);
+    bough_status status = bough_verification_read(arena, path, &errors, &study);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
-    bough_study_options options = {.folder = folder, .quiet = true, .stream = stream};
-    status = bough_study_perform(arena, study, &options);
+    bough_verification_options options = {.folder = folder, .quiet = true, .stream = stream};
+    status = bough_verification_perform(arena, &study, &options);
     if (!bough_is_ok(&status)) print_error("%s\n", status.message);
     assert_int_equal(status.code, BOUGH_OK);
     char *table = scratch_read(folder, csv), *picture = scratch_read(folder, "plot.svg");

@@ -1,10 +1,10 @@
-#include "apps/study/study_two_mass.h"
+#include "tests/verification/two_mass_study.h"
 
 #include "apps/config/schema.h"
 #include "apps/output/folder.h"
 #include "apps/study/study_map.h"
 #include "apps/study/study_store.h"
-#include "apps/study/two_mass.h"
+#include "tests/verification/two_mass.h"
 
 #include <math.h>
 #include <string.h>
@@ -146,8 +146,9 @@ static const bough_schema study_schema = {
     .key = study_keys};
 // clang-format on
 
-struct bough_two_mass_study *bough_two_mass_read(bough_arena *arena, const bough_node *root,
-                                                 bough_errors *errors) {
+void *bough_two_mass_read(bough_arena *arena, const char *path, const bough_node *root,
+                          bough_errors *errors) {
+    (void)path;
     two_mass_study *s = bough_arena_take(arena, sizeof *s);
     if (!s) return NULL;
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
@@ -249,7 +250,7 @@ static void judge(const model *m, const variant *v, int row, result *r) {
 // -- report ---------------------------------------------------------------------------------------
 
 typedef struct report {
-    const bough_study_options *options;
+    const bough_verification_options *options;
     FILE *csv;
     bough_map map;
     int n, failed;
@@ -356,15 +357,15 @@ static bough_status perform_all(bough_arena *arena, const two_mass_study *s, rep
     return status;
 }
 
-bough_status bough_two_mass_perform(bough_arena *arena, const bough_study *study,
-                                    const bough_study_options *options) {
+bough_status bough_two_mass_perform(bough_arena *arena, const void *study,
+                                    const bough_verification_options *options) {
     char path[BOUGH_PATH_MAX];
     report out = {.options = options};
     bough_status status = bough_folder_make(options->folder);
     if (bough_is_ok(&status)) status = bough_folder_path(options->folder, "two-mass.csv", path);
     if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &out.csv);
     if (!bough_is_ok(&status)) return status;
-    status = perform_all(arena, study->two_mass, &out);
+    status = perform_all(arena, study, &out);
     bough_status written = bough_folder_commit(path, out.csv);
     if (!bough_is_ok(&status)) return status;
     if (!bough_is_ok(&written) || out.failed == 0) return written;

@@ -1,5 +1,5 @@
 // One case of a study of kind verify on one mesh: its quantities.
-#include "apps/study/study_verify.h"
+#include "tests/verification/verify.h"
 
 #include "apps/analysis/steady.h"
 #include "apps/analysis/vibration.h"

@@ -1,4 +1,4 @@
-#include "apps/study/oscillator.h"
+#include "tests/verification/oscillator.h"
 
 #include <math.h>
 #include <string.h>

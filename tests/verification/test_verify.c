@@ -1,5 +1,5 @@
 // Studies of kind verify: what is read, judged and told.
-#include "apps/study/study_verify.h"
+#include "tests/verification/verify.h"
 #include "tests/scratch.h"
 
 #define BEAMS BOUGH_SOURCE_DIR "/apps/beams/"
@@ -23,7 +23,7 @@
 typedef struct fixture {
     bough_arena *arena;
     bough_errors errors;
-    bough_study *study;
+    bough_verification study;
 } fixture;
 
 static bough_status open_study(fixture *f, const char *folder, const char *text) {
@@ -35,7 +35,7 @@ static bough_status open_study(fixture *f, const char *folder, const char *text)
     assert_non_null(file);
     fputs(text, file);
     fclose(file);
-    return bough_study_read(f->arena, path, 0, &f->errors, &f->study);
+    return bough_verification_read(f->arena, path, &f->errors, &f->study);
 }
 
 // Performs a good study; `table` receives what was printed.
@@ -46,8 +46,8 @@ static bough_status perform(const char *folder, const char *text, char table[409
     assert_true(bough_is_ok(&status));
     FILE *stream = tmpfile();
     assert_non_null(stream);
-    bough_study_options options = {.folder = folder, .quiet = true, .stream = stream};
-    status = bough_study_perform(f.arena, f.study, &options);
+    bough_verification_options options = {.folder = folder, .quiet = true, .stream = stream};
+    status = bough_verification_perform(f.arena, &f.study, &options);
     rewind(stream);
     memset(table, 0, 4096);
     assert_true(fread(table, 1, 4095, stream) < 4095);
@@ -156,7 +156,6 @@ static void check_error(const char *folder, const char *text, const char *messag
     fixture f;
     bough_status status = open_study(&f, folder, text);
     assert_int_equal(status.code, BOUGH_INVALID);
-    assert_null(f.study);
     assert_int_equal(f.errors.n, 1);
     assert_true(says(f.errors.item[0].text, message));
     bough_arena_destroy(f.arena);

@@ -1,4 +1,4 @@
-#include "apps/study/two_mass.h"
+#include "tests/verification/two_mass.h"
 
 #include "core/linalg.h"
 

@@ -1,10 +1,10 @@
 // A study of kind verify: cases that are each a scene, what to do with it, and what should come out
 // by another program, an exact solution or a conservation law.
-#ifndef BOUGH_APPS_STUDY_STUDY_VERIFY_H
-#define BOUGH_APPS_STUDY_STUDY_VERIFY_H
+#ifndef BOUGH_TESTS_VERIFICATION_VERIFY_H
+#define BOUGH_TESTS_VERIFICATION_VERIFY_H
 
 #include "apps/scene/scene.h"
-#include "apps/study/study_perform.h"
+#include "tests/verification/verification.h"
 
 enum { BOUGH_VERIFY_MESHES = 5 };
 
@@ -95,8 +95,8 @@ void bough_verify_mesh(const bough_verify_case *x, int k, char line[160]);
 
 // Reads the cases from the root of a study in the file `path`, and every scene with its
 // replacements; adds what is wrong to `errors`.
-bough_verify *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root,
-                                bough_errors *errors);
+void *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root,
+                        bough_errors *errors);
 
 // Solves the induction in 1e6 random inflow states with the scene's polars, from calm to storm, at
 // any angle, twist and loss, by either high-thrust law: how many states, in how many the answer was
@@ -111,7 +111,7 @@ void bough_verify_run(bough_arena *arena, const bough_verify_case *x, int k, boo
 
 // Performs all cases, prints a line for each expectation and writes verify.csv. BOUGH_FAILED when
 // one does not hold.
-bough_status bough_verify_perform(bough_arena *arena, const bough_study *study,
-                                  const bough_study_options *options);
+bough_status bough_verify_perform(bough_arena *arena, const void *study,
+                                  const bough_verification_options *options);
 
 #endif

@@ -1,10 +1,11 @@
 // A case of kind inflow: the induction answers in any state, and the same from any start.
-#include "apps/study/study_verify.h"
+#include "tests/verification/verify.h"
 
 #include "aero/induction.h"
 #include "core/base.h"
 
 #include <math.h>
+#include <stdint.h>
 
 enum { STATES = 1000000 };
 

@@ -1,9 +1,9 @@
 // The keys of a study of kind verify and their reading.
-#include "apps/study/study_verify.h"
+#include "tests/verification/verify.h"
 
 #include "apps/config/schema.h"
 #include "apps/simulation/build.h"
-#include "apps/study/study_internal.h"
+#include "apps/study/study.h"
 
 #include <math.h>
 #include <string.h>
@@ -323,8 +323,8 @@ static void check_scene(bough_arena *arena, bough_verify_case *x, bough_errors *
     bough_arena_destroy(own);
 }
 
-bough_verify *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root,
-                                bough_errors *errors) {
+void *bough_verify_read(bough_arena *arena, const char *path, const bough_node *root,
+                        bough_errors *errors) {
     bough_verify *v = bough_arena_take(arena, sizeof *v);
     if (!v) return NULL;
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};

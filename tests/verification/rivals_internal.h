@@ -1,8 +1,8 @@
 // What the files of a study of rivals share among themselves.
-#ifndef BOUGH_APPS_STUDY_STUDY_RIVALS_INTERNAL_H
-#define BOUGH_APPS_STUDY_STUDY_RIVALS_INTERNAL_H
+#ifndef BOUGH_TESTS_VERIFICATION_RIVALS_INTERNAL_H
+#define BOUGH_TESTS_VERIFICATION_RIVALS_INTERNAL_H
 
-#include "apps/study/study_rivals.h"
+#include "tests/verification/rivals.h"
 #include "apps/study/study_run.h"
 
 enum { BOUGH_RIVALS_FREQUENCIES = 12, BOUGH_RIVALS_MEASURES = 3 };

@@ -1,10 +1,10 @@
-#include "apps/study/study_rivals.h"
+#include "tests/verification/rivals.h"
 
 #include "apps/config/schema.h"
 #include "apps/output/folder.h"
 #include "apps/scene/scene.h"
-#include "apps/study/study_internal.h"
-#include "apps/study/study_rivals_internal.h"
+#include "apps/study/study.h"
+#include "tests/verification/rivals_internal.h"
 #include "apps/study/study_store.h"
 
 #include <math.h>
@@ -57,8 +57,8 @@ static const bough_schema study_schema = {
     .key = study_keys};
 // clang-format on
 
-struct bough_rivals *bough_rivals_read(bough_arena *arena, const char *path,
-                                       const bough_node *root, bough_errors *errors) {
+void *bough_rivals_read(bough_arena *arena, const char *path, const bough_node *root,
+                        bough_errors *errors) {
     bough_rivals *s = bough_arena_take(arena, sizeof *s);
     if (!s) return NULL;
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
@@ -265,13 +265,13 @@ static bough_status write_file(const contest *c, const char *folder) {
     return bough_folder_commit(path, file);
 }
 
-bough_status bough_rivals_perform(bough_arena *arena, const bough_study *study,
-                                  const bough_study_options *options) {
-    contest c = {.study = study->rivals};
+bough_status bough_rivals_perform(bough_arena *arena, const void *study,
+                                  const bough_verification_options *options) {
+    contest c = {.study = study};
     bough_status status = make_run(arena, c.study, &c.run);
     if (bough_is_ok(&status)) status = bough_folder_make(options->folder);
     if (!bough_is_ok(&status)) return status;
-    c.run.threads = study->threads;
+    c.run.threads = options->threads;
     c.drive.stop = options->stop;
     c.drive.progress = bough_progress_start(0, c.run.duration, options->quiet);
     c.reference = bough_study_series_take(arena, &c.run);

@@ -1,8 +1,8 @@
 // Masses with springs as subsystems: linear, of two states or none, integrated exactly to rounding
 // (Taylor series of the state under the cubic input). What the studies of coupling schemes and their
 // tests are made of.
-#ifndef BOUGH_APPS_STUDY_OSCILLATOR_H
-#define BOUGH_APPS_STUDY_OSCILLATOR_H
+#ifndef BOUGH_TESTS_VERIFICATION_OSCILLATOR_H
+#define BOUGH_TESTS_VERIFICATION_OSCILLATOR_H
 
 #include "core/subsystem.h"
 

@@ -1,10 +1,10 @@
-#include "apps/study/study_added_mass.h"
+#include "tests/verification/added_mass.h"
 
 #include "apps/config/schema.h"
 #include "apps/output/folder.h"
 #include "apps/study/study_map.h"
 #include "apps/study/study_store.h"
-#include "apps/study/two_mass.h"
+#include "tests/verification/two_mass.h"
 
 #include <math.h>
 #include <string.h>
@@ -116,8 +116,9 @@ static const bough_schema study_schema = {
     .key = study_keys, .check = check_study};
 // clang-format on
 
-struct bough_added_mass_study *bough_added_mass_read(bough_arena *arena, const bough_node *root,
-                                                     bough_errors *errors) {
+void *bough_added_mass_read(bough_arena *arena, const char *path, const bough_node *root,
+                            bough_errors *errors) {
+    (void)path;
     added_mass_study *s = bough_arena_take(arena, sizeof *s);
     if (!s) return NULL;
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
@@ -204,7 +205,7 @@ static bool silent(const outcome *o) {
 // -- report ---------------------------------------------------------------------------------------
 
 typedef struct report {
-    const bough_study_options *options;
+    const bough_verification_options *options;
     FILE *csv;
     bough_map picture;
     int n, failed;
@@ -319,18 +320,18 @@ static bough_status take_picture(bough_arena *arena, const added_mass_study *s, 
                                         : bough_ok();
 }
 
-bough_status bough_added_mass_perform(bough_arena *arena, const bough_study *study,
-                                      const bough_study_options *options) {
+bough_status bough_added_mass_perform(bough_arena *arena, const void *study,
+                                      const bough_verification_options *options) {
     char path[BOUGH_PATH_MAX];
     report out = {.options = options};
-    bough_status status = take_picture(arena, study->added_mass, &out.picture);
+    bough_status status = take_picture(arena, study, &out.picture);
     if (bough_is_ok(&status)) status = bough_folder_make(options->folder);
     if (bough_is_ok(&status)) status = bough_folder_path(options->folder, "added-mass.csv", path);
     if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &out.csv);
     if (!bough_is_ok(&status)) return status;
     fputs("problem,way,evaluations or sweeps,expected,error [1],verdict,diagnosis\n", out.csv);
-    status = perform_maps(study->added_mass, &out);
-    if (bough_is_ok(&status)) status = perform_runs(arena, study->added_mass, &out);
+    status = perform_maps(study, &out);
+    if (bough_is_ok(&status)) status = perform_runs(arena, study, &out);
     bough_status written = bough_folder_commit(path, out.csv);
     if (!bough_is_ok(&status)) return status;
     fprintf(options->stream, "%d of %d hold\n", out.n - out.failed, out.n);

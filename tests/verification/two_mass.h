@@ -1,9 +1,9 @@
 // Two masses on springs to the walls and a spring between them, cut in two and coupled by a scheme:
 // the linear model on which schemes are compared, with its exact solution.
-#ifndef BOUGH_APPS_STUDY_TWO_MASS_H
-#define BOUGH_APPS_STUDY_TWO_MASS_H
+#ifndef BOUGH_TESTS_VERIFICATION_TWO_MASS_H
+#define BOUGH_TESTS_VERIFICATION_TWO_MASS_H
 
-#include "apps/study/oscillator.h"
+#include "tests/verification/oscillator.h"
 #include "cosim/master.h"
 
 typedef enum bough_cut {

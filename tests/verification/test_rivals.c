@@ -1,6 +1,5 @@
 // The study that compares a blade's models: what it finds of a small clamped blade and a short run.
-#include "apps/study/study_perform.h"
-#include "apps/study/study_rivals_internal.h"
+#include "tests/verification/rivals_internal.h"
 #include "tests/scratch.h"
 
 static const char head[] = "title: Two models\nkind: rivals\n"
@@ -16,30 +15,30 @@ static const char rivals[] =
     "  - {name: coarse, body: [fidelity=rod, rod.segments=12]}\n"
     "  - {name: linear, body: [fidelity=modal, rod.segments=24, modal.modes=14]}\n";
 
-static bough_study *read_study(bough_arena *arena, const char *folder, const char *text,
+static bough_rivals *read_study(bough_arena *arena, const char *folder, const char *text,
                                bough_errors *errors) {
     char path[128];
-    bough_study *study = NULL;
+    bough_verification study;
     snprintf(path, sizeof path, "%s/study.yaml", folder);
     FILE *file = fopen(path, "w");
     assert_non_null(file);
     fprintf(file, "%s%s", head, text);
     fclose(file);
     errors->arena = arena;
-    bough_study_read(arena, path, 0, errors, &study);
-    return study;
+    bough_status status = bough_verification_read(arena, path, errors, &study);
+    return bough_is_ok(&status) ? study.study : NULL;
 }
 
 // The linear body: the undeformed frequencies of the same mesh, of a cubic deflection error.
 static void blades_are_found_by_their_models(void **state) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
-    bough_study *study = read_study(arena, *state, rivals, &errors);
+    bough_rivals *study = read_study(arena, *state, rivals, &errors);
     assert_non_null(study);
     bough_rival_blade blade[3];
     for (int k = 0; k < 3; k++) {
         bough_status status =
-            bough_rival_blade_find(arena, study->rivals, &study->rivals->rival[k], &blade[k]);
+            bough_rival_blade_find(arena, study, &study->rival[k], &blade[k]);
         assert_int_equal(status.code, BOUGH_OK);
     }
     assert_int_equal(blade[0].n, 24);
@@ -59,10 +58,10 @@ static void table_and_file_hold_every_rival(void **state) {
     char table[4096] = "";
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
-    bough_study *study = read_study(arena, *state, rivals, &errors);
+    bough_rivals *study = read_study(arena, *state, rivals, &errors);
     FILE *stream = fmemopen(table, sizeof table, "w");
-    bough_study_options options = {.folder = *state, .quiet = true, .stream = stream};
-    bough_status status = bough_study_perform(arena, study, &options);
+    bough_verification_options options = {.folder = *state, .quiet = true, .stream = stream};
+    bough_status status = bough_rivals_perform(arena, study, &options);
     fclose(stream);
     assert_int_equal(status.code, BOUGH_OK);
     const char *same = strstr(table, "\nsame ");
@@ -83,10 +82,10 @@ static void table_and_file_hold_every_rival(void **state) {
 static void meshes_must_fit_the_reference(void **state) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
-    bough_study *study = read_study(
+    bough_rivals *study = read_study(
         arena, *state, "rivals: [{name: odd, body: [fidelity=rod, rod.segments=7]}]\n", &errors);
-    bough_study_options options = {.folder = *state, .quiet = true, .stream = stderr};
-    bough_status status = bough_study_perform(arena, study, &options);
+    bough_verification_options options = {.folder = *state, .quiet = true, .stream = stderr};
+    bough_status status = bough_rivals_perform(arena, study, &options);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_non_null(strstr(status.message, "24 segments are no multiple of 7 of 'odd'"));
     bough_arena_destroy(arena);

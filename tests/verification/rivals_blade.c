@@ -1,6 +1,6 @@
 // The clamped blade of a study of rivals: equilibrium and frequencies of whatever models it.
 #include "apps/analysis/steady.h"
-#include "apps/study/study_rivals_internal.h"
+#include "tests/verification/rivals_internal.h"
 #include "flexbody/modal_static.h"
 #include "flexbody/rod_modes.h"
 

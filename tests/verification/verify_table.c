@@ -1,5 +1,5 @@
 // The cases of a study of kind verify one after the other: what holds and what does not.
-#include "apps/study/study_verify.h"
+#include "tests/verification/verify.h"
 
 #include "apps/output/folder.h"
 #include "apps/output/progress.h"
@@ -16,7 +16,7 @@ typedef struct verdict {
 } verdict;
 
 typedef struct report {
-    const bough_study_options *options;
+    const bough_verification_options *options;
     FILE *csv;
     int n, failed;
 } report;
@@ -154,15 +154,15 @@ static bough_status perform_all(bough_arena *arena, const bough_verify *v, repor
     return status;
 }
 
-bough_status bough_verify_perform(bough_arena *arena, const bough_study *study,
-                                  const bough_study_options *options) {
+bough_status bough_verify_perform(bough_arena *arena, const void *study,
+                                  const bough_verification_options *options) {
     char path[BOUGH_PATH_MAX];
     report r = {.options = options};
     bough_status status = bough_folder_make(options->folder);
     if (bough_is_ok(&status)) status = bough_folder_path(options->folder, "verify.csv", path);
     if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &r.csv);
     if (!bough_is_ok(&status)) return status;
-    status = perform_all(arena, study->verify, &r);
+    status = perform_all(arena, study, &r);
     bough_status written = bough_folder_commit(path, r.csv);
     if (!bough_is_ok(&status)) return status;
     if (!bough_is_ok(&written)) return written;

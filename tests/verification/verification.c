@@ -1,0 +1,50 @@
+#include "tests/verification/verification.h"
+
+#include "apps/config/schema.h"
+#include "tests/verification/added_mass.h"
+#include "tests/verification/rivals.h"
+#include "tests/verification/two_mass_study.h"
+#include "tests/verification/verify.h"
+
+#include <string.h>
+
+static const bough_verification_kind kinds[] = {
+    {"verify", bough_verify_read, bough_verify_perform},
+    {"two-mass", bough_two_mass_read, bough_two_mass_perform},
+    {"added-mass", bough_added_mass_read, bough_added_mass_perform},
+    {"rivals", bough_rivals_read, bough_rivals_perform},
+};
+
+static const bough_verification_kind *find_kind(const bough_node *root, bough_errors *errors) {
+    const bough_node *kind = bough_node_find(root, "kind");
+    char shown[64];
+    for (size_t i = 0; kind && kind->kind == BOUGH_SCALAR && i < sizeof kinds / sizeof *kinds; i++) {
+        if (strcmp(kind->text, kinds[i].name) == 0) return &kinds[i];
+    }
+    bough_errors_add(errors, kind ? kind : root, "kind",
+                     "expected verify, two-mass, added-mass or rivals, got %s",
+                     kind ? bough_node_shown(kind, shown) : "none");
+    return NULL;
+}
+
+bough_status bough_verification_read(bough_arena *arena, const char *path, bough_errors *errors,
+                                     bough_verification *verification) {
+    *verification = (bough_verification){0};
+    const bough_node *root = bough_text_read(arena, path, errors);
+    if (root) verification->kind = find_kind(root, errors);
+    if (verification->kind) {
+        verification->study = verification->kind->read(arena, path, root, errors);
+    }
+    if (bough_arena_exhausted(arena) || errors->exhausted) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: memory is exhausted", path);
+    }
+    int n = errors->n + errors->dropped;
+    if (n == 0) return bough_ok();
+    bough_errors_sort(errors, path);
+    return bough_fail(BOUGH_INVALID, "%s: %d error%s in the study", path, n, n == 1 ? "" : "s");
+}
+
+bough_status bough_verification_perform(bough_arena *arena, const bough_verification *verification,
+                                        const bough_verification_options *options) {
+    return verification->kind->perform(arena, verification->study, options);
+}
