@@ -1,48 +1,45 @@
 #include "core/pool.h"
 
+#include <omp.h>
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
-#include <string.h>
+#include <stdlib.h>
 #include <time.h>
-#include <unistd.h>
 
 // Longer lists are done in portions.
 enum { MOST_TASKS = 256, LINE = 64 };
 
-static const long patience = 50000; // before sleep [ns]
-static const long courtesy = 5000;  // before a thread takes what is another's turn [ns]
+static const long spin_time = 50000; // looked for before sleep [ns]
+static const long steal_time = 5000; // before a thread takes what is another's task, or yields [ns]
 
 // Where threads sleep: until there is a list, or until a task is done.
-typedef struct bedroom {
+typedef struct wait_queue {
     atomic_int sleepers;
-    pthread_cond_t door;
-} bedroom;
+    pthread_cond_t woken;
+} wait_queue;
 
 // A task of the list in progress: the numbers of the last lists in which it was taken and done.
 typedef struct slot {
     _Alignas(LINE) atomic_uint_least64_t taken, done;
 } slot;
 
-typedef struct worker {
-    struct bough_pool *pool;
-    int number; // the caller's is 0
-    pthread_t thread;
-} worker;
-
 struct bough_pool {
-    int n_thread;
-    worker *worker; // (n_thread), the caller's unused
-    bool impatient; // more threads than processors
+    int n_asked;  // threads
+    int n_thread; // of the last region; n_asked before the first
+    bool open;    // a region is
+    bool crowded; // more threads than processors
     // the list in progress, written before `list` tells of it
     bough_task task;
     void *data;
     int first; // number of its first task
     _Alignas(LINE) atomic_uint_least64_t list; // its number << 16 | how many tasks
-    atomic_bool ended;
+    uint64_t list_before; // the region
+    atomic_bool ended;    // the region's work is
     slot slot[MOST_TASKS];
-    bedroom idle, waiting;
+    wait_queue idle, waiting;
     pthread_mutex_t mutex; // of both
 };
 
@@ -77,31 +74,33 @@ static long clock_ns(void) {
 static bool look(bough_pool *p, long duration, condition ready, uint64_t argument) {
     enum { LOOKS = 16 }; // between looks at the clock
     if (ready(p, argument)) return true;
-    if (p->impatient) return false;
-    for (long until = clock_ns() + duration; clock_ns() < until;) {
+    if (p->crowded) return false;
+    long start = clock_ns();
+    for (long now = start; now < start + duration; now = clock_ns()) {
         for (int k = 0; k < LOOKS; k++) {
             if (ready(p, argument)) return true;
             pause_briefly();
         }
+        if (now > start + steal_time) sched_yield();
     }
     return false;
 }
 
 // A sleeper counts itself before its last look, and who changes something looks for sleepers after:
 // one of the two sees the other.
-static void wait_until(bough_pool *p, bedroom *room, condition ready, uint64_t argument) {
-    if (look(p, patience, ready, argument)) return;
+static void wait_until(bough_pool *p, wait_queue *queue, condition ready, uint64_t argument) {
+    if (look(p, spin_time, ready, argument)) return;
     pthread_mutex_lock(&p->mutex);
-    atomic_fetch_add(&room->sleepers, 1);
-    while (!ready(p, argument)) pthread_cond_wait(&room->door, &p->mutex);
-    atomic_fetch_sub(&room->sleepers, 1);
+    atomic_fetch_add(&queue->sleepers, 1);
+    while (!ready(p, argument)) pthread_cond_wait(&queue->woken, &p->mutex);
+    atomic_fetch_sub(&queue->sleepers, 1);
     pthread_mutex_unlock(&p->mutex);
 }
 
-static void wake(bough_pool *p, bedroom *room) {
-    if (atomic_load(&room->sleepers) == 0) return;
+static void wake(bough_pool *p, wait_queue *queue) {
+    if (atomic_load(&queue->sleepers) == 0) return;
     pthread_mutex_lock(&p->mutex);
-    pthread_cond_broadcast(&room->door);
+    pthread_cond_broadcast(&queue->woken);
     pthread_mutex_unlock(&p->mutex);
 }
 
@@ -130,21 +129,19 @@ static void do_list(bough_pool *p, uint64_t list, int self) {
     for (int k = 0; k < count_of(list); k++) {
         if (owner(p, k) == self) do_task(p, list, k);
     }
-    if (self > 0 && look(p, courtesy, has_news, list)) return;
+    if (self > 0 && look(p, steal_time, has_news, list)) return;
     for (int k = 0; k < count_of(list); k++) {
-        if (self == 0 && look(p, courtesy, is_done, (uint64_t)k)) continue;
+        if (self == 0 && look(p, steal_time, is_done, (uint64_t)k)) continue;
         do_task(p, list, k);
     }
 }
 
-static void *live(void *self) {
-    const worker *w = self;
-    bough_pool *p = w->pool;
-    for (uint64_t list = 0;;) {
+static void do_lists(bough_pool *p, int self) {
+    for (uint64_t list = p->list_before;;) {
         wait_until(p, &p->idle, has_news, list);
-        if (atomic_load(&p->ended)) return NULL;
+        if (atomic_load(&p->ended)) return;
         list = atomic_load(&p->list);
-        do_list(p, list, w->number);
+        do_list(p, list, self);
     }
 }
 
@@ -160,7 +157,7 @@ static void run_portion(bough_pool *p, int first, int n, bough_task task, void *
 }
 
 void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data) {
-    if (!pool || n == 1) {
+    if (!pool || !pool->open || pool->n_thread == 1 || n == 1) {
         for (int k = 0; k < n; k++) task(data, k);
         return;
     }
@@ -201,23 +198,50 @@ void bough_pool_run_turns(bough_pool *pool, int n,
 }
 
 void bough_pool_await(bough_pool *pool, int earlier) {
-    if (!pool || earlier < pool->first) return;
+    if (!pool || !pool->open || pool->n_thread == 1 || earlier < pool->first) return;
     int k = earlier - pool->first;
-    if (!look(pool, courtesy, is_done, (uint64_t)k)) do_task(pool, atomic_load(&pool->list), k);
+    if (!look(pool, steal_time, is_done, (uint64_t)k)) do_task(pool, atomic_load(&pool->list), k);
     wait_until(pool, &pool->waiting, is_done, (uint64_t)k);
 }
 
 int bough_pool_threads(const bough_pool *pool) { return pool ? pool->n_thread : 1; }
 
+// -- regions --------------------------------------------------------------------------------------
+
+void bough_pool_region(bough_pool *pool, void (*work)(void *data), void *data) {
+    if (!pool || pool->open) {
+        work(data);
+        return;
+    }
+    pool->list_before = atomic_load(&pool->list);
+    atomic_store(&pool->ended, false);
+    pool->open = true;
+#pragma omp parallel num_threads(pool->n_asked)
+    {
+        int self = omp_get_thread_num();
+        if (self > 0) {
+            do_lists(pool, self);
+        } else {
+            pool->n_thread = omp_get_num_threads(); // others read it after the first list
+            work(data);
+            atomic_store(&pool->ended, true);
+            wake(pool, &pool->idle);
+        }
+    }
+    pool->open = false;
+}
+
 // -- life -----------------------------------------------------------------------------------------
 
-static void end(void *self) {
+int bough_pool_default(int otherwise) {
+    if (getenv("OMP_NUM_THREADS")) return omp_get_max_threads();
+    return otherwise > 0 ? otherwise : omp_get_num_procs();
+}
+
+static void destroy(void *self) {
     bough_pool *p = self;
-    atomic_store(&p->ended, true);
-    wake(p, &p->idle);
-    for (int k = 1; k < p->n_thread; k++) pthread_join(p->worker[k].thread, NULL);
-    pthread_cond_destroy(&p->idle.door);
-    pthread_cond_destroy(&p->waiting.door);
+    pthread_cond_destroy(&p->idle.woken);
+    pthread_cond_destroy(&p->waiting.woken);
     pthread_mutex_destroy(&p->mutex);
 }
 
@@ -225,25 +249,13 @@ bough_status bough_pool_create(bough_arena *arena, int threads, bough_pool **poo
     *pool = NULL;
     if (threads <= 1) return bough_ok();
     bough_pool *p = bough_arena_take(arena, sizeof *p);
-    if (p) p->worker = bough_arena_take(arena, (size_t)threads * sizeof *p->worker);
-    if (!p || !p->worker) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    p->impatient = threads > sysconf(_SC_NPROCESSORS_ONLN);
+    if (!p) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    p->n_asked = p->n_thread = threads;
+    p->crowded = threads > omp_get_num_procs();
     pthread_mutex_init(&p->mutex, NULL);
-    pthread_cond_init(&p->idle.door, NULL);
-    pthread_cond_init(&p->waiting.door, NULL);
-    int error = 0, started = 1;
-    p->n_thread = threads; // read by the threads
-    for (; started < threads && error == 0; started += error == 0) {
-        p->worker[started] = (worker){.pool = p, .number = started};
-        error = pthread_create(&p->worker[started].thread, NULL, live, &p->worker[started]);
-    }
-    if (error != 0) {
-        p->n_thread = started;
-        end(p);
-        return bough_fail(BOUGH_IO, "cannot start thread %d of %d: %s", started + 1, threads,
-                          strerror(error));
-    }
-    bough_arena_on_destroy(arena, end, p);
+    pthread_cond_init(&p->idle.woken, NULL);
+    pthread_cond_init(&p->waiting.woken, NULL);
+    bough_arena_on_destroy(arena, destroy, p);
     *pool = p;
     return bough_ok();
 }

@@ -1,12 +1,17 @@
-// Threads that share out lists of short tasks: a few microseconds each, many lists per step.
+// Lists of short tasks, a few microseconds each and many lists per step, shared out among the threads
+// of one parallel region of OpenMP. Only core/pool.c uses OpenMP.
+//
+// A region is opened around all that is stepped: opening and closing one takes longer than a list.
+// Without a region the caller does all tasks itself. OMP_PLACES, OMP_PROC_BIND and OMP_THREAD_LIMIT
+// hold as for every parallel region.
 //
 // Each task is some thread's own, in lists alike the same one's, so that what it works on stays in
 // that processor's cache: of three tasks the caller has the first and one thread the others. A
-// thread does its own in order, then those of threads that do not come; so nobody waits for one
-// that does not run. Results do not depend on who does what as long as no sum crosses tasks.
+// thread does its own in order, then steals those of threads that do not come; so nobody waits for a
+// thread that does not run. Results do not depend on who does what as long as no sum crosses tasks.
 //
-// Who waits looks again for some 50 µs and then sleeps: at once where there are more threads than
-// processors. Threads are not bound to processors: two runs side by side would bind to the same.
+// A thread that waits looks again for some 50 µs, yields its processor meanwhile, and then sleeps; at
+// once where there are more threads than processors.
 #ifndef BOUGH_CORE_POOL_H
 #define BOUGH_CORE_POOL_H
 
@@ -17,12 +22,21 @@ typedef struct bough_pool bough_pool;
 
 typedef void (*bough_task)(void *data, int task);
 
-// Starts threads − 1 threads, which end with the arena. For one thread the pool is NULL, allowed
-// below: it takes the tasks of a list one after the other, without memory or cost.
+// The number of threads where nobody says one: OMP_NUM_THREADS, or `otherwise` where that is not set;
+// 0: the number of processors.
+int bough_pool_default(int otherwise);
+
+// A pool for regions of so many threads. For one thread it is NULL, allowed below: it takes the tasks
+// of a list one after the other, without memory or cost.
 bough_status bough_pool_create(bough_arena *arena, int threads, bough_pool **pool);
 
-// The caller included.
+// The caller included: as asked for, and after a region as many as OpenMP has given it, for instance
+// one inside a parallel region of the application.
 int bough_pool_threads(const bough_pool *pool);
+
+// work(data) on the caller, whose lists a parallel region's threads share until it returns. Inside a
+// region of the same pool it is a plain call.
+void bough_pool_region(bough_pool *pool, void (*work)(void *data), void *data);
 
 // Does task(data, 0 … n − 1) and returns when all are done. One list at a time: no task may call it.
 void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data);

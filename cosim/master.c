@@ -189,7 +189,7 @@ static bough_status take_controlled_step(bough_master *m) {
     }
 }
 
-bough_status bough_step(bough_master *m) {
+static bough_status macro_step(bough_master *m) {
     bough_coupling *c = m->coupling;
     c->t0 = m->time;
     c->t1 = next_time(m);
@@ -210,6 +210,22 @@ bough_status bough_step(bough_master *m) {
     if (m->estimate) bough_error_estimate_step(m->estimate, c);
     if (m->estimate && bough_master_done(m)) bough_error_estimate_finish(m->estimate, c);
     return bough_ok();
+}
+
+typedef struct stepping {
+    bough_master *master;
+    bough_status status;
+} stepping;
+
+static void macro_step_in_region(void *self) {
+    stepping *w = self;
+    w->status = macro_step(w->master);
+}
+
+bough_status bough_step(bough_master *m) {
+    stepping w = {.master = m};
+    bough_pool_region(m->coupling->pool, macro_step_in_region, &w);
+    return w.status;
 }
 
 void bough_master_snapshot(bough_master *m, bough_snapshot *s) {

@@ -66,7 +66,8 @@ long bough_master_multiple(double period, double macro_step);
 bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
                                 bough_master **master);
 
-// One macro step: sample loads, take the members over the step, exchange, judge.
+// One macro step: sample loads, take the members over the step, exchange, judge. Who takes many steps
+// does so within one bough_pool_region; otherwise each step opens its own.
 bough_status bough_step(bough_master *m);
 
 // All that later steps and the reports depend on, but for what the loads remember, at a time when

@@ -106,6 +106,9 @@ owned_by("^core/integrator_ida\\.c$" "${include}ida/" "only core/integrator_ida.
 owned_by("^flexbody/[^/]*\\.c$" "${include}(cvode|arkode)/" "only flexbody/*.c uses CVODE and ARKODE")
 owned_by("^(core|flexbody)/" "${include}(sundials|nvector|sunmatrix|sunlinsol)"
   "only core/ and flexbody/ use SUNDIALS")
+owned_by("^core/pool\\.c$" "${include}omp\\.h|#[ \t]*pragma[ \t]+omp[ \t]+([^s]|s[^i])|[^a-z_]omp_[a-z]"
+  "only core/pool.c uses OpenMP, but for simd loops")
+owned_by("^none$" "pthread_create|thrd_create" "threads are OpenMP's")
 owned_by("^apps/config/text\\.c$" "${include}yaml\\.h" "only apps/config/text.c uses libyaml")
 
 owned_by("^apps/output/vertices\\.c$" "${include}hdf5\\.h" "only apps/output/vertices.c uses HDF5")

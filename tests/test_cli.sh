@@ -367,8 +367,14 @@ modes() {
         --set 'modes={about: hub, axis: [1, 0, 0]}'
 }
 
+of_environment() {
+    expect 0 run "$turbine" --set 'simulation.duration=40 ms' --set simulation.threads=0 --out out
+    has out/summary.json "\"threads\": $1,"
+}
+
 # The number of threads changes no byte of the results.
 threads() {
+    unset OMP_NUM_THREADS
     for scheme in ramp frozen; do
         for n in 1 2 3; do
             expect 0 run "$turbine" --set 'simulation.duration=0.2 s' --threads $n --out out$n \
@@ -381,6 +387,14 @@ threads() {
         [ "$(wc -l <out1/channels.out)" -ge 10 ] || fail "$scheme: too few rows to compare"
     done
     rm -r out1 out2 out3
+    # Where neither the scene nor the command says a number, OpenMP's environment does.
+    of_environment 1
+    export OMP_NUM_THREADS=3
+    of_environment 3
+    export OMP_THREAD_LIMIT=2
+    of_environment 2
+    unset OMP_NUM_THREADS OMP_THREAD_LIMIT
+    rm -r out
 }
 
 # Frames at the times asked for, the rod's axis in each, and a page of all.

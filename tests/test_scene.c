@@ -115,7 +115,7 @@ static void uniform_beam_needs_no_table(void **state) {
     check_near(beam->station[0].mass, 1.5, 0, 0);
     check_near(beam->damping[0], 0, 0, 0);
     check_near(s->simulation.output.interval, s->simulation.macro_step, 0, 0);
-    assert_int_equal(s->simulation.threads, 1);
+    assert_int_equal(s->simulation.threads, 0);
     assert_int_equal(s->simulation.coupling.scheme, BOUGH_SCENE_RAMP);
     assert_null(s->aero.node);
     assert_null(s->turbine.node);

@@ -66,28 +66,37 @@ static void sessions_live_side_by_side(void **context) {
     bough_session_close(b);
 }
 
+typedef struct application_thread {
+    pthread_t id;
+    int threads; // of its session
+    double last;
+} application_thread;
+
 // Opens, steps and reads a session of its own.
-static void *run_alone(void *last) {
-    const char *const set[] = {"bodies[3-5].rod.segments=8", "simulation.threads=1"};
+static void *run_alone(void *self) {
+    application_thread *a = self;
+    char threads[32];
+    snprintf(threads, sizeof threads, "simulation.threads=%d", a->threads);
+    const char *const set[] = {"bodies[3-5].rod.segments=8", threads};
     bough_session *s = bough_session_open(BOUGH_SOURCE_DIR "/apps/turbine/runup.yaml", set, 2);
     for (int k = 0; k < 50; k++) bough_session_step(s);
-    *(double *)last = bough_session_read(s, bough_session_find(s, "OoPDefl1"));
+    a->last = bough_session_read(s, bough_session_find(s, "OoPDefl1"));
     bough_session_close(s);
     return NULL;
 }
 
 static void sessions_run_at_the_same_time(void **context) {
     (void)context;
-    enum { THREADS = 3 };
-    pthread_t thread[THREADS];
-    double last[THREADS], alone;
+    enum { THREADS = 4 };
+    application_thread thread[THREADS], alone = {.threads = 1};
     for (int k = 0; k < THREADS; k++) {
-        assert_int_equal(pthread_create(&thread[k], NULL, run_alone, &last[k]), 0);
+        thread[k].threads = k % 3 + 1;
+        assert_int_equal(pthread_create(&thread[k].id, NULL, run_alone, &thread[k]), 0);
     }
-    for (int k = 0; k < THREADS; k++) pthread_join(thread[k], NULL);
+    for (int k = 0; k < THREADS; k++) pthread_join(thread[k].id, NULL);
     run_alone(&alone);
-    assert_true(alone > 0.1);
-    for (int k = 0; k < THREADS; k++) assert_true(last[k] == alone);
+    assert_true(alone.last > 0.1);
+    for (int k = 0; k < THREADS; k++) assert_true(thread[k].last == alone.last);
 }
 
 // -- copies ---------------------------------------------------------------------------------------

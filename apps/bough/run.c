@@ -105,7 +105,9 @@ static bough_status record_start(bough_run *run) {
     return bough_is_ok(&status) ? record_vertices(run) : status;
 }
 
-static bough_status step_all(bough_run *run) {
+// In one parallel region: sets the run's outcome.
+static void step_all(void *self) {
+    bough_run *run = self;
     const bough_master *m = run->simulation->master;
     if (m->verdict[0]) fprintf(stderr, "bough: warning: %s\n", m->verdict);
     bough_progress progress = bough_progress_start(m->time, m->duration, run->options->quiet);
@@ -116,10 +118,9 @@ static bough_status step_all(bough_run *run) {
         status = step(run);
         bough_progress_show(&progress, m->time);
     }
-    status = record_end(run, status);
+    run->outcome = record_end(run, status);
     bough_run_settle_clock(run);
     bough_progress_clear(&progress);
-    return status;
 }
 
 // -- results --------------------------------------------------------------------------------------
@@ -229,7 +230,7 @@ bough_status bough_verb_run(bough_arena *arena, const bough_options *options) {
     bough_stop_listen();
     status = open_results(&run);
     if (!bough_is_ok(&status)) return status;
-    run.outcome = step_all(&run);
+    bough_pool_region(run.simulation->pool, step_all, &run);
     status = close_results(&run);
     bough_run_tell(&run, stdout);
     return status;

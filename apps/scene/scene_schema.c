@@ -127,8 +127,10 @@ static const bough_key simulation_keys[] = {
      .help = "integrator of the tree of bodies"},
     {.name = "micro", .kind = BOUGH_KEY_MAPPING, .of = &bough_scene_micro_schema, AT(micro),
      .help = "integrator of each rod"},
-    {.name = "threads", .kind = BOUGH_KEY_INTEGER, .range = "[1, 1024]", .fallback = "1",
-     AT(threads), .example = "2", .help = "threads for the rods; --threads overrides"},
+    {.name = "threads", .kind = BOUGH_KEY_INTEGER, .range = "[0, 1024]", .fallback = "0",
+     AT(threads), .example = "2",
+     .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not "
+             "set"},
     {.name = "output", .kind = BOUGH_KEY_MAPPING, .of = &output_schema, AT(output),
      .help = "what is recorded"},
 };

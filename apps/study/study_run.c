@@ -21,6 +21,8 @@ typedef struct run {
     bough_study_series *series;
     bough_error_probe probe;
     double *gathered, *zero; // (n_channel) scratch
+    double *estimate;        // (n_measure)
+    bough_status outcome;
 } run;
 
 // Runs side by side have one thread each.
@@ -103,18 +105,23 @@ static void show_progress(bough_study_drive *drive, const bough_master *m) {
     fflush(stderr);
 }
 
-static bough_status step_all(run *r, double *estimate) {
+static bough_status step(run *r) {
     bough_master *m = r->simulation->master;
-    bough_status status = bough_ok();
-    sample_when_due(r);
-    while (bough_is_ok(&status) && !bough_master_done(m)) {
-        if (r->drive->stop && r->drive->stop()) return bough_fail(BOUGH_INTERRUPTED, "interrupted");
-        status = bough_step(m);
-        update_estimates(r, estimate);
-        if (bough_is_ok(&status)) sample_when_due(r);
-        show_progress(r->drive, m);
-    }
+    if (r->drive->stop && r->drive->stop()) return bough_fail(BOUGH_INTERRUPTED, "interrupted");
+    bough_status status = bough_step(m);
+    update_estimates(r, r->estimate);
+    if (bough_is_ok(&status)) sample_when_due(r);
+    show_progress(r->drive, m);
     return status;
+}
+
+static void step_all(void *self) {
+    run *r = self;
+    r->outcome = bough_ok();
+    sample_when_due(r);
+    while (bough_is_ok(&r->outcome) && !bough_master_done(r->simulation->master)) {
+        r->outcome = step(r);
+    }
 }
 
 static bough_status find_channels(bough_arena *arena, run *r) {
@@ -174,14 +181,15 @@ static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, run
     r->series->filled = 0;
     double wall = bough_wall_clock(), cpu = cpu_clock(r->study);
     for (int i = 0; i < r->study->n_measure; i++) result->estimate[i] = m->estimate ? 0 : (double)NAN;
-    status = step_all(r, result->estimate);
+    r->estimate = result->estimate;
+    bough_pool_region(r->simulation->pool, step_all, r);
     result->cpu = cpu_clock(r->study) - cpu;
     result->wall = bough_wall_clock() - wall;
     result->time = m->time;
     result->warned = m->verdict[0] != '\0';
     result->coupling = bough_monitor_report(m->monitor, m->coupling);
-    assert(!bough_is_ok(&status) || r->series->filled == r->series->n_row);
-    return status;
+    assert(!bough_is_ok(&r->outcome) || r->series->filled == r->series->n_row);
+    return r->outcome;
 }
 
 // -- repeats --------------------------------------------------------------------------------------

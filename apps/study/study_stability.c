@@ -10,7 +10,6 @@
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 typedef struct stability {
     const bough_study *study;
@@ -18,6 +17,7 @@ typedef struct stability {
     bough_study_result *reference; // (n_reference)
     bough_study_result *result;    // (n_cell)
     bough_study_store store;
+    bough_pool *pool; // a group of runs each
     int done, to_do; // cells, in this call
     bough_status worst; // of the groups
     pthread_mutex_t mutex; // of store, done and worst
@@ -92,14 +92,18 @@ static void perform_group(void *self, int group) {
     pthread_mutex_unlock(&x->mutex);
 }
 
+static void perform_groups(void *self) {
+    stability *x = self;
+    bough_pool_run(x->pool, x->study->n_reference, perform_group, x);
+}
+
 static bough_status run_groups(bough_arena *arena, stability *x) {
-    long threads = x->study->threads > 0 ? x->study->threads : sysconf(_SC_NPROCESSORS_ONLN);
-    bough_pool *pool;
-    bough_status status = bough_pool_create(arena, (int)threads, &pool);
+    int threads = x->study->threads > 0 ? x->study->threads : bough_pool_default(0);
+    bough_status status = bough_pool_create(arena, threads, &x->pool);
     if (!bough_is_ok(&status)) return status;
     x->worst.code = BOUGH_OK;
     pthread_mutex_init(&x->mutex, NULL);
-    bough_pool_run(pool, x->study->n_reference, perform_group, x);
+    bough_pool_region(x->pool, perform_groups, x);
     pthread_mutex_destroy(&x->mutex);
     if (!x->options->quiet && x->done > 0) fputc('\n', stderr);
     if (x->worst.code != BOUGH_INTERRUPTED) return x->worst;

@@ -17,6 +17,7 @@ typedef struct timed {
     bough_clock *clock; // NULL unless asked for
     long next_row;
     double recording; // [s]
+    bough_status outcome;
 } timed;
 
 static double cpu_clock(void) {
@@ -50,17 +51,19 @@ static bough_status record_when_due(timed *t) {
     return status;
 }
 
-static bough_status step_all(timed *t) {
-    bough_status status = record_when_due(t);
-    while (bough_is_ok(&status) && !bough_master_done(t->simulation->master)) {
-        if (t->options->stop && t->options->stop()) {
-            return bough_fail(BOUGH_INTERRUPTED, "interrupted");
-        }
-        status = bough_step(t->simulation->master);
-        bough_error_probe_update(&t->probe);
-        if (bough_is_ok(&status)) status = record_when_due(t);
+static bough_status step(timed *t) {
+    if (t->options->stop && t->options->stop()) return bough_fail(BOUGH_INTERRUPTED, "interrupted");
+    bough_status status = bough_step(t->simulation->master);
+    bough_error_probe_update(&t->probe);
+    return bough_is_ok(&status) ? record_when_due(t) : status;
+}
+
+static void step_all(void *self) {
+    timed *t = self;
+    t->outcome = record_when_due(t);
+    while (bough_is_ok(&t->outcome) && !bough_master_done(t->simulation->master)) {
+        t->outcome = step(t);
     }
-    return status;
 }
 
 static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, timed *t, bool parts,
@@ -74,13 +77,13 @@ static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, tim
     if (bough_is_ok(&status)) status = bough_recorder_open(arena, &def, &t->recorder);
     if (!bough_is_ok(&status)) return status;
     double wall = bough_wall_clock(), cpu = cpu_clock();
-    bough_status outcome = step_all(t);
+    bough_pool_region(t->simulation->pool, step_all, t);
     run->cpu = cpu_clock() - cpu;
     run->wall = bough_wall_clock() - wall;
     if (t->clock) bough_clock_read(t->clock, run->part);
     run->part[BOUGH_CLOCK_RECORDING] = t->recording;
-    status = bough_recorder_finish(t->recorder, &outcome);
-    return bough_is_ok(&outcome) ? status : outcome;
+    status = bough_recorder_finish(t->recorder, &t->outcome);
+    return bough_is_ok(&t->outcome) ? status : t->outcome;
 }
 
 bough_status bough_timing_run_cell(const bough_study *study, const bough_study_cell *cell,
