@@ -1,7 +1,7 @@
 // Modal bodies against the rod they stand for, and against the laws of conservation.
 #include "tests/check.h"
 
-#include "flexbody/modal_static.h"
+#include "tests/verification/modal_static.h"
 #include "flexbody/modal_subsystem.h"
 #include "flexbody/rod_modes.h"
 #include "flexbody/rod_subsystem.h"

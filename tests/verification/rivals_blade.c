@@ -1,7 +1,7 @@
 // The clamped blade of a study of rivals: equilibrium and frequencies of whatever models it.
 #include "apps/analysis/steady.h"
 #include "tests/verification/rivals_internal.h"
-#include "flexbody/modal_static.h"
+#include "tests/verification/modal_static.h"
 #include "flexbody/rod_modes.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "flexbody/body_frame.h"
+#include "tests/reference/body_frame.h"
 
 #include "core/linalg.h"
 

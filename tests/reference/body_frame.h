@@ -8,11 +8,11 @@
 //
 // It shows the equations rather than running them: every matrix is there to be read, and M_E's
 // blocks are factored as they come. A rod's production path, rod.h, solves the same equations.
-#ifndef BOUGH_FLEXBODY_BODY_FRAME_H
-#define BOUGH_FLEXBODY_BODY_FRAME_H
+#ifndef BOUGH_TESTS_REFERENCE_BODY_FRAME_H
+#define BOUGH_TESTS_REFERENCE_BODY_FRAME_H
 
 #include "core/arena.h"
-#include "flexbody/structure.h"
+#include "tests/reference/structure.h"
 
 // A vertex relative to the BRF, in BRF axes.
 typedef struct bough_relative_vertex {

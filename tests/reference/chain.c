@@ -1,9 +1,9 @@
 // Builds the chain and sums its links' forces over the vertices; one link: chain_link.h.
-#include "flexbody/chain.h"
+#include "tests/reference/chain.h"
 
 #include "core/linalg.h"
-#include "flexbody/chain_link.h"
-#include "flexbody/lumped.h"
+#include "tests/reference/chain_link.h"
+#include "tests/reference/lumped.h"
 
 #include <string.h>
 

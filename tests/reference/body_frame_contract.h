@@ -1,10 +1,10 @@
 // The equations (12)–(15) of any structure in its body reference frame: their transformation
 // against differences in time, their projection, and their solution against (10)/(11) in the
 // ground. At a case of structure_contract.h, with wrenches.
-#ifndef BOUGH_TESTS_BODY_FRAME_CONTRACT_H
-#define BOUGH_TESTS_BODY_FRAME_CONTRACT_H
+#ifndef BOUGH_TESTS_REFERENCE_BODY_FRAME_CONTRACT_H
+#define BOUGH_TESTS_REFERENCE_BODY_FRAME_CONTRACT_H
 
-#include "tests/structure_contract.h"
+#include "tests/reference/structure_contract.h"
 
 // Wrenches at the first, a middle and the last vertex, off their origins; in BRF axes.
 enum { STRUCTURE_WRENCHES = 3 };

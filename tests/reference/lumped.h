@@ -1,9 +1,9 @@
 // (11) for vertices that carry lumped rigid inertias: mass, inertial forces and their tangents.
 // Every array is over the n vertices; forces and accelerations as in structure.h.
-#ifndef BOUGH_FLEXBODY_LUMPED_H
-#define BOUGH_FLEXBODY_LUMPED_H
+#ifndef BOUGH_TESTS_REFERENCE_LUMPED_H
+#define BOUGH_TESTS_REFERENCE_LUMPED_H
 
-#include "flexbody/structure.h"
+#include "tests/reference/structure.h"
 
 typedef struct bough_lumped {
     int n;

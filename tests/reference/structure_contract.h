@@ -1,11 +1,11 @@
-// What every structure must fulfil by itself (flexbody/structure.h), checked at a strongly
+// What every structure must fulfil by itself (structure.h), checked at a strongly
 // deformed, moving state. body_frame_contract.h goes on with its equations in the body reference
 // frame.
-#ifndef BOUGH_TESTS_STRUCTURE_CONTRACT_H
-#define BOUGH_TESTS_STRUCTURE_CONTRACT_H
+#ifndef BOUGH_TESTS_REFERENCE_STRUCTURE_CONTRACT_H
+#define BOUGH_TESTS_REFERENCE_STRUCTURE_CONTRACT_H
 
 #include "core/linalg.h"
-#include "flexbody/body_frame.h"
+#include "tests/reference/body_frame.h"
 #include "tests/check.h"
 
 #include <string.h>

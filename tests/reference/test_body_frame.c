@@ -1,8 +1,8 @@
 // The rod as a structure, and the body frame's equations (12)–(15) against the rod's own right-hand
 // side.
-#include "tests/body_frame_contract.h"
+#include "tests/reference/body_frame_contract.h"
 
-#include "flexbody/rod_structure.h"
+#include "tests/reference/rod_structure.h"
 #include "tests/sample_rod.h"
 
 #include <stdlib.h>
