@@ -1,6 +1,7 @@
 #include "aero/discon.h"
 
 #include "core/base.h"
+#include "core/input_file.h"
 
 #include <dlfcn.h>
 #include <math.h>
@@ -40,6 +41,12 @@ enum {
 };
 
 static bough_status find_function(const char *library, call **function) {
+    char why[BOUGH_INPUT_REASON];
+    FILE *file = strchr(library, '/') ? bough_input_open(library, BOUGH_INPUT_DATA, why) : NULL;
+    if (!file && strchr(library, '/')) {
+        return bough_fail(BOUGH_INVALID, "the controller cannot be loaded: %.200s: %s", library, why);
+    }
+    if (file) fclose(file);
     void *handle = dlopen(library, RTLD_NOW | RTLD_LOCAL);
     if (!handle) {
         return bough_fail(BOUGH_INVALID, "the controller cannot be loaded: %.200s", dlerror());

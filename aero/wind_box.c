@@ -1,6 +1,7 @@
 #include "aero/wind_box.h"
 
 #include "core/base.h"
+#include "core/input_file.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -121,8 +122,11 @@ static bough_status read_all(bough_arena *arena, FILE *stream, const char *path,
 }
 
 bough_status bough_wind_box_read(bough_arena *arena, const char *path, bough_wind_box *box) {
-    FILE *stream = fopen(path, "rb");
-    if (!stream) return bough_fail(BOUGH_INVALID, "cannot open the wind file %s.", path);
+    char why[BOUGH_INPUT_REASON];
+    FILE *stream = bough_input_open(path, BOUGH_INPUT_DATA, why);
+    if (!stream) {
+        return bough_fail(BOUGH_INVALID, "cannot open the wind file %.220s: %s", path, why);
+    }
     *box = (bough_wind_box){0};
     bough_status status = read_all(arena, stream, path, box);
     fclose(stream);

@@ -1,6 +1,7 @@
 #include "aero/wind_hub.h"
 
 #include "core/base.h"
+#include "core/input_file.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -73,8 +74,11 @@ static bough_status scan(FILE *stream, const char *path, int room, int *n,
 }
 
 bough_status bough_wind_hub_read(bough_arena *arena, const char *path, bough_wind_hub *hub) {
-    FILE *stream = fopen(path, "r");
-    if (!stream) return bough_fail(BOUGH_INVALID, "cannot open the wind file %s.", path);
+    char why[BOUGH_INPUT_REASON];
+    FILE *stream = bough_input_open(path, BOUGH_INPUT_DATA, why);
+    if (!stream) {
+        return bough_fail(BOUGH_INVALID, "cannot open the wind file %.220s: %s", path, why);
+    }
     bough_wind_hub_row *row = NULL;
     bough_status status = scan(stream, path, MOST_ROWS, &hub->n, NULL);
     if (bough_is_ok(&status)) {

@@ -84,6 +84,7 @@ keep_one() {
     kill -s KILL $process
     wait $process 2>/dev/null
     mv cut kept
+    rm kept/running.lock
 }
 
 # refused MESSAGE ARGUMENT...: resuming kept/ is refused and leaves it as it was.
@@ -173,4 +174,19 @@ killed "$turbine" 40ms --set 'simulation.duration=1 s' --set 'simulation.macro_s
 wrong_checkpoints
 wrong_intervals
 other_ends
+# Two runs into one folder: the second is told who has it. What a killed run leaves half-written goes
+# with the next.
+mkdir busy
+"$bough" run "$bar" --out busy --quiet --set simulation.duration=2000 >stdout 2>stderr </dev/null &
+process=$!
+until [ -e busy/running.lock ] || ! kill -0 $process 2>/dev/null; do sleep 0.02; done
+expect 1 run "$bar" --out busy --quiet
+has stderr "process $process is writing results into 'busy'"
+kill -s KILL $process
+wait $process 2>/dev/null
+mkdir -p busy/frames
+touch busy/frames/000007.vtp.partial busy/vertices.h5.partial
+expect 0 run "$bar" --out busy --quiet --set 'simulation.duration=0.1 s'
+[ -z "$(find busy -name '*.partial' -o -name '*.lock')" ] || fail "left in busy: $(ls -R busy)"
+
 [ $failures -eq 0 ]

@@ -68,9 +68,43 @@ yaml 'the quoted text has no end' cut.yaml
 rod='joint: {kind: fixed, parent: ground}, rod: {length: 1, segments: 10000, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, 0]}'
 {
     echo 'simulation: {duration: 1 s, macro_step: 10 ms}'
-    echo "bodies: [{name: a, fidelity: rod, repeat: 100000, $rod}]"
+    echo "bodies: [{name: a, fidelity: rod, repeat: 10000, $rod}]"
 } >much.yaml
-refused 'expected at most 100000 bodies and 1000000 segments' check much.yaml
+refused 'expected at most 10000 bodies and 1000000 segments' check much.yaml
+
+# Numbers that nobody waits for.
+beam=example-beam.yaml
+for times in 'duration=1e15' 'macro_step=1e-9' 'macro_step=1e-300' 'macro_step=1e6' 'micro.step=1e6' \
+    'output.frames=1e-300' 'output.vertices=1e-300' 'output.interval=1e-300'; do
+    refused "simulation.${times%%=*}: " check $beam --set "simulation.$times"
+done
+refused 'longer than the run' run $beam --checkpoint '1e300 s' --out endless
+[ ! -e endless ] || { echo 'FAILED: --checkpoint 1e300 wrote something'; failures=1; }
+
+# What is no plain file is refused at once, whoever should read it.
+mkdir folder
+mkfifo pipe
+ln -s /dev/zero zero
+for input in pipe zero folder; do
+    yaml 'cannot be read' $input
+    refused 'cannot open the wind file\|cannot be read' check example-turbine.yaml --set "aero.wind={kind: bts, file: $input}"
+    refused 'cannot open the wind file\|cannot be read' check example-turbine.yaml --set "aero.wind={kind: wnd, file: $input, reference_height: 90, reference_length: 126}"
+    refused 'cannot read' import openfast $input --out imported
+    refused 'cannot be loaded' check "$source/apps/turbine/power.yaml" --set "control={kind: bladed, library: $PWD/$input}"
+done
+mkdir ends
+for own in channels.out checkpoint.bin channels.out.partial; do
+    ln -s ../pipe "ends/$own"
+    case $own in
+    channels.out) words=(report ends) ;;
+    checkpoint.bin) words=(run "$beam" --resume --out ends) ;;
+    *) words=(run "$beam" --out ends) ;;
+    esac
+    timeout 20 "$bough" "${words[@]}" >stdout 2>stderr </dev/null
+    code=$?
+    [ $code -eq 1 ] || { echo "FAILED: ${words[*]}: exit code $code, expected 1: $(head -c 300 stderr)"; failures=1; }
+    rm "ends/$own"
+done
 
 # Winds. A hub-height file of many rows, an endless line, bytes; a box that promises too much.
 wind() { # MESSAGE KIND FILE

@@ -356,7 +356,7 @@ static void help_covers_scene_and_files(void **state) {
     bough_scene_help(stream);
     fclose(stream);
     const char *const lines[] = {
-        "\n  - macro_step: (number in s, > 0; required; e.g. 20 ms)\n",
+        "\n  - macro_step: (number in s, [1e-7, 1e4]; required; e.g. 20 ms)\n",
         "\n    - scheme: (frozen|gauss-seidel|extrapolated|iterated|ramp|monolithic; default "
         "ramp; e.g. frozen)\n",
         "\n    - axis: (x|y|z; required; with kind: revolute|prismatic|cylindrical|"

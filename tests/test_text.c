@@ -242,7 +242,7 @@ static void large_files_are_refused(void **state) {
         fwrite(line, 1, sizeof line, stream);
     fclose(stream);
     char expected[120];
-    snprintf(expected, sizeof expected, "%s: error: the file is larger than 16 MB\n", path);
+    snprintf(expected, sizeof expected, "%s: error: cannot be read: the file is larger than 16 MB\n", path);
     fixture f = start();
     clock_t begin = clock();
     assert_null(bough_text_read(f.arena, path, &f.errors));

@@ -4,6 +4,7 @@
 #include "apps/config/schema.h"
 #include "apps/output/folder.h"
 #include "apps/scene/fingerprint.h"
+#include "core/input_file.h"
 
 #include <errno.h>
 #include <math.h>
@@ -86,6 +87,10 @@ static bough_status check_interval(const bough_run *run, double interval) {
         return bough_fail(BOUGH_INVALID, "--checkpoint: vertices.h5 cannot be continued; leave out "
                                          "simulation.output.vertices, or store frames");
     }
+    if (interval > m->duration) {
+        return bough_fail(BOUGH_INVALID, "--checkpoint %.9g s is longer than the run, %.9g s: none "
+                                         "would be written", interval, m->duration);
+    }
     if (bough_master_multiple(interval, m->macro_step) == 0) {
         return bough_fail(BOUGH_INVALID,
                           "--checkpoint %.9g s is not a multiple of the macro step %.9g s",
@@ -160,14 +165,15 @@ static bough_status resume(bough_run *run) {
     char path[BOUGH_PATH_MAX];
     bough_status status = bough_folder_path(run->folder, name, path);
     if (!bough_is_ok(&status)) return status;
-    FILE *file = fopen(path, "rb");
+    char why[BOUGH_INPUT_REASON];
+    FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (!file && errno == ENOENT) {
         return bough_fail(BOUGH_INVALID, "nothing to resume: there is no '%.200s'; a run with "
                                          "--checkpoint writes it and removes it at its end",
                           path);
     }
     if (!file) {
-        return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, strerror(errno));
+        return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
     }
     status = read_copy(run, path, file);
     fclose(file);

@@ -1,11 +1,13 @@
 // bough run: steps a scene through its duration and records its channels.
 #include "apps/bough/run.h"
 
+#include "apps/bough/forecast.h"
 #include "apps/bough/open.h"
 #include "apps/bough/stop.h"
 #include "apps/bough/verb.h"
 #include "apps/output/binary.h"
 #include "apps/output/folder.h"
+#include "apps/output/lock.h"
 #include "apps/output/progress.h"
 
 #include <time.h>
@@ -156,12 +158,24 @@ static const char *title(const bough_run *run) {
     return scene->title ? scene->title : scene->file;
 }
 
+// What a run that was killed has left half-written; to resume, its rows are needed.
+static bough_status clean(const bough_run *run) {
+    char frames[BOUGH_PATH_MAX];
+    bough_status status = bough_folder_path(run->folder, "frames", frames);
+    if (!bough_is_ok(&status)) return status;
+    if (!run->options->resume) bough_folder_clean(run->folder);
+    bough_folder_clean(frames);
+    return status;
+}
+
 // What an earlier run has left stays until this one can replace it; of its checkpoint nothing does.
 static bough_status open_results(bough_run *run) {
     run->folder = bough_out_folder(run->arena, run->options);
     if (!run->folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = bough_checkpoint_open(run);
     if (bough_is_ok(&status)) status = bough_folder_make(run->folder);
+    if (bough_is_ok(&status)) status = bough_lock_folder(run->arena, run->folder);
+    if (bough_is_ok(&status)) status = clean(run);
     if (bough_is_ok(&status)) {
         status = run->options->resume ? bough_folder_remove(run->folder, "summary.json")
                                       : bough_checkpoint_remove(run->folder);
@@ -172,7 +186,8 @@ static bough_status open_results(bough_run *run) {
                               .channels = &run->channels,
                               .kept = run->rows};
     status = bough_recorder_open(run->arena, &def, &run->recorder);
-    return bough_is_ok(&status) ? open_frames(run) : status;
+    if (bough_is_ok(&status)) status = open_frames(run);
+    return bough_is_ok(&status) ? bough_run_forecast(run) : status;
 }
 
 static bough_status build(bough_run *run) {

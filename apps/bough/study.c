@@ -4,6 +4,8 @@
 #include "apps/bough/open.h"
 #include "apps/bough/stop.h"
 #include "apps/bough/verb.h"
+#include "apps/output/folder.h"
+#include "apps/output/lock.h"
 
 bough_status bough_verb_study(bough_arena *arena, const bough_options *options) {
     bough_errors errors = {.arena = arena};
@@ -22,6 +24,12 @@ bough_status bough_verb_study(bough_arena *arena, const bough_options *options) 
                                .stop = bough_stop_requested,
                                .stream = stdout};
     if (!how.folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!(options->parts > 0)) { // parts share a folder
+        status = bough_folder_make(how.folder);
+        if (bough_is_ok(&status)) status = bough_lock_folder(arena, how.folder);
+        if (!bough_is_ok(&status)) return status;
+        bough_folder_clean(how.folder);
+    }
     bough_stop_listen();
     status = bough_study_perform(arena, study, &how);
     if (bough_is_ok(&status)) printf("out: %s\n", how.folder);

@@ -3,6 +3,7 @@
 #include "apps/config/schema.h"
 
 #include "apps/config/schema_internal.h"
+#include "core/input_file.h"
 
 #include <errno.h>
 #include <string.h>
@@ -219,9 +220,10 @@ static void read_file(bough_schema_reader *r, const bough_schema *schema, const 
         memcpy(field, f->item, schema->size);
         return;
     }
-    FILE *stream = fopen(path, "rb");
+    char why[BOUGH_INPUT_REASON];
+    FILE *stream = bough_input_open(path, BOUGH_INPUT_TEXT, why);
     if (stream == NULL) {
-        bough_schema_error(r, node, "", "file '%s' cannot be read: %s", path, strerror(errno));
+        bough_schema_error(r, node, "", "file '%s' cannot be read: %s", path, why);
         return;
     }
     fclose(stream);

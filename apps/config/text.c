@@ -3,6 +3,8 @@
 // on one stack of pointers; a container that closes takes its slice of the stack.
 #include "apps/config/text.h"
 
+#include "core/input_file.h"
+
 #include <yaml.h>
 
 #include <errno.h>
@@ -443,22 +445,27 @@ bough_node *bough_text_parse(bough_arena *arena, const char *file, const char *t
 // The file's bytes in memory of malloc, NULL after an error.
 static char *read_bytes(const char *path, size_t *size, bough_errors *errors) {
     bough_node where = {.file = path};
-    FILE *stream = fopen(path, "rb");
-    char *bytes = stream == NULL ? NULL : malloc(MAX_BYTES + 1);
-    errno = stream == NULL ? errno : 0;
+    char why[BOUGH_INPUT_REASON];
+    FILE *stream = bough_input_open(path, MAX_BYTES, why);
+    if (stream == NULL) {
+        bough_errors_add(errors, &where, "", "cannot be read: %s", why);
+        return NULL;
+    }
+    char *bytes = malloc(MAX_BYTES + 1);
+    errno = 0;
     *size = bytes == NULL ? 0 : fread(bytes, 1, MAX_BYTES + 1, stream);
     if (bytes == NULL || ferror(stream)) {
-        bool full = stream != NULL && bytes == NULL;
-        const char *why = full ? "memory is exhausted" : strerror(errno);
+        bool full = bytes == NULL;
         errors->exhausted = errors->exhausted || full;
-        bough_errors_add(errors, &where, "", "cannot be read: %s", why);
-    } else if (*size > MAX_BYTES) {
+        bough_errors_add(errors, &where, "", "cannot be read: %s",
+                         full ? "memory is exhausted" : strerror(errno));
+    } else if (*size > MAX_BYTES) { // it has grown meanwhile
         bough_errors_add(errors, &where, "", "the file is larger than 16 MB");
     } else {
         fclose(stream);
         return bytes;
     }
-    if (stream != NULL) fclose(stream);
+    fclose(stream);
     free(bytes);
     return NULL;
 }

@@ -1,6 +1,7 @@
 #include "apps/import/deck.h"
 
 #include "apps/output/folder.h"
+#include "core/input_file.h"
 
 #include <errno.h>
 #include <math.h>
@@ -26,8 +27,9 @@ void bough_deck_fail(const bough_deck *deck, int line, const char *format, ...) 
 // -- reading --------------------------------------------------------------------------------------
 
 static bough_status read_bytes(bough_arena *arena, const char *path, char **text) {
-    FILE *file = fopen(path, "rb");
-    if (!file) return bough_fail(BOUGH_INVALID, "cannot read '%.250s': %s", path, strerror(errno));
+    char why[BOUGH_INPUT_REASON];
+    FILE *file = bough_input_open(path, MOST_BYTES, why);
+    if (!file) return bough_fail(BOUGH_INVALID, "cannot read '%.250s': %s", path, why);
     char *bytes = NULL;
     size_t size = 0, got = 1;
     bough_status status = bough_ok();
@@ -236,9 +238,10 @@ static const char *path_at(const bough_deck *deck, int line) {
 const char *bough_deck_file_at(const bough_deck *deck, int line) {
     const char *path = path_at(deck, line);
     if (!bough_is_ok(deck->status)) return "";
-    FILE *file = fopen(path, "rb");
+    char why[BOUGH_INPUT_REASON];
+    FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (!file) {
-        bough_deck_fail(deck, line, "cannot read '%.150s': %s", path, strerror(errno));
+        bough_deck_fail(deck, line, "cannot read '%.150s': %s", path, why);
         return "";
     }
     fclose(file);

@@ -3,6 +3,7 @@
 #include "apps/output/binary.h"
 
 #include "apps/output/folder.h"
+#include "core/input_file.h"
 
 #include <errno.h>
 #include <float.h>
@@ -196,14 +197,14 @@ static bool take_memory(packer *p) {
 }
 
 bough_status bough_binary_write(const bough_binary_def *def) {
-    char path[BOUGH_PATH_MAX];
+    char path[BOUGH_PATH_MAX], why[BOUGH_INPUT_REASON];
     packer p = {.def = def, .n = def->channels->count};
     bough_status status = bough_folder_path(def->folder, "channels.out", path);
     if (!bough_is_ok(&status)) return status;
     if (!take_memory(&p)) status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    if (bough_is_ok(&status)) p.in = fopen(path, "r");
+    if (bough_is_ok(&status)) p.in = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (bough_is_ok(&status) && !p.in) {
-        status = bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, strerror(errno));
+        status = bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
     }
     if (bough_is_ok(&status)) status = measure(&p);
     if (bough_is_ok(&status)) choose_scales(&p);

@@ -1,6 +1,8 @@
 #include "apps/output/folder.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -55,9 +57,13 @@ bough_status bough_folder_open_partial(const char *path, FILE **file) {
     char partial[BOUGH_PATH_MAX];
     bough_status status = partial_path(path, partial);
     if (!bough_is_ok(&status)) return status;
-    *file = fopen(partial, "w");
+    // A pipe that nobody reads would hold the call up.
+    int descriptor = open(partial, O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666);
+    *file = descriptor < 0 ? NULL : fdopen(descriptor, "w");
     if (*file) return status;
-    return bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
+    status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
+    if (descriptor >= 0) close(descriptor);
+    return status;
 }
 
 bough_status bough_folder_keep(const char *path, FILE *file, long *bytes) {
@@ -88,6 +94,21 @@ bough_status bough_folder_reopen_partial(const char *path, long bytes, FILE **fi
     status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", partial, strerror(errno));
     if (*file) fclose(*file);
     return status;
+}
+
+// A symbolic link was put there by somebody.
+void bough_folder_clean(const char *folder) {
+    DIR *directory = opendir(folder);
+    if (!directory) return;
+    for (const struct dirent *entry; (entry = readdir(directory)) != NULL;) {
+        char path[BOUGH_PATH_MAX];
+        struct stat info;
+        const char *end = strrchr(entry->d_name, '.');
+        if (!end || strcmp(end, ".partial") != 0) continue;
+        bough_status status = bough_folder_path(folder, entry->d_name, path);
+        if (bough_is_ok(&status) && lstat(path, &info) == 0 && S_ISREG(info.st_mode)) unlink(path);
+    }
+    closedir(directory);
 }
 
 bough_status bough_folder_remove(const char *folder, const char *name) {

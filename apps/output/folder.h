@@ -32,6 +32,9 @@ bough_status bough_folder_keep(const char *path, FILE *file, long *bytes);
 // that has its final name becomes partial again. BOUGH_INVALID when there is less than that.
 bough_status bough_folder_reopen_partial(const char *path, long bytes, FILE **file);
 
+// Removes the partial files that a process which died has left in an existing folder.
+void bough_folder_clean(const char *folder);
+
 // Removes folder/name if there is one.
 bough_status bough_folder_remove(const char *folder, const char *name);
 

@@ -1,6 +1,7 @@
 #include "apps/report/report.h"
 
 #include "apps/output/folder.h"
+#include "core/input_file.h"
 
 #include <errno.h>
 #include <string.h>
@@ -10,9 +11,10 @@ bough_status bough_report_open(const char *folder, const char *name, FILE **file
     *file = NULL;
     bough_status status = bough_folder_path(folder, name, path);
     if (!bough_is_ok(&status)) return status;
-    *file = fopen(path, "rb");
+    char why[BOUGH_INPUT_REASON];
+    *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (*file || errno == ENOENT || errno == ENOTDIR) return bough_ok();
-    return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, strerror(errno));
+    return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
 }
 
 // A '<' could begin an end tag.

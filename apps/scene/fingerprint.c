@@ -1,6 +1,7 @@
 #include "apps/scene/fingerprint.h"
 
 #include "apps/config/schema.h"
+#include "core/input_file.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -13,8 +14,8 @@ void bough_mix(uint64_t *hash, const void *bytes, size_t n) {
 void bough_mix_text(uint64_t *hash, const char *text) { bough_mix(hash, text, strlen(text) + 1); }
 
 void bough_mix_file(uint64_t *hash, const char *path) {
-    char block[4096];
-    FILE *file = fopen(path, "rb");
+    char block[4096], why[BOUGH_INPUT_REASON];
+    FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (!file) return;
     for (size_t n; (n = fread(block, 1, sizeof block, file)) > 0;) bough_mix(hash, block, n);
     fclose(file);

@@ -327,11 +327,24 @@ static void link_modes(bough_schema_reader *r, bough_scene *s) {
 
 // -- times ----------------------------------------------------------------------------------------
 
+static const double most_steps = 1e9; // macro steps of a run: hours at the least
+
 // Whether time/step is a whole number, at least one; true where either is wrong already.
 static bool is_multiple(double time, double step) {
     if (!(time > 0) || !(step > 0)) return true;
     double count = time / step;
     return count > 0.5 && fabs(count - round(count)) <= 1e-9 * count;
+}
+
+// Shapes are stored at ends of macro steps.
+static void check_shapes(bough_schema_reader *r, const bough_scene_output *output, double step) {
+    const char *const key[] = {"frames", "vertices"}, *const path[] = {"output.frames", "output.vertices"};
+    const double interval[] = {output->frames, output->vertices};
+    for (int k = 0; k < 2; k++) {
+        if (!(interval[k] > 0) || interval[k] >= (1 - 1e-9) * step) continue;
+        bough_schema_error(r, bough_link_value(output->node, key[k]), path[k],
+                           "%g s is less than the macro step, %g s", interval[k], step);
+    }
 }
 
 static void check_times(bough_schema_reader *r, bough_scene *s) {
@@ -345,6 +358,12 @@ static void check_times(bough_schema_reader *r, bough_scene *s) {
                            "%g s is not a multiple of the macro step, %g s", simulation->duration,
                            step);
     }
+    if (simulation->duration > most_steps * step) {
+        bough_schema_error(r, bough_link_value(simulation->node, "duration"), "duration",
+                           "%g s are %.3g macro steps of %g s; at most %.3g are taken",
+                           simulation->duration, simulation->duration / step, step, most_steps);
+    }
+    check_shapes(r, &simulation->output, step);
     if (interval != NULL && !is_multiple(simulation->output.interval, step)) {
         bough_schema_error(r, interval, "output.interval",
                            "%g s is not a multiple of the macro step, %g s",

@@ -6,7 +6,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MOST_BODIES = 100000, MOST_SEGMENTS = 1000000 };
+enum { MOST_BODIES = 10000, MOST_SEGMENTS = 1000000 };
 
 static const char *numbered(bough_arena *arena, const char *name, int number) {
     char text[160];

@@ -212,7 +212,7 @@ static const bough_schema modal_schema = {
 static const bough_key body_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
      .example = "blade1", .help = "letters, digits, '_' and '-'; unique"},
-    {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 100000]", .fallback = "1",
+    {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 10000]", .fallback = "1",
      AT(repeat), .example = "10",
      .help = "so many such bodies in a row, each hung on the one before by the same "
                          "joint; named with numbers from 1"},

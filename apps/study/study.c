@@ -3,6 +3,7 @@
 
 #include "apps/config/schema.h"
 #include "apps/study/study_internal.h"
+#include "core/input_file.h"
 
 #include <errno.h>
 #include <string.h>
@@ -260,11 +261,11 @@ const char *bough_study_path(bough_arena *arena, const char *study, const char *
 
 static bool find_scene(bough_arena *arena, bough_study *s, bough_errors *errors) {
     s->scene = bough_study_path(arena, s->file, s->scene_name);
-    FILE *file = s->scene ? fopen(s->scene, "rb") : NULL;
+    char why[BOUGH_INPUT_REASON] = "memory is exhausted";
+    FILE *file = s->scene ? bough_input_open(s->scene, BOUGH_INPUT_TEXT, why) : NULL;
     if (!file) {
         bough_errors_add(errors, bough_node_find(s->node, "scene"), "scene",
-                         "file '%.200s' cannot be read: %s", s->scene ? s->scene : s->scene_name,
-                         strerror(errno));
+                         "file '%.200s' cannot be read: %s", s->scene ? s->scene : s->scene_name, why);
         return false;
     }
     fclose(file);

@@ -1,6 +1,7 @@
 #include "apps/study/study_store.h"
 
 #include "apps/output/folder.h"
+#include "core/input_file.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -147,7 +148,8 @@ static void read_file(const char *folder, const char *name, const bough_study *s
                       bough_study_result *reference, bough_study_result *result) {
     char path[BOUGH_PATH_MAX];
     bough_status status = bough_folder_path(folder, name, path);
-    FILE *file = bough_is_ok(&status) ? fopen(path, "r") : NULL;
+    char why[BOUGH_INPUT_REASON];
+    FILE *file = bough_is_ok(&status) ? bough_input_open(path, BOUGH_INPUT_DATA, why) : NULL;
     if (!file) return;
     read_lines(file, study, reference, result);
     fclose(file);
@@ -176,6 +178,13 @@ bough_status bough_study_store_open_part(bough_arena *arena, const char *folder,
     if (!store->path) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (strcmp(name, all_cells) != 0) read_file(folder, all_cells, study, reference, result);
     read_parts(folder, study, reference, result);
+    char why[BOUGH_INPUT_REASON];
+    errno = 0;
+    FILE *earlier = bough_input_open(path, BOUGH_INPUT_DATA, why);
+    if (!earlier && errno != ENOENT) {
+        return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
+    }
+    if (earlier) fclose(earlier);
     errno = 0;
     store->file = fopen(path, "a+");
     if (!store->file) return io_error(store, "open");
