@@ -32,15 +32,12 @@ struct bough_accelerator {
     double c[MOST_COLUMNS];
 };
 
-const char *const *bough_acceleration_names(void) {
-    static const char *const names[] = {[BOUGH_ACCELERATE_NONE] = "none",
-                                        [BOUGH_ACCELERATE_RELAXATION] = "relaxation",
-                                        [BOUGH_ACCELERATE_AITKEN] = "aitken",
-                                        [BOUGH_ACCELERATE_IQN_ILS] = "iqn-ils",
-                                        [BOUGH_ACCELERATE_NEWTON] = "interface-newton",
-                                        [BOUGH_ACCELERATE_NEWTON + 1] = NULL};
-    return names;
-}
+const char *const bough_acceleration_names[] = {[BOUGH_ACCELERATE_NONE] = "none",
+                                                [BOUGH_ACCELERATE_RELAXATION] = "relaxation",
+                                                [BOUGH_ACCELERATE_AITKEN] = "aitken",
+                                                [BOUGH_ACCELERATE_IQN_ILS] = "iqn-ils",
+                                                [BOUGH_ACCELERATE_NEWTON] = "interface-newton",
+                                                NULL};
 
 static bough_status check(const bough_accelerator_def *def) {
     if (def->kind < BOUGH_ACCELERATE_NONE || def->kind > BOUGH_ACCELERATE_NEWTON) {

@@ -29,7 +29,7 @@ typedef struct bough_accelerator_def {
 typedef struct bough_accelerator bough_accelerator;
 
 // "none", "relaxation", "aitken", "iqn-ils", "interface-newton" in the order of the kinds, NULL-terminated.
-const char *const *bough_acceleration_names(void);
+extern const char *const bough_acceleration_names[];
 
 // Takes all memory from the arena; iterating takes none.
 bough_status bough_accelerator_create(bough_arena *arena, const bough_accelerator_def *def,

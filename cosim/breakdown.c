@@ -35,9 +35,8 @@ void bough_breakdown_keep(bough_breakdown *b) {
 // Nothing when the judgement fails too: the state may be past judging.
 static bough_stability_advice judge_again(bough_breakdown *b, bough_coupling *c) {
     const bough_assembly *a = b->assembly;
-    bough_scheme_options options = c->options;
+    bough_scheme_options options = bough_scheme_options_in_use(c);
     bough_stability_advice advice;
-    if (c->theta > 0) options.theta = c->theta;
     c->refactor = true;
     for (int i = 0; i < a->n_member; i++) {
         const bough_subsystem *s = a->member[i];
@@ -48,11 +47,10 @@ static bough_stability_advice judge_again(bough_breakdown *b, bough_coupling *c)
 }
 
 static void advise(const bough_coupling *c, const bough_stability_advice *advice, char *text) {
-    const bough_scheme *scheme = bough_scheme_find(c->options.name);
-    bool ramp = advice->ramp_holds && scheme != &bough_scheme_ramp;
+    char other[BOUGH_SCHEME_ADVICE];
+    bough_scheme_advise(c->scheme, other);
     if (!advice->unstable) {
-        snprintf(text, ADVICE, "; try a smaller macro step%s",
-                 scheme->explicit_forces ? " or scheme: ramp" : "");
+        snprintf(text, ADVICE, "; try a smaller macro step%s", other);
         return;
     }
     int n = snprintf(text, ADVICE, ": the coupling grows by a factor of %.3g in each macro step; ",
@@ -61,9 +59,10 @@ static void advise(const bough_coupling *c, const bough_stability_advice *advice
     size_t room = (size_t)(ADVICE - n);
     if (advice->macro_step > 0) {
         snprintf(end, room, "try macro_step: %.4g s%s", advice->macro_step,
-                 ramp ? " or scheme: ramp" : "");
+                 advice->instead_holds ? other : "");
     } else {
-        snprintf(end, room, "try scheme: %s", ramp ? "ramp" : "monolithic");
+        snprintf(end, room, "try scheme: %s",
+                 advice->instead_holds ? c->scheme->instead : bough_scheme_last_resort(c->scheme));
     }
 }
 
@@ -71,11 +70,10 @@ bough_status bough_breakdown_explain(bough_breakdown *b, bough_coupling *c,
                                      const bough_stability_advice *before, bough_status cause) {
     if (cause.code != BOUGH_FAILED && cause.code != BOUGH_RETRY) return cause;
     char text[ADVICE];
-    bool judged = strcmp(c->options.name, bough_scheme_monolithic.name) != 0;
     bough_stability_advice advice = *before;
-    if (!advice.unstable && judged) advice = judge_again(b, c);
+    if (!advice.unstable && !c->scheme->one_system) advice = judge_again(b, c);
     advise(c, &advice, text);
     int room = (int)(sizeof cause.message - ADVICE - 70);
     return bough_fail(BOUGH_FAILED, "%.*s (scheme %s, macro step %.6g s from %.6g s)%s", room,
-                      cause.message, c->options.name, c->t1 - c->t0, c->t0, text);
+                      cause.message, c->scheme->name, c->t1 - c->t0, c->t0, text);
 }

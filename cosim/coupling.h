@@ -21,7 +21,7 @@ typedef enum bough_exchange {
 
 // What the user chose. Unused fields are ignored by a scheme.
 typedef struct bough_scheme_options {
-    const char *name;  // one of bough_scheme_names()
+    const char *name;  // of the scheme, see scheme.h
     int order;         // extrapolated, iterated: degree of the polynomial, 0 … 2
     bool parallel;     // extrapolated: all stages at once instead of one after the other
     bool reversed;     // sequential schemes take the last stage first
@@ -37,10 +37,12 @@ typedef struct bough_scheme_options {
 
 enum { BOUGH_HISTORY = 3 };
 
+typedef struct bough_scheme bough_scheme;       // see scheme.h
 typedef struct bough_iteration bough_iteration; // see iteration.h
 
 typedef struct bough_coupling {
     const bough_assembly *assembly;
+    const bough_scheme *scheme;
     bough_scheme_options options;
     bough_pool *pool;  // NULL: one thread
     void *scheme_data; // what the scheme created
@@ -87,12 +89,14 @@ typedef struct bough_coupling {
 
     // by the ramp scheme, for the summary
     double theta;           // in use
-    double interface_ratio; // spectral radius of the interface's answer to itself at the first step
+    double interface_ratio; // spectral radius of the interface's answer to itself at the first step;
+                            // NaN: not known
 
     long sweeps; // by the iterated scheme: runs of all members over a macro step so far
 } bough_coupling;
 
-// Builds the working data and evaluates the outputs at the members' current states.
+// Builds the working data, evaluates the outputs at the members' current states and creates the
+// scheme that the options name: BOUGH_INVALID when there is none or its options do not fit.
 bough_status bough_coupling_create(bough_arena *arena, const bough_assembly *assembly,
                                    const bough_scheme_options *options, bough_pool *pool,
                                    bough_coupling **coupling);

@@ -43,29 +43,16 @@ static bough_status check(const bough_master_def *def) {
         return bough_fail(BOUGH_INVALID, "macro step %g s and duration %g s must be positive",
                           def->macro_step, def->duration);
     }
-    if (!bough_scheme_find(def->scheme.name)) {
-        return bough_fail(BOUGH_INVALID, "unknown coupling scheme \"%s\"", def->scheme.name);
-    }
     return bough_ok();
 }
 
 // Nothing to say when the judgement fails: the run will show why.
 static void judge(bough_master *m) {
-    if (!m->scheme->judged) return;
     const bough_scheme_options *options = &m->coupling->options;
+    if (!m->coupling->scheme->judged) return;
     bough_status status = bough_stability_advise(m->assembly, options, m->macro_step, &m->advice);
     if (!bough_is_ok(&status)) return;
     bough_stability_describe(m->assembly, &m->advice, options, m->macro_step, m->verdict);
-}
-
-// Order of the defects in the macro step.
-static int defect_order(const bough_scheme_options *o) {
-    const bough_scheme *scheme = bough_scheme_find(o->name);
-    if (scheme == &bough_scheme_ramp) return 2;
-    bool waveform = o->exchange == BOUGH_EXCHANGE_WAVEFORM;
-    if (scheme == &bough_scheme_iterated && waveform) return 4;
-    bool polynomial = scheme == &bough_scheme_extrapolated || scheme == &bough_scheme_iterated;
-    return polynomial ? o->order + 1 : 1;
 }
 
 bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
@@ -77,24 +64,22 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     m->macro_step = def->macro_step;
     m->duration = def->duration;
     m->at_event = true;
-    m->scheme = bough_scheme_find(def->scheme.name);
     status = copy_loads(m, arena, def);
     if (!bough_is_ok(&status)) return status;
     status = bough_assembly_build(arena, &def->assembly, &m->assembly);
     if (!bough_is_ok(&status)) return status;
     status = bough_coupling_create(arena, m->assembly, &def->scheme, def->pool, &m->coupling);
     if (!bough_is_ok(&status)) return status;
-    if (m->scheme->create) status = m->scheme->create(m->coupling, arena);
-    if (bough_is_ok(&status)) {
-        status = bough_monitor_create(arena, m->scheme, m->coupling, &m->monitor);
-    }
+    const bough_scheme *scheme = m->coupling->scheme;
+    status = bough_monitor_create(arena, m->coupling, &m->monitor);
     if (bough_is_ok(&status)) status = bough_breakdown_create(arena, m->assembly, &m->breakdown);
-    if (bough_is_ok(&status) && m->scheme != &bough_scheme_monolithic) {
+    if (bough_is_ok(&status) && !scheme->one_system) {
         status = bough_error_estimate_create(arena, m->coupling, &m->estimate);
     }
     if (bough_is_ok(&status) && m->estimate && def->control.tolerance > 0) {
-        status = bough_step_control_create(arena, m->coupling, &def->control, m->macro_step,
-                                           defect_order(&def->scheme), &m->control);
+        int order = bough_scheme_defect_order(scheme, &def->scheme);
+        status = bough_step_control_create(arena, m->coupling, &def->control, m->macro_step, order,
+                                           &m->control);
     }
     if (!bough_is_ok(&status)) return status;
     if (!m->control) judge(m);
@@ -165,7 +150,7 @@ static void set_time(bough_master *m, double t) {
 
 // One macro step: predict, exchange, advance, correct, as the scheme orders them.
 static bough_status take_step(bough_master *m) {
-    bough_status status = m->scheme->step(m->coupling);
+    bough_status status = m->coupling->scheme->step(m->coupling);
     if (bough_is_ok(&status)) bough_coupling_exchange(m->coupling);
     return status;
 }
@@ -240,7 +225,7 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_snapshot_take(s, &c->theta, sizeof c->theta);
     bough_snapshot_take(s, &c->interface_ratio, sizeof c->interface_ratio);
     bough_snapshot_take(s, &c->sweeps, sizeof c->sweeps);
-    if (m->scheme->snapshot) m->scheme->snapshot(c, s);
+    if (c->scheme->snapshot) c->scheme->snapshot(c, s);
     bough_monitor_snapshot(m->monitor, c, s);
     if (m->estimate) bough_error_estimate_snapshot(m->estimate, s);
     if (m->control) bough_step_control_snapshot(m->control, s);

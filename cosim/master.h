@@ -6,6 +6,7 @@
 #include "cosim/breakdown.h"
 #include "cosim/error_estimate.h"
 #include "cosim/monitor.h"
+#include "cosim/scheme.h"
 #include "cosim/stability.h"
 #include "cosim/step_control.h"
 
@@ -39,7 +40,6 @@ typedef struct bough_master {
     double time;                 // the current synchronisation point [s]
     long steps;                  // macro steps taken
     bough_assembly *assembly;
-    const bough_scheme *scheme;
     bough_coupling *coupling;
     bough_monitor *monitor;
     bough_error_estimate *estimate; // NULL: the scheme makes no coupling error

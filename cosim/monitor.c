@@ -20,6 +20,7 @@
 #include "cosim/monitor.h"
 
 #include "cosim/error_bound.h"
+#include "cosim/scheme.h"
 #include "cosim/stability.h"
 
 #include <math.h>
@@ -61,7 +62,7 @@ typedef struct account {
 } account;
 
 struct bough_monitor {
-    const bough_scheme *scheme;
+    char advice[BOUGH_SCHEME_ADVICE]; // another scheme to try, or ""
     int n_group;
     group *group;
     long steps;
@@ -99,13 +100,13 @@ static void make_groups(bough_monitor *m, const bough_assembly *a) {
     }
 }
 
-bough_status bough_monitor_create(bough_arena *arena, const bough_scheme *scheme,
-                                  const bough_coupling *coupling, bough_monitor **monitor) {
+bough_status bough_monitor_create(bough_arena *arena, const bough_coupling *coupling,
+                                  bough_monitor **monitor) {
     const bough_assembly *a = coupling->assembly;
     size_t n_input = (size_t)a->n_input;
     bough_monitor *m = bough_arena_take(arena, sizeof *m);
     if (!m) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    m->scheme = scheme;
+    bough_scheme_advise(coupling->scheme, m->advice);
     m->group = bough_arena_take(arena, n_input * sizeof *m->group);
     m->previous = bough_arena_doubles(arena, n_input);
     m->start = bough_arena_doubles(arena, n_input);
@@ -138,8 +139,8 @@ static bough_status check_finite(const bough_monitor *m, const bough_coupling *c
         return bough_fail(BOUGH_FAILED,
                           "%s: no finite state or output at %.6g s (scheme %s, macro step %.6g s); "
                           "try a smaller macro step%s",
-                          s->name, c->t1, m->scheme->name, c->t1 - c->t0,
-                          m->scheme->explicit_forces ? " or scheme: ramp" : "");
+                          s->name, c->t1, c->scheme->name, c->t1 - c->t0,
+                          m->advice);
     }
     return bough_ok();
 }
@@ -182,14 +183,14 @@ static bough_status unstable(const bough_monitor *m, const bough_coupling *c, co
                       "coupling of %s and %s is unstable at %.6g s: scheme %s, macro step %.6g s, "
                       "interface error grows by %.4g per step (%.3g per second); try a smaller "
                       "macro step%s",
-                      a->member[g->from]->name, a->member[g->to]->name, c->t1, m->scheme->name, h,
+                      a->member[g->from]->name, a->member[g->to]->name, c->t1, c->scheme->name, h,
                       per_step, log(per_step) / h,
-                      m->scheme->explicit_forces ? " or scheme: ramp" : "");
+                      m->advice);
 }
 
 static bough_status watch(const bough_monitor *m, const bough_coupling *c, group *g,
                           double defect) {
-    double significant = m->scheme->explicit_forces ? 0.01 : 0.3;
+    double significant = c->scheme->explicit_forces ? 0.01 : 0.3;
     for (int k = 0; k < N_SCALE; k++) {
         window *w = &g->scale[k];
         w->current = fmax(w->current, defect);
@@ -208,15 +209,6 @@ static double norm(const double *x, int n) {
     return sqrt(sum);
 }
 
-// What the scheme really does: the ramp with its weight, or with repeated steps.
-static bough_scheme_options options_in_use(const bough_monitor *m, const bough_coupling *c) {
-    bough_scheme_options options = c->options;
-    if (c->theta > 0) options.theta = c->theta;
-    if (m->scheme != &bough_scheme_ramp || !c->iteration) return options;
-    options.name = bough_scheme_iterated.name;
-    return options;
-}
-
 // Growth of whatever grows fastest [1/s], about the current state; negative: nothing, or unknown.
 static double fastest_growth(const bough_coupling *c, const bough_scheme_options *options,
                              double macro_step) {
@@ -228,7 +220,7 @@ static double fastest_growth(const bough_coupling *c, const bough_scheme_options
 
 static bough_status look_into(const bough_monitor *m, bough_coupling *c, const group *g) {
     static const int shorter[] = {8, 64};
-    bough_scheme_options options = options_in_use(m, c);
+    bough_scheme_options options = bough_scheme_options_in_use(c);
     double h = c->t1 - c->t0, growth = fastest_growth(c, &options, h), own = growth / 2;
     double needed = log(suspicious_growth) / (c->t1 - g->small_time); // for what was seen
     c->refactor = true;
@@ -241,8 +233,8 @@ static bough_status look_into(const bough_monitor *m, bough_coupling *c, const g
                       "coupling of %s and %s is unstable at %.6g s: scheme %s, macro step %.6g s, "
                       "their force has grown a hundredfold and more, by %.3g per second; try a "
                       "smaller macro step%s",
-                      a->member[g->from]->name, a->member[g->to]->name, c->t1, m->scheme->name, h,
-                      growth, m->scheme->explicit_forces ? " or scheme: ramp" : "");
+                      a->member[g->from]->name, a->member[g->to]->name, c->t1, c->scheme->name, h,
+                      growth, m->advice);
 }
 
 static bough_status watch_size(const bough_monitor *m, bough_coupling *c, group *g, double size) {
@@ -328,15 +320,15 @@ static bough_status lost(const bough_monitor *m, const bough_coupling *c, int in
                       "force, growing by %.4g per step, and %.2g of the exchanged energy; good "
                       "until %.4g s; try macro_step: %.3g s%s",
                       a->member[f->body]->name, a->member[receiver(a, f->wrench)]->name, c->t1,
-                      m->scheme->name, c->t1 - c->t0, b->last.defect, b->growth, b->last.energy,
+                      c->scheme->name, c->t1 - c->t0, b->last.defect, b->growth, b->last.energy,
                       b->good_time, try_step,
-                      m->scheme->explicit_forces ? " or scheme: ramp" : "");
+                      m->advice);
 }
 
 // The eigenvalues about the current state tell a coupling that is unstable from one that is coarse.
 static bough_status confirm(const bough_monitor *m, bough_coupling *c, int interface) {
     c->refactor = true;
-    bough_scheme_options options = options_in_use(m, c);
+    bough_scheme_options options = bough_scheme_options_in_use(c);
     bough_stability_advice advice = {0};
     double h = c->t1 - c->t0;
     bough_status status = bough_stability_advise(c->assembly, &options, h, &advice);
@@ -364,10 +356,8 @@ static bough_interface_energy sum_energy(const bough_monitor *m, int n, bool sin
     return sum;
 }
 
-static bool holds_forces(const bough_monitor *m, const bough_coupling *c) {
-    bool iterated = m->scheme == &bough_scheme_iterated &&
-                    c->options.exchange == BOUGH_EXCHANGE_END_VALUES;
-    return m->scheme->explicit_forces || (iterated && c->options.order == 0);
+static bool holds_forces(const bough_coupling *c) {
+    return c->scheme->explicit_forces || bough_scheme_defect_order(c->scheme, &c->options) == 1;
 }
 
 static bough_status judge_balance(bough_monitor *m, const bough_coupling *c) {
@@ -383,14 +373,14 @@ static bough_status judge_balance(bough_monitor *m, const bough_coupling *c) {
         double residual = fabs(m->account[k].total.residual);
         if (residual > fabs(m->account[worst].total.residual)) worst = k;
     }
-    if (holds_forces(m, c) || m->unbalanced < MOST_UNBALANCED) return bough_ok();
+    if (holds_forces(c) || m->unbalanced < MOST_UNBALANCED) return bough_ok();
     int body = a->interface[worst].body;
     return bough_fail(BOUGH_FAILED,
                       "the coupling of %s has lost the solution by %.6g s (scheme %s, macro step "
                       "%.6g s): %.2g of the energy exchanged at the interfaces is made or lost by "
-                      "the coupling itself; try a smaller macro step or scheme: monolithic",
-                      a->member[body]->name, c->t1, m->scheme->name, c->t1 - c->t0,
-                      all.residual / all.exchanged);
+                      "the coupling itself; try a smaller macro step or scheme: %s",
+                      a->member[body]->name, c->t1, c->scheme->name, c->t1 - c->t0,
+                      all.residual / all.exchanged, bough_scheme_last_resort(c->scheme));
 }
 
 // Windows are of at least 64 steps and a second.

@@ -3,7 +3,7 @@
 #ifndef BOUGH_COSIM_MONITOR_H
 #define BOUGH_COSIM_MONITOR_H
 
-#include "cosim/scheme.h"
+#include "cosim/coupling.h"
 
 typedef struct bough_monitor bough_monitor;
 
@@ -16,8 +16,8 @@ typedef struct bough_coupling_report {
     double energy_exchanged; // Σ over interfaces ∫ |wrench · twist| dt [J]
 } bough_coupling_report;
 
-bough_status bough_monitor_create(bough_arena *arena, const bough_scheme *scheme,
-                                  const bough_coupling *coupling, bough_monitor **monitor);
+bough_status bough_monitor_create(bough_arena *arena, const bough_coupling *coupling,
+                                  bough_monitor **monitor);
 
 // Judges the step just taken: BOUGH_FAILED with a diagnosis when the run has become meaningless.
 bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c);

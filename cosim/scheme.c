@@ -1,14 +1,22 @@
 #include "cosim/scheme.h"
 
+#include <stdio.h>
 #include <string.h>
 
-static const bough_scheme *const schemes[] = {
-    &bough_scheme_ramp,         &bough_scheme_gauss_seidel, &bough_scheme_extrapolated,
-    &bough_scheme_iterated,     &bough_scheme_frozen,       &bough_scheme_monolithic,
-};
+// One line a scheme: its entry is bough_scheme_<this>.
+#define SCHEMES(ENTRY)                                                                             \
+    ENTRY(frozen)                                                                                  \
+    ENTRY(gauss_seidel)                                                                            \
+    ENTRY(extrapolated)                                                                            \
+    ENTRY(iterated)                                                                                \
+    ENTRY(ramp)                                                                                    \
+    ENTRY(monolithic)
 
-static const char *const names[] = {"ramp",   "gauss-seidel", "extrapolated", "iterated",
-                                    "frozen", "monolithic",   NULL};
+#define DECLARATION(scheme) extern const bough_scheme bough_scheme_##scheme;
+#define ADDRESS(scheme) &bough_scheme_##scheme,
+SCHEMES(DECLARATION)
+static const bough_scheme *const schemes[] = {SCHEMES(ADDRESS)};
+enum { N_SCHEME = sizeof schemes / sizeof *schemes };
 
 bough_scheme_options bough_scheme_options_default(void) {
     return (bough_scheme_options){.name = "ramp",
@@ -22,12 +30,55 @@ bough_scheme_options bough_scheme_options_default(void) {
 }
 
 const bough_scheme *bough_scheme_find(const char *name) {
-    for (size_t i = 0; i < sizeof schemes / sizeof *schemes; i++) {
+    for (int i = 0; i < N_SCHEME; i++) {
         if (strcmp(schemes[i]->name, name) == 0) return schemes[i];
     }
     return NULL;
 }
 
-const char *const *bough_scheme_names(void) {
-    return names;
+const char *bough_scheme_name(int index) {
+    return index >= 0 && index < N_SCHEME ? schemes[index]->name : NULL;
+}
+
+int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options *options) {
+    return s->defect_order ? s->defect_order(options) : 1;
+}
+
+bough_scheme_options bough_scheme_options_in_use(const bough_coupling *c) {
+    bough_scheme_options options = c->options;
+    if (c->scheme->choose) c->scheme->choose(c, &options);
+    return options;
+}
+
+const char *bough_scheme_last_resort(const bough_scheme *s) {
+    while (s->instead)
+        s = bough_scheme_find(s->instead);
+    return s->name;
+}
+
+void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *options,
+                           char text[BOUGH_SCHEME_TEXT]) {
+    size_t room = BOUGH_SCHEME_TEXT, n = (size_t)snprintf(text, room, "%s", s->name);
+    bool waveform = options->exchange == BOUGH_EXCHANGE_WAVEFORM;
+    if (s->reads & BOUGH_READS_EXCHANGE && waveform) {
+        n += (size_t)snprintf(text + n, room - n, ", waveforms");
+    } else if (s->reads & BOUGH_READS_ORDER) {
+        n += (size_t)snprintf(text + n, room - n, ", order %d", options->order);
+    }
+    if (s->reads & BOUGH_READS_ACCELERATOR) {
+        n += (size_t)snprintf(text + n, room - n,
+                              ", accelerator %s, tolerance %.6g in at most %d iterations",
+                              bough_acceleration_names[options->accelerator], options->tolerance,
+                              options->iterations);
+    }
+    if (s->reads & BOUGH_READS_THETA && options->theta > 0) {
+        snprintf(text + n, room - n, ", theta %.6g", options->theta);
+    } else if (s->reads & BOUGH_READS_THETA) {
+        snprintf(text + n, room - n, ", theta auto: chosen at the first step");
+    }
+}
+
+void bough_scheme_advise(const bough_scheme *s, char text[BOUGH_SCHEME_ADVICE]) {
+    text[0] = 0;
+    if (s->instead) snprintf(text, BOUGH_SCHEME_ADVICE, " or scheme: %s", s->instead);
 }

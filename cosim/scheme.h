@@ -1,22 +1,39 @@
 // Coupling schemes: how the members of an assembly are taken over one macro step, and what they see
-// of each other while they integrate themselves. One file per scheme; this is the table by name.
+// of each other while they integrate themselves. A scheme is one file, which ends with its entry,
+// and one line of the table in scheme.c. What others need to know of it they ask the entry.
 #ifndef BOUGH_COSIM_SCHEME_H
 #define BOUGH_COSIM_SCHEME_H
 
 #include "cosim/coupling.h"
 
-typedef struct bough_scheme {
+// Options that a scheme reads.
+enum {
+    BOUGH_READS_ORDER = 1,
+    BOUGH_READS_THETA = 2,
+    BOUGH_READS_EXCHANGE = 4,
+    BOUGH_READS_ACCELERATOR = 8, // relaxation, tolerance and iterations too
+};
+
+// What is left out is false, 0 or NULL.
+struct bough_scheme {
     const char *name;
     const char *summary;  // one line for help: what is exchanged, order, stability
+    const char *instead;  // name of the scheme to try where this one does not hold; NULL: none
+    unsigned reads;       // BOUGH_READS_… of the options
     bool explicit_forces; // forces are frozen or extrapolated: unstable beyond some macro step
     bool judged;          // may be unstable: its eigenvalues are looked at before the run
-    // Takes the scheme's memory; NULL when it needs none.
+    bool one_system; // all members are one system: there is no coupling error to judge or estimate
+    // Takes the scheme's memory, checks its options; NULL when it needs neither.
     bough_status (*create)(bough_coupling *c, bough_arena *arena);
     // Takes all members from t0 to t1.
     bough_status (*step)(bough_coupling *c);
-    // What its own memory carries from step to step; factors are found anew. NULL: nothing.
+    // What its own memory carries from step to step; factors are made anew. NULL: nothing.
     void (*snapshot)(bough_coupling *c, bough_snapshot *s);
-} bough_scheme;
+    // Order of the interface defects in the macro step; NULL: 1.
+    int (*defect_order)(const bough_scheme_options *options);
+    // Replaces options by what the scheme has chosen while it ran; NULL: it uses what it was given.
+    void (*choose)(const bough_coupling *c, bough_scheme_options *options);
+};
 
 // name "ramp", order 1, sequential, Hermite, theta automatic, rtol 1e-6; end
 // values by IQN-ILS from relaxation 1/2 to 1e-6 in at most 30 iterations.
@@ -25,10 +42,25 @@ bough_scheme_options bough_scheme_options_default(void);
 // The scheme of that name; NULL when unknown.
 const bough_scheme *bough_scheme_find(const char *name);
 
-// All names, NULL-terminated, for messages and help.
-const char *const *bough_scheme_names(void);
+// Name of the scheme at that place of the table, for messages and help; NULL beyond its end.
+const char *bough_scheme_name(int index);
 
-extern const bough_scheme bough_scheme_frozen, bough_scheme_gauss_seidel,
-    bough_scheme_extrapolated, bough_scheme_ramp, bough_scheme_iterated, bough_scheme_monolithic;
+// Order of the interface defects in the macro step.
+int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options *options);
+
+// The options that the scheme really uses, for a judgement.
+bough_scheme_options bough_scheme_options_in_use(const bough_coupling *c);
+
+// The scheme that holds wherever the mechanics do: the end of the chain of `instead`.
+const char *bough_scheme_last_resort(const bough_scheme *s);
+
+enum { BOUGH_SCHEME_TEXT = 200, BOUGH_SCHEME_ADVICE = 48 };
+
+// The scheme with the options that it reads, "iterated, order 1, accelerator …".
+void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *options,
+                           char text[BOUGH_SCHEME_TEXT]);
+
+// " or scheme: NAME" of what to try instead, or "".
+void bough_scheme_advise(const bough_scheme *s, char text[BOUGH_SCHEME_ADVICE]);
 
 #endif

@@ -1,6 +1,7 @@
 // Extrapolated coupling: like Gauss–Seidel, with forces extrapolated by a polynomial of degree 0, 1
 // or 2 through the last synchronisation values (fewer at the start); order degree + 1. The parallel
-// variant extrapolates every input. Stable only below some macro step.
+// variant extrapolates every input. Stable only below some macro step. Degree 0 has a name of its own:
+// Gauss–Seidel, under held forces, a delay of 1/2 H.
 #include "cosim/scheme.h"
 #include "cosim/sequence.h"
 
@@ -9,6 +10,12 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     if (c->options.order >= 0 && c->options.order < BOUGH_HISTORY) return bough_ok();
     return bough_fail(BOUGH_INVALID, "extrapolated coupling: order is %d, must be 0, 1 or 2",
                       c->options.order);
+}
+
+static bough_status create_held(bough_coupling *c, bough_arena *arena) {
+    c->options.order = 0;
+    c->options.parallel = false;
+    return create(c, arena);
 }
 
 static bough_status step_parallel(bough_coupling *c) {
@@ -27,11 +34,26 @@ static bough_status step(bough_coupling *c) {
     return bough_sequence_step(c, c->options.order);
 }
 
+static int defect_order(const bough_scheme_options *options) { return options->order + 1; }
+
+const bough_scheme bough_scheme_gauss_seidel = {
+    .name = "gauss-seidel",
+    .summary = "the leader first under held forces, bodies follow its motion; order 1, explicit",
+    .instead = "ramp",
+    .explicit_forces = true,
+    .judged = true,
+    .create = create_held,
+    .step = step,
+};
+
 const bough_scheme bough_scheme_extrapolated = {
     .name = "extrapolated",
     .summary = "forces extrapolated by a polynomial; order 1 to 3 (degree + 1), explicit",
+    .instead = "ramp",
+    .reads = BOUGH_READS_ORDER,
     .explicit_forces = true,
     .judged = true,
     .create = create,
     .step = step,
+    .defect_order = defect_order,
 };

@@ -355,12 +355,19 @@ void bough_iteration_snapshot(bough_coupling *c, bough_snapshot *s) {
     bough_snapshot_doubles(s, it->size, it->n);
 }
 
+static int defect_order(const bough_scheme_options *options) {
+    return options->exchange == BOUGH_EXCHANGE_WAVEFORM ? 4 : options->order + 1;
+}
+
 const bough_scheme bough_scheme_iterated = {
     .name = "iterated",
     .summary = "the step repeated until the interface agrees; order 1 to 3 (degree + 1), of waveforms "
                "6, implicit",
+    .instead = "ramp",
+    .reads = BOUGH_READS_ORDER | BOUGH_READS_EXCHANGE | BOUGH_READS_ACCELERATOR,
     .judged = true,
     .create = bough_iteration_create,
     .step = bough_iteration_step,
     .snapshot = bough_iteration_snapshot,
+    .defect_order = defect_order,
 };

@@ -115,6 +115,7 @@ static void snapshot(bough_coupling *c, bough_snapshot *s) {
 const bough_scheme bough_scheme_monolithic = {
     .name = "monolithic",
     .summary = "all bodies in one implicit system: the reference, no coupling error",
+    .one_system = true,
     .create = create,
     .step = step,
     .snapshot = snapshot,

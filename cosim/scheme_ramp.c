@@ -250,7 +250,7 @@ static bough_status growth_with(const bough_coupling *c, double theta, double *g
 static bool waveforms_hold(const bough_coupling *c) {
     bough_scheme_options options = c->options;
     bough_stability stability;
-    options.name = bough_scheme_iterated.name;
+    options.name = "iterated";
     options.exchange = BOUGH_EXCHANGE_WAVEFORM;
     bough_status status = growth_of(c, options, &stability);
     bool rises = stability.rising * (c->t1 - c->t0) > rise;
@@ -384,11 +384,26 @@ static void snapshot(bough_coupling *c, bough_snapshot *s) {
     if (c->iteration) bough_iteration_snapshot(c, s);
 }
 
+static int defect_order(const bough_scheme_options *options) {
+    (void)options;
+    return 2;
+}
+
+// The weight, or that steps are repeated.
+static void choose(const bough_coupling *c, bough_scheme_options *options) {
+    if (c->theta > 0) options->theta = c->theta;
+    if (c->iteration) options->name = "iterated";
+}
+
 const bough_scheme bough_scheme_ramp = {
     .name = "ramp",
     .summary = "forces ramp to a linearly implicit prediction; order 3 on heavy interface bodies, "
                "else 2; stable far beyond the explicit limit",
+    .instead = "monolithic",
+    .reads = BOUGH_READS_THETA,
     .create = create,
     .step = step,
     .snapshot = snapshot,
+    .defect_order = defect_order,
+    .choose = choose,
 };

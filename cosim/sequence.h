@@ -1,4 +1,4 @@
-// The sequential macro step that Gauss–Seidel and extrapolated coupling share.
+// Stages one after the other: the sequential macro step of extrapolated coupling.
 #ifndef BOUGH_COSIM_SEQUENCE_H
 #define BOUGH_COSIM_SEQUENCE_H
 

@@ -21,7 +21,6 @@ static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
 // deficit impulses).
 typedef struct map {
     bough_arena *arena;
-    const bough_scheme *scheme;
     bough_assembly assembly; // of the linear members
     bough_subsystem *linear; // (n_member)
     bough_coupling *coupling;
@@ -97,9 +96,6 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     status = bough_coupling_create(m->arena, &m->assembly, &judged, NULL, &c);
     if (!bough_is_ok(&status) || !c) return status;
     m->coupling = c;
-    m->scheme = bough_scheme_find(options->name);
-    if (m->scheme->create) status = m->scheme->create(c, m->arena);
-    if (!bough_is_ok(&status)) return status;
     m->n = a->n_state + (c->deficit != NULL ? 4 : 3) * a->n_input;
     m->repeat = (int)fmin(ceil(span / m->macro_step - 1e-6), MOST_REPEATED);
     return take(m);
@@ -152,7 +148,7 @@ static bough_status apply(map *m, int count, const double *z, double *image) {
         c->t0 = c->t1;
         c->t1 = (k + 1) * m->macro_step;
         c->refactor = true; // a linear member advances by the same factors
-        status = m->scheme->step(c);
+        status = c->scheme->step(c);
         bough_coupling_exchange(c);
     }
     store(m, image);
@@ -437,8 +433,9 @@ bough_status bough_stability_judge(const bough_assembly *a, const bough_scheme_o
 
 bough_status bough_stability_judge_by(const bough_assembly *a, const bough_scheme_options *options,
                                       double macro_step, double longest, bough_stability *result) {
-    if (strcmp(options->name, bough_scheme_monolithic.name) == 0) {
-        return bough_fail(BOUGH_INVALID, "the monolithic scheme has no coupling to judge");
+    const bough_scheme *scheme = bough_scheme_find(options->name);
+    if (!scheme || scheme->one_system) {
+        return bough_fail(BOUGH_INVALID, "scheme %s has no coupling to judge", options->name);
     }
     map m = {.arena = bough_arena_create(),
              .macro_step = macro_step,
@@ -473,11 +470,11 @@ bough_status bough_stability_advise(const bough_assembly *a, const bough_scheme_
     *advice = (bough_stability_advice){0};
     bough_status status = bough_stability_judge(a, options, macro_step, &advice->now);
     if (!bough_is_ok(&status) || !bough_stability_grows(&advice->now)) return status;
-    bough_scheme_options ramp = *options;
-    ramp.name = bough_scheme_ramp.name;
-    ramp.theta = 0;
+    bough_scheme_options instead = *options;
+    instead.name = bough_scheme_find(options->name)->instead;
+    instead.theta = 0;
     double least = advice->now.growth;
-    advice->ramp_holds = holds(a, &ramp, macro_step, &least);
+    advice->instead_holds = instead.name && holds(a, &instead, macro_step, &least);
     for (size_t k = 0; k < sizeof divisor / sizeof *divisor && advice->macro_step == 0; k++) {
         double smaller = macro_step / divisor[k];
         if (holds(a, options, smaller, &least)) advice->macro_step = smaller;
@@ -500,7 +497,8 @@ void bough_stability_describe(const bough_assembly *a, const bough_stability_adv
         length += snprintf(text + length, (size_t)(BOUGH_VERDICT - length),
                            "; macro_step: %.4g s holds", advice->macro_step);
     }
-    if (advice->ramp_holds) {
-        snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: ramp holds");
+    if (advice->instead_holds) {
+        snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: %s holds",
+                 bough_scheme_find(options->name)->instead);
     }
 }

@@ -24,7 +24,7 @@ typedef struct bough_stability {
 
 // Judges a scheme at a macro step about the members' current states. Takes memory of its own and
 // releases it; uses the members' Newton factors: a coupling that goes on sets `refactor`.
-// BOUGH_INVALID for the monolithic scheme, which has no coupling to judge.
+// BOUGH_INVALID for a scheme of one system, which has no coupling to judge.
 bough_status bough_stability_judge(const bough_assembly *a, const bough_scheme_options *options,
                                    double macro_step, bough_stability *result);
 
@@ -38,9 +38,9 @@ bool bough_stability_grows(const bough_stability *s);
 
 typedef struct bough_stability_advice {
     bough_stability now; // at the macro step asked about
-    bool unstable;       // it grows, and less so with a smaller macro step or the ramp scheme
+    bool unstable;       // it grows, and less so with a smaller macro step or another scheme
     double macro_step;   // the largest fraction of it that holds [s]; 0: none of those tried
-    bool ramp_holds;     // the ramp scheme holds at the macro step asked about
+    bool instead_holds;  // the scheme to try instead holds at the macro step asked about
 } bough_stability_advice;
 
 // Judges, and when it grows looks for what would hold.

@@ -155,7 +155,7 @@ static void count_steps(const char *folder, const char *path, const char *const 
     stop_counting();
     long taken = atomic_load(&allocations), released = atomic_load(&releases);
     if (taken != 0 || released != 0) {
-        fail_msg("%s: %ld allocations and %ld releases in %d steps", s->master->scheme->name, taken,
+        fail_msg("%s: %ld allocations and %ld releases in %d steps", s->master->coupling->scheme->name, taken,
                  released, COUNTED);
     }
     bough_arena_destroy(arena);

@@ -62,9 +62,10 @@ static const char runup[] = "apps/turbine/runup.yaml";
 
 static void every_scheme_goes_on(void **context) {
     (void)context;
-    for (const char *const *name = bough_scheme_names(); *name; name++) {
+    const char *name;
+    for (int k = 0; (name = bough_scheme_name(k)) != NULL; k++) {
         char scheme[64];
-        snprintf(scheme, sizeof scheme, "simulation.coupling.scheme=%s", *name);
+        snprintf(scheme, sizeof scheme, "simulation.coupling.scheme=%s", name);
         const char *const sets[] = {scheme, "simulation.macro_step=0.5 ms",
                                     "bodies[0].rod.segments=6", NULL};
         check_continued(bar, sets, 45, 45); // over the ends of batches of 32 steps

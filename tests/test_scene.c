@@ -37,8 +37,8 @@ static void turbine_is_read(void **state) {
     assert_string_equal(s->title, "Two-bladed example");
     check_near(s->gravity[2], -9.80665, 0, 0);
     check_near(s->simulation.macro_step, 0.01, 1e-15, 0);
-    assert_int_equal(s->simulation.coupling.scheme, BOUGH_SCENE_RAMP);
-    check_near(s->simulation.coupling.theta, 0, 0, 0);
+    assert_string_equal(bough_scheme_name(s->simulation.coupling.scheme), "ramp");
+    check_near(s->simulation.coupling.options.theta, 0, 0, 0);
     check_near(s->simulation.output.interval, 0.05, 1e-15, 0);
     check_near(s->simulation.micro.rtol, 1e-4, 0, 0);
     assert_int_equal(s->n_body, 5);
@@ -116,7 +116,7 @@ static void uniform_beam_needs_no_table(void **state) {
     check_near(beam->damping[0], 0, 0, 0);
     check_near(s->simulation.output.interval, s->simulation.macro_step, 0, 0);
     assert_int_equal(s->simulation.threads, 0);
-    assert_int_equal(s->simulation.coupling.scheme, BOUGH_SCENE_RAMP);
+    assert_string_equal(bough_scheme_name(s->simulation.coupling.scheme), "ramp");
     assert_null(s->aero.node);
     assert_null(s->turbine.node);
     check_near(s->gravity[2], -9.80665, 0, 0);

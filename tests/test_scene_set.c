@@ -14,8 +14,8 @@ static void values_can_be_replaced_and_added(void **state) {
     stop(&f);
     f = read_scene(SCENES "example-turbine.yaml", sets, 4);
     assert_string_equal(f.printed, "");
-    assert_int_equal(f.scene->simulation.coupling.scheme, BOUGH_SCENE_EXTRAPOLATED);
-    assert_int_equal(f.scene->simulation.coupling.order, 2);
+    assert_string_equal(bough_scheme_name(f.scene->simulation.coupling.scheme), "extrapolated");
+    assert_int_equal(f.scene->simulation.coupling.options.order, 2);
     check_near(f.scene->body[3].pitch, 5 * degree, 1e-15, 0);
     check_near(f.scene->body[4].pitch, 6.5 * degree, 1e-15, 0);
     check_near(f.scene->aero.wind.speed, 9, 0, 0);

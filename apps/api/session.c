@@ -65,7 +65,7 @@ static void describe_copy(bough_session *s) {
     s->size = measure.used;
     s->kind = BOUGH_FINGERPRINT_START;
     bough_mix(&s->kind, &s->size, sizeof s->size);
-    bough_mix_text(&s->kind, m->scheme->name);
+    bough_mix_text(&s->kind, m->coupling->scheme->name);
     bough_mix(&s->kind, &m->macro_step, sizeof m->macro_step);
     for (int i = 0; i < a->n_member; i++) {
         size_t size = a->member[i]->ops->save_size(a->member[i]->self);

@@ -149,28 +149,10 @@ static long count_steps(const bough_master *m) {
 
 static void print_coupling(const bough_simulation *s) {
     const bough_master *m = s->master;
-    const bough_scheme_options *o = &m->coupling->options;
-    printf("coupling: %s", m->scheme->name);
-    bool iterates = strcmp(m->scheme->name, "iterated") == 0;
-    bool waveform = iterates && o->exchange == BOUGH_EXCHANGE_WAVEFORM;
-    bool ordered = iterates || strcmp(m->scheme->name, "extrapolated") == 0;
-    if (waveform) {
-        printf(", waveforms");
-    } else if (ordered) {
-        printf(", order %d", o->order);
-    }
-    if (iterates) {
-        printf(", accelerator %s, tolerance %.6g in at most %d iterations",
-               bough_acceleration_names()[o->accelerator], o->tolerance, o->iterations);
-    }
-    if (strcmp(m->scheme->name, "ramp") == 0) {
-        if (o->theta > 0) {
-            printf(", theta %.6g", o->theta);
-        } else {
-            printf(", theta auto: chosen at the first step");
-        }
-    }
-    printf(" (%s)\n", m->scheme->summary);
+    const bough_scheme *scheme = m->coupling->scheme;
+    char text[BOUGH_SCHEME_TEXT];
+    bough_scheme_describe(scheme, &m->coupling->options, text);
+    printf("coupling: %s (%s)\n", text, scheme->summary);
     printf("ports: %d, each %d motions and gravities to the rod, %d forces and moments back\n",
            s->tree->n_ports, BOUGH_PORT_OUTPUTS, BOUGH_PORT_INPUTS);
     if (s->n_end > 0) {

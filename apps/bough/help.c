@@ -9,8 +9,9 @@
 static void help_coupling(FILE *stream) {
     fprintf(stream, "simulation.coupling.scheme, the exchange between the tree and the flexible "
                     "bodies:\n");
-    for (const char *const *name = bough_scheme_names(); *name; name++) {
-        fprintf(stream, "  %-13s %s\n", *name, bough_scheme_find(*name)->summary);
+    const char *name;
+    for (int i = 0; (name = bough_scheme_name(i)) != NULL; i++) {
+        fprintf(stream, "  %-13s %s\n", name, bough_scheme_find(name)->summary);
     }
 }
 

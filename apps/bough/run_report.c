@@ -41,16 +41,15 @@ static void write_input(bough_summary *s, const bough_run *run) {
 static void write_method(bough_summary *s, const bough_run *run) {
     const bough_master *m = run->simulation->master;
     const bough_scene_simulation *sim = &run->simulation->scene->simulation;
-    bool polynomial = strcmp(m->scheme->name, "extrapolated") == 0 ||
-                      strcmp(m->scheme->name, "iterated") == 0;
-    bool ramp = strcmp(m->scheme->name, "ramp") == 0, weighs = ramp && m->coupling->theta > 0;
+    const bough_coupling *c = m->coupling;
+    bool ordered = (c->scheme->reads & BOUGH_READS_ORDER) != 0;
     double steps = m->steps > 0 ? (double)m->steps : 1;
-    bough_summary_text(s, "scheme", m->scheme->name);
+    bough_summary_text(s, "scheme", c->scheme->name);
     const double none = (double)NAN;
-    bough_summary_number(s, "order", polynomial ? (double)m->coupling->options.order : none);
-    bough_summary_number(s, "theta", weighs ? m->coupling->theta : none);
-    bough_summary_number(s, "interface_ratio", ramp ? m->coupling->interface_ratio : none);
-    bough_summary_number(s, "sweeps_per_step", (double)m->coupling->sweeps / steps);
+    bough_summary_number(s, "order", ordered ? (double)c->options.order : none);
+    bough_summary_number(s, "theta", c->theta > 0 ? c->theta : none);
+    bough_summary_number(s, "interface_ratio", c->interface_ratio);
+    bough_summary_number(s, "sweeps_per_step", (double)c->sweeps / steps);
     bough_summary_number(s, "macro_step", m->macro_step);
     bough_summary_number(s, "master_rtol", sim->master.rtol);
     bough_summary_number(s, "micro_rtol", sim->micro.rtol);

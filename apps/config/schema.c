@@ -284,7 +284,7 @@ static relevance applies(const bough_schema *schema, const bough_key *key, void 
     const bough_key *by = find_key(schema, key->when_key);
     int choice = *(int *)bough_field_at(item, by->offset);
     if (choice < 0) return UNKNOWN;
-    return is_among(by->choices[choice], key->when) ? APPLIES : APPLIES_NOT;
+    return is_among(bough_key_choice(by, choice), key->when) ? APPLIES : APPLIES_NOT;
 }
 
 // Says where a key that is given would apply, unless a twin of the same name applies here.

@@ -53,6 +53,7 @@ typedef struct bough_key {
     const char *range;          // of numbers, SI: "> 0", ">= 0", "[0, 2]"; NULL: any
     const char *word;           // a word in place of a number, stored as 0
     const char *const *choices; // ends with NULL
+    const char *(*choice)(int index); // in place of it; NULL beyond the end
     const char *when_key;       // the key applies only where this earlier choice …
     const char *when;           // … is one of these, "revolute|prismatic"; NULL: always
     const char *fallback;       // default as it would be written
@@ -114,6 +115,9 @@ const char *bough_nearest(const char *word, const char *const *candidates, int n
 
 // What a node holds, for messages: "'12 x'", "a list", "nothing".
 const char *bough_node_shown(const bough_node *node, char buffer[64]);
+
+// The choice of that index; NULL beyond the end and of other kinds.
+const char *bough_key_choice(const bough_key *key, int index);
 
 // How the key's value may be written, other than its default; "" of a mapping or a list of
 // mappings, whose keys have their own.

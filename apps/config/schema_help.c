@@ -27,9 +27,10 @@ static void append(char *line, size_t size, const char *a, const char *b) {
 static void describe_kind(const bough_key *key, char *line, size_t size) {
     if (key->form != NULL) {
         append(line, size, key->form, "");
-    } else if (key->choices != NULL) {
-        for (int i = 0; key->choices[i] != NULL; i++) {
-            append(line, size, i == 0 ? "" : "|", key->choices[i]);
+    } else if (key->kind == BOUGH_KEY_CHOICE) {
+        const char *choice;
+        for (int i = 0; (choice = bough_key_choice(key, i)) != NULL; i++) {
+            append(line, size, i == 0 ? "" : "|", choice);
         }
     } else if (key->kind == BOUGH_KEY_VECTOR) {
         snprintf(line, size, "%d numbers", key->count);
@@ -46,9 +47,10 @@ const char *bough_key_example(const bough_key *key) {
     bool no = key->fallback != NULL && strcmp(key->fallback, "true") == 0;
     if (key->example != NULL) return key->example;
     if (key->kind == BOUGH_KEY_BOOLEAN) return no ? "false" : "true";
-    if (key->choices == NULL) return "";
-    bool is_default = key->fallback != NULL && strcmp(key->fallback, key->choices[0]) == 0;
-    return key->choices[is_default ? 1 : 0];
+    if (key->kind != BOUGH_KEY_CHOICE) return "";
+    const char *first = bough_key_choice(key, 0);
+    bool is_default = key->fallback != NULL && strcmp(key->fallback, first) == 0;
+    return is_default ? bough_key_choice(key, 1) : first;
 }
 
 static void describe_need(const bough_key *key, char *line, size_t size) {

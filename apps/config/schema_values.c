@@ -8,6 +8,7 @@
 #include <string.h>
 
 enum { MAX_ITEMS = 10000 }; // of a list: names are looked up one by one
+enum { MAX_CHOICES = 32 };  // of a key
 
 // -- errors ---------------------------------------------------------------------------------------
 
@@ -154,21 +155,27 @@ static void read_text(bough_schema_reader *r, const bough_node *node, const char
     }
 }
 
+const char *bough_key_choice(const bough_key *key, int index) {
+    if (key->kind != BOUGH_KEY_CHOICE) return NULL;
+    return key->choice != NULL ? key->choice(index) : key->choices[index];
+}
+
 static void read_choice(bough_schema_reader *r, const bough_key *key, const bough_node *node,
                         int *field) {
     char list[200] = "", shown[64];
+    const char *choices[MAX_CHOICES];
     int n = 0;
-    for (; key->choices[n] != NULL; n++) {
-        if (is_word(node, key->choices[n])) {
+    for (; n < MAX_CHOICES && (choices[n] = bough_key_choice(key, n)) != NULL; n++) {
+        if (is_word(node, choices[n])) {
             *field = n;
             return;
         }
         size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", n == 0 ? "" : ", ", key->choices[n]);
+        snprintf(list + used, sizeof list - used, "%s%s", n == 0 ? "" : ", ", choices[n]);
     }
     *field = -1;
     const char *near =
-        node->kind == BOUGH_SCALAR ? bough_nearest(node->text, key->choices, n) : NULL;
+        node->kind == BOUGH_SCALAR ? bough_nearest(node->text, choices, n) : NULL;
     bough_schema_error(r, node, "", "expected %s%s, got %s%s%s%s", n > 1 ? "one of " : "", list,
                        bough_node_shown(node, shown), near == NULL ? "" : " (did you mean '",
                        near == NULL ? "" : near, near == NULL ? "" : "'?)");

@@ -16,39 +16,17 @@
 #include "apps/config/text.h"
 #include "core/arena.h"
 #include "core/status.h"
+#include "cosim/scheme.h"
 
 #include <stdbool.h>
 #include <stdio.h>
 
 enum { BOUGH_SCENE_GROUND = -1 }; // parent index of a body that hangs on the ground
 
-typedef enum bough_scene_scheme {
-    BOUGH_SCENE_FROZEN,
-    BOUGH_SCENE_GAUSS_SEIDEL,
-    BOUGH_SCENE_EXTRAPOLATED,
-    BOUGH_SCENE_ITERATED,
-    BOUGH_SCENE_RAMP,
-    BOUGH_SCENE_MONOLITHIC,
-} bough_scene_scheme;
-
-typedef enum bough_scene_accelerator {
-    BOUGH_SCENE_UNACCELERATED,
-    BOUGH_SCENE_RELAXATION,
-    BOUGH_SCENE_AITKEN,
-    BOUGH_SCENE_IQN_ILS,
-    BOUGH_SCENE_INTERFACE_NEWTON,
-} bough_scene_accelerator;
-
 typedef struct bough_scene_coupling {
     const bough_node *node;
-    int scheme;   // bough_scene_scheme
-    int order;    // degree of the polynomial in extrapolated and iterated, 0..2
-    double theta; // share of the new value in the ramp, 0.5..1; 0: chosen by the scheme ("auto")
-    int exchange;      // bough_exchange, of iterated as all below
-    int accelerator;   // bough_scene_accelerator
-    double relaxation; // factor of the correction [-]
-    double tolerance;  // of the interface, relative [-]; 0: three times micro.rtol ("auto")
-    int iterations;    // most in a macro step
+    int scheme; // place in the table of schemes: bough_scheme_name
+    bough_scheme_options options; // name and rtol left out; tolerance 0: three times micro.rtol
 } bough_scene_coupling;
 
 typedef enum bough_scene_master_kind {

@@ -38,12 +38,13 @@ const bough_schema bough_scene_micro_schema = {SCHEMA("a solver", bough_scene_so
 
 // -- simulation -----------------------------------------------------------------------------------
 
-#define AT(member) .offset = offsetof(bough_scene_coupling, member)
+#define AT(member) .offset = offsetof(bough_scene_coupling, options.member)
+_Static_assert(sizeof(bough_exchange) == sizeof(int) && sizeof(bough_acceleration) == sizeof(int),
+               "choices are stored as int");
 // The schemes' own keys are allowed with any scheme, so that --set may change the scheme alone.
 static const bough_key coupling_keys[] = {
-    {.name = "scheme", .kind = BOUGH_KEY_CHOICE, .fallback = "ramp", AT(scheme),
-     .choices =
-         CHOICES("frozen", "gauss-seidel", "extrapolated", "iterated", "ramp", "monolithic"),
+    {.name = "scheme", .kind = BOUGH_KEY_CHOICE, .fallback = "ramp",
+     .choice = bough_scheme_name, .offset = offsetof(bough_scene_coupling, scheme),
      .help = "how sub-systems exchange their values"},
     {.name = "order", .kind = BOUGH_KEY_INTEGER, .range = "[0, 2]", .fallback = "1",
      AT(order), .example = "2", .help = "of extrapolated and of iterated end values: degree of the polynomial"},
@@ -54,7 +55,7 @@ static const bough_key coupling_keys[] = {
      .help = "of iterated: what is agreed on; waveform: cubics through the values within the macro "
              "step"},
     {.name = "accelerator", .kind = BOUGH_KEY_CHOICE, .fallback = "iqn-ils", AT(accelerator),
-     .choices = CHOICES("none", "relaxation", "aitken", "iqn-ils", "interface-newton"),
+     .choices = bough_acceleration_names,
      .help = "of iterated: how the next values are found"},
     {.name = "relaxation", .kind = BOUGH_KEY_NUMBER, .range = "[0.001, 1]", .fallback = "0.5",
      AT(relaxation), .example = "0.7",

@@ -174,35 +174,16 @@ static void connect(bough_builder *b) {
 }
 
 static bough_scheme_options scheme_options(const bough_scene *scene) {
-    static const char *const names[] = {[BOUGH_SCENE_FROZEN] = "frozen",
-                                        [BOUGH_SCENE_GAUSS_SEIDEL] = "gauss-seidel",
-                                        [BOUGH_SCENE_EXTRAPOLATED] = "extrapolated",
-                                        [BOUGH_SCENE_ITERATED] = "iterated",
-                                        [BOUGH_SCENE_RAMP] = "ramp",
-                                        [BOUGH_SCENE_MONOLITHIC] = "monolithic"};
-    static const bough_acceleration kinds[] = {
-        [BOUGH_SCENE_UNACCELERATED] = BOUGH_ACCELERATE_NONE,
-        [BOUGH_SCENE_RELAXATION] = BOUGH_ACCELERATE_RELAXATION,
-        [BOUGH_SCENE_AITKEN] = BOUGH_ACCELERATE_AITKEN,
-        [BOUGH_SCENE_IQN_ILS] = BOUGH_ACCELERATE_IQN_ILS,
-        [BOUGH_SCENE_INTERFACE_NEWTON] = BOUGH_ACCELERATE_NEWTON};
-    const bough_scene_coupling *coupling = &scene->simulation.coupling;
-    bough_scheme_options options = bough_scheme_options_default();
-    options.name = names[coupling->scheme];
-    options.order = coupling->order;
-    options.theta = coupling->theta;
-    options.exchange = (bough_exchange)coupling->exchange;
-    options.accelerator = kinds[coupling->accelerator];
-    options.relaxation = coupling->relaxation;
+    bough_scheme_options options = scene->simulation.coupling.options;
+    options.name = bough_scheme_name(scene->simulation.coupling.scheme);
+    options.rtol = scene->simulation.master.rtol;
     // A body answers with the noise of its own tolerance, below which nothing converges: measured
     // on the turbine, residuals stall at 0.2 to 0.6 of the micro rtol.
     double noise = 0;
     for (int i = 0; i < scene->n_body; i++) {
         noise = fmax(noise, bough_scene_micro(scene, &scene->body[i])->rtol);
     }
-    options.tolerance = coupling->tolerance > 0 ? coupling->tolerance : 3 * noise;
-    options.iterations = coupling->iterations;
-    options.rtol = scene->simulation.master.rtol;
+    if (!(options.tolerance > 0)) options.tolerance = 3 * noise;
     return options;
 }
 

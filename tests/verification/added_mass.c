@@ -234,7 +234,7 @@ static bough_status perform_maps(const added_mass_study *s, report *out) {
             bough_status status = evaluate(m, (bough_acceleration)kind, &count);
             if (!bough_is_ok(&status)) return status;
             good = good && as_expected(m, kind, count);
-            fprintf(out->csv, "map %s,%s,%d,", name, bough_acceleration_names()[kind], count);
+            fprintf(out->csv, "map %s,%s,%d,", name, bough_acceleration_names[kind], count);
             if (m->n_expected > 0) fprintf(out->csv, "%g", m->expected[kind]);
             fprintf(out->csv, ",,%s\n", as_expected(m, kind, count) ? "pass" : "fail");
             fprintf(f, count == DIVERGED ? "     div" : "  %6d", count);

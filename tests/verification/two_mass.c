@@ -167,7 +167,7 @@ static bough_status map_step(bough_two_mass *m, double h, const double *z, doubl
     c->n_past = BOUGH_HISTORY;
     c->t0 = 0;
     c->t1 = h;
-    bough_status status = m->master->scheme->step(c);
+    bough_status status = c->scheme->step(c);
     bough_coupling_exchange(c);
     exchange_memory(m, image, false);
     return status;

@@ -16,7 +16,7 @@ typedef struct variant {
     const bough_node *node;
     const char *name;
     int cut;            // bough_cut
-    const char *scheme; // one of bough_scheme_names()
+    const char *scheme; // one of bough_scheme_name
     bool parallel, reversed;
     int n_degree;
     double *degree;     // (n_degree) polynomial degrees; of schemes without one 0
@@ -58,9 +58,9 @@ typedef struct result {
 static void check_variant(bough_schema_reader *r, void *item) {
     const variant *v = item;
     if (!bough_scheme_find(v->scheme)) {
-        const char *const *names = bough_scheme_names();
+        const char *names[16];
         int n = 0;
-        while (names[n]) n++;
+        while (n < 16 && (names[n] = bough_scheme_name(n)) != NULL) n++;
         const char *near = bough_nearest(v->scheme, names, n);
         bough_schema_error(r, v->node, "scheme", "no scheme '%.40s'%s%s%s", v->scheme,
                            near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
