@@ -112,16 +112,19 @@ static void advance(const bough_stall_airfoil *airfoil, double semi_chords, doub
 
 // -- coefficients ---------------------------------------------------------------------------------
 
+// `late`: the angle of attack at three quarters of the chord, `turning` the rotation's part of it.
+// The circulation's lift leans back by what the wake withholds and by the rotation once more.
 static bough_coefficients dynamic(const bough_stall_airfoil *airfoil, const bough_stall_state *s,
-                                  double alpha, double mass_lift) {
+                                  double late, double turning) {
     double angle = effective(s), f, separated, x = s->separation;
     bough_stall_split(airfoil, angle, &f, &separated);
     bough_coefficients k = bough_polar_at(airfoil->polar, angle);
     double linear = airfoil->slope * remainder(angle - airfoil->zero_lift, turn);
-    double lift = x * linear + (1 - x) * separated;
+    double lift = x * linear + (1 - x) * separated, mass_lift = BOUGH_PI * turning;
     double least = bough_polar_at(airfoil->polar, airfoil->zero_lift).drag;
     double separating = (sqrt(f) - sqrt(fmax(x, 0))) / 2 - (f - x) / 4;
-    double drag = k.drag + remainder(alpha - angle, turn) * lift + (k.drag - least) * separating;
+    double leaning = remainder(late - angle, turn) + turning;
+    double drag = k.drag + leaning * lift + (k.drag - least) * separating;
     return (bough_coefficients){lift + mass_lift, drag, k.moment - mass_lift / 2};
 }
 
@@ -136,18 +139,18 @@ bough_coefficients bough_stall_advance(const bough_stall_airfoil *airfoil, doubl
         state->started = 0;
         return fixed;
     }
-    // The rotation as the downwash at three quarters of the chord, and its apparent mass' lift.
+    // The rotation as the downwash at three quarters of the chord.
     double turning = bough_clamp(chord * inflow.rate / (2 * speed), -0.5, 0.5);
-    double mass_lift = BOUGH_PI * turning, late = alpha + turning;
+    double late = alpha + turning;
     if (state->started == 0) {
         start(airfoil, late, speed, state);
     } else if (step > 0) {
         double semi_chords = step * (state->speed + speed) / chord;
-        advance(airfoil, semi_chords, late, speed, mass_lift / airfoil->slope, state);
+        advance(airfoil, semi_chords, late, speed, BOUGH_PI * turning / airfoil->slope, state);
     }
     double share = bough_clamp((faded - fabs(alpha)) / (faded - fading), 0, 1);
     if (share == 0) return fixed;
-    bough_coefficients k = dynamic(airfoil, state, alpha, mass_lift);
+    bough_coefficients k = dynamic(airfoil, state, late, turning);
     return (bough_coefficients){mixed(fixed.lift, k.lift, share),
                                 mixed(fixed.drag, k.drag, share),
                                 mixed(fixed.moment, k.moment, share)};

@@ -115,7 +115,8 @@ static void attached_lift_is_indicial(void **state) {
 }
 
 // A rotation that goes on lifts by the downwash at three quarters of the chord and by the apparent
-// mass: slope·x + πx with x = c·rate/(2U).
+// mass: slope·x + πx with x = c·rate/(2U). The circulation's part stands square to the flow there, and
+// the rotation leans it back by x more.
 static void rotation_lifts(void **state) {
     foils *a = *state;
     bough_stall_airfoil foil = bough_stall_airfoil_of(&a->plate);
@@ -125,7 +126,22 @@ static void rotation_lifts(void **state) {
         k = bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0.4}, 100, &s);
     double x = 2 * 0.4 / 80;
     check_near(k.lift, foil.slope * (3 * degree + x) + BOUGH_PI * x, 1e-9, 0);
+    check_near(k.drag, foil.slope * (3 * degree + x) * x, 1e-9, 0);
     check_near(k.moment, -BOUGH_PI * x / 2, 1e-9, 0);
+}
+
+// Right after a step of the angle of attack, attached, half of the step lies between the angle and
+// the effective one: drag (α − α_E) Cl of the circulation.
+static void withheld_lift_leans_back(void **state) {
+    foils *a = *state;
+    bough_stall_airfoil foil = bough_stall_airfoil_of(&a->plate);
+    bough_stall_state s = {0};
+    bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 0, &s);
+    bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 100, &s);
+    bough_coefficients k =
+        bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 6 * degree, 0}, 1e-7, &s);
+    check_near(k.lift, foil.slope * 4 * degree, 1e-5, 0);
+    check_near(k.drag, degree * k.lift, 1e-4, 0);
 }
 
 // Lift against angle over one period, after `cycles`.
@@ -207,6 +223,7 @@ int main(void) {
         cmocka_unit_test(steady_limit_is_the_static_polar),
         cmocka_unit_test(attached_lift_is_indicial),
         cmocka_unit_test(rotation_lifts),
+        cmocka_unit_test(withheld_lift_leans_back),
         cmocka_unit_test(stall_loop_is_closed),
         cmocka_unit_test(odd_flow_is_finite),
     };
