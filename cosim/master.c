@@ -55,6 +55,25 @@ static void judge(bough_master *m) {
     bough_stability_describe(m->assembly, &m->advice, options, m->macro_step, m->verdict);
 }
 
+// Times closer than this are one synchronisation point [s].
+static double resolution(const bough_master *m) {
+    return 1e-9 * m->macro_step;
+}
+
+static bool on_grid(const bough_master *m) {
+    return fabs(m->time - (double)m->grid_index * m->macro_step) <= resolution(m);
+}
+
+static bool is_due(const bough_master *m, int load) {
+    return on_grid(m) && m->grid_index % m->load_every[load] == 0;
+}
+
+static void evaluate_loads(bough_master *m) {
+    for (int i = 0; i < m->n_load; i++) {
+        if (m->load[i].evaluate && is_due(m, i)) m->load[i].evaluate(m->load[i].self, m->time);
+    }
+}
+
 bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
                                 bough_master **master) {
     bough_status status = check(def);
@@ -83,21 +102,13 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     }
     if (!bough_is_ok(&status)) return status;
     if (!m->control) judge(m);
+    evaluate_loads(m);
     *master = m;
     return status;
 }
 
-// Times closer than this are one synchronisation point [s].
-static double resolution(const bough_master *m) {
-    return 1e-9 * m->macro_step;
-}
-
 bool bough_master_done(const bough_master *m) {
     return m->time >= m->duration;
-}
-
-static bool on_grid(const bough_master *m) {
-    return fabs(m->time - (double)m->grid_index * m->macro_step) <= resolution(m);
 }
 
 // The next synchronisation point: grid point, event or the end, whichever comes first.
@@ -113,9 +124,8 @@ static double next_time(const bough_master *m) {
 }
 
 static bough_status sample_loads(bough_master *m, bool *jumped) {
-    if (!on_grid(m)) return bough_ok();
     for (int i = 0; i < m->n_load; i++) {
-        if (m->grid_index % m->load_every[i] != 0) continue;
+        if (!is_due(m, i)) continue;
         double next = (double)(m->grid_index + m->load_every[i]) * m->macro_step;
         bool jump = false;
         bough_status status = m->load[i].sample(m->load[i].self, m->time, next, &jump);
@@ -127,7 +137,7 @@ static bough_status sample_loads(bough_master *m, bool *jumped) {
 
 bool bough_master_sampled(const bough_master *m) {
     for (int i = 0; i < m->n_load; i++) {
-        if (!on_grid(m) || m->grid_index % m->load_every[i] != 0) return false;
+        if (!is_due(m, i)) return false;
     }
     return true;
 }
@@ -192,6 +202,7 @@ static bough_status macro_step(bough_master *m) {
     if (!bough_is_ok(&status)) return status;
     set_time(m, c->t1);
     m->steps++;
+    evaluate_loads(m);
     if (m->estimate) bough_error_estimate_step(m->estimate, c);
     if (m->estimate && bough_master_done(m)) bough_error_estimate_finish(m->estimate, c);
     return bough_ok();

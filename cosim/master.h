@@ -17,6 +17,9 @@ typedef struct bough_sampled_load {
     void *self;
     // *jumped is true on return when the loads are discontinuous at t.
     bough_status (*sample)(void *self, double t, double t_next, bool *jumped);
+    // Called as soon as t, the time of the next sample, is reached: evaluates what sample() will hand
+    // out, so that results of that time can tell it. Sets no loads. NULL: nothing to tell.
+    void (*evaluate)(void *self, double t);
 } bough_sampled_load;
 
 typedef struct bough_master_def {

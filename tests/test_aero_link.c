@@ -329,6 +329,25 @@ static void samples_repeat_from_saved(void **context) {
     close_turbine(&f);
 }
 
+// At every time of a sample the results are those of that time, before the loads act.
+static void results_are_of_their_own_time(void **context) {
+    (void)context;
+    static const char *const sets[] = {"bodies[2].joint.speed=1 rad/s", NULL};
+    fixture f = open_turbine(sets);
+    double factor, before = 0;
+    for (int k = 0; k < 4; k++) {
+        double thrust = bough_aero_link_data(f.s->aero, &factor)->thrust;
+        check_near(factor, k * period / ramp_end, 1e-12, 1e-15);
+        assert_true(fabs(thrust - before) > 1e-6 * fabs(thrust));
+        bough_aero_link_renew(f.s->aero);
+        sample(&f, k * period, (k + 1) * period);
+        check_near(bough_aero_link_data(f.s->aero, &factor)->thrust, thrust, 1e-14, 0);
+        before = thrust;
+        for (int step = 0; step < 2; step++) scene_step(f.s);
+    }
+    close_turbine(&f);
+}
+
 static void blades_want_one_mesh(void **context) {
     (void)context;
     static const char *const sets[] = {"bodies[4].rod.segments=10", NULL};
@@ -353,6 +372,7 @@ int main(void) {
         cmocka_unit_test(constant_hold_takes_each_sample_at_once),
         cmocka_unit_test(loads_are_sampled_at_their_rate),
         cmocka_unit_test(samples_repeat_from_saved),
+        cmocka_unit_test(results_are_of_their_own_time),
         cmocka_unit_test(blades_want_one_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

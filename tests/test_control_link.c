@@ -53,7 +53,7 @@ static void law_holds_speed_and_power(void **state) {
     check_near(channel(&f, "BldPitch1"), 10.3, 0, 0.25);
     check_near(channel(&f, "BldPitch3"), channel(&f, "BldPitch1"), 1e-12, 0);
     check_near(channel(&f, "GenPwr"), 0.944 * 5296.61, 1e-3, 0);
-    check_near(channel(&f, "RtAeroPwr"), 5296610, 1e-2, 0);
+    check_near(channel(&f, "RtAeroPwr"), 5296610, 2e-2, 0); // blade 1 is near the tower
     bough_arena_destroy(f.arena);
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/base.h"
 
+#include <math.h>
 #include <string.h>
 
 // A blade's loads at the last sample and the value the load signal has reached, in the body's axes:
@@ -23,6 +24,7 @@ struct bough_aero_link {
     int n_blade, n_vertex;
     blade_loads *blade; // (n_blade)
     double factor;      // of the ramp at the last sample
+    double evaluated;   // time of what `data` holds [s]; NAN: none that a sample may use
     double start;       // of the signals, the last sample's time [s]
     bool started;
 };
@@ -217,6 +219,7 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
     status = bough_rotor_build(arena, &def, &l->rotor);
     if (bough_is_ok(&status)) status = check_reach(l);
     if (bough_is_ok(&status)) status = bough_rotor_data_build(arena, l->rotor, &l->data);
+    bough_aero_link_renew(l);
     if (bough_is_ok(&status)) *link = l;
     return status;
 }
@@ -306,13 +309,8 @@ static void apply(bough_aero_link *l, int b, double span) {
 }
 
 // Tasks, a blade each.
-typedef struct sample_work {
-    bough_aero_link *link;
-    double span; // until the next sample [s]
-} sample_work;
-
 static void approach_blade(void *self, int b, bough_part part) {
-    bough_aero_link *l = ((const sample_work *)self)->link;
+    bough_aero_link *l = self;
     if (part != BOUGH_SECOND_HALF) {
         gather_blade(l, b);
         bough_rotor_approach(l->rotor, &l->motion, b, &l->data);
@@ -321,38 +319,47 @@ static void approach_blade(void *self, int b, bough_part part) {
 }
 
 static void load_blade(void *self, int b) {
-    const sample_work *w = self;
-    bough_rotor_load(w->link->rotor, &w->link->motion, b, &w->link->data);
-    apply(w->link, b, w->span);
+    bough_aero_link *l = self;
+    bough_rotor_load(l->rotor, &l->motion, b, &l->data);
+}
+
+static void evaluate(void *self, double t) {
+    bough_aero_link *l = self;
+    bough_pool *pool = l->simulation->pool;
+    l->factor = ramp_factor(l->simulation->scene->aero.ramp, t);
+    gather_rotor(l, t);
+    bough_pool_run_turns(pool, l->n_blade, approach_blade, l);
+    bough_rotor_survey(l->rotor, &l->motion, &l->data);
+    bough_pool_run(pool, l->n_blade, load_blade, l);
+    bough_rotor_conclude(l->rotor, &l->motion, &l->data);
+    l->evaluated = t;
 }
 
 static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     bough_aero_link *l = self;
-    const bough_scene_aero *aero = &l->simulation->scene->aero;
-    sample_work w = {l, t_next - t};
-    l->factor = ramp_factor(aero->ramp, t);
+    if (l->evaluated != t) evaluate(l, t);
     l->start = t;
-    gather_rotor(l, t);
-    bough_pool_run_turns(l->simulation->pool, l->n_blade, approach_blade, &w);
-    bough_rotor_survey(l->rotor, &l->motion, &l->data);
-    bough_pool_run(l->simulation->pool, l->n_blade, load_blade, &w);
-    bough_rotor_conclude(l->rotor, &l->motion, &l->data);
-    *jumped = !l->started || aero->hold == BOUGH_SCENE_CONSTANT;
+    for (int b = 0; b < l->n_blade; b++) apply(l, b, t_next - t);
+    *jumped = !l->started || l->simulation->scene->aero.hold == BOUGH_SCENE_CONSTANT;
     l->started = true;
     return bough_ok();
 }
+
+void bough_aero_link_renew(bough_aero_link *link) { link->evaluated = (double)NAN; }
 
 void bough_aero_link_hold(bough_aero_link *link, double t) {
     bool jumped;
     link->started = false;
     bough_rotor_forget(link->rotor, &link->data);
+    bough_aero_link_renew(link);
     sample(link, t, t + 1, &jumped); // constant: there is none before it
     link->started = false;
     bough_rotor_forget(link->rotor, &link->data);
+    bough_aero_link_renew(link);
 }
 
 bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
-    return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample};
+    return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample, evaluate};
 }
 
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link) { return link->rotor; }
@@ -399,4 +406,5 @@ void bough_aero_link_restore(bough_aero_link *link, const double *from) {
         if (link->started) put(link, b);
     }
     bough_rotor_restore(link->rotor, from, &link->data);
+    bough_aero_link_renew(link);
 }

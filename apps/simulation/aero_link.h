@@ -26,7 +26,10 @@ void bough_aero_link_restore(bough_aero_link *link, const double *from);
 
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link);
 
-// Results of the last sample, with the ramp's factor at its time.
+// Says that what the next sample meets has changed at its time: a restored state, another wind.
+void bough_aero_link_renew(bough_aero_link *link);
+
+// Results of the last evaluation, at the last multiple of the period, with the ramp's factor at its time.
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor);
 
 #endif

@@ -128,6 +128,13 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     return status;
 }
 
+static void evaluate(void *self, double t) {
+    clocked_load *l = self;
+    double began = bough_wall_clock();
+    l->real.evaluate(l->real.self, t);
+    l->spent += bough_wall_clock() - began;
+}
+
 // -- clock ----------------------------------------------------------------------------------------
 
 bough_status bough_clock_create(bough_arena *arena, bough_simulation *s, bough_clock **clock) {
@@ -151,6 +158,7 @@ bough_status bough_clock_create(bough_arena *arena, bough_simulation *s, bough_c
         c->load[i].real = master->load[i];
         master->load[i].self = &c->load[i];
         master->load[i].sample = sample;
+        if (master->load[i].evaluate) master->load[i].evaluate = evaluate;
     }
     *clock = c;
     return bough_ok();
