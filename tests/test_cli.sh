@@ -367,36 +367,6 @@ modes() {
         --set 'modes={about: hub, axis: [1, 0, 0]}'
 }
 
-of_environment() {
-    expect 0 run "$turbine" --set 'simulation.duration=40 ms' --set simulation.threads=0 --out out
-    has out/summary.json "\"threads\": $1,"
-}
-
-# The number of threads changes no byte of the results.
-threads() {
-    unset OMP_NUM_THREADS
-    for scheme in ramp frozen; do
-        for n in 1 2 3; do
-            expect 0 run "$turbine" --set 'simulation.duration=0.2 s' --threads $n --out out$n \
-                --set simulation.coupling.scheme=$scheme --set 'simulation.macro_step=1 ms'
-            has out$n/summary.json "\"threads\": $n,"
-        done
-        for n in 2 3; do
-            cmp out1/channels.out out$n/channels.out || fail "$scheme: 1 and $n threads differ"
-        done
-        [ "$(wc -l <out1/channels.out)" -ge 10 ] || fail "$scheme: too few rows to compare"
-    done
-    rm -r out1 out2 out3
-    # Where neither the scene nor the command says a number, OpenMP's environment does.
-    of_environment 1
-    export OMP_NUM_THREADS=3
-    of_environment 3
-    export OMP_THREAD_LIMIT=2
-    of_environment 2
-    unset OMP_NUM_THREADS OMP_THREAD_LIMIT
-    rm -r out
-}
-
 # Frames at the times asked for, the rod's axis in each, and a page of all.
 shown() {
     expect 0 run "$bar" --set 'simulation.duration=20 ms' --set 'simulation.output.frames=5 ms' --out out
@@ -471,7 +441,6 @@ statics "$@"
 modes "$@"
 interrupted_run
 bad_output
-threads
 shown
 imported
 spread
