@@ -4,7 +4,6 @@
 #include "core/base.h"
 #include "core/force.h"
 #include "core/linalg.h"
-#include "core/loop.h"
 
 #include <string.h>
 
@@ -76,6 +75,18 @@ static void element_wrenches(const bough_tree *tree, bough_tree_data *d, int ele
         subtract_at(d, bough_element_frame(tree, element, end), pair.on[end]);
 }
 
+// At the present multipliers.
+static void closure_wrenches(const bough_tree *tree, bough_tree_data *d, const bough_closure *c) {
+    for (int k = c->first_row; k < c->first_row + bough_constraint_n_rows(&c->constraint); k++) {
+        double lambda = d->loops->multiplier[k];
+        for (int end = 0; end < 2 && lambda != 0; end++) {
+            bough_wrench w = d->loops->row[k].wrench[end];
+            w = (bough_wrench){bough_scale(lambda, w.force), bough_scale(lambda, w.moment)};
+            subtract_at(d, &tree->markers[c->marker[end]], w);
+        }
+    }
+}
+
 bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data *d, int end,
                                    const double *input) {
     int i = tree->ends[end].link;
@@ -111,7 +122,8 @@ static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t,
         const bough_frame *marker = &tree->markers[tree->applied[k].marker];
         subtract_at(d, marker, bough_applied_force(tree, d, k, t));
     }
-    if (d->loops != NULL) bough_loops_subtract(tree, d);
+    for (int c = 0; c < tree->n_closures; c++)
+        closure_wrenches(tree, d, &tree->closures[c]);
 }
 
 // τ of the joints' springs and loads, into data->force

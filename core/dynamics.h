@@ -10,6 +10,10 @@
 
 #include "core/tree.h"
 
+// Poses, twists and gravity of all links at a state (n_q + n_v). The
+// queries of tree.h read them.
+void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tree_data *data);
+
 // residual (n_v) = M(q) v̇ + h(q, v) − τ(t, q, u) with v̇ = acceleration (n_v), u the wrenches of
 // ports and ends (6 each) or NULL for none: springs, joint loads, these and external wrenches are
 // within τ and h. Of a prescribed joint it is v̇ − a(t), the others are under a(t); data->drive is
@@ -17,26 +21,18 @@
 void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
                                  const double *input, const double *acceleration, double *residual);
 
-// acceleration v̇ (n_v) that makes the residual zero, by articulated bodies. False when a joint
-// moves no inertia. Leaves the links' accelerations, the factors and `drive` in data.
-bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
-                                 const double *input, double *acceleration);
-
-// The same as if all closures were cut open and the tree moved under their wrenches, whose
-// multipliers stand in data->loops.
+// acceleration v̇ (n_v) that makes the residual zero, by articulated bodies, as if all closures were
+// cut open and the tree moved under their wrenches, whose multipliers stand in data->loops. False
+// when a joint moves no inertia. Leaves the links' accelerations, the factors and `drive` in data.
 bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
                               const double *input, double *acceleration);
-
-// change (n_v) of v̇ by a wrench at a frame of the tree, in frame axes. Uses the factors of the
-// last bough_tree_forward_dynamics.
-void bough_tree_response(const bough_tree *tree, bough_tree_data *data, const bough_frame *frame,
-                         bough_wrench wrench, double *change);
 
 // The wrench on an end in its body's axes, from the six inputs of the end.
 bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data *data, int end,
                                    const double *input);
 
-// The same without closures. Leaves the change of the links' accelerations in data.
+// change (n_v) of v̇ by a wrench at a frame of the tree, in frame axes, without closures. Uses the
+// factors of the last bough_tree_free_dynamics. Leaves the change of the links' accelerations in data.
 void bough_tree_free_response(const bough_tree *tree, bough_tree_data *data,
                               const bough_frame *frame, bough_wrench wrench, double *change);
 

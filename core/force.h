@@ -27,6 +27,11 @@ bough_force_pair bough_element_change(const bough_tree *tree, const bough_tree_d
                                       int element, const bough_twist shift[2],
                                       const bough_twist rate[2]);
 
+// Length of a spring [m] and the force that draws its ends together [N]; `direction` is the unit
+// vector in the ground from its first marker to its second.
+double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, int spring,
+                         double *tension, bough_vec3 *direction);
+
 // The applied wrench k at t, and its change along a change of the marker's pose.
 bough_wrench bough_applied_force(const bough_tree *tree, const bough_tree_data *data, int k,
                                  double t);

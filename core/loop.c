@@ -253,20 +253,6 @@ void bough_tree_response(const bough_tree *tree, bough_tree_data *d, const bough
         change[k] -= l->speed[k];
 }
 
-void bough_loops_subtract(const bough_tree *tree, bough_tree_data *d) {
-    for (int k = 0; k < tree->n_rows; k++) {
-        double lambda = d->loops->multiplier[k];
-        for (int end = 0; end < 2 && lambda != 0; end++) {
-            const bough_frame *frame = bough_loops_end(tree, bough_loops_of_row(tree, k), end);
-            if (frame->link < 0) continue;
-            bough_wrench w = d->loops->row[k].wrench[end];
-            w = (bough_wrench){bough_scale(lambda, w.force), bough_scale(lambda, w.moment)};
-            bough_wrench *sum = &d->wrench[frame->link];
-            *sum = bough_wrench_sub(*sum, bough_wrench_to_parent(&frame->placement, w));
-        }
-    }
-}
-
 void bough_loops_correct(const bough_tree *tree, const bough_tree_data *d, const double *state,
                          double *rate) {
     for (int i = 0; i < tree->n_links; i++) {

@@ -14,19 +14,6 @@
 
 #include "core/tree.h"
 
-typedef struct bough_loops {
-    bough_constraint_row *row; // (n_rows)
-    double *response;          // M⁻¹Gᵀ (n_rows × n_v), a row per equation
-    double *matrix;            // eigenvectors of the scaled G M⁻¹Gᵀ (n_rows × n_rows)
-    double *value;             // its eigenvalues (n_rows)
-    double *scale;             // (n_rows) 1/√ of its diagonal; 0: nothing moves
-    double *work;              // (8 n_rows)
-    double *multiplier;        // λ (n_rows) [N, N m]
-    double *correction;        // M⁻¹Gᵀ μ (n_v)
-    double *speed;             // (n_v) scratch
-    int rank;                  // how many equations are independent
-} bough_loops;
-
 // Checks the def's closures and places them in the tree, whose markers stand. BOUGH_INVALID names
 // the closure.
 bough_status bough_loops_place(bough_arena *arena, const bough_tree_def *def, bough_tree *tree);
@@ -34,8 +21,16 @@ bough_status bough_loops_place(bough_arena *arena, const bough_tree_def *def, bo
 // Scratch of the tree's closures; NULL without closures.
 bough_status bough_loops_create(bough_arena *arena, const bough_tree *tree, bough_loops **loops);
 
-// Subtracts the closures' wrenches at the present multipliers from data->wrench.
-void bough_loops_subtract(const bough_tree *tree, bough_tree_data *data);
+// acceleration v̇ (n_v) that makes the residual zero with all closures closed; without closures
+// bough_tree_free_dynamics. False when a joint moves no inertia. Leaves the links' accelerations, the
+// factors and `drive` in data.
+bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
+                                 const double *input, double *acceleration);
+
+// change (n_v) of v̇ by a wrench at a frame of the tree, in frame axes. Uses the factors of the
+// last bough_tree_forward_dynamics.
+void bough_tree_response(const bough_tree *tree, bough_tree_data *data, const bough_frame *frame,
+                         bough_wrench wrench, double *change);
 
 // Subtracts N(q) M⁻¹Gᵀ μ from q̇ (n_q), after bough_tree_forward_dynamics at this state.
 void bough_loops_correct(const bough_tree *tree, const bough_tree_data *data, const double *state,

@@ -1,6 +1,7 @@
 // The rigid multibody tree in joint coordinates: what the user said (def), the constant model with
 // its loads, and the data of one evaluation. Bodies that cannot move against each other are one
-// link: fixed joints cost no states and no work. Method: recursive, dynamics.h.
+// link: fixed joints cost no states and no work. Everything about the tree includes this header:
+// tree_build.h builds, force.h has the forces, dynamics.h the recursions, loop.h the closures.
 #ifndef BOUGH_CORE_TREE_H
 #define BOUGH_CORE_TREE_H
 
@@ -196,10 +197,6 @@ typedef struct bough_tree {
     double *initial;             // initial state (n_q + n_v)
 } bough_tree;
 
-// Builds the tree in the arena. BOUGH_INVALID for an unknown parent, a cycle, a joint that moves
-// no inertia and the like, naming the body.
-bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bough_tree **tree);
-
 // Sizes of the input and the output of all ports and ends.
 static inline int bough_tree_n_inputs(const bough_tree *tree) {
     return BOUGH_PORT_INPUTS * tree->n_ports + BOUGH_END_INPUTS * tree->n_ends;
@@ -235,8 +232,22 @@ void bough_tree_set_wrench(bough_tree *tree, int marker, double start, const dou
 
 // -- data of one evaluation ------------------------------------------------------------------
 
+// Of the closures: what loop.h computes.
+typedef struct bough_loops {
+    bough_constraint_row *row; // (n_rows)
+    double *response;          // M⁻¹Gᵀ (n_rows × n_v), a row per equation
+    double *matrix;            // eigenvectors of the scaled G M⁻¹Gᵀ (n_rows × n_rows)
+    double *value;             // its eigenvalues (n_rows)
+    double *scale;             // (n_rows) 1/√ of its diagonal; 0: nothing moves
+    double *work;              // (8 n_rows)
+    double *multiplier;        // λ (n_rows) [N, N m]
+    double *correction;        // M⁻¹Gᵀ μ (n_v)
+    double *speed;             // (n_v) scratch
+    int rank;                  // how many equations are independent
+} bough_loops;
+
 typedef struct bough_tree_data {
-    // computed by bough_tree_kinematics, each (n_links), in link axes unless it says otherwise
+    // computed by bough_tree_kinematics (dynamics.h), each (n_links), in link axes unless it says otherwise
     bough_transform *relative; // link in its parent
     bough_transform *pose;     // link in the ground
     bough_twist *joint_twist;  // S v
@@ -255,15 +266,10 @@ typedef struct bough_tree_data {
     double *force;             // generalised forces (n_v)
     double *drive;             // what makes prescribed joints move so, else 0 (n_v) [N m, N]
     int singular;              // the link whose joint moves no inertia, else -1
-    struct bough_loops *loops; // of the closures, loop.h; NULL without
+    bough_loops *loops;        // of the closures; NULL without
 } bough_tree_data;
 
-// Data for evaluations of the tree; as many as there are threads or users.
-bough_status bough_tree_data_create(bough_arena *arena, const bough_tree *tree,
-                                    bough_tree_data **data);
-
-// Poses, twists and gravity of all links at a state (n_q + n_v). The queries below read them.
-void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tree_data *data);
+// The queries below read what bough_tree_kinematics has computed.
 
 // The placement of a frame (of tree->bodies, markers or ports) in the ground.
 bough_transform bough_tree_frame_pose(const bough_tree_data *data, const bough_frame *frame);
@@ -271,11 +277,6 @@ bough_transform bough_tree_frame_pose(const bough_tree_data *data, const bough_f
 // The twist of a frame in its own axes, and of its origin in ground axes.
 bough_twist bough_tree_frame_twist(const bough_tree_data *data, const bough_frame *frame);
 bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_frame *frame);
-
-// Length of a spring [m] and the force that draws its ends together [N]; `direction` is the unit
-// vector in the ground from its first marker to its second. Defined in force.c.
-double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, int spring,
-                         double *tension, bough_vec3 *direction);
 
 // Sums over the moving links. Potential energy is zero with all mass centres in the ground's origin
 // plane normal to gravity; angular momentum is about the ground's origin, in ground axes.

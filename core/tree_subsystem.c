@@ -7,6 +7,7 @@
 #include "core/integrator_radau.h"
 #include "core/linalg.h"
 #include "core/loop.h"
+#include "core/tree_build.h"
 #include "core/tree_newton.h"
 
 #include <string.h>

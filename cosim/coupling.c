@@ -1,7 +1,6 @@
 #include "cosim/coupling.h"
 
 #include "cosim/port.h"
-#include "cosim/scheme.h"
 
 #include <math.h>
 #include <string.h>
@@ -37,10 +36,6 @@ bough_status bough_coupling_create(bough_arena *arena, const bough_assembly *ass
     bough_coupling *c = bough_arena_take(arena, sizeof *c);
     if (!c) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     c->assembly = assembly;
-    c->scheme = bough_scheme_find(options->name);
-    if (!c->scheme) {
-        return bough_fail(BOUGH_INVALID, "unknown coupling scheme \"%s\"", options->name);
-    }
     c->options = *options;
     c->interface_ratio = (double)NAN;
     c->pool = pool;
@@ -53,7 +48,7 @@ bough_status bough_coupling_create(bough_arena *arena, const bough_assembly *ass
     c->past_time[0] = c->t0;
     c->n_past = 1;
     *coupling = c;
-    return c->scheme->create ? c->scheme->create(c, arena) : bough_ok();
+    return bough_ok();
 }
 
 static bool in_stage(const bough_coupling *c, int stage, int member) {

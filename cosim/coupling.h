@@ -42,7 +42,7 @@ typedef struct bough_iteration bough_iteration; // see iteration.h
 
 typedef struct bough_coupling {
     const bough_assembly *assembly;
-    const bough_scheme *scheme;
+    const bough_scheme *scheme; // set by bough_scheme_couple
     bough_scheme_options options;
     bough_pool *pool;  // NULL: one thread
     void *scheme_data; // what the scheme created
@@ -95,8 +95,8 @@ typedef struct bough_coupling {
     long sweeps; // by the iterated scheme: runs of all members over a macro step so far
 } bough_coupling;
 
-// Builds the working data, evaluates the outputs at the members' current states and creates the
-// scheme that the options name: BOUGH_INVALID when there is none or its options do not fit.
+// Builds the working data and evaluates the outputs at the members' current states; the scheme's own
+// memory is bough_scheme_couple's.
 bough_status bough_coupling_create(bough_arena *arena, const bough_assembly *assembly,
                                    const bough_scheme_options *options, bough_pool *pool,
                                    bough_coupling **coupling);

@@ -87,7 +87,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     if (!bough_is_ok(&status)) return status;
     status = bough_assembly_build(arena, &def->assembly, &m->assembly);
     if (!bough_is_ok(&status)) return status;
-    status = bough_coupling_create(arena, m->assembly, &def->scheme, def->pool, &m->coupling);
+    status = bough_scheme_couple(arena, m->assembly, &def->scheme, def->pool, &m->coupling);
     if (!bough_is_ok(&status)) return status;
     const bough_scheme *scheme = m->coupling->scheme;
     status = bough_monitor_create(arena, m->coupling, &m->monitor);

@@ -40,6 +40,19 @@ const char *bough_scheme_name(int index) {
     return index >= 0 && index < N_SCHEME ? schemes[index]->name : NULL;
 }
 
+bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assembly,
+                                 const bough_scheme_options *options, bough_pool *pool,
+                                 bough_coupling **coupling) {
+    const bough_scheme *scheme = bough_scheme_find(options->name);
+    if (!scheme) {
+        return bough_fail(BOUGH_INVALID, "unknown coupling scheme \"%s\"", options->name);
+    }
+    bough_status status = bough_coupling_create(arena, assembly, options, pool, coupling);
+    if (!bough_is_ok(&status)) return status;
+    (*coupling)->scheme = scheme;
+    return scheme->create ? scheme->create(*coupling, arena) : bough_ok();
+}
+
 int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options *options) {
     return s->defect_order ? s->defect_order(options) : 1;
 }

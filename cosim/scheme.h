@@ -42,6 +42,12 @@ bough_scheme_options bough_scheme_options_default(void);
 // The scheme of that name; NULL when unknown.
 const bough_scheme *bough_scheme_find(const char *name);
 
+// Builds the working data of a coupling and creates the scheme that the options name. BOUGH_INVALID
+// when there is none of that name or its options do not fit.
+bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assembly,
+                                 const bough_scheme_options *options, bough_pool *pool,
+                                 bough_coupling **coupling);
+
 // Name of the scheme at that place of the table, for messages and help; NULL beyond its end.
 const char *bough_scheme_name(int index);
 

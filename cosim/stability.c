@@ -93,7 +93,7 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     bough_status status = build_linear_members(m, a, input);
     if (!bough_is_ok(&status)) return status;
     bough_coupling *c = NULL;
-    status = bough_coupling_create(m->arena, &m->assembly, &judged, NULL, &c);
+    status = bough_scheme_couple(m->arena, &m->assembly, &judged, NULL, &c);
     if (!bough_is_ok(&status) || !c) return status;
     m->coupling = c;
     m->n = a->n_state + (c->deficit != NULL ? 4 : 3) * a->n_input;

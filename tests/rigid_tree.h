@@ -6,7 +6,9 @@
 
 #include "core/base.h"
 #include "core/dynamics.h"
+#include "core/loop.h"
 #include "core/rotation.h"
+#include "core/tree_build.h"
 #include "core/tree_subsystem.h"
 
 #include <stdlib.h>

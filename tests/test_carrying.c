@@ -2,6 +2,7 @@
 // coupling scheme against the monolithic one.
 #include "apps/simulation/settle.h"
 #include "core/base.h"
+#include "core/force.h"
 #include "tests/built_scene.h"
 
 #include <stdlib.h>

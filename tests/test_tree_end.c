@@ -5,6 +5,7 @@
 #include "core/base.h"
 #include "core/dynamics.h"
 #include "core/rotation.h"
+#include "core/tree_build.h"
 #include "core/tree_subsystem.h"
 
 #include <string.h>

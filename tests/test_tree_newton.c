@@ -5,6 +5,7 @@
 #include "core/dynamics.h"
 #include "core/force.h"
 #include "core/rotation.h"
+#include "core/tree_build.h"
 #include "core/tree_newton.h"
 
 #include <string.h>

@@ -110,6 +110,9 @@ int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, in
 // not one; `why` then receives the reason.
 bool bough_quantity(const char *text, bough_dimension dimension, double *value, char why[160]);
 
+// A whole number of at most nine digits.
+bool bough_whole_number(const char *text, int *value);
+
 // The candidate nearest to a misspelt word, NULL when none is near. Candidates may be NULL.
 const char *bough_nearest(const char *word, const char *const *candidates, int n);
 

@@ -32,7 +32,4 @@ void bough_schema_value(bough_schema_reader *r, const bough_key *key, const boug
 
 static inline void *bough_field_at(void *item, size_t offset) { return (char *)item + offset; }
 
-// A whole number of at most nine digits.
-bool bough_whole_number(const char *text, int *value);
-
 #endif

@@ -1,7 +1,6 @@
 // Loads of a scene: on a joint's axis, on a rod at a place or along a stretch, on a rigid body.
 #include "apps/scene/scene_internal.h"
 
-#include "apps/config/schema_internal.h"
 
 #include <math.h>
 #include <string.h>

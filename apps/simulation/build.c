@@ -6,7 +6,9 @@
 #include "apps/simulation/drag_link.h"
 #include "apps/simulation/load_link.h"
 #include "apps/simulation/settle.h"
+#include "core/dynamics.h"
 #include "core/linalg.h"
+#include "core/tree_build.h"
 #include "core/tree_subsystem.h"
 
 #include <string.h>

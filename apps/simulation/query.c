@@ -2,6 +2,7 @@
 #include "apps/simulation/build.h"
 
 #include "aero/rotor.h"
+#include "core/dynamics.h"
 
 #include <string.h>
 

@@ -1,0 +1,272 @@
+#include "core/tree_build.h"
+
+#include "core/base.h"
+#include "core/dynamics.h"
+#include "core/loop.h"
+#include "core/tree_internal.h"
+
+#include <string.h>
+
+static bough_frame ground_frame(void) {
+    return (bough_frame){.link = BOUGH_GROUND, .placement = bough_transform_identity()};
+}
+
+static void add_inertia(bough_tree *tree, const bough_frame *frame, bough_inertia inertia) {
+    if (frame->link < 0) return; // the ground carries it
+    bough_inertia *sum = &tree->links[frame->link].inertia;
+    *sum = bough_inertia_add(*sum, bough_inertia_to_parent(&frame->placement, inertia));
+}
+
+static bough_vec3 direction(bough_vec3 axis) {
+    double length = bough_norm(axis);
+    return length > 0 ? bough_scale(1 / length, axis) : axis;
+}
+
+// A link of a body's joint; `parent` is a link or the ground.
+static int add_link(bough_tree *tree, int body, int parent, bough_joint joint) {
+    bough_link *link = &tree->links[tree->n_links];
+    link->parent = parent;
+    link->body = body;
+    link->joint = joint;
+    link->n_coordinates = bough_joint_n_coordinates(joint.kind);
+    link->n_speeds = bough_joint_n_speeds(joint.kind);
+    link->first_coordinate = tree->n_q;
+    link->first_speed = tree->n_v;
+    tree->n_q += link->n_coordinates;
+    tree->n_v += link->n_speeds;
+    return tree->n_links++;
+}
+
+// A universal joint has no constant motion subspace; two revolute ones have. A coordinate is driven
+// that has a link of its own.
+static int add_links(bough_tree *tree, const bough_body_def *b, int body, bough_frame parent) {
+    bough_joint joint = {b->kind, bough_transform_compose(parent.placement, b->joint),
+                         direction(b->axis), direction(b->second_axis)};
+    bool universal = b->kind == BOUGH_JOINT_UNIVERSAL;
+    bool driven = b->motion.given || b->second_motion.given;
+    if (!universal && !(driven && b->kind == BOUGH_JOINT_CYLINDRICAL)) {
+        int only = add_link(tree, body, parent.link, joint);
+        tree->links[only].spring = b->spring;
+        return only;
+    }
+    joint.kind = universal ? BOUGH_JOINT_REVOLUTE : BOUGH_JOINT_PRISMATIC;
+    int cross = add_link(tree, body, parent.link, joint);
+    joint.kind = BOUGH_JOINT_REVOLUTE;
+    joint.placement = bough_transform_identity();
+    if (universal) joint.axis = joint.second;
+    int link = add_link(tree, body, cross, joint);
+    tree->links[link].part = 1;
+    return link;
+}
+
+// The parent stands already. Fixed joints are welded here.
+static void place_body(bough_tree *tree, const bough_body_def *b, int body) {
+    bough_frame parent = b->parent < 0 ? ground_frame() : tree->bodies[b->parent];
+    bough_frame *frame = &tree->bodies[body];
+    if (b->kind == BOUGH_JOINT_FIXED) {
+        frame->link = parent.link;
+        frame->placement = bough_transform_compose(parent.placement, b->joint);
+    } else {
+        frame->link = add_links(tree, b, body, parent);
+        frame->placement = bough_transform_identity();
+    }
+    add_inertia(tree, frame, bough_inertia_of(b->mass, b->mass_centre, b->inertia));
+}
+
+static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
+    for (int m = 0; m < def->n_markers; m++) {
+        const bough_marker_def *marker = &def->markers[m];
+        bough_frame carrier = marker->body < 0 ? ground_frame() : tree->bodies[marker->body];
+        tree->markers[m].link = carrier.link;
+        tree->markers[m].placement = bough_transform_compose(carrier.placement, marker->placement);
+    }
+    for (int p = 0; p < def->n_ports; p++) {
+        tree->ports[p].link = tree->markers[def->ports[p].marker].link;
+        tree->ports[p].placement = tree->markers[def->ports[p].marker].placement;
+        add_inertia(tree, &tree->ports[p], def->ports[p].root);
+    }
+    for (int e = 0; e < def->n_ends; e++) {
+        tree->ends[e].link = tree->bodies[def->ends[e].body].link;
+        tree->ends[e].placement = bough_transform_identity();
+        add_inertia(tree, &tree->ends[e], def->ends[e].inertia);
+    }
+    for (int k = 0; k < def->n_loads; k++) {
+        tree->loads[k] = def->loads[k];
+        tree->loads[k].body = tree->bodies[def->loads[k].body].link;
+    }
+}
+
+static bough_status create_motions(bough_arena *arena, const bough_tree_def *def,
+                                   bough_tree *tree) {
+    for (int i = 0; i < tree->n_links; i++) {
+        bough_link *link = &tree->links[i];
+        const bough_body_def *b = &def->bodies[link->body];
+        const bough_motion_def *given = link->part == 0 ? &b->motion : &b->second_motion;
+        if (!given->given) continue;
+        bough_motion *motion = NULL;
+        bough_status status =
+            bough_motion_create(arena, given, b->coordinates[link->part], &motion);
+        if (status.code == BOUGH_INVALID) {
+            return bough_fail(BOUGH_INVALID, "body '%s': %s", b->name, status.message);
+        }
+        if (!bough_is_ok(&status)) return status;
+        link->motion = motion;
+    }
+    return bough_ok();
+}
+
+static void set_initial(bough_tree *tree, const bough_tree_def *def) {
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        const bough_body_def *b = &def->bodies[link->body];
+        double *q = tree->initial + link->first_coordinate;
+        memcpy(q, b->coordinates + link->part, (size_t)link->n_coordinates * sizeof(double));
+        memcpy(tree->initial + tree->n_q + link->first_speed, b->speeds + link->part,
+               (size_t)link->n_speeds * sizeof(double));
+        bough_joint_normalise(&link->joint, q);
+    }
+    bough_tree_prescribe(tree, 0, tree->initial);
+}
+
+// Copies a table's times and values (n each).
+static bool take_table(bough_arena *arena, int n, const double **times, const double **values) {
+    size_t size = (size_t)n * sizeof(double);
+    double *copy = n == 0 ? NULL : bough_arena_doubles(arena, 2 * (size_t)n);
+    if (n == 0 || copy == NULL) return n == 0;
+    memcpy(copy, *times, size);
+    memcpy(copy + n, *values, size);
+    *times = copy;
+    *values = copy + n;
+    return true;
+}
+
+static bool take_tables(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+    bool taken = true;
+    for (int k = 0; k < def->n_loads; k++) {
+        bough_joint_load_def *load = &tree->loads[k];
+        taken = take_table(arena, load->n, &load->times, &load->values) && taken;
+    }
+    for (int k = 0; k < def->n_applied; k++) {
+        bough_applied_def *a = &tree->applied[k];
+        *a = def->applied[k];
+        taken = take_table(arena, a->n, &a->times, &a->values) && taken;
+    }
+    return taken;
+}
+
+static bool take_model(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+    tree->gravity = def->gravity;
+    tree->n_bodies = def->n_bodies;
+    tree->n_markers = def->n_markers;
+    tree->n_ports = def->n_ports;
+    tree->n_loads = def->n_loads;
+    // A universal joint is two links.
+    tree->links = bough_arena_take(arena, 2 * (size_t)def->n_bodies * sizeof(bough_link));
+    tree->bodies = bough_arena_take(arena, (size_t)def->n_bodies * sizeof(bough_frame));
+    tree->markers = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_frame));
+    tree->ports = bough_arena_take(arena, (size_t)def->n_ports * sizeof(bough_frame));
+    tree->loads = bough_arena_take(arena, (size_t)def->n_loads * sizeof(bough_joint_load_def));
+    tree->external = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_external));
+    tree->n_ends = def->n_ends;
+    tree->ends = bough_arena_take(arena, (size_t)def->n_ends * sizeof(bough_frame));
+    tree->n_springs = def->n_springs;
+    tree->springs = bough_arena_take(arena, (size_t)def->n_springs * sizeof(bough_spring_def));
+    tree->n_bushings = def->n_bushings;
+    tree->bushings = bough_arena_take(arena, (size_t)def->n_bushings * sizeof(bough_bushing_def));
+    tree->n_applied = def->n_applied;
+    tree->applied = bough_arena_take(arena, (size_t)def->n_applied * sizeof(bough_applied_def));
+    tree->initial = bough_arena_doubles(arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) *
+                                                   (size_t)def->n_bodies);
+    return !bough_arena_exhausted(arena);
+}
+
+static bool take_names(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+    for (int b = 0; b < def->n_bodies; b++) {
+        tree->bodies[b].name = bough_arena_string(arena, def->bodies[b].name);
+    }
+    for (int m = 0; m < def->n_markers; m++) {
+        tree->markers[m].name = bough_arena_string(arena, def->markers[m].name);
+    }
+    for (int p = 0; p < def->n_ports; p++) {
+        tree->ports[p].name = bough_arena_string(arena, def->ports[p].name);
+    }
+    for (int e = 0; e < def->n_ends; e++) {
+        tree->ends[e].name = bough_arena_string(arena, def->ends[e].name);
+    }
+    return !bough_arena_exhausted(arena);
+}
+
+// A joint that moves no inertia has no acceleration; loops must close.
+static bough_status check_dynamics(bough_arena *arena, const bough_tree_def *def,
+                                   bough_tree *tree) {
+    bough_tree_data *data;
+    bough_status status = bough_tree_data_create(arena, tree, &data);
+    double *acceleration = bough_arena_doubles(arena, (size_t)tree->n_v);
+    if (!bough_is_ok(&status) || bough_arena_exhausted(arena)) return status;
+    bough_tree_kinematics(tree, tree->initial, data);
+    if (bough_tree_free_dynamics(tree, data, 0, NULL, acceleration)) {
+        return bough_loops_assemble(tree, data);
+    }
+    const bough_body_def *b = &def->bodies[tree->links[data->singular].body];
+    return bough_fail(BOUGH_INVALID,
+                      "body '%s': its %s joint moves no inertia in some direction; give the body "
+                      "or what it carries a mass and a moment of inertia",
+                      b->name, bough_joint_name(b->kind));
+}
+
+bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bough_tree **out) {
+    bough_status status = bough_tree_check(def);
+    if (!bough_is_ok(&status)) return status;
+    size_t n = (size_t)def->n_bodies;
+    int *scratch = bough_arena_take(arena, (3 * n + 1) * sizeof *scratch), *order = scratch;
+    if (scratch == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory to build the tree");
+    status = bough_tree_order(def, scratch + n, order);
+    if (!bough_is_ok(&status)) return status;
+    bough_tree *tree = bough_arena_take(arena, sizeof *tree);
+    if (tree == NULL || !take_model(arena, def, tree) || !take_names(arena, def, tree)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for a tree of %d bodies", def->n_bodies);
+    }
+    for (int k = 0; k < def->n_bodies; k++)
+        place_body(tree, &def->bodies[order[k]], order[k]);
+    place_attachments(tree, def);
+    for (int k = 0; k < def->n_springs; k++)
+        tree->springs[k] = def->springs[k];
+    for (int k = 0; k < def->n_bushings; k++)
+        tree->bushings[k] = def->bushings[k];
+    if (!take_tables(arena, def, tree)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tables of loads");
+    }
+    status = create_motions(arena, def, tree);
+    if (!bough_is_ok(&status)) return status;
+    set_initial(tree, def);
+    *out = tree;
+    status = bough_loops_place(arena, def, tree);
+    return bough_is_ok(&status) ? check_dynamics(arena, def, tree) : status;
+}
+
+bough_status bough_tree_data_create(bough_arena *arena, const bough_tree *tree,
+                                    bough_tree_data **out) {
+    size_t n = (size_t)tree->n_links;
+    bough_tree_data *d = bough_arena_take(arena, sizeof *d);
+    if (d != NULL) {
+        d->relative = bough_arena_take(arena, n * sizeof *d->relative);
+        d->pose = bough_arena_take(arena, n * sizeof *d->pose);
+        d->joint_twist = bough_arena_take(arena, n * sizeof *d->joint_twist);
+        d->twist = bough_arena_take(arena, n * sizeof *d->twist);
+        d->gravity = bough_arena_take(arena, n * sizeof *d->gravity);
+        d->acceleration = bough_arena_take(arena, n * sizeof *d->acceleration);
+        d->gravity_rate = bough_arena_take(arena, n * sizeof *d->gravity_rate);
+        d->wrench = bough_arena_take(arena, n * sizeof *d->wrench);
+        d->composite = bough_arena_take(arena, n * sizeof *d->composite);
+        d->articulated = bough_arena_doubles(arena, 36 * n);
+        d->joint_gain = bough_arena_doubles(arena, 36 * n);
+        d->joint_factor = bough_arena_doubles(arena, 36 * n);
+        d->force = bough_arena_doubles(arena, (size_t)tree->n_v);
+        d->drive = bough_arena_doubles(arena, (size_t)tree->n_v);
+        d->passive = bough_arena_doubles(arena, (size_t)tree->n_v);
+    }
+    *out = d;
+    if (!bough_arena_exhausted(arena)) return bough_loops_create(arena, tree, &d->loops);
+    return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for a tree of %d bodies", tree->n_bodies);
+}
+
