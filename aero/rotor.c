@@ -211,6 +211,8 @@ bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius
     return bough_wind_covers(&rotor->wind, hub, radius);
 }
 
+const bough_wind *bough_rotor_wind(const bough_rotor *rotor) { return &rotor->wind; }
+
 bough_vec3 bough_rotor_tower_drag(const bough_rotor *rotor, bough_vec3 position, bough_vec3 axis,
                                   bough_vec3 velocity, double t) {
     bough_vec3 inflow = bough_sub(bough_wind_at(&rotor->wind, position, t), velocity);

@@ -169,6 +169,9 @@ bough_vec3 bough_rotor_tower_drag(const bough_rotor *rotor, bough_vec3 position,
 bough_vec3 bough_rotor_hub_drag(const bough_rotor *rotor, double area, bough_vec3 position,
                                 bough_vec3 velocity, double t);
 
+// The undisturbed wind that it meets.
+const bough_wind *bough_rotor_wind(const bough_rotor *rotor);
+
 // Whether the wind is known all over a disk: bough_wind_covers.
 bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius);
 

@@ -1,5 +1,6 @@
 #include "aero/wind.h"
 
+#include "aero/wind_turbulence.h"
 #include "core/base.h"
 
 #include <string.h>
@@ -54,9 +55,25 @@ static bough_status read_box(bough_arena *arena, bough_wind *wind) {
                       box->duration, box->half_width / box->mean, wind->def.until);
 }
 
-bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind) {
-    *wind = (bough_wind){
-        .def = *def, .along_x = cos(def->direction), .along_y = sin(def->direction)};
+static bough_status make_standard(bough_arena *arena, bough_wind *wind) {
+    const bough_wind_iec_def *def = &wind->def.iec;
+    bough_status status = bough_wind_iec_check(def);
+    if (!bough_is_ok(&status)) return status;
+    if (bough_wind_iec_is_turbulent(def->condition)) {
+        bough_wind_box *box = bough_arena_take(arena, sizeof *box);
+        if (!box) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
+        wind->box = box;
+        return bough_turbulence_make(arena, def, box);
+    }
+    bough_wind_iec *iec = bough_arena_take(arena, sizeof *iec);
+    if (!iec) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
+    *iec = bough_wind_iec_start(def);
+    wind->iec = iec;
+    return status;
+}
+
+static bough_status build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind) {
+    if (def->source == BOUGH_WIND_STANDARD) return make_standard(arena, wind);
     if (def->source == BOUGH_WIND_HUB_FILE) return read_hub(arena, wind);
     if (def->source == BOUGH_WIND_BOX_FILE) return read_box(arena, wind);
     bough_status status = check(def);
@@ -71,6 +88,17 @@ bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bou
         return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
     }
     return bough_ok();
+}
+
+bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind) {
+    *wind = (bough_wind){.def = *def,
+                         .along_x = cos(def->direction),
+                         .along_y = sin(def->direction),
+                         .up_x = cos(def->upflow),
+                         .up_z = sin(def->upflow)};
+    bough_status status = build(arena, def, wind);
+    wind->level = wind->box ? wind->box->hub : wind->iec ? def->iec.height : def->reference_height;
+    return status;
 }
 
 static double speed_at(const bough_wind_def *def, double t) {
@@ -123,13 +151,27 @@ bool bough_wind_covers(const bough_wind *wind, bough_vec3 centre, double radius)
            p.z - radius >= box->bottom;
 }
 
-bough_vec3 bough_wind_at(const bough_wind *wind, bough_vec3 position, double t) {
-    if (wind->hub) {
-        return from_file(wind, bough_wind_hub_at(wind->hub, to_file(wind, position), t));
-    }
-    if (wind->box) {
-        return from_file(wind, bough_wind_box_at(wind->box, to_file(wind, position), t));
-    }
+// In the axes of a file, along whose x the wind blows.
+static bough_vec3 along_at(const bough_wind *wind, bough_vec3 position, double t) {
+    if (wind->hub) return bough_wind_hub_at(wind->hub, to_file(wind, position), t);
+    if (wind->box) return bough_wind_box_at(wind->box, to_file(wind, position), t);
+    if (wind->iec) return bough_wind_iec_at(wind->iec, to_file(wind, position), t);
     double speed = speed_at(&wind->def, t) * share_at(wind, position.z);
-    return bough_v3(wind->along_x * speed, wind->along_y * speed, wind->def.vertical);
+    return bough_v3(speed, 0, wind->def.vertical);
+}
+
+static bough_vec3 inclined(const bough_wind *wind, bough_vec3 v) {
+    return bough_v3(wind->up_x * v.x - wind->up_z * v.z, v.y, wind->up_z * v.x + wind->up_x * v.z);
+}
+
+static bough_vec3 veered(const bough_wind *wind, bough_vec3 v, double height) {
+    double angle = wind->def.veer * (height - wind->level), c = cos(angle), s = sin(angle);
+    return bough_v3(c * v.x + s * v.y, c * v.y - s * v.x, v.z);
+}
+
+bough_vec3 bough_wind_at(const bough_wind *wind, bough_vec3 position, double t) {
+    bough_vec3 v = along_at(wind, position, t);
+    if (wind->def.upflow != 0) v = inclined(wind, v);
+    if (wind->def.veer != 0) v = veered(wind, v, position.z);
+    return from_file(wind, v);
 }

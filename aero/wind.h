@@ -1,10 +1,12 @@
 // Undisturbed wind: one direction everywhere, sheared over the height, its speed constant or a
-// table over time, when the whole field changes speed at once; or a file of the field.
+// table over time, when the whole field changes speed at once; or a file of the field; or a condition
+// of IEC 61400-1. Any of them may be inclined and turn with the height.
 #ifndef BOUGH_AERO_WIND_H
 #define BOUGH_AERO_WIND_H
 
 #include "aero/wind_box.h"
 #include "aero/wind_hub.h"
+#include "aero/wind_iec.h"
 #include "core/arena.h"
 #include "core/status.h"
 #include "core/vec3.h"
@@ -13,6 +15,7 @@ typedef enum bough_wind_source {
     BOUGH_WIND_FORMULA,
     BOUGH_WIND_HUB_FILE, // .wnd
     BOUGH_WIND_BOX_FILE, // .bts
+    BOUGH_WIND_STANDARD, // by name, of IEC 61400-1
 } bough_wind_source;
 
 // How the horizontal speed grows with the height above z = 0.
@@ -39,6 +42,11 @@ typedef struct bough_wind_def {
     const char *file;
     double reference_length; // of the linear shears of a hub file [m]
     double until;            // how long a box must last [s]
+    bough_wind_iec_def iec;  // source STANDARD
+    // Of any source: the whole wind inclined upwards, and turned about the vertical with the height,
+    // clockwise seen from above, about that of the reference or of a box's hub.
+    double upflow; // [rad]
+    double veer;   // [rad/m]
 } bough_wind_def;
 
 // 0 m/s along x, uniform, reference height 90 m; 0.2 and 0.03 m if sheared.
@@ -49,7 +57,10 @@ typedef struct bough_wind {
     double along_x, along_y;
     double shear_scale; // of the logarithmic law: 1/ln(z_ref/z_0)
     const bough_wind_hub *hub; // NULL: no such file
-    const bough_wind_box *box; // likewise
+    const bough_wind_box *box; // likewise; or turbulence of the standard
+    const bough_wind_iec *iec; // a condition without turbulence
+    double up_x, up_z;         // cosine and sine of the upflow
+    double level;              // where the veer is none [m]
 } bough_wind;
 
 bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bough_wind *wind);

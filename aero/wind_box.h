@@ -14,6 +14,7 @@
 #include "core/vec3.h"
 
 #include <stdint.h>
+#include <stdio.h>
 
 typedef struct bough_wind_box {
     bool periodic;
@@ -30,6 +31,9 @@ typedef struct bough_wind_box {
 // Reads a file. BOUGH_INVALID says what is wrong with it; its size is compared with what its head
 // promises before anything is allocated.
 bough_status bough_wind_box_read(bough_arena *arena, const char *path, bough_wind_box *box);
+
+// Writes it as such a file with a line of text; false when the stream refused.
+bool bough_wind_box_write(const bough_wind_box *box, const char *text, FILE *stream);
 
 // Whether the box passes x = 0 until that time [s]: always when it repeats.
 bool bough_wind_box_lasts(const bough_wind_box *box, double until);

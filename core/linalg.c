@@ -29,6 +29,8 @@ extern void dsyevr_(const char *job, const char *range, const char *uplo, const 
                     double *vector, const int *ldz, int *support, double *work, const int *lwork,
                     int *iwork, const int *liwork, int *info, size_t job_length,
                     size_t range_length, size_t uplo_length);
+extern void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int *info,
+                    size_t triangle_length);
 // Only OpenBLAS has it; other libraries leave the symbol null.
 extern void openblas_set_num_threads(int n) __attribute__((weak));
 
@@ -192,6 +194,15 @@ bool bough_cholesky_factor(int n, double *a) {
         }
     }
     return true;
+}
+
+bool bough_cholesky_lower(int n, double *a) {
+    if (n == 0) return true;
+    prepare();
+    if (!finite_matrix(n, a)) return false;
+    int info = 0;
+    dpotrf_("L", &n, a, &n, &info, 1);
+    return info == 0;
 }
 
 void bough_cholesky_solve(int n, const double *factor, double *b) {

@@ -161,6 +161,7 @@ owned_by("^(core|flexbody)/" "${include}(sundials|nvector|sunmatrix|sunlinsol)"
 owned_by("^core/pool\\.c$" "${include}omp\\.h|#[ \t]*pragma[ \t]+omp[ \t]+([^s]|s[^i])|[^a-z_]omp_[a-z]"
   "only core/pool.c uses OpenMP, but for simd loops")
 owned_by("^none$" "pthread_create|thrd_create" "threads are OpenMP's")
+owned_by("^aero/wind_fourier\\.c$" "${include}fftw3\\.h" "only aero/wind_fourier.c uses FFTW")
 owned_by("^apps/config/text\\.c$" "${include}yaml\\.h" "only apps/config/text.c uses libyaml")
 
 owned_by("^apps/output/vertices\\.c$" "${include}hdf5\\.h" "only apps/output/vertices.c uses HDF5")

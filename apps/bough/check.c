@@ -172,6 +172,9 @@ static void print_wind(const bough_scene_wind *wind) {
         [BOUGH_SCENE_WIND_UNIFORM] = "uniform",
         [BOUGH_SCENE_WIND_POWER] = "power law",
         [BOUGH_SCENE_WIND_LOG] = "logarithmic law",
+        [BOUGH_SCENE_WIND_WND] = "hub-height file",
+        [BOUGH_SCENE_WIND_BTS] = "box file",
+        [BOUGH_SCENE_WIND_IEC] = "IEC 61400-1",
     };
     const bough_scene_wind_table *table = &wind->table;
     printf("wind: %s, ", shears[wind->kind]);

@@ -13,6 +13,7 @@
 #define BOUGH_APPS_SCENE_SCENE_H
 
 #include "aero/controller.h"
+#include "aero/wind_iec.h"
 #include "apps/config/text.h"
 #include "core/arena.h"
 #include "core/status.h"
@@ -348,6 +349,7 @@ typedef enum bough_scene_wind_kind {
     BOUGH_SCENE_WIND_LOG,
     BOUGH_SCENE_WIND_WND,
     BOUGH_SCENE_WIND_BTS,
+    BOUGH_SCENE_WIND_IEC,
 } bough_scene_wind_kind;
 typedef enum bough_scene_influence {
     BOUGH_SCENE_POTENTIAL,
@@ -375,6 +377,10 @@ typedef struct bough_scene_wind {
     bough_scene_wind_table table; // in place of the speed
     const char *file;             // of kinds wnd and bts; once checked its path
     double reference_length;      // of the linear shears of a wnd file [m]
+    double upflow;                // of the whole wind [rad]
+    double veer;                  // clockwise, over 100 m of height [rad]
+    // Of kind iec; speed, exponent and reference height are those above. 0: chosen ("auto").
+    bough_wind_iec_def iec;
 } bough_scene_wind;
 
 typedef struct bough_scene_induction {

@@ -354,8 +354,31 @@ static void check_wind_file(bough_schema_reader *r, bough_scene_wind *w) {
     if (w->file != NULL) w->file = bough_schema_path(r, w->file);
 }
 
+// A condition of the standard gives the speed over time, the extreme wind its mean too.
+static void check_wind_condition(bough_schema_reader *r, bough_scene_wind *w) {
+    static const char *const unused[] = {"table", "vertical", "speed"};
+    bool extreme = bough_wind_iec_is_extreme_speed(w->iec.condition);
+    for (int i = 0; i < (extreme ? 3 : 2); i++) {
+        const bough_node *node = bough_node_find(w->node, unused[i]);
+        if (node) {
+            bough_schema_error(r, node, unused[i], "not used with '%s'",
+                               extreme ? "condition: ewm" : "kind: iec");
+        }
+    }
+    if (!extreme && !(w->speed > 0)) {
+        const bough_node *node = bough_node_find(w->node, "speed");
+        bough_schema_error(r, node ? node : w->node, "speed",
+                           "a speed above 0 is required with this condition");
+    }
+    if (extreme && !bough_node_find(w->node, "exponent")) w->exponent = 0.11;
+}
+
 void bough_scene_check_wind(bough_schema_reader *r, void *item) {
     bough_scene_wind *w = item;
+    if (w->kind == BOUGH_SCENE_WIND_IEC) {
+        check_wind_condition(r, w);
+        return;
+    }
     if (w->kind >= BOUGH_SCENE_WIND_WND) {
         check_wind_file(r, w);
         return;

@@ -25,6 +25,7 @@ struct bough_aero_link {
     blade_loads *blade; // (n_blade)
     double factor;      // of the ramp at the last sample
     double evaluated;   // time of what `data` holds [s]; NAN: none that a sample may use
+    bough_vec3 hub;     // at the start, ground axes [m]
     double start;       // of the signals, the last sample's time [s]
     bool started;
 };
@@ -126,17 +127,37 @@ static bough_tower_def tower_def(const bough_scene_tower *tower, const double *d
     };
 }
 
-static bough_wind_def wind_def(const bough_scene_wind *wind, double duration) {
+static double rotor_radius(const bough_scene_aero *aero) {
+    return aero->hub_radius + aero->blade.station[aero->blade.n_station - 1].span;
+}
+
+// What the scene leaves to choose.
+static bough_wind_iec_def standard_wind(const bough_scene *scene) {
+    const bough_scene_wind *wind = &scene->aero.wind;
+    bough_wind_iec_def def = wind->iec;
+    def.speed = wind->speed;
+    def.exponent = wind->exponent;
+    def.height = wind->reference_height;
+    if (!(def.diameter > 0)) def.diameter = 2 * rotor_radius(&scene->aero);
+    if (!(def.width > 0)) def.width = 1.15 * def.diameter;
+    if (!(def.period > 0)) def.period = fmax(scene->simulation.duration, 600);
+    return def;
+}
+
+static bough_wind_def wind_def(const bough_scene *scene) {
+    const bough_scene_wind *wind = &scene->aero.wind;
     static const bough_wind_shear shears[] = {
         [BOUGH_SCENE_WIND_UNIFORM] = BOUGH_WIND_UNIFORM,
         [BOUGH_SCENE_WIND_POWER] = BOUGH_WIND_POWER,
         [BOUGH_SCENE_WIND_LOG] = BOUGH_WIND_LOG,
         [BOUGH_SCENE_WIND_WND] = BOUGH_WIND_UNIFORM,
         [BOUGH_SCENE_WIND_BTS] = BOUGH_WIND_UNIFORM,
+        [BOUGH_SCENE_WIND_IEC] = BOUGH_WIND_UNIFORM,
     };
     static const bough_wind_source sources[] = {
         [BOUGH_SCENE_WIND_WND] = BOUGH_WIND_HUB_FILE,
         [BOUGH_SCENE_WIND_BTS] = BOUGH_WIND_BOX_FILE,
+        [BOUGH_SCENE_WIND_IEC] = BOUGH_WIND_STANDARD,
     };
     return (bough_wind_def){
         .speed = wind->speed,
@@ -145,14 +166,17 @@ static bough_wind_def wind_def(const bough_scene_wind *wind, double duration) {
         .shear = shears[wind->kind],
         .exponent = wind->exponent,
         .roughness = wind->roughness,
-        .reference_height = wind->reference_height,
+        .reference_height = wind->reference_height > 0 ? wind->reference_height : 90,
         .n_time = wind->table.n_time,
         .time = wind->table.time,
         .speed_at_time = wind->table.speed,
         .source = sources[wind->kind],
         .file = wind->file,
         .reference_length = wind->reference_length,
-        .until = duration,
+        .until = scene->simulation.duration,
+        .iec = wind->kind == BOUGH_SCENE_WIND_IEC ? standard_wind(scene) : wind->iec,
+        .upflow = wind->upflow,
+        .veer = wind->veer / 100,
     };
 }
 
@@ -177,7 +201,7 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     def.smooth_polars = aero->interpolation == BOUGH_SCENE_POLARS_SMOOTH;
     def.pitching_moment = aero->pitching_moment;
     if (aero->dynamic_stall == BOUGH_SCENE_STALL_HGM) def.stall = BOUGH_STALL_HGM;
-    def.wind = wind_def(&aero->wind, l->simulation->scene->simulation.duration);
+    def.wind = wind_def(l->simulation->scene);
     if (aero->tower.node != NULL) def.tower = tower_def(&aero->tower, t->drag);
     def.n_polar = aero->polars.n_polar;
     def.polar = t->polar;
@@ -191,16 +215,15 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
 }
 
 // A box must reach over the undeformed rotor.
-static bough_status check_reach(const bough_aero_link *l) {
+static bough_status check_reach(bough_aero_link *l) {
     const bough_scene *scene = l->simulation->scene;
     const bough_frame *rotor = &l->simulation->tree->bodies[scene->turbine.rotor];
-    const bough_scene_aero_blade *blade = &scene->aero.blade;
-    bough_vec3 hub = bough_tree_frame_pose(l->simulation->view, rotor).position;
-    double radius = scene->aero.hub_radius + blade->station[blade->n_station - 1].span;
+    bough_vec3 hub = l->hub = bough_tree_frame_pose(l->simulation->view, rotor).position;
+    double radius = rotor_radius(&scene->aero);
     if (bough_rotor_in_wind(l->rotor, hub, radius)) return bough_ok();
     return bough_fail(BOUGH_INVALID,
                       "aero.wind: the box of %s is too small for a rotor of %g m radius at %g m",
-                      scene->aero.wind.file, radius, hub.z);
+                      scene->aero.wind.file ? scene->aero.wind.file : "turbulence", radius, hub.z);
 }
 
 bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation,
@@ -367,6 +390,10 @@ const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link) { return l
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor) {
     *factor = link->factor;
     return &link->data;
+}
+
+bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t) {
+    return bough_wind_at(bough_rotor_wind(link->rotor), link->hub, t);
 }
 
 // -- saving ---------------------------------------------------------------------------------------

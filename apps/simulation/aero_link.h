@@ -32,4 +32,7 @@ void bough_aero_link_renew(bough_aero_link *link);
 // Results of the last evaluation, at the last multiple of the period, with the ramp's factor at its time.
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor);
 
+// The wind at the place where the hub stood at the start, at a time [s], undisturbed, ground axes [m/s].
+bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t);
+
 #endif

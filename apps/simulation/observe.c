@@ -407,6 +407,29 @@ static void sample_aero(void *self, double t, double *value) {
     value[2] = factor * data->torque * speed;
 }
 
+// The undisturbed wind where the hub stood at the start, in ground axes, and the mean over the rotor
+// of the wind with the tower's influence, in the hub's.
+static void sample_wind(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    double factor;
+    const bough_frame *rotor = &s->tree->bodies[s->scene->turbine.rotor];
+    bough_mat3 axes = bough_tree_frame_pose(s->view, rotor).rotation;
+    bough_vec3 wind = bough_aero_link_hub_wind(s->aero, t);
+    bough_vec3 mean = bough_mat3_mul(bough_mat3_transpose(axes),
+                                     bough_aero_link_data(s->aero, &factor)->disk_wind);
+    const double values[6] = {wind.x, wind.y, wind.z, mean.x, mean.y, mean.z};
+    memcpy(value, values, sizeof values);
+}
+
+static bough_status add_wind(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_wind, s);
+    for (int c = 0; c < 6 && bough_is_ok(&status); c++) {
+        status = c < 3 ? bough_channels_add(list, "m/s", "Wind1Vel%c", "XYZ"[c])
+                       : bough_channels_add(list, "m/s", "RtVAvg%ch", "xyz"[c - 3]);
+    }
+    return status;
+}
+
 enum { NODE_CHANNELS = 10 };
 
 static void sample_nodes(void *self, double t, double *value) {
@@ -446,6 +469,7 @@ static bough_status add_aero(bough_simulation *s, bough_channels *list) {
     if (bough_is_ok(&status)) status = bough_channels_add(list, "N", "RtAeroFxh");
     if (bough_is_ok(&status)) status = bough_channels_add(list, "N-m", "RtAeroMxh");
     if (bough_is_ok(&status)) status = bough_channels_add(list, "W", "RtAeroPwr");
+    if (bough_is_ok(&status)) status = add_wind(s, list);
     if (bough_is_ok(&status) && s->scene->aero.n_node > 0) status = add_nodes(s, list);
     return status;
 }
