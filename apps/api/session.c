@@ -1,7 +1,7 @@
 #include "apps/api/bough.h"
 
 #include "apps/scene/fingerprint.h"
-#include "apps/simulation/build.h"
+#include "apps/simulation/run.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,11 +11,8 @@ enum { ERROR_TEXT = 2000 };
 
 struct bough_session {
     bough_arena *arena;
-    bough_simulation *simulation; // NULL when it could not be opened
-    bough_channels channels;
-    double *value; // (channels.count)
-    bool sampled;  // value belongs to the current time
-    bool failed;   // a step did; the state means nothing
+    bool open; // the run is there
+    bough_run run;
     uint64_t kind; // fingerprint of what its copies hold
     size_t size;   // of a copy [bytes]
     int code;
@@ -28,6 +25,9 @@ static int settle(bough_session *s, bough_status status) {
     if (good || status.message[0]) snprintf(s->error, sizeof s->error, "%s", status.message);
     return s->code;
 }
+
+// A step has; the state means nothing.
+static bool failed(const bough_session *s) { return !bough_is_ok(&s->run.outcome); }
 
 // All errors of the scene, a line each; as many as there is room for.
 static void keep_errors(bough_session *s, const bough_errors *errors) {
@@ -52,13 +52,13 @@ static void take(bough_session *s, bough_snapshot *snapshot) {
     head h = {.kind = s->kind};
     memcpy(h.magic, magic, sizeof magic);
     bough_snapshot_take(snapshot, &h, sizeof h);
-    bough_snapshot_doubles(snapshot, s->value, s->channels.count);
-    bough_simulation_snapshot(s->simulation, snapshot);
+    bough_snapshot_doubles(snapshot, s->run.value, s->run.channels.count);
+    bough_run_snapshot(&s->run, snapshot);
 }
 
 // Two sessions understand each other's copies when the same numbers stand at the same places.
 static void describe_copy(bough_session *s) {
-    const bough_master *m = s->simulation->master;
+    const bough_master *m = s->run.simulation->master;
     const bough_assembly *a = m->assembly;
     bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
     take(s, &measure);
@@ -72,18 +72,9 @@ static void describe_copy(bough_session *s) {
         bough_mix_text(&s->kind, a->member[i]->name);
         bough_mix(&s->kind, &size, sizeof size);
     }
-    for (int i = 0; i < s->channels.count; i++) {
-        bough_mix_text(&s->kind, s->channels.channel[i].name);
+    for (int i = 0; i < s->run.channels.count; i++) {
+        bough_mix_text(&s->kind, s->run.channels.channel[i].name);
     }
-}
-
-static bough_status check_save(const bough_session *s) {
-    const bough_master *m = s->simulation->master;
-    if (bough_master_sampled(m)) return bough_simulation_storable(s->simulation);
-    return bough_fail(BOUGH_INVALID,
-                      "at %.9g s the air or the control is between two samples, whose past is in no "
-                      "copy: step on",
-                      m->time);
 }
 
 static bough_status check_copy(const bough_session *s, const void *copy) {
@@ -99,8 +90,8 @@ static bough_status check_copy(const bough_session *s, const void *copy) {
 size_t bough_session_size(const bough_session *s) { return s->size; }
 
 int bough_session_save(bough_session *s, void *copy) {
-    if (!s->simulation || s->failed) return s->code;
-    bough_status status = check_save(s);
+    if (!s->open || failed(s)) return s->code;
+    bough_status status = bough_run_storable(&s->run);
     if (!bough_is_ok(&status)) return settle(s, status);
     bough_session_values(s);
     take(s, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0});
@@ -108,12 +99,11 @@ int bough_session_save(bough_session *s, void *copy) {
 }
 
 int bough_session_restore(bough_session *s, const void *copy) {
-    if (!s->simulation) return s->code;
+    if (!s->open) return s->code;
     bough_status status = check_copy(s, copy);
     if (!bough_is_ok(&status)) return settle(s, status);
     take(s, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, (char *)(uintptr_t)copy, 0});
-    s->sampled = true;
-    s->failed = false;
+    s->run.sampled = true; // the values are in the copy
     return settle(s, bough_ok());
 }
 
@@ -129,15 +119,9 @@ static bough_status build(bough_session *s, const char *path, const char *const 
         if (listed) status.message[0] = '\0';
         return status;
     }
-    bough_simulation *simulation = NULL;
-    status = bough_simulation_build(s->arena, scene, &simulation);
+    status = bough_run_create(s->arena, scene, &s->run);
     if (!bough_is_ok(&status)) return status;
-    s->channels = bough_channels_start(s->arena);
-    status = bough_simulation_channels(simulation, &s->channels);
-    if (!bough_is_ok(&status)) return status;
-    s->value = bough_arena_doubles(s->arena, (size_t)s->channels.count + 1);
-    if (!s->value) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    s->simulation = simulation;
+    s->open = true;
     describe_copy(s);
     return status;
 }
@@ -156,52 +140,43 @@ int bough_session_code(const bough_session *s) { return s->code; }
 const char *bough_session_error(const bough_session *s) { return s->error; }
 
 const char *bough_session_warning(const bough_session *s) {
-    return s->simulation ? s->simulation->master->verdict : "";
+    return s->open ? s->run.simulation->master->verdict : "";
 }
 
 int bough_session_step(bough_session *s) {
-    if (!s->simulation || s->failed) return s->code;
-    if (bough_master_done(s->simulation->master)) return BOUGH_SESSION_DONE;
-    s->sampled = false;
-    bough_status status = bough_step(s->simulation->master);
-    s->failed = !bough_is_ok(&status);
-    return settle(s, status);
+    if (!s->open || failed(s)) return s->code;
+    if (bough_run_done(&s->run)) return BOUGH_SESSION_DONE;
+    return settle(s, bough_run_step(&s->run));
 }
 
 double bough_session_time(const bough_session *s) {
-    return s->simulation ? s->simulation->master->time : (double)NAN;
+    return s->open ? s->run.simulation->master->time : (double)NAN;
 }
 
 double bough_session_duration(const bough_session *s) {
-    return s->simulation ? s->simulation->master->duration : (double)NAN;
+    return s->open ? s->run.simulation->master->duration : (double)NAN;
 }
 
-int bough_session_count(const bough_session *s) { return s->channels.count; }
+int bough_session_count(const bough_session *s) { return s->run.channels.count; }
 
 static bool known(const bough_session *s, int channel) {
-    return channel >= 0 && channel < s->channels.count;
+    return channel >= 0 && channel < s->run.channels.count;
 }
 
 const char *bough_session_name(const bough_session *s, int channel) {
-    return known(s, channel) ? s->channels.channel[channel].name : "";
+    return known(s, channel) ? s->run.channels.channel[channel].name : "";
 }
 
 const char *bough_session_unit(const bough_session *s, int channel) {
-    return known(s, channel) ? s->channels.channel[channel].unit : "";
+    return known(s, channel) ? s->run.channels.channel[channel].unit : "";
 }
 
 int bough_session_find(const bough_session *s, const char *name) {
-    return s->channels.count > 0 ? bough_channels_find(&s->channels, name) : -1;
+    return s->run.channels.count > 0 ? bough_channels_find(&s->run.channels, name) : -1;
 }
 
 const double *bough_session_values(bough_session *s) {
-    if (!s->simulation || s->failed || s->channels.count == 0) return NULL;
-    if (!s->sampled) {
-        bough_simulation_update(s->simulation);
-        bough_channels_sample(&s->channels, s->simulation->master->time, s->value);
-        s->sampled = true;
-    }
-    return s->value;
+    return s->open && s->run.channels.count > 0 ? bough_run_values(&s->run) : NULL;
 }
 
 double bough_session_read(bough_session *s, int channel) {

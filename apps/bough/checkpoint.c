@@ -33,41 +33,17 @@ static uint64_t sum_of(const head *h, const char *copy) {
 
 // -- what is in it --------------------------------------------------------------------------------
 
-// Work is counted by the solvers of this process; `earlier` adds that of the ones before it.
-static void take_statistics(bough_run *run, bough_snapshot *s) {
-    const bough_assembly *a = run->simulation->master->assembly;
-    for (int i = 0; i < a->n_member; i++) {
-        bough_statistics *earlier = &run->earlier[i];
-        bough_statistics total = bough_run_statistics(run, i), now = total;
-        bough_statistics_subtract(&now, earlier);
-        bough_snapshot_take(s, &total, sizeof total);
-        bough_statistics_subtract(&total, &now);
-        *earlier = total;
-    }
-}
-
-static void take_probe(bough_error_probe *probe, int n, bough_snapshot *s) {
-    bough_snapshot_take(s, &probe->batches, sizeof probe->batches);
-    bough_snapshot_doubles(s, probe->largest, n);
-    bough_snapshot_doubles(s, probe->low, n);
-    bough_snapshot_doubles(s, probe->high, n);
-}
-
-static void take_run(bough_run *run, bough_snapshot *s) {
-    bough_simulation_snapshot(run->simulation, s);
-    take_statistics(run, s);
-    take_probe(&run->probe, run->channels.count, s);
-    bough_snapshot_take(s, &run->next_row, sizeof run->next_row);
-    bough_snapshot_take(s, &run->recorded, sizeof run->recorded);
-    bough_snapshot_take(s, &run->next_frame, sizeof run->next_frame);
-    bough_snapshot_take(s, &run->rows, sizeof run->rows);
-    bough_snapshot_take(s, &run->frames_kept, sizeof run->frames_kept);
+static void take_job(bough_job *job, bough_snapshot *s) {
+    bough_run *run = &job->run;
+    bough_run_snapshot(run, s);
+    bough_snapshot_take(s, &job->rows, sizeof job->rows);
+    bough_snapshot_take(s, &job->frames_kept, sizeof job->frames_kept);
     bough_snapshot_take(s, &run->wall_s, sizeof run->wall_s);
     bough_snapshot_take(s, &run->cpu_s, sizeof run->cpu_s);
 }
 
-static void move(bough_run *run, bough_snapshot_move direction) {
-    take_run(run, &(bough_snapshot){direction, run->checkpoint.copy, 0});
+static void move(bough_job *job, bough_snapshot_move direction) {
+    take_job(job, &(bough_snapshot){direction, job->checkpoint.copy, 0});
 }
 
 // -- options --------------------------------------------------------------------------------------
@@ -79,11 +55,11 @@ static bough_status read_interval(const char *text, double *interval) {
 }
 
 // Between samples a load has a past that is not in the copy.
-static bough_status check_interval(const bough_run *run, double interval) {
-    const bough_master *m = run->simulation->master;
-    bough_status status = bough_simulation_storable(run->simulation);
+static bough_status check_interval(const bough_job *job, double interval) {
+    const bough_master *m = job->run.simulation->master;
+    bough_status status = bough_simulation_storable(job->run.simulation);
     if (!bough_is_ok(&status)) return status;
-    if (run->simulation->scene->simulation.output.vertices > 0) {
+    if (job->run.simulation->scene->simulation.output.vertices > 0) {
         return bough_fail(BOUGH_INVALID, "--checkpoint: vertices.h5 cannot be continued; leave out "
                                          "simulation.output.vertices, or store frames");
     }
@@ -107,20 +83,20 @@ static bough_status check_interval(const bough_run *run, double interval) {
 }
 
 // Threads and the folder change no result.
-static void find_fingerprints(bough_run *run) {
-    bough_checkpoint *c = &run->checkpoint;
+static void find_fingerprints(bough_job *job) {
+    bough_checkpoint *c = &job->checkpoint;
     c->program = c->input = BOUGH_FINGERPRINT_START;
     bough_mix_program(&c->program);
-    bough_mix_scene(&c->input, run->simulation->scene);
-    for (int i = 0; i < run->options->n_set; i++) bough_mix_text(&c->input, run->options->set[i]);
+    bough_mix_scene(&c->input, job->run.simulation->scene);
+    for (int i = 0; i < job->options->n_set; i++) bough_mix_text(&c->input, job->options->set[i]);
 }
 
-static bough_status take_memory(bough_run *run) {
+static bough_status take_memory(bough_job *job) {
     bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
-    take_run(run, &measure);
-    run->checkpoint.size = measure.used;
-    run->checkpoint.copy = bough_arena_take(run->arena, measure.used);
-    return run->checkpoint.copy ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    take_job(job, &measure);
+    job->checkpoint.size = measure.used;
+    job->checkpoint.copy = bough_arena_take(job->arena, measure.used);
+    return job->checkpoint.copy ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
 }
 
 // -- reading --------------------------------------------------------------------------------------
@@ -138,8 +114,8 @@ static bough_status other(const char *path, const char *what) {
 }
 
 // The sum is looked at first: only then the rest means what it says.
-static bough_status read_copy(bough_run *run, const char *path, FILE *file) {
-    bough_checkpoint *c = &run->checkpoint;
+static bough_status read_copy(bough_job *job, const char *path, FILE *file) {
+    bough_checkpoint *c = &job->checkpoint;
     head h;
     if (fread(&h, sizeof h, 1, file) != 1) return damaged(path);
     if (memcmp(h.magic, magic, sizeof magic) != 0) {
@@ -161,9 +137,9 @@ static bough_status read_copy(bough_run *run, const char *path, FILE *file) {
     return bough_ok();
 }
 
-static bough_status resume(bough_run *run) {
+static bough_status resume(bough_job *job) {
     char path[BOUGH_PATH_MAX];
-    bough_status status = bough_folder_path(run->folder, name, path);
+    bough_status status = bough_folder_path(job->folder, name, path);
     if (!bough_is_ok(&status)) return status;
     char why[BOUGH_INPUT_REASON];
     FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
@@ -175,35 +151,35 @@ static bough_status resume(bough_run *run) {
     if (!file) {
         return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
     }
-    status = read_copy(run, path, file);
+    status = read_copy(job, path, file);
     fclose(file);
-    if (bough_is_ok(&status)) status = check_interval(run, run->checkpoint.interval);
-    if (bough_is_ok(&status)) move(run, BOUGH_SNAPSHOT_RESTORE);
+    if (bough_is_ok(&status)) status = check_interval(job, job->checkpoint.interval);
+    if (bough_is_ok(&status)) move(job, BOUGH_SNAPSHOT_RESTORE);
     return status;
 }
 
-bough_status bough_checkpoint_open(bough_run *run) {
-    const bough_options *o = run->options;
-    bough_checkpoint *c = &run->checkpoint;
+bough_status bough_checkpoint_open(bough_job *job) {
+    const bough_options *o = job->options;
+    bough_checkpoint *c = &job->checkpoint;
     if (!o->checkpoint && !o->resume) return bough_ok();
     bough_status status = o->checkpoint ? read_interval(o->checkpoint, &c->interval) : bough_ok();
-    if (bough_is_ok(&status) && o->checkpoint) status = check_interval(run, c->interval);
-    if (bough_is_ok(&status)) status = take_memory(run);
+    if (bough_is_ok(&status) && o->checkpoint) status = check_interval(job, c->interval);
+    if (bough_is_ok(&status)) status = take_memory(job);
     if (!bough_is_ok(&status)) return status;
-    find_fingerprints(run);
-    return o->resume ? resume(run) : status;
+    find_fingerprints(job);
+    return o->resume ? resume(job) : status;
 }
 
 // -- writing --------------------------------------------------------------------------------------
 
-static bough_status write_copy(const bough_run *run) {
-    const bough_checkpoint *c = &run->checkpoint;
+static bough_status write_copy(const bough_job *job) {
+    const bough_checkpoint *c = &job->checkpoint;
     char path[BOUGH_PATH_MAX];
     FILE *file;
     head h = {.program = c->program, .input = c->input, .interval = c->interval, .size = c->size};
     memcpy(h.magic, magic, sizeof magic);
     h.sum = sum_of(&h, c->copy);
-    bough_status status = bough_folder_path(run->folder, name, path);
+    bough_status status = bough_folder_path(job->folder, name, path);
     if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
     if (!bough_is_ok(&status)) return status;
     errno = 0;
@@ -216,25 +192,26 @@ static bough_status write_copy(const bough_run *run) {
     return status;
 }
 
-static bool is_due(const bough_run *run) {
-    const bough_master *m = run->simulation->master;
-    double turns = m->time / run->checkpoint.interval;
-    double off = fabs(turns - round(turns)) * run->checkpoint.interval;
+static bool is_due(const bough_job *job) {
+    const bough_master *m = job->run.simulation->master;
+    double turns = m->time / job->checkpoint.interval;
+    double off = fabs(turns - round(turns)) * job->checkpoint.interval;
     return off <= 1e-6 * m->macro_step && !bough_master_done(m);
 }
 
 // The rows that it counts on are on the disk before it is.
-bough_status bough_checkpoint_update(bough_run *run) {
-    if (!(run->checkpoint.interval > 0) || !is_due(run)) return bough_ok();
-    bough_run_settle_clock(run);
-    bough_status status = bough_recorder_keep(run->recorder, &run->rows);
-    if (bough_is_ok(&status) && run->frames) {
-        status = bough_frames_keep(run->frames, &run->frames_kept);
+bough_status bough_checkpoint_update(void *self) {
+    bough_job *job = self;
+    if (!(job->checkpoint.interval > 0) || !is_due(job)) return bough_ok();
+    bough_run_settle_clock(&job->run);
+    bough_status status = bough_recorder_keep(job->recorder, &job->rows);
+    if (bough_is_ok(&status) && job->frames) {
+        status = bough_frames_keep(job->frames, &job->frames_kept);
     }
     if (!bough_is_ok(&status)) return status;
-    move(run, BOUGH_SNAPSHOT_SAVE);
-    status = write_copy(run);
-    move(run, BOUGH_SNAPSHOT_RESTORE);
+    move(job, BOUGH_SNAPSHOT_SAVE);
+    status = write_copy(job);
+    move(job, BOUGH_SNAPSHOT_RESTORE);
     return status;
 }
 

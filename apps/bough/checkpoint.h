@@ -13,7 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-struct bough_run;
+struct bough_job;
 
 typedef struct bough_checkpoint {
     double interval;           // [s]; 0: none are written
@@ -25,10 +25,10 @@ typedef struct bough_checkpoint {
 // Reads the options and, to resume, the checkpoint in the run's folder; the simulation is then at
 // its time. BOUGH_INVALID where the interval does not suit the scene, there is no checkpoint, it is
 // damaged or of another program, scene or setting.
-bough_status bough_checkpoint_open(struct bough_run *run);
+bough_status bough_checkpoint_open(struct bough_job *job);
 
-// After a step: writes a checkpoint where one is due and goes on from it.
-bough_status bough_checkpoint_update(struct bough_run *run);
+// After a step of a bough_job: writes a checkpoint where one is due and goes on from it.
+bough_status bough_checkpoint_update(void *job);
 
 // Removes that of an earlier run, or of one that is complete.
 bough_status bough_checkpoint_remove(const char *folder);

@@ -15,10 +15,11 @@ static double samples(const bough_run *run, double interval) {
     return interval > 0 ? run->simulation->master->duration / interval : 0;
 }
 
-static double result_bytes(const bough_run *run) {
+static double result_bytes(const bough_job *job) {
+    const bough_run *run = &job->run;
     const bough_scene_output *output = &run->simulation->scene->simulation.output;
     double points = 0, row = COLUMN * (run->channels.count + 1.0) + (output->binary ? 2 : 0);
-    for (int k = 0; k < run->shape.n_line; k++) points += run->shape.line[k].n_point;
+    for (int k = 0; k < job->shape.n_line; k++) points += job->shape.line[k].n_point;
     return row * samples(run, output->interval) +
            (frame_head + frame_point * points) * samples(run, output->frames) +
            VERTEX * points * samples(run, output->vertices);
@@ -41,18 +42,19 @@ static double least_step_time(const bough_run *run) {
     return 2 * shortest;
 }
 
-bough_status bough_run_forecast(const bough_run *run) {
+bough_status bough_run_forecast(const bough_job *job) {
+    const bough_run *run = &job->run;
     const bough_master *m = run->simulation->master;
-    double steps = m->duration / m->macro_step, bytes = result_bytes(run);
+    double steps = m->duration / m->macro_step, bytes = result_bytes(job);
     struct statvfs disk;
-    double room = statvfs(run->folder, &disk) == 0
+    double room = statvfs(job->folder, &disk) == 0
                       ? (double)disk.f_bavail * (double)disk.f_frsize
                       : HUGE_VAL;
     if (bytes > much_data && bytes > room) {
         return bough_fail(BOUGH_INVALID,
                           "the results take about %.3g GB, '%.200s' has room for %.3g GB: a longer "
                           "simulation.output.interval or shorter duration",
-                          1e-9 * bytes, run->folder, 1e-9 * room);
+                          1e-9 * bytes, job->folder, 1e-9 * room);
     }
     if (steps <= long_run && bytes <= much_data) return bough_ok();
     fprintf(stderr, "bough: %.3g macro steps, more than %.2g hours; results of about %.2g GB\n",

@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-static bough_status read_scene(bough_arena *arena, const bough_options *options,
-                               bough_scene **scene) {
+bough_status bough_open_scene(bough_arena *arena, const bough_options *options,
+                              bough_scene **scene) {
     bough_errors errors = {.arena = arena};
     bough_status status =
         bough_scene_read(arena, options->operand, options->set, options->n_set, &errors, scene);
@@ -11,15 +11,17 @@ static bough_status read_scene(bough_arena *arena, const bough_options *options,
         bough_errors_print(&errors, stderr);
         status.message[0] = '\0';
     }
+    if (bough_is_ok(&status) && options->threads > 0) {
+        (*scene)->simulation.threads = options->threads;
+    }
     return status;
 }
 
 bough_status bough_open(bough_arena *arena, const bough_options *options,
                         bough_simulation **simulation) {
     bough_scene *scene;
-    bough_status status = read_scene(arena, options, &scene);
+    bough_status status = bough_open_scene(arena, options, &scene);
     if (!bough_is_ok(&status)) return status;
-    if (options->threads > 0) scene->simulation.threads = options->threads;
     return bough_simulation_build(arena, scene, simulation);
 }
 

@@ -5,8 +5,12 @@
 #include "apps/bough/options.h"
 #include "apps/simulation/build.h"
 
-// Reads the scene with the options' replacements and builds it. Errors in the scene are written to
-// stderr, one a line, and the status then has no message.
+// Reads the scene with the options' replacements and threads. Errors in it are written to stderr, one
+// a line, and the status then has no message.
+bough_status bough_open_scene(bough_arena *arena, const bough_options *options,
+                              bough_scene **scene);
+
+// Reads the scene with the options' replacements and builds it, with the errors told likewise.
 bough_status bough_open(bough_arena *arena, const bough_options *options,
                         bough_simulation **simulation);
 

@@ -20,20 +20,20 @@ static double real_time_factor(const bough_run *run) {
 
 // -- summary.json ---------------------------------------------------------------------------------
 
-static void write_input(bough_summary *s, const bough_run *run) {
-    const bough_scene *scene = run->simulation->scene;
+static void write_input(bough_summary *s, const bough_job *job) {
+    const bough_scene *scene = job->run.simulation->scene;
     bough_summary_text(s, "bough_version", BOUGH_VERSION);
     bough_summary_text(s, "scene", scene->file);
     bough_summary_text(s, "title", scene->title);
     bough_summary_array(s, "set");
-    for (int i = 0; i < run->options->n_set; i++) {
-        bough_summary_text(s, NULL, run->options->set[i]);
+    for (int i = 0; i < job->options->n_set; i++) {
+        bough_summary_text(s, NULL, job->options->set[i]);
     }
     bough_summary_end(s);
-    bough_summary_text(s, "status", outcome_name(run));
-    const char *verdict = run->simulation->master->verdict;
+    bough_summary_text(s, "status", outcome_name(&job->run));
+    const char *verdict = job->run.simulation->master->verdict;
     bough_summary_text(s, "verdict", verdict[0] ? verdict : NULL);
-    bough_summary_text(s, "diagnosis", bough_is_ok(&run->outcome) ? NULL : run->outcome.message);
+    bough_summary_text(s, "diagnosis", bough_is_ok(&job->run.outcome) ? NULL : job->run.outcome.message);
 }
 
 // Order and theta are null where the scheme has none: also a ramp that repeats its steps. Sweeps are
@@ -56,25 +56,27 @@ static void write_method(bough_summary *s, const bough_run *run) {
     bough_summary_integer(s, "threads", bough_pool_threads(m->coupling->pool));
 }
 
-static void write_cost(bough_summary *s, const bough_run *run) {
+static void write_cost(bough_summary *s, const bough_job *job) {
+    const bough_run *run = &job->run;
     const bough_master *m = run->simulation->master;
     bough_summary_number(s, "duration", m->duration);
     bough_summary_number(s, "time", m->time);
     bough_summary_number(s, "wall_s", run->wall_s);
     bough_summary_number(s, "cpu_s", run->cpu_s);
-    bough_summary_number(s, "build_s", run->build_s);
+    bough_summary_number(s, "build_s", job->build_s);
     bough_summary_number(s, "real_time_factor", real_time_factor(run));
     bough_summary_integer(s, "peak_memory_bytes", bough_peak_memory());
-    bough_summary_integer(s, "model_bytes", (long long)bough_arena_bytes(run->arena));
+    bough_summary_integer(s, "model_bytes", (long long)bough_arena_bytes(job->arena));
 }
 
-static void write_size(bough_summary *s, const bough_run *run) {
+static void write_size(bough_summary *s, const bough_job *job) {
+    const bough_run *run = &job->run;
     const bough_simulation *sim = run->simulation;
     bough_summary_integer(s, "bodies", sim->scene->n_body);
     bough_summary_integer(s, "joints", bough_simulation_n_joints(sim));
     bough_summary_integer(s, "states", sim->master->assembly->n_state);
     bough_summary_integer(s, "macro_steps", sim->master->steps);
-    bough_summary_integer(s, "rows", bough_recorder_rows(run->recorder));
+    bough_summary_integer(s, "rows", bough_recorder_rows(job->recorder));
     bough_summary_integer(s, "channels", run->channels.count);
 }
 
@@ -136,14 +138,6 @@ static void write_estimates(bough_summary *s, const bough_run *run) {
     bough_summary_end(s);
 }
 
-bough_statistics bough_run_statistics(const bough_run *run, int member) {
-    const bough_subsystem *subsystem = run->simulation->master->assembly->member[member];
-    bough_statistics done = {0};
-    subsystem->ops->statistics(subsystem->self, &done);
-    bough_statistics_add(&done, &run->earlier[member]);
-    return done;
-}
-
 static void write_subsystem(bough_summary *s, const bough_run *run, int member) {
     const bough_subsystem *subsystem = run->simulation->master->assembly->member[member];
     bough_statistics done = bough_run_statistics(run, member);
@@ -162,14 +156,15 @@ static void write_subsystem(bough_summary *s, const bough_run *run, int member) 
     bough_summary_end(s);
 }
 
-bough_status bough_run_summarise(const bough_run *run) {
+bough_status bough_run_summarise(const bough_job *job) {
+    const bough_run *run = &job->run;
     bough_summary s;
-    bough_status status = bough_summary_open(&s, run->folder, "summary.json");
+    bough_status status = bough_summary_open(&s, job->folder, "summary.json");
     if (!bough_is_ok(&status)) return status;
-    write_input(&s, run);
+    write_input(&s, job);
     write_method(&s, run);
-    write_cost(&s, run);
-    write_size(&s, run);
+    write_cost(&s, job);
+    write_size(&s, job);
     write_control(&s, run);
     write_accuracy(&s, run);
     write_interfaces(&s, run);
@@ -185,14 +180,13 @@ bough_status bough_run_summarise(const bough_run *run) {
 // -- closing lines --------------------------------------------------------------------------------
 
 // Channels worth a line: the turbine's main ones, or else the first few.
-static void tell_channels(const bough_run *run, FILE *stream) {
+static void tell_channels(bough_run *run, FILE *stream) {
     static const char *const main_channels[] = {"RotSpeed",  "RtAeroFxh", "RtAeroMxh",
                                                 "RtAeroPwr", "OoPDefl1",  "IPDefl1"};
     enum { MAIN = sizeof main_channels / sizeof *main_channels, FIRST_FEW = 4 };
     const bough_channels *c = &run->channels;
-    double *value = bough_arena_doubles(run->arena, (size_t)c->count + 1);
-    if (!value) return;
-    bough_channels_sample(c, run->simulation->master->time, value);
+    const double *value = bough_run_values(run);
+    if (!value) return; // after a failure the state means nothing
     bool turbine = run->simulation->scene->turbine.node != NULL;
     for (int i = 0; i < (turbine ? MAIN : FIRST_FEW); i++) {
         int k = turbine ? bough_channels_find(c, main_channels[i]) : i;
@@ -215,14 +209,14 @@ static void tell_energy(const bough_run *run, FILE *stream) {
     }
 }
 
-void bough_run_tell(const bough_run *run, FILE *stream) {
+void bough_run_tell(bough_job *job, FILE *stream) {
+    bough_run *run = &job->run;
     fprintf(stream, "status: %s\n", outcome_name(run));
     fprintf(stream, "time: %.9g s\n", run->simulation->master->time);
     fprintf(stream, "real_time_factor: %.3g\n", real_time_factor(run));
     fprintf(stream, "wall_s: %.3g\n", run->wall_s);
     fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);
-    // After a failure the state means nothing.
-    if (strcmp(outcome_name(run), "failed") != 0) tell_channels(run, stream);
+    tell_channels(run, stream);
     tell_energy(run, stream);
-    fprintf(stream, "out: %s\n", run->folder);
+    fprintf(stream, "out: %s\n", job->folder);
 }

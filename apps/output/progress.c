@@ -37,7 +37,11 @@ void bough_progress_show(bough_progress *p, double t) {
     if (now - p->shown < 0.1) return;
     p->shown = now;
     char text[128];
-    bough_progress_text(p, t, now - p->began, text, sizeof text);
+    if (p->label) {
+        snprintf(text, sizeof text, "%-50.50s %8.2f of %.6g s", p->label, t, p->end);
+    } else {
+        bough_progress_text(p, t, now - p->began, text, sizeof text);
+    }
     fprintf(stderr, "\r%-72s", text);
     fflush(stderr);
 }

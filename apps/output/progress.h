@@ -9,6 +9,7 @@ typedef struct bough_progress {
     bool visible;        // stderr is a terminal and the user did not ask for quiet
     double start, end;   // simulated [s]
     double began, shown; // wall clock [s]
+    const char *label;   // what runs, in place of the speed; NULL: none
 } bough_progress;
 
 bough_progress bough_progress_start(double t, double t_end, bool quiet);

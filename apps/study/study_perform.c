@@ -59,7 +59,7 @@ static bough_status start(bough_arena *arena, work *w) {
 static bough_status run_reference(work *w) {
     const bough_study_cell *cell = w->study->reference_cell;
     bough_study_result result;
-    w->drive.label = "reference";
+    w->drive.progress.label = "reference";
     bough_status status = bough_study_run(w->study, cell, 1, &w->drive, &w->reference, &result);
     if (!bough_is_ok(&status)) return status;
     if (!bough_is_ok(&result.outcome)) {
@@ -76,7 +76,7 @@ static bough_status run_cell(work *w, int i) {
     bough_study_result *result = &w->results.result[i];
     char label[96];
     snprintf(label, sizeof label, "run %d of %d: %.50s", i + 1, w->study->n_cell, cell->settings);
-    w->drive.label = label;
+    w->drive.progress.label = label;
     bough_status status =
         bough_study_run(w->study, cell, w->study->repeat, &w->drive, &w->series, result);
     if (!bough_is_ok(&status)) return status;

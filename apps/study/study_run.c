@@ -1,37 +1,24 @@
 #include "apps/study/study_run.h"
 
 #include "apps/scene/fingerprint.h"
-#include "apps/simulation/error_probe.h"
+#include "apps/simulation/run.h"
 
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { MAX_REPEAT = 99 };
 
-typedef struct run {
+typedef struct cell_run {
     const bough_study *study;
-    bough_study_drive *drive;
-    bough_simulation *simulation;
-    bough_channels channels;
-    int *column;   // (n_channel) of the study's channels among the simulation's
-    double *value; // (channels.count) scratch
+    bough_run run;
+    int *column; // (n_channel) of the study's channels among the run's
     bough_study_series *series;
-    bough_error_probe probe;
+    long batches;            // of the estimate, seen so far
     double *gathered, *zero; // (n_channel) scratch
     double *estimate;        // (n_measure)
-    bough_status outcome;
-} run;
-
-// Runs side by side have one thread each.
-static double cpu_clock(const bough_study *study) {
-    struct timespec now;
-    bool own = study->kind == BOUGH_STUDY_STABILITY;
-    clock_gettime(own ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
+} cell_run;
 
 // -- sampling -------------------------------------------------------------------------------------
 
@@ -42,17 +29,15 @@ bough_study_series bough_study_series_take(bough_arena *arena, const bough_study
     return series;
 }
 
-static void sample_when_due(run *r) {
-    const bough_master *m = r->simulation->master;
+static bough_status sample(void *self, double t) {
+    cell_run *r = self;
     bough_study_series *s = r->series;
-    double due = s->filled * r->study->interval;
-    if (s->filled == s->n_row || m->time < due - 1e-6 * m->macro_step) return;
-    bough_simulation_update(r->simulation);
-    bough_channels_sample(&r->channels, m->time, r->value);
-    double *row = s->value + (size_t)s->filled * (size_t)s->n_channel;
+    assert(s->filled < s->n_row);
+    bough_channels_sample(&r->run.channels, t, r->run.value);
+    double *row = s->value + (size_t)s->filled++ * (size_t)s->n_channel;
     for (int i = 0; i < s->n_channel; i++)
-        row[i] = r->value[r->column[i]];
-    s->filled++;
+        row[i] = r->run.value[r->column[i]];
+    return bough_ok();
 }
 
 // -- norms ----------------------------------------------------------------------------------------
@@ -73,15 +58,18 @@ static double difference(const double *a, const double *b, int n, int norm) {
 // -- the run's own estimate -----------------------------------------------------------------------
 
 // A channel that does not follow from the states has none.
-static void gather_estimate(run *r) {
+static void gather_estimate(cell_run *r) {
     for (int i = 0; i < r->study->n_channel; i++) {
-        bool known = r->column[i] < r->simulation->n_motion_channel;
-        r->gathered[i] = known ? r->probe.difference[r->column[i]] : (double)NAN;
+        bool known = r->column[i] < r->run.simulation->n_motion_channel;
+        r->gathered[i] = known ? r->run.probe.difference[r->column[i]] : (double)NAN;
     }
 }
 
-static void update_estimates(run *r, double *estimate) {
-    if (!bough_error_probe_update(&r->probe)) return;
+// After a step.
+static bough_status update_estimates(void *self) {
+    cell_run *r = self;
+    if (r->run.probe.batches == r->batches) return bough_ok();
+    r->batches = r->run.probe.batches;
     gather_estimate(r);
     int first = 0;
     for (int i = 0; i < r->study->n_measure; i++) {
@@ -91,56 +79,26 @@ static void update_estimates(run *r, double *estimate) {
             worst = larger(worst, difference(r->gathered + first, r->zero, m->channels.item[k].n,
                                              m->norm));
         }
-        estimate[i] = larger(estimate[i], m->scale * worst);
+        r->estimate[i] = larger(r->estimate[i], m->scale * worst);
     }
+    return bough_ok();
 }
 
 // -- one run --------------------------------------------------------------------------------------
 
-static void show_progress(bough_study_drive *drive, const bough_master *m) {
-    double now = drive->progress.visible ? bough_wall_clock() : 0;
-    if (!drive->progress.visible || now - drive->progress.shown < 0.1) return;
-    drive->progress.shown = now;
-    fprintf(stderr, "\r%-50.50s %8.2f of %.6g s", drive->label, m->time, m->duration);
-    fflush(stderr);
-}
-
-static bough_status step(run *r) {
-    bough_master *m = r->simulation->master;
-    if (r->drive->stop && r->drive->stop()) return bough_fail(BOUGH_INTERRUPTED, "interrupted");
-    bough_status status = bough_step(m);
-    update_estimates(r, r->estimate);
-    if (bough_is_ok(&status)) sample_when_due(r);
-    show_progress(r->drive, m);
-    return status;
-}
-
-static void step_all(void *self) {
-    run *r = self;
-    r->outcome = bough_ok();
-    sample_when_due(r);
-    while (bough_is_ok(&r->outcome) && !bough_master_done(r->simulation->master)) {
-        r->outcome = step(r);
-    }
-}
-
-static bough_status find_channels(bough_arena *arena, run *r) {
+static bough_status find_channels(bough_arena *arena, cell_run *r) {
     const bough_study *s = r->study;
-    r->channels = bough_channels_start(arena);
-    bough_status status = bough_simulation_channels(r->simulation, &r->channels);
-    if (!bough_is_ok(&status)) return status;
     r->column = bough_arena_take(arena, (size_t)s->n_channel * sizeof *r->column);
-    r->value = bough_arena_doubles(arena, (size_t)r->channels.count);
     r->gathered = bough_arena_doubles(arena, (size_t)s->n_channel);
     r->zero = bough_arena_doubles(arena, (size_t)s->n_channel);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < s->n_channel; i++) {
-        r->column[i] = bough_channels_find(&r->channels, s->channel[i]);
+        r->column[i] = bough_channels_find(&r->run.channels, s->channel[i]);
         if (r->column[i] < 0) {
             return bough_fail(BOUGH_INVALID, "this run has no channel '%.80s'", s->channel[i]);
         }
     }
-    return bough_error_probe_create(arena, r->simulation, &r->channels, &r->probe);
+    return bough_run_estimate(arena, &r->run);
 }
 
 // Every cell was read when the study began: an error now is none of the cell, nor may a changed scene
@@ -162,34 +120,41 @@ static bough_status read_scene(bough_arena *arena, const bough_study *study,
                       errors.n > 0 ? ": " : "", errors.n > 0 ? errors.item[0].text : "");
 }
 
-static bough_status build(bough_arena *arena, const bough_study_cell *cell, run *r) {
+static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell_run *r) {
     bough_scene *scene;
     bough_status status = read_scene(arena, r->study, cell, &scene);
     if (!bough_is_ok(&status)) return status;
     if (r->study->kind == BOUGH_STUDY_STABILITY) scene->simulation.threads = 1;
     else if (r->study->threads > 0) scene->simulation.threads = r->study->threads;
-    status = bough_simulation_build(arena, scene, &r->simulation);
+    status = bough_run_create(arena, scene, &r->run);
     if (bough_is_ok(&status)) status = find_channels(arena, r);
     return status;
 }
 
-static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, run *r,
-                           bough_study_result *result) {
+static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, cell_run *r,
+                           bough_study_drive *drive, bough_study_result *result) {
     bough_status status = build(arena, cell, r);
     if (!bough_is_ok(&status)) return status;
-    const bough_master *m = r->simulation->master;
+    bough_run *run = &r->run;
+    const bough_master *m = run->simulation->master;
     r->series->filled = 0;
-    double wall = bough_wall_clock(), cpu = cpu_clock(r->study);
     for (int i = 0; i < r->study->n_measure; i++) result->estimate[i] = m->estimate ? 0 : (double)NAN;
     r->estimate = result->estimate;
-    bough_pool_region(r->simulation->pool, step_all, r);
-    result->cpu = cpu_clock(r->study) - cpu;
-    result->wall = bough_wall_clock() - wall;
+    bough_run_record_at(run, (bough_run_record){r->study->interval, .sample = sample, .self = r});
+    run->beside = r->study->kind == BOUGH_STUDY_STABILITY; // these have one thread each
+    run->stop = drive->stop;
+    run->after = update_estimates;
+    run->self = r;
+    run->progress = &drive->progress;
+    bough_run_all(run);
+    update_estimates(r); // of a step that failed
+    result->cpu = run->cpu_s;
+    result->wall = run->wall_s;
     result->time = m->time;
     result->warned = m->verdict[0] != '\0';
     result->coupling = bough_monitor_report(m->monitor, m->coupling);
-    assert(!bough_is_ok(&r->outcome) || r->series->filled == r->series->n_row);
-    return r->outcome;
+    assert(!bough_is_ok(&run->outcome) || r->series->filled == r->series->n_row);
+    return run->outcome;
 }
 
 // -- repeats --------------------------------------------------------------------------------------
@@ -219,8 +184,8 @@ bough_status bough_study_run(const bough_study *study, const bough_study_cell *c
     while (n < repeat && bough_is_ok(&result->outcome)) {
         bough_arena *arena = bough_arena_create();
         if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-        run r = {.study = study, .drive = drive, .series = series};
-        result->outcome = run_in(arena, cell, &r, result);
+        cell_run r = {.study = study, .series = series};
+        result->outcome = run_in(arena, cell, &r, drive, result);
         bough_arena_destroy(arena);
         wall[n] = result->wall;
         cpu[n] = result->cpu;

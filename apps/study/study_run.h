@@ -27,8 +27,7 @@ typedef struct bough_study_result {
 // How the runs are driven.
 typedef struct bough_study_drive {
     bool (*stop)(void);      // asked before each step; NULL: never stops
-    bough_progress progress; // of the terminal's line
-    const char *label;       // what runs, for that line
+    bough_progress progress; // of the terminal's line, labelled by what runs
 } bough_study_drive;
 
 bough_study_series bough_study_series_take(bough_arena *arena, const bough_study *study);

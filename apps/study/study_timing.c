@@ -54,14 +54,14 @@ static int partner(const bough_study *s, int cell) {
 // Errors do not depend on the turn: bits are the same in all.
 static bough_status find_errors(timing *t) {
     bough_study_result reference;
-    t->drive.label = "reference";
+    t->drive.progress.label = "reference";
     bough_status status = bough_study_run(t->study, t->study->reference_cell, 1, &t->drive,
                                           &t->reference, &reference);
     if (!bough_is_ok(&status)) return status;
     if (!bough_is_ok(&reference.outcome)) return reference.outcome;
     for (int i = 0; i < t->study->n_cell; i++) {
         bough_study_result *result = &t->cell[i].result;
-        t->drive.label = t->study->cell[i].settings;
+        t->drive.progress.label = t->study->cell[i].settings;
         status = bough_study_run(t->study, &t->study->cell[i], 1, &t->drive, &t->series, result);
         if (!bough_is_ok(&status)) return status;
         if (!bough_is_ok(&result->outcome)) return result->outcome;

@@ -14,7 +14,7 @@ enum { ROOM = 1 << 17 };
 static const char scene[] = BOUGH_SOURCE_DIR "/apps/beams/rubber-bar.yaml";
 static const char *set[] = {"bodies[0].rod.segments=4", "simulation.duration=1000 s"};
 static bough_options options = {.operand = scene, .n_set = 2, .set = set, .quiet = true};
-static bough_run run;
+static bough_job job;
 static uint8_t good[ROOM], changed[ROOM];
 static size_t good_size;
 
@@ -46,18 +46,11 @@ static void make_good(void) {
 }
 
 static void start(void) {
-    if (run.arena) return;
+    if (job.arena) return;
     make_good();
     options.resume = true;
-    run = (bough_run){.options = &options, .arena = bough_arena_create(), .folder = fuzz_folder()};
-    bough_status status = bough_open(run.arena, &options, &run.simulation);
-    run.earlier = bough_arena_take(
-        run.arena, (size_t)run.simulation->master->assembly->n_member * sizeof *run.earlier);
-    run.channels = bough_channels_start(run.arena);
-    if (bough_is_ok(&status)) status = bough_simulation_channels(run.simulation, &run.channels);
-    if (bough_is_ok(&status)) {
-        status = bough_error_probe_create(run.arena, run.simulation, &run.channels, &run.probe);
-    }
+    job = (bough_job){.options = &options, .arena = bough_arena_create(), .folder = fuzz_folder()};
+    bough_status status = bough_job_build(&job);
     fuzz_demand(bough_is_ok(&status), "a run");
 }
 
@@ -83,12 +76,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     start();
     size_t n = change(data, size);
     fuzz_file("checkpoint.bin", changed, n);
-    bough_arena *arena = run.arena;
-    run.arena = bough_arena_create();
-    run.checkpoint = (bough_checkpoint){0};
-    bough_status status = bough_checkpoint_open(&run);
-    bough_arena_destroy(run.arena);
-    run.arena = arena;
+    bough_arena *arena = job.arena;
+    job.arena = bough_arena_create();
+    job.checkpoint = (bough_checkpoint){0};
+    bough_status status = bough_checkpoint_open(&job);
+    bough_arena_destroy(job.arena);
+    job.arena = arena;
     bool same = n == good_size && memcmp(changed, good, n) == 0;
     fuzz_demand(bough_is_ok(&status) == same, "accepted as it was written, else refused");
     fuzz_demand(same || (status.code == BOUGH_INVALID && status.message[0]), "a reason");

@@ -181,7 +181,7 @@ static bough_status compare_blades(const bough_rival_blade *base, outcome *o) {
 
 static bough_status run_once(contest *c, outcome *o, bough_study_series *series) {
     bough_study_result result;
-    c->drive.label = o->cell.settings;
+    c->drive.progress.label = o->cell.settings;
     bough_status status = bough_study_run(&c->run, &o->cell, 1, &c->drive, series, &result);
     if (!bough_is_ok(&status)) return status;
     if (!bough_is_ok(&result.outcome)) {

@@ -3,6 +3,7 @@
 
 #include "apps/analysis/steady.h"
 #include "apps/analysis/vibration.h"
+#include "apps/simulation/run.h"
 #include "apps/simulation/settle.h"
 #include "flexbody/rod_modes.h"
 
@@ -13,7 +14,7 @@
 // -- scene ----------------------------------------------------------------------------------------
 
 static bough_status open_scene(bough_arena *arena, const bough_verify_case *x, int k,
-                               bough_simulation **s) {
+                               bough_run *run) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
     char mesh[160];
@@ -28,7 +29,7 @@ static bough_status open_scene(bough_arena *arena, const bough_verify_case *x, i
     }
     bough_status status = bough_scene_read(arena, x->scene, set, n, &errors, &scene);
     if (!bough_is_ok(&status)) return status;
-    return bough_simulation_build(arena, scene, s);
+    return bough_run_create(arena, scene, run);
 }
 
 static const bough_beam *first_rod(const bough_simulation *s) {
@@ -244,11 +245,10 @@ typedef struct wave {
     double sum, cosine, sine;
 } wave;
 
-typedef struct run {
+typedef struct case_run {
     const bough_verify_case *x;
-    bough_simulation *simulation;
-    bough_channels channels;
-    double *sample; // (channels.count)
+    bough_run *run;
+    const double *sample; // (run->channels.count)
     int *column;    // (n_expect); −1: no channel
     drift *drift;   // (n_expect)
     wave *wave;     // (n_expect)
@@ -256,25 +256,21 @@ typedef struct run {
     gauge gauge;
     bool conserves; // some quantity is a drift
     double *value;  // (n_expect)
-} run;
+} case_run;
 
-static bough_status prepare(bough_arena *arena, run *r) {
+static bough_status prepare(bough_arena *arena, case_run *r) {
     size_t n = (size_t)r->x->n_expect;
-    r->channels = bough_channels_start(arena);
-    bough_status status = bough_simulation_channels(r->simulation, &r->channels);
-    if (!bough_is_ok(&status)) return status;
-    r->sample = bough_arena_doubles(arena, (size_t)r->channels.count + 1);
     r->column = bough_arena_take(arena, n * sizeof *r->column);
     r->drift = bough_arena_take(arena, n * sizeof *r->drift);
     r->wave = bough_arena_take(arena, n * sizeof *r->wave);
-    r->azimuth = bough_channels_find(&r->channels, "Azimuth");
-    if (!gauge_init(&r->gauge, arena, r->simulation)) {
+    r->azimuth = bough_channels_find(&r->run->channels, "Azimuth");
+    if (!gauge_init(&r->gauge, arena, r->run->simulation)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     }
     for (int i = 0; i < r->x->n_expect; i++) {
         const bough_verify_quantity *q = &r->x->expect[i].quantity;
         if (!r->x->expect[i].diagnosis && q->what == BOUGH_VERIFY_DRIFT) r->conserves = true;
-        r->column[i] = q->channel ? bough_channels_find(&r->channels, q->channel) : -1;
+        r->column[i] = q->channel ? bough_channels_find(&r->run->channels, q->channel) : -1;
         if (q->channel && r->column[i] < 0) {
             return bough_fail(BOUGH_INVALID, "the scene has no channel '%.60s'", q->channel);
         }
@@ -282,7 +278,7 @@ static bough_status prepare(bough_arena *arena, run *r) {
             return bough_fail(BOUGH_INVALID, "the scene has no rotor for an amplitude per turn");
         }
     }
-    return status;
+    return bough_ok();
 }
 
 static double follow_wave(wave *w, bool amplitude, double sample, double azimuth) {
@@ -294,9 +290,9 @@ static double follow_wave(wave *w, bool amplitude, double sample, double azimuth
     return amplitude ? 2 * hypot(w->cosine, w->sine) / w->n : w->sum / w->n;
 }
 
-static void look_at(run *r, int i, double t, const invariants *now) {
+static void look_at(case_run *r, int i, double t, const invariants *now) {
     const bough_verify_quantity *q = &r->x->expect[i].quantity;
-    double close = 1e-6 * r->simulation->master->macro_step, *value = &r->value[i];
+    double close = 1e-6 * r->run->simulation->master->macro_step, *value = &r->value[i];
     double sample = r->column[i] >= 0 ? r->sample[r->column[i]] : 0;
     bool first = isnan(*value);
     if (q->what == BOUGH_VERIFY_AT && fabs(t - q->time) < close) *value = sample;
@@ -314,21 +310,22 @@ static void look_at(run *r, int i, double t, const invariants *now) {
     }
 }
 
-static void look(run *r) {
-    double t = r->simulation->master->time;
+static bough_status look(void *self) {
+    case_run *r = self;
+    double t = r->run->simulation->master->time;
     invariants now = {0};
     if (r->conserves) now = measure(&r->gauge);
-    bough_simulation_update(r->simulation);
-    bough_channels_sample(&r->channels, t, r->sample);
+    r->sample = bough_run_values(r->run);
     for (int i = 0; i < r->x->n_expect; i++) {
         if (!r->x->expect[i].diagnosis) look_at(r, i, t, &now);
     }
+    return bough_ok();
 }
 
 // What a step of the tree takes.
-static void count_work(run *r) {
+static void count_work(case_run *r) {
     bough_statistics work;
-    const bough_subsystem *trunk = &r->simulation->trunk;
+    const bough_subsystem *trunk = &r->run->simulation->trunk;
     trunk->ops->statistics(trunk->self, &work);
     for (int i = 0; i < r->x->n_expect; i++) {
         const bough_verify_expect *e = &r->x->expect[i];
@@ -337,24 +334,24 @@ static void count_work(run *r) {
     }
 }
 
-static bough_status do_run(bough_arena *arena, const bough_verify_case *x, bough_simulation *s,
+static bough_status do_run(bough_arena *arena, const bough_verify_case *x, bough_run *run,
                            bool (*stop)(void), double *value) {
-    run r = {.x = x, .simulation = s, .value = value};
+    case_run r = {.x = x, .run = run, .value = value};
     bough_status status = prepare(arena, &r);
-    if (bough_is_ok(&status)) look(&r);
-    while (bough_is_ok(&status) && !bough_master_done(s->master)) {
-        if (stop && stop()) return bough_fail(BOUGH_INTERRUPTED, "interrupted");
-        status = bough_step(s->master);
-        if (bough_is_ok(&status)) look(&r);
-    }
-    count_work(&r);
-    return status;
+    if (!bough_is_ok(&status)) return status;
+    look(&r);
+    run->stop = stop;
+    run->after = look;
+    run->self = &r;
+    bough_run_all(run);
+    if (run->outcome.code != BOUGH_INTERRUPTED) count_work(&r);
+    return run->outcome;
 }
 
 void bough_verify_run(bough_arena *arena, const bough_verify_case *x, int k, bool (*stop)(void),
                       bough_verify_result *result) {
     bough_arena *own = bough_arena_create();
-    bough_simulation *s = NULL;
+    bough_run run;
     result->value = bough_arena_doubles(arena, (size_t)x->n_expect);
     if (!own || !result->value) {
         result->outcome = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
@@ -363,14 +360,15 @@ void bough_verify_run(bough_arena *arena, const bough_verify_case *x, int k, boo
     }
     for (int i = 0; i < x->n_expect; i++)
         result->value[i] = NAN;
-    result->outcome = open_scene(own, x, k, &s);
+    result->outcome = open_scene(own, x, k, &run);
     if (bough_is_ok(&result->outcome) && x->action == BOUGH_VERIFY_INFLOW) {
-        result->outcome = bough_verify_inflow(own, x, s->scene, result->value);
+        result->outcome = bough_verify_inflow(own, x, run.simulation->scene, result->value);
     } else if (bough_is_ok(&result->outcome)) {
+        bough_simulation *s = run.simulation;
         result->outcome = x->action == BOUGH_VERIFY_STATIC ? do_static(own, x, s, result->value)
                           : x->action == BOUGH_VERIFY_MODES
                               ? do_modes(own, x, s, result->value)
-                              : do_run(own, x, s, stop, result->value);
+                              : do_run(own, x, &run, stop, result->value);
     }
     bough_arena_destroy(own);
 }

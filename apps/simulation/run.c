@@ -1,0 +1,188 @@
+#include "apps/simulation/run.h"
+
+#include <assert.h>
+#include <math.h>
+#include <time.h>
+
+// -- building -------------------------------------------------------------------------------------
+
+bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, bough_run *run) {
+    *run = (bough_run){.outcome = bough_ok()};
+    bough_status status = bough_simulation_build(arena, scene, &run->simulation);
+    if (!bough_is_ok(&status)) return status;
+    run->channels = bough_channels_start(arena);
+    status = bough_simulation_channels(run->simulation, &run->channels);
+    if (!bough_is_ok(&status)) return status;
+    size_t n = (size_t)run->simulation->master->assembly->n_member;
+    run->value = bough_arena_doubles(arena, (size_t)run->channels.count + 1);
+    run->earlier = bough_arena_take(arena, n * sizeof *run->earlier);
+    return run->value && run->earlier ? status : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+}
+
+bough_status bough_run_estimate(bough_arena *arena, bough_run *run) {
+    return bough_error_probe_create(arena, run->simulation, &run->channels, &run->probe);
+}
+
+static bool estimates(const bough_run *run) { return run->probe.simulation != NULL; }
+
+// -- recording ------------------------------------------------------------------------------------
+
+// Times closer than this are one [s].
+static double resolution(const bough_run *run) {
+    return 1e-6 * run->simulation->master->macro_step;
+}
+
+void bough_run_record_at(bough_run *run, bough_run_record record) {
+    assert(run->n_record < BOUGH_RUN_RECORDS && record.interval > 0);
+    double now = run->simulation->master->time;
+    record.next = (long)ceil((now - resolution(run)) / record.interval);
+    record.last = -HUGE_VAL;
+    run->record[run->n_record++] = record;
+}
+
+static bough_status take_record(bough_run *run, bough_run_record *r) {
+    double now = run->simulation->master->time;
+    while ((double)r->next * r->interval <= now + resolution(run)) r->next++;
+    r->last = now;
+    bough_simulation_update(run->simulation);
+    return r->sample(r->self, now);
+}
+
+static bough_status record_due(bough_run *run) {
+    double now = run->simulation->master->time;
+    bough_status status = bough_ok();
+    for (int i = 0; i < run->n_record && bough_is_ok(&status); i++) {
+        bough_run_record *r = &run->record[i];
+        if (now < (double)r->next * r->interval - resolution(run)) continue;
+        status = take_record(run, r);
+    }
+    return status;
+}
+
+bough_status bough_run_start(bough_run *run) { return record_due(run); }
+
+// After a numerical failure the state means nothing: only a run that could go on gets a last record.
+static bough_status record_end(bough_run *run, bough_status status) {
+    if (!bough_is_ok(&status) && status.code != BOUGH_INTERRUPTED) return status;
+    for (int i = 0; i < run->n_record; i++) {
+        bough_run_record *r = &run->record[i];
+        if (!r->at_end || r->last >= run->simulation->master->time) continue;
+        bough_status end = take_record(run, r);
+        if (!bough_is_ok(&end)) return end;
+    }
+    return status;
+}
+
+const double *bough_run_values(bough_run *run) {
+    bool failed = !bough_is_ok(&run->outcome) && run->outcome.code != BOUGH_INTERRUPTED;
+    if (failed) return NULL;
+    if (!run->sampled) {
+        bough_simulation_update(run->simulation);
+        bough_channels_sample(&run->channels, run->simulation->master->time, run->value);
+    }
+    run->sampled = true;
+    return run->value;
+}
+
+// -- stepping -------------------------------------------------------------------------------------
+
+bough_status bough_run_step(bough_run *run) {
+    run->sampled = false;
+    run->outcome = bough_step(run->simulation->master);
+    if (estimates(run)) bough_error_probe_update(&run->probe);
+    if (bough_is_ok(&run->outcome)) run->outcome = record_due(run);
+    return run->outcome;
+}
+
+bool bough_run_done(const bough_run *run) { return bough_master_done(run->simulation->master); }
+
+static double cpu_clock(const bough_run *run) {
+    struct timespec now;
+    clock_gettime(run->beside ? CLOCK_THREAD_CPUTIME_ID : CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+void bough_run_settle_clock(bough_run *run) {
+    double wall = bough_wall_clock(), cpu = cpu_clock(run);
+    run->wall_s += wall - run->wall_from;
+    run->cpu_s += cpu - run->cpu_from;
+    run->wall_from = wall;
+    run->cpu_from = cpu;
+}
+
+static bough_status step(bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    if (run->stop && run->stop()) {
+        return bough_fail(BOUGH_INTERRUPTED, "interrupted at %.9g s of %.9g s", m->time,
+                          m->duration);
+    }
+    bough_status status = bough_run_step(run);
+    return bough_is_ok(&status) && run->after ? run->after(run->self) : status;
+}
+
+static void step_all(void *self) {
+    bough_run *run = self;
+    run->wall_from = bough_wall_clock();
+    run->cpu_from = cpu_clock(run);
+    bough_status status = bough_run_start(run);
+    while (bough_is_ok(&status) && !bough_run_done(run)) {
+        status = step(run);
+        if (run->progress) bough_progress_show(run->progress, run->simulation->master->time);
+    }
+    run->outcome = record_end(run, status);
+    bough_run_settle_clock(run);
+}
+
+void bough_run_all(bough_run *run) { bough_pool_region(run->simulation->pool, step_all, run); }
+
+// -- copies ---------------------------------------------------------------------------------------
+
+bough_statistics bough_run_statistics(const bough_run *run, int member) {
+    const bough_subsystem *subsystem = run->simulation->master->assembly->member[member];
+    bough_statistics done = {0};
+    subsystem->ops->statistics(subsystem->self, &done);
+    bough_statistics_add(&done, &run->earlier[member]);
+    return done;
+}
+
+// Work is counted by the solvers of this process; `earlier` adds that of the ones before it.
+static void take_statistics(bough_run *run, bough_snapshot *s) {
+    const bough_assembly *a = run->simulation->master->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        bough_statistics *earlier = &run->earlier[i];
+        bough_statistics total = bough_run_statistics(run, i), now = total;
+        bough_statistics_subtract(&now, earlier);
+        bough_snapshot_take(s, &total, sizeof total);
+        bough_statistics_subtract(&total, &now);
+        *earlier = total;
+    }
+}
+
+static void take_probe(bough_error_probe *probe, int n, bough_snapshot *s) {
+    bough_snapshot_take(s, &probe->batches, sizeof probe->batches);
+    bough_snapshot_doubles(s, probe->largest, n);
+    bough_snapshot_doubles(s, probe->low, n);
+    bough_snapshot_doubles(s, probe->high, n);
+}
+
+void bough_run_snapshot(bough_run *run, bough_snapshot *s) {
+    bough_simulation_snapshot(run->simulation, s);
+    take_statistics(run, s);
+    if (estimates(run)) take_probe(&run->probe, run->channels.count, s);
+    for (int i = 0; i < run->n_record; i++) {
+        bough_snapshot_take(s, &run->record[i].next, sizeof run->record[i].next);
+        bough_snapshot_take(s, &run->record[i].last, sizeof run->record[i].last);
+    }
+    if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
+    run->outcome = bough_ok();
+    run->sampled = false;
+}
+
+bough_status bough_run_storable(const bough_run *run) {
+    const bough_master *m = run->simulation->master;
+    if (bough_master_sampled(m)) return bough_simulation_storable(run->simulation);
+    return bough_fail(BOUGH_INVALID,
+                      "at %.9g s the air or the control is between two samples, whose past is in no "
+                      "copy: step on",
+                      m->time);
+}
