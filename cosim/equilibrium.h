@@ -1,7 +1,7 @@
 // Equilibrium of the coupled system, F(t, y) = 0 at a fixed time, but for the states that it holds:
 // an angle that goes on turning and its speed, say, whose rates need not vanish. Method: implicit
-// Euler steps with one linearisation each and growing length γ, which follow the damped motion from
-// the initial state until, at the longest, they are Newton's method. An equilibrium near the
+// Euler steps of growing length γ, two Newton corrections each, which follow the motion downhill
+// from the initial state until, at the longest, they are Newton's method. An equilibrium near the
 // initial state may be found though it is unstable.
 #ifndef BOUGH_COSIM_EQUILIBRIUM_H
 #define BOUGH_COSIM_EQUILIBRIUM_H
@@ -14,9 +14,12 @@ typedef struct bough_equilibrium_def {
     double tolerance; // of the last step, in units of the members' scales
     int steps;        // most, refused ones among them
     void *self;
+    // moved (n_state) ← state after a finite change, as its rotations and shapes add up; returns
+    // the largest turn in it [rad]. NULL: state + change.
+    double (*move)(void *self, const double *state, const double *change, double *moved);
     // Takes the motion that is not part of the equilibrium out of a state, after each step; NULL:
     // none.
-    void (*calm)(void *self, double *state);
+    void (*rest)(void *self, double *state);
 } bough_equilibrium_def;
 
 // Time 0, 0.1 s, 1e-10, 1000 steps.

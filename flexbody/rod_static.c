@@ -1,7 +1,7 @@
 #include "flexbody/rod_static.h"
 
 #include "flexbody/rod_linear.h"
-#include "flexbody/rod_segment.h"
+#include "flexbody/rod_move.h"
 
 #include <float.h>
 #include <string.h>
@@ -79,57 +79,13 @@ static bough_vec3 step_of(const double *step, int i, int from) {
     return bough_v3(d[0], d[1], d[2]);
 }
 
-static vertex_state vertex_of(const bough_rod_model *m, const double *state, int i) {
-    int n = m->n;
-    if (i < 0) return (vertex_state){.x = m->position0[0], .p = m->rotation0[0]};
-    return (vertex_state){
-        .x = {state[i], state[n + i], state[2 * n + i]},
-        .p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]}};
-}
-
-// The chord in the mid frame, and how it changes along the step to first order.
-static bough_vec3 stretched(const segment_geometry *s, const vertex_state *l, const vertex_state *r,
-                            vertex_variation dl, vertex_variation dr) {
-    bough_vec3 a = half_backward(s->v, s->t, dl.phi), b = half_forward(s->v, s->t, dr.phi);
-    bough_vec3 turn = bough_scale(
-        0.5, bough_add(bough_add(a, b), bough_cross(bough_sub(b, a), s->t)));
-    bough_vec3 chord = bough_mat3_tmul(s->r, bough_sub(r->x, l->x));
-    bough_vec3 change = bough_mat3_tmul(s->r, bough_sub(dr.x, dl.x));
-    return bough_add(chord, bough_sub(change, bough_cross(turn, chord)));
-}
-
-// p ← p∘exp(δφ), and positions from the root on by the strains that the step gives to first order:
-// a slender rod then turns without stretching. With x += δx its axial stiffness would answer to the
-// square of the turn. Shortened so that no vertex turns by more than most_turn. Returns the largest
-// change, lengths measured against the rod's.
+// Moves the rod by a step, shortened so that no vertex turns by more than most_turn. Returns the
+// largest change, lengths measured against the rod's.
 static double update(const bough_rod_model *m, const double *step, double *state) {
-    int n = m->n;
-    double turn = 0, shift = 0;
-    for (int i = 0; i < n; i++) {
-        turn = fmax(turn, bough_norm(step_of(step, i, 3)));
-        shift = fmax(shift, bough_norm(step_of(step, i, 0)) / m->span[n]);
-    }
-    double share = turn > most_turn ? most_turn / turn : 1;
-    vertex_state old = vertex_of(m, state, -1), now = old;
-    vertex_variation dl = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-    for (int i = 0; i < n; i++) {
-        vertex_state r = vertex_of(m, state, i), moved = r;
-        vertex_variation dr = dl;
-        dr.x = bough_scale(share, step_of(step, i, 0));
-        dr.phi = bough_scale(share, step_of(step, i, 3));
-        moved.p = bough_quaternion_normalised(
-            bough_quaternion_product(r.p, bough_quaternion_exponential(dr.phi)));
-        segment_geometry before = segment_shape(old, r, m->inverse_length[i]);
-        segment_geometry after = segment_shape(now, moved, m->inverse_length[i]);
-        bough_vec3 chord = bough_mat3_mul(after.r, stretched(&before, &old, &r, dl, dr));
-        moved.x = bough_add(now.x, chord);
-        const double values[7] = {moved.x.x, moved.x.y, moved.x.z, moved.p.w,
-                                  moved.p.x, moved.p.y, moved.p.z};
-        for (int c = 0; c < 7; c++) state[c * n + i] = values[c];
-        old = r;
-        now = moved;
-        dl = dr;
-    }
+    double turn = bough_rod_turn(m, step), shift = 0;
+    for (int i = 0; i < m->n; i++)
+        shift = fmax(shift, bough_norm(step_of(step, i, 0)) / m->span[m->n]);
+    bough_rod_move(m, step, turn > most_turn ? most_turn / turn : 1, state, NULL);
     return fmax(turn, shift);
 }
 

@@ -48,6 +48,27 @@ static void chain_hangs(void **context) {
     bough_arena_destroy(arena);
 }
 
+// The elastica under a transverse force F L²/EI = 1 and 10: tip deflections of the exact solution
+// (K. Bisshopp and D. Drucker 1945). Positions alone would let the axial stiffness answer to the square
+// of every turn.
+static void massless_tip_bends_the_elastica(void **context) {
+    (void)context;
+    const struct {
+        const char *force;
+        double deflection;
+    } cases[] = {{"loads[0].force=[1, 0, 0]", 0.30172}, {"loads[0].force=[10, 0, 0]", 0.81061}};
+    for (int k = 0; k < 2; k++) {
+        const char *sets[] = {cases[k].force, NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, "tests/scenes/elastica-tip.yaml", sets);
+        bough_settling settling = settled(s);
+        assert_in_range(settling.steps, 1, 30);
+        bough_quaternion p;
+        check_near(bough_simulation_beam_tip(s, &s->beam[0], &p).x, cases[k].deflection, 2e-4, 0);
+        bough_arena_destroy(arena);
+    }
+}
+
 // x″ = −k² x with x′(L) = 1, k² = ρA Ω²/EA: the tip of a turning bar is at tan(kL)/k.
 static void turning_bar_stretches(void **context) {
     (void)context;
@@ -174,6 +195,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(spring_holds_the_pendulum),
         cmocka_unit_test(chain_hangs),
+        cmocka_unit_test(massless_tip_bends_the_elastica),
         cmocka_unit_test(turning_bar_stretches),
         cmocka_unit_test(rod_alone_settles_where_its_own_statics_says),
         cmocka_unit_test(parked_turbine_stays_at_rest),

@@ -3,8 +3,9 @@
 #include "apps/simulation/aero_link.h"
 #include "apps/simulation/drag_link.h"
 #include "cosim/equilibrium.h"
-#include "flexbody/rod_linear.h"
+#include "flexbody/rod_move.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { SAMPLES = 60 }; // of the air, most
@@ -129,11 +130,40 @@ typedef struct settler {
     bough_simulation *simulation;
     bough_coupled *coupled;
     double time;
+    double *change; // of one rod's vertices, see rod_move.h
 } settler;
 
-// Joints rest but for those held, and the rods ride on them. Where something turns the search must
-// not follow the vibration: Coriolis forces lead it astray.
-static void calm(void *self, double *state) {
+// Rods turn without stretching, and what hangs on their ends goes with them.
+static double move(void *self, const double *state, const double *change, double *moved) {
+    const settler *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_assembly *a = x->coupled->assembly;
+    double turn = 0;
+    for (int k = 0; k < a->n_state; k++)
+        moved[k] = state[k] + change[k];
+    for (int k = 0; k < s->n_beam; k++) {
+        const bough_beam *beam = &s->beam[k];
+        if (!beam->rod) continue;
+        const bough_rod_model *m = bough_rod_body_model(beam->rod);
+        size_t own = (size_t)a->state_offset[beam->port + 1], size = BOUGH_ROD_U * (size_t)m->n;
+        size_t end = 0; // of a rod that carries nothing: not read
+        if (beam->end >= 0) {
+            int link = s->tree->ends[beam->end].link;
+            end = (size_t)s->tree->links[link].first_coordinate;
+        }
+        bough_rod_change(m, state + own, state + end, change + own, change + end, x->change);
+        memcpy(moved + own, state + own, size * sizeof *moved);
+        if (beam->end >= 0) memcpy(moved + end, state + end, BOUGH_ROD_U * sizeof *moved);
+        bough_rod_move(m, x->change, 1, moved + own, moved + end);
+        turn = fmax(turn, bough_rod_turn(m, x->change));
+    }
+    return turn;
+}
+
+// Joints rest but for those held, and the rods ride on them. Then each step starts at rest: it goes
+// downhill and makes no vibration. A closed loop is not brought to rest unless something turns: it
+// may have to close, which takes velocities.
+static void bring_to_rest(void *self, double *state) {
     const settler *x = self;
     const bough_simulation *s = x->simulation;
     const bough_assembly *a = x->coupled->assembly;
@@ -161,6 +191,16 @@ static bool turns(const bough_coupled *coupled, const bough_tree *tree, const do
     return false;
 }
 
+// Room for the change of any rod.
+static double *rod_changes(bough_arena *arena, const bough_simulation *s) {
+    int most = 1;
+    for (int k = 0; k < s->n_beam; k++) {
+        int n = s->beam[k].def.n_segment;
+        if (n > most) most = n;
+    }
+    return bough_arena_doubles(arena, BOUGH_ROD_CHANGE * (size_t)most);
+}
+
 static bough_status settle_members(bough_arena *arena, bough_simulation *s,
                                    const bough_assembly *assembly, double time,
                                    bough_settling *settling) {
@@ -176,10 +216,12 @@ static bough_status settle_members(bough_arena *arena, bough_simulation *s,
     if (!bough_is_ok(&status)) return status;
     bough_settle_state(assembly, state);
     bough_tree_prescribe(s->tree, time, state);
-    settler self = {s, coupled, time};
+    settler self = {s, coupled, time, rod_changes(arena, s)};
+    if (!self.change) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     def.self = &self;
-    calm(&self, state);
-    if (turns(coupled, s->tree, state)) def.calm = calm;
+    def.move = move;
+    bring_to_rest(&self, state);
+    if (turns(coupled, s->tree, state) || s->tree->n_closures == 0) def.rest = bring_to_rest;
     return s->aero ? settle_in_air(arena, s, coupled, &def, state, settling)
                    : settle(arena, s, coupled, &def, state, settling);
 }
