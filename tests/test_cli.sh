@@ -321,6 +321,8 @@ statics() {
     has ../stdout '^whole scene: .* steps, .* samples of the air, loads at 20 s$'
     has ../stdout '^joint hub: revolute 0 deg, keeps its speed 0.5$'
     [ "$(wc -l <turning/static.csv)" -eq 148 ] || fail "$said: static.csv has not 148 lines"
+    has turning/static-channels.csv '^channel,unit,value'
+    has turning/static-channels.csv '^RtAeroMxh,N-m,[0-9]'
     rm -r turning
     expect 3 static "$turbine" --set bodies[2].joint.speed=0 --out failed
     has ../stderr 'no equilibrium found in .* a free joint needs a spring, a speed or a motion'

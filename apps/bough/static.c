@@ -122,6 +122,30 @@ static void write_rod(FILE *file, const bough_steady *x) {
     }
 }
 
+// What the run's channels are in the equilibrium: joints, drives, closures, markers, roots, rotor.
+static bough_status write_channels(bough_arena *arena, bough_simulation *s, const char *folder,
+                                   double time) {
+    bough_channels channels = bough_channels_start(arena);
+    bough_status status = bough_simulation_channels(s, &channels);
+    if (!bough_is_ok(&status)) return status;
+    double *value = bough_arena_doubles(arena, (size_t)channels.count + 1);
+    if (!value) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_simulation_update(s);
+    bough_channels_sample(&channels, time, value);
+    char path[BOUGH_PATH_MAX];
+    FILE *file = NULL;
+    status = bough_folder_path(folder, "static-channels.csv", path);
+    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    if (!bough_is_ok(&status)) return status;
+    fputs("channel,unit,value\n", file);
+    for (int i = 0; i < channels.count; i++) {
+        const bough_channel *c = &channels.channel[i];
+        printf("%s: %.7g %s\n", c->name, value[i], c->unit);
+        fprintf(file, "%s,%s,%.10g\n", c->name, c->unit, value[i]);
+    }
+    return bough_folder_commit(path, file);
+}
+
 static bough_status write_file(const char *folder, const bough_steady *steady, int n) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
@@ -202,6 +226,9 @@ bough_status bough_verb_static(bough_arena *arena, const bough_options *options)
     for (int k = 0; k < n; k++) print_rod(&steady[k]);
     print_modal(s);
     status = write_file(folder, steady, n);
+    if (bough_is_ok(&status) && !apart) {
+        status = write_channels(arena, s, folder, bough_settle_loaded(s));
+    }
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }
