@@ -58,6 +58,17 @@ static void fill_bins(bough_polar *polar, int *bin) {
     if (polar->n - 1 - knot > polar->most) polar->most = polar->n - 1 - knot;
 }
 
+// A table that leaves out a few of its own steps at the ends tells the whole turn.
+static void find_range(const bough_polar_def *def, bough_polar *polar) {
+    const double degree = BOUGH_PI / 180, gap = 360 - (def->row[4 * (def->n - 1)] - def->row[0]);
+    double widest = 0;
+    for (int i = 1; i < def->n; i++) {
+        widest = fmax(widest, def->row[4 * i] - def->row[4 * (i - 1)]);
+    }
+    polar->low = def->row[0] * degree;
+    polar->high = gap <= 2 * widest ? polar->low + turn : def->row[4 * (def->n - 1)] * degree;
+}
+
 // -- attached flow --------------------------------------------------------------------------------
 
 static double lift_at(const bough_polar *polar, double alpha) {
@@ -120,6 +131,7 @@ bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, b
     *polar =
         (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / turn, .bin = bin};
     fill_bins(polar, bin);
+    find_range(def, polar);
     fit_attached(polar);
     return bough_ok();
 }
@@ -150,7 +162,11 @@ bough_status bough_polar_blend(bough_arena *arena, const bough_polar *a, const b
         to[3] = (1 - share) * x.moment + share * y.moment;
     }
     bough_polar_def def = {.name = "blend", .n = n, .row = row};
-    return bough_polar_build(arena, &def, polar);
+    bough_status status = bough_polar_build(arena, &def, polar);
+    bool a_whole = a->high - a->low >= turn, b_whole = b->high - b->low >= turn;
+    polar->low = a_whole ? b->low : b_whole ? a->low : fmax(a->low, b->low);
+    polar->high = a_whole ? b->high : b_whole ? a->high : fmin(a->high, b->high);
+    return status;
 }
 
 // The slope at a knot between chords of slopes s0, s1 over h0, h1: none at an extremum, else the

@@ -31,6 +31,7 @@ typedef struct bough_polar {
     double bin_per_rad;
     const int *bin; // (n_bin): last knot at or below the bin's start
     int most;       // knots within a bin
+    double low, high; // the angles its rows tell, high up to a turn above low [rad]
     // Of attached flow; slope 0: no lift to speak of.
     double slope;     // the steepest line through zero lift that touches the polar [1/rad]
     double zero_lift; // where the lift grows through zero, nearest to no angle [rad]
@@ -71,6 +72,12 @@ static inline bough_coefficients bough_polar_at(const bough_polar *polar, double
     return (bough_coefficients){k.lift + d * d * (c[0] + d * c[1]),
                                 k.drag + d * d * (c[2] + d * c[3]),
                                 k.moment + d * d * (c[4] + d * c[5])};
+}
+
+// Whether an angle of attack lies in the gap that the rows leave to the full turn.
+static inline bool bough_polar_untold(const bough_polar *polar, double alpha) {
+    double above = remainder(alpha - polar->low, 2 * BOUGH_PI);
+    return (above < 0 ? above + 2 * BOUGH_PI : above) > polar->high - polar->low;
 }
 
 #endif

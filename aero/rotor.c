@@ -207,6 +207,26 @@ bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int s
                            .force_y = r->force_y[j]};
 }
 
+// Slower than this the angle of attack does not matter [m/s].
+static const double slow = 1;
+
+bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_rotor_data *data,
+                                      int blade) {
+    const blade_rows *r = data->scratch->blade + blade;
+    bough_rotor_extremes x = {.distance = HUGE_VAL};
+    for (int j = 0; j < rotor->n_station; j++) {
+        x.speed = fmax(x.speed, r->speed[j]);
+        bough_vec3 place = lane_load(r->place, rotor->stride, j);
+        if (bough_tower_reaches(&rotor->tower, place)) {
+            x.distance = fmin(x.distance, bough_tower_distance(&rotor->tower, place));
+        }
+        if (x.untold || r->speed[j] < slow) continue;
+        x.untold = bough_polar_untold(rotor->station.polar[j], r->alpha[j]);
+        if (x.untold) x.alpha = r->alpha[j];
+    }
+    return x;
+}
+
 bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius) {
     return bough_wind_covers(&rotor->wind, hub, radius);
 }

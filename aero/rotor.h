@@ -153,6 +153,17 @@ void bough_rotor_conclude(const bough_rotor *rotor, const bough_rotor_motion *mo
 // What a station of a blade reports of the last sample.
 bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int station);
 
+// What of a blade's last sample is furthest from what the tables and the model hold for.
+typedef struct bough_rotor_extremes {
+    bool untold;     // some angle of attack lies where its polar has no rows, …
+    double alpha;    // … this one [rad]
+    double speed;    // the largest relative speed [m/s]
+    double distance; // the least from the tower's axis, in radii there [-]
+} bough_rotor_extremes;
+
+bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_rotor_data *data,
+                                      int blade);
+
 // Makes the next sample the first.
 void bough_rotor_forget(const bough_rotor *rotor, bough_rotor_data *data);
 

@@ -103,6 +103,12 @@ static double shadow(double drag, double x, double y) {
     return fmin(drag / width * c * c, deepest_shadow);
 }
 
+double bough_tower_distance(const bough_tower *tower, bough_vec3 position) {
+    bough_vec3 d = bough_sub(position, tower->base);
+    double radius = radius_at(tower, d.z);
+    return radius > 0 ? hypot(d.x, d.y) / radius : HUGE_VAL;
+}
+
 bough_vec3 bough_tower_disturbed(const bough_tower *tower, bough_vec3 position, bough_vec3 wind) {
     bough_vec3 d = bough_sub(position, tower->base);
     double radius = radius_at(tower, d.z);

@@ -56,6 +56,9 @@ static inline bool bough_tower_reaches(const bough_tower *tower, bough_vec3 posi
     return n > 0 && position.z - tower->base.z < tower->height[n - 1] + tower->radius[n - 1];
 }
 
+// How far a point is from the axis, in radii there [-]; infinite where there is no tower.
+double bough_tower_distance(const bough_tower *tower, bough_vec3 position);
+
 // The undisturbed wind at a point, as the tower leaves it.
 bough_vec3 bough_tower_disturbed(const bough_tower *tower, bough_vec3 position, bough_vec3 wind);
 

@@ -157,12 +157,43 @@ static void bad_tables_are_refused(void **state) {
     bough_arena_destroy(arena);
 }
 
+// A table that ends short of the full turn leaves a gap, unless it only lacks a row; of a mixture
+// both must tell an angle.
+static void gaps_are_known(void **state) {
+    (void)state;
+    static const double part[3][4] = {{-20, -1, 0, 0}, {0, 0, 0, 0}, {25, 1, 0, 0}};
+    static const double shifted[3][4] = {{-30, -1, 0, 0}, {0, 0, 0, 0}, {15, 1, 0, 0}};
+    bough_arena *arena = bough_arena_create();
+    bough_polar a = build(arena, &(bough_polar_def){"a", 3, &part[0][0]});
+    bough_polar b = build(arena, &(bough_polar_def){"b", 3, &shifted[0][0]});
+    bough_polar whole = build(arena, nrel5mw_polars + 4), mixed;
+    for (int k = -4; k <= 4; k++) {
+        double turned = 2 * BOUGH_PI * k;
+        assert_false(bough_polar_untold(&a, turned - 19.9 * degree));
+        assert_false(bough_polar_untold(&a, turned + 24.9 * degree));
+        assert_true(bough_polar_untold(&a, turned + 25.1 * degree));
+        assert_true(bough_polar_untold(&a, turned - 20.1 * degree));
+        for (double d = -180; d <= 180; d += 7.5) {
+            assert_false(bough_polar_untold(&whole, turned + d * degree));
+        }
+    }
+    bough_status status = bough_polar_blend(arena, &a, &b, 0.5, &mixed);
+    assert_int_equal(status.code, BOUGH_OK);
+    check_near(mixed.low, -20 * degree, 1e-12, 0);
+    check_near(mixed.high, 15 * degree, 1e-12, 0);
+    status = bough_polar_blend(arena, &a, &whole, 0.5, &mixed);
+    assert_int_equal(status.code, BOUGH_OK);
+    check_near(mixed.high, 25 * degree, 1e-12, 0);
+    bough_arena_destroy(arena);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(knots_are_reproduced),   cmocka_unit_test(interpolation_is_linear),
         cmocka_unit_test(turns_repeat),           cmocka_unit_test(gap_is_bridged),
         cmocka_unit_test(smooth_polars_are_monotone_and_smooth),
         cmocka_unit_test(blends_are_exact),       cmocka_unit_test(bad_tables_are_refused),
+        cmocka_unit_test(gaps_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,9 +3,12 @@
 #include "apps/bough/run.h"
 #include "apps/bough/version.h"
 #include "apps/output/summary.h"
+#include "apps/simulation/validity.h"
 
 #include <math.h>
 #include <string.h>
+
+enum { LINE = 400 };
 
 // -- figures --------------------------------------------------------------------------------------
 
@@ -34,6 +37,24 @@ static void write_input(bough_summary *s, const bough_job *job) {
     const char *verdict = job->run.simulation->master->verdict;
     bough_summary_text(s, "verdict", verdict[0] ? verdict : NULL);
     bough_summary_text(s, "diagnosis", bough_is_ok(&job->run.outcome) ? NULL : job->run.outcome.message);
+}
+
+// Limits of the models that the run has passed: each with body and time of the first passing.
+static void write_warnings(bough_summary *s, const bough_run *run) {
+    bough_summary_array(s, "warnings");
+    for (int k = 0; k < BOUGH_LIMITS; k++) {
+        const bough_passing *p = &run->simulation->validity->limit[k];
+        char text[LINE];
+        if (!p->passed) continue;
+        bough_validity_tell(run->simulation, k, text, sizeof text);
+        bough_summary_object(s, NULL);
+        bough_summary_text(s, "limit", bough_limit_name(k));
+        bough_summary_text(s, "body", run->simulation->scene->body[p->body].name);
+        bough_summary_number(s, "time", p->time);
+        bough_summary_text(s, "text", text);
+        bough_summary_end(s);
+    }
+    bough_summary_end(s);
 }
 
 // Order and theta are null where the scheme has none: also a ramp that repeats its steps. Sweeps are
@@ -162,6 +183,7 @@ bough_status bough_run_summarise(const bough_job *job) {
     bough_status status = bough_summary_open(&s, job->folder, "summary.json");
     if (!bough_is_ok(&status)) return status;
     write_input(&s, job);
+    write_warnings(&s, run);
     write_method(&s, run);
     write_cost(&s, job);
     write_size(&s, job);
@@ -209,6 +231,15 @@ static void tell_energy(const bough_run *run, FILE *stream) {
     }
 }
 
+static void tell_warnings(const bough_run *run, FILE *stream) {
+    for (int k = 0; k < BOUGH_LIMITS; k++) {
+        char text[LINE];
+        if (!run->simulation->validity->limit[k].passed) continue;
+        bough_validity_tell(run->simulation, k, text, sizeof text);
+        fprintf(stream, "warning: %s\n", text);
+    }
+}
+
 void bough_run_tell(bough_job *job, FILE *stream) {
     bough_run *run = &job->run;
     fprintf(stream, "status: %s\n", outcome_name(run));
@@ -218,5 +249,6 @@ void bough_run_tell(bough_job *job, FILE *stream) {
     fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);
     tell_channels(run, stream);
     tell_energy(run, stream);
+    tell_warnings(run, stream);
     fprintf(stream, "out: %s\n", job->folder);
 }

@@ -368,6 +368,8 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     return bough_ok();
 }
 
+double bough_aero_link_evaluated(const bough_aero_link *link) { return link->evaluated; }
+
 void bough_aero_link_renew(bough_aero_link *link) { link->evaluated = (double)NAN; }
 
 void bough_aero_link_hold(bough_aero_link *link, double t) {

@@ -26,6 +26,9 @@ void bough_aero_link_restore(bough_aero_link *link, const double *from);
 
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link);
 
+// The time of that evaluation [s]; NAN: none that is up to date.
+double bough_aero_link_evaluated(const bough_aero_link *link);
+
 // Says that what the next sample meets has changed at its time: a restored state, another wind.
 void bough_aero_link_renew(bough_aero_link *link);
 

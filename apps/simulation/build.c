@@ -6,6 +6,7 @@
 #include "apps/simulation/drag_link.h"
 #include "apps/simulation/load_link.h"
 #include "apps/simulation/settle.h"
+#include "apps/simulation/validity.h"
 #include "core/dynamics.h"
 #include "core/linalg.h"
 #include "core/tree_build.h"
@@ -242,6 +243,7 @@ static bool take_arrays(bough_builder *b) {
     b->connection = bough_arena_take(b->arena, 4 * bodies * sizeof *b->connection);
     b->event = bough_arena_doubles(b->arena, count_corners(b->scene));
     if (b->s == NULL) return false;
+    b->s->validity = bough_arena_take(b->arena, sizeof *b->s->validity);
     b->s->scene = b->scene;
     b->s->beam = bough_arena_take(b->arena, bodies * sizeof *b->s->beam);
     b->s->rod = bough_arena_take(b->arena, bodies * sizeof *b->s->rod);

@@ -13,6 +13,7 @@
 struct bough_aero_link;
 struct bough_control_link;
 struct bough_drag_link;
+struct bough_validity;
 
 // A flexible blade, cable or tower, or the same body integrated to a rigid one: where it is and, if
 // it is a rod, its sub-solver.
@@ -40,6 +41,7 @@ typedef struct bough_simulation {
     struct bough_aero_link *aero; // NULL without an aero block
     struct bough_drag_link *drag; // NULL without drag of tower and hub
     struct bough_control_link *control; // NULL without a control block
+    struct bough_validity *validity;    // limits of the models that the run has passed
     bough_master *master;
     bough_pool *pool; // NULL: one thread
     // the rods in a row that carry the rotor, NULL without; undeformed top in the frame of the foot

@@ -1,5 +1,7 @@
 #include "apps/simulation/run.h"
 
+#include "apps/simulation/validity.h"
+
 #include <assert.h>
 #include <math.h>
 #include <time.h>
@@ -90,6 +92,7 @@ bough_status bough_run_step(bough_run *run) {
     run->sampled = false;
     run->outcome = bough_step(run->simulation->master);
     if (estimates(run)) bough_error_probe_update(&run->probe);
+    bough_validity_check(run->simulation);
     if (bough_is_ok(&run->outcome)) run->outcome = record_due(run);
     return run->outcome;
 }

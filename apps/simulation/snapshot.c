@@ -3,6 +3,7 @@
 #include "apps/simulation/build.h"
 #include "apps/simulation/control_link.h"
 #include "apps/simulation/drag_link.h"
+#include "apps/simulation/validity.h"
 
 static void take_aero(bough_aero_link *link, bough_snapshot *s) {
     double *room = bough_snapshot_room(s, (size_t)bough_aero_link_size(link) * sizeof *room);
@@ -27,6 +28,7 @@ void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot) {
     if (s->aero) take_aero(s->aero, snapshot);
     if (s->drag) take_drag(s->drag, snapshot);
     if (s->control) take_control(s->control, snapshot);
+    bough_snapshot_take(snapshot, s->validity, sizeof *s->validity);
 }
 
 bough_status bough_simulation_storable(const bough_simulation *s) {

@@ -1,0 +1,38 @@
+// Where a run leaves what its models are valid for: each limit is told once, when it is first passed.
+#ifndef BOUGH_APPS_SIMULATION_VALIDITY_H
+#define BOUGH_APPS_SIMULATION_VALIDITY_H
+
+#include "apps/simulation/build.h"
+
+typedef enum bough_limit {
+    BOUGH_LIMIT_ATTACK,      // the angle of attack lies where the polar's table has no rows
+    BOUGH_LIMIT_MACH,        // a section meets the air at half the speed of sound
+    BOUGH_LIMIT_ROTOR_SPEED, // the rotor turns twice as fast as the control law's rated speed
+    BOUGH_LIMIT_TOWER,       // a blade is inside the tower
+    BOUGH_LIMITS,
+} bough_limit;
+
+// Plain data: a part of the simulation's snapshot.
+typedef struct bough_passing {
+    bool passed;
+    int body;     // of the scene
+    double time;  // [s]
+    double value; // in the limit's unit
+} bough_passing;
+
+typedef struct bough_validity {
+    bough_passing limit[BOUGH_LIMITS];
+    double looked; // time of the last sample of the air seen [s]
+} bough_validity;
+
+// Notes that a limit is passed, if it is the first time.
+void bough_validity_pass(bough_validity *v, bough_limit limit, int body, double time, double value);
+
+// Looks at the state after a step; changes no result.
+void bough_validity_check(bough_simulation *s);
+
+// The name of a limit in summary.json, and the sentence about its passing, at most `size` bytes.
+const char *bough_limit_name(bough_limit limit);
+void bough_validity_tell(const bough_simulation *s, bough_limit limit, char *text, size_t size);
+
+#endif

@@ -1,0 +1,74 @@
+// Limits of the models: each is told once, with time and body.
+#include "apps/simulation/validity.h"
+
+#include "tests/built_scene.h"
+
+#include <string.h>
+
+static const char turbine[] = "tests/scenes/example-turbine.yaml";
+
+static bough_simulation *run(bough_arena *arena, const char *const *sets, int steps) {
+    bough_simulation *s = scene_build(arena, turbine, sets);
+    for (int k = 0; k < steps; k++) {
+        scene_step(s);
+        bough_validity_check(s);
+    }
+    return s;
+}
+
+// The limits that a run passes, a bit each.
+static int passed(const bough_simulation *s) {
+    int bits = 0;
+    for (int k = 0; k < BOUGH_LIMITS; k++) bits |= s->validity->limit[k].passed << k;
+    return bits;
+}
+
+static void within_the_limits_nothing_is_told(void **state) {
+    (void)state;
+    static const char *const sets[] = {NULL};
+    bough_arena *arena = bough_arena_create();
+    assert_int_equal(passed(run(arena, sets, 100)), 0);
+    bough_arena_destroy(arena);
+}
+
+// Blades of a few metres on the shaft at 18 rad/s.
+static void a_fast_section_is_told_once(void **state) {
+    (void)state;
+    static const char *const sets[] = {"bodies[2].joint.speed=18 rad/s", "aero.ramp=[0 s, 0 s]",
+                                       NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = run(arena, sets, 4);
+    bough_passing first = s->validity->limit[BOUGH_LIMIT_MACH];
+    assert_int_equal(passed(s), 1 << BOUGH_LIMIT_MACH);
+    assert_string_equal(s->scene->body[first.body].name, "blade1");
+    check_near(first.time, 0.02, 1e-12, 0);
+    assert_true(first.value > 170 && first.value < 250);
+    for (int k = 0; k < 4; k++) scene_step(s), bough_validity_check(s);
+    check_near(s->validity->limit[BOUGH_LIMIT_MACH].time, 0.02, 1e-12, 0);
+    char text[200];
+    bough_validity_tell(s, BOUGH_LIMIT_MACH, text, sizeof text);
+    assert_non_null(strstr(text, "blade1 at 0.02 s: a section meets the air at "));
+    bough_arena_destroy(arena);
+}
+
+// The hub on the tower's axis, without tilt: the hanging blade stands in the tower.
+static void a_blade_in_the_tower_is_told(void **state) {
+    (void)state;
+    static const char *const sets[] = {"bodies[2].joint.placement=[move z 1.2 m]", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = run(arena, sets, 4);
+    bough_passing first = s->validity->limit[BOUGH_LIMIT_TOWER];
+    assert_int_equal(passed(s), 1 << BOUGH_LIMIT_TOWER);
+    assert_string_equal(s->scene->body[first.body].name, "blade2");
+    assert_true(first.value >= 0 && first.value < 1);
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(within_the_limits_nothing_is_told),
+        cmocka_unit_test(a_fast_section_is_told_once),
+        cmocka_unit_test(a_blade_in_the_tower_is_told),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
