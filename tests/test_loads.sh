@@ -40,4 +40,130 @@ for bad in "{kind: iec, condition: ntm, reference_height: 90}" \
     [ $? -eq 2 ] || fail "$bad is not refused: $(cat log)"
 done
 
+# -- sweeps and load sets --------------------------------------------------------------------------
+
+# expect CODE MESSAGE ARGUMENT...: of bough study, its words in ./log
+expect() {
+    want=$1 message=$2
+    shift 2
+    "$bough" study "$@" --quiet >log 2>&1 </dev/null
+    code=$?
+    [ $code -eq "$want" ] || fail "bough study $*: exit code $code, expected $want: $(cat log)"
+    [ -z "$message" ] || grep -q -e "$message" log || fail "bough study $*: no '$message' in: $(cat log)"
+}
+
+# same FOLDER FOLDER: all that follows from the cases, to the bit.
+same() {
+    for table in cases.csv equivalent.csv extremes.csv ranges.csv levels.csv table.txt plot.svg; do
+        cmp "$1/$table" "$2/$table" || fail "$1 and $2 differ in $table"
+    done
+}
+
+cat >sweep.yaml <<END
+title: two speeds
+kind: sweep
+scene: $power
+common: {simulation.duration: 3 s}
+from: 1 s
+channels: [RotSpeed, GenPwr]
+series: true
+grid:
+  aero.wind.speed: [8, 10 m/s]
+  aero.air_density: [1.1, 1.225]
+END
+expect 0 '4 runs, 0 failed' sweep.yaml --out sweep
+head -n 1 sweep/cases.csv | grep -q '^case,aero.wind.speed,aero.air_density,outcome,RotSpeed min \[rpm\]' ||
+    fail "head of cases.csv: $(head -n 1 sweep/cases.csv)"
+# The statistics of a case are those of the same run alone.
+"$bough" run "$power" --set simulation.duration="3 s" --set aero.wind.speed=10 --set aero.air_density=1.225 \
+    --set simulation.output.from="1 s" --threads 1 --out alone --quiet >log || fail "run alone: $(cat log)"
+awk -F, '$1 == 4 { printf "%.9g %.9g %.9g %.9g\n", $5, $6, $7, $8 }' sweep/cases.csv >of-sweep
+awk '/"statistics"/ { on = 1 } on && /"RotSpeed"/ { found = 1 }
+    found && /"(min|max|mean|std)"/ { gsub(/[",]/, ""); printf "%s%.9g", n++ ? " " : "", $2 }
+    n == 4 { print ""; exit }' alone/summary.json >of-run
+cmp of-sweep of-run || fail "statistics: $(cat of-sweep) in the sweep, $(cat of-run) alone"
+cmp sweep/cases/000004/channels.out alone/channels.out >/dev/null
+tail -n 1 sweep/cases/000004/channels.out >a && tail -n 1 alone/channels.out >b && cmp a b || fail "series differ"
+"$bough" report sweep >log || fail "report of a sweep: $(cat log)"
+
+cat >set.yaml <<END
+title: a small load set
+kind: load-set
+scene: $power
+from: 1 s
+channels: [RotSpeed, RootMyb1, RootMxb1]
+slopes: [4, 10]
+wind: {average: 10 m/s}
+common: {simulation.duration: 3 s, aero.wind.kind: iec, aero.wind.reference_height: 90,
+         aero.wind.points: 5, aero.wind.time_step: 0.2}
+cases:
+  - name: DLC1.2
+    set: {aero.wind.condition: ntm}
+    weibull: 0.95
+    grid: {aero.wind.speed: [8, 12, 16], aero.wind.seed: [1, 2]}
+  - name: DLC1.3
+    set: {aero.wind.condition: etm}
+    grid: {aero.wind.speed: [8, 16]}
+  - name: DLC1.5
+    set: {aero.wind.condition: ews, aero.wind.start: 1 s}
+    events: 100
+    factor: 1.1
+    grid: {aero.wind.shear: [vertical, horizontal], aero.wind.speed: [16]}
+END
+expect 0 '10 cases' set.yaml --out whole
+expect 0 'simulated hours per core hour' set.yaml --out one --threads 1
+same whole one
+for part in 2 3 1; do expect 0 "part $part of 3: " set.yaml --out parts --part $part/3; done
+expect 0 '10 cases' set.yaml --out parts
+grep -q 'ran ' log && fail "cases of parts were run again"
+same whole parts
+
+# Two workers at once do each case once; one is killed, and the next goes on where it was.
+"$bough" study set.yaml --out shared --threads 1 --quiet >first 2>&1 &
+first=$!
+"$bough" study set.yaml --out shared --threads 1 --quiet >second 2>&1
+wait $first || fail "first worker: $(cat first)"
+ran=$(sed -n 's/^ran \([0-9]*\) cases.*/\1/p' first second | awk '{ n += $1 } END { print n }')
+[ "$ran" = 10 ] || fail "two workers ran $ran cases, not 10: $(cat first second)"
+expect 0 '10 cases' set.yaml --out shared
+same whole shared
+"$bough" study set.yaml --out killed --threads 1 --quiet >first 2>&1 &
+first=$!
+until [ -e killed/cases/000002.case ]; do sleep 0.05; done
+kill -KILL $first
+wait $first 2>/dev/null
+expect 0 '10 cases' set.yaml --out killed
+ran=$(sed -n 's/^ran \([0-9]*\) cases.*/\1/p' log)
+[ "$ran" -le 8 ] || fail "a killed worker's cases were run again: $ran"
+same whole killed
+
+# A case that fails is told, the others go on, and the result says what it lacks.
+sed 's/speed: \[8, 16\]/speed: [8, 300]/' set.yaml >failing.yaml
+expect 3 'case 8 failed (DLC1.3, speed=300)' failing.yaml --out failing
+grep -q "bough run .*--set aero.wind.speed=300" log || fail "no command line of the failed case: $(cat log)"
+grep -q '1 of 10 cases failed: the lifetime result is incomplete' log || fail "not told incomplete: $(cat log)"
+grep -q '^INCOMPLETE: 1 cases failed' failing/table.txt || fail "table: $(head -n 4 failing/table.txt)"
+[ "$(grep -c ',ok,' failing/cases.csv)" -eq 9 ] || fail "the other cases were not run"
+
+# Bad input, before anything runs.
+refused() {
+    message=$1
+    shift
+    sed "$@" set.yaml >bad.yaml
+    expect 2 "$message" bad.yaml --out none
+    [ -e none ] && fail "bad input wrote results: $*"
+}
+refused "'1' is given twice" 's/seed: \[1, 2\]/seed: [1, 2, 1]/'
+refused 'expected a list of values' 's/seed: \[1, 2\]/seed: []/'
+refused 'expected keys of the scene' 's/grid: {aero.wind.speed: \[8, 16\]}/grid: {}/'
+refused "'DLC1.2' is given twice" 's/DLC1.3/DLC1.2/'
+refused "did you mean 'RootMyb1'" 's/RootMyb1/RootMyb4/'
+refused 'at least two rising speeds' 's/\[8, 12, 16\]/[12]/'
+refused 'is not before the end' 's/from: 1 s/from: 5 s/'
+refused 'unknown key' 's/wind.seed/wind.seeds/'
+refused 'at most one of' 's/events: 100/events: 100, hours: 2/;s/    events: 100, /    events: 100\n    /'
+expect 2 "no load case 'DLC1.4' (did you mean 'DLC1.[2-5]'" set.yaml --out none --case DLC1.4
+expect 0 '' set.yaml --out chosen --case DLC1.5
+[ "$(ls chosen/cases/*.case | wc -l)" -eq 2 ] || fail "--case ran $(ls chosen/cases)"
+
 [ "$failures" -eq 0 ]

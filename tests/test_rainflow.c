@@ -126,8 +126,8 @@ static void parts_add_to_the_whole(void **state) {
         bough_levels_add(&whole, x, 1);
         bough_levels_add(&part[i / 1000], x, 1);
     }
-    for (int i = 0; i < 3; i++) bough_levels_merge(&sum, &part[i], 1);
-    for (int i = 2; i >= 0; i--) bough_levels_merge(&other, &part[i], 1);
+    for (int i = 0; i < 3; i++) bough_levels_merge(&sum, &part[i], 1, 1);
+    for (int i = 2; i >= 0; i--) bough_levels_merge(&other, &part[i], 1, 1);
     check_same_levels(&whole, &sum);
     check_same_levels(&whole, &other);
 }

@@ -22,7 +22,7 @@ typedef struct head {
     uint64_t sum;            // of the copy and of what is above
 } head;
 
-static const char magic[sizeof((head *)0)->magic] = "bough state 1";
+static const char magic[sizeof((head *)0)->magic] = "bough state 2";
 
 static uint64_t sum_of(const head *h, const char *copy) {
     uint64_t sum = BOUGH_FINGERPRINT_START;
@@ -38,6 +38,8 @@ static void take_job(bough_job *job, bough_snapshot *s) {
     bough_run_snapshot(run, s);
     bough_snapshot_take(s, &job->rows, sizeof job->rows);
     bough_snapshot_take(s, &job->frames_kept, sizeof job->frames_kept);
+    bough_snapshot_take(s, job->statistics,
+                        (size_t)run->channels.count * sizeof *job->statistics);
     bough_snapshot_take(s, &run->wall_s, sizeof run->wall_s);
     bough_snapshot_take(s, &run->cpu_s, sizeof run->cpu_s);
 }

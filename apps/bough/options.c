@@ -22,8 +22,9 @@ static const option_row rows[] = {
     {"out", "DIR", "folder for the results; default out/<name of the scene>", BOUGH_OPTION_OUT,
      false},
     {"threads", "N", "1 to 64, instead of what the scene says", BOUGH_OPTION_THREADS, false},
-    {"part", "K/N", "of a study of kind stability only the K-th of N shares of its runs",
+    {"part", "K/N", "of a study (stability, sweep, load-set) only the K-th of N shares of its runs",
      BOUGH_OPTION_PART, false},
+    {"case", "NAME", "of a load set only the load case of that name", BOUGH_OPTION_CASE, false},
     {"checkpoint", "TIME", "stores what the run can go on from, every so many simulated seconds",
      BOUGH_OPTION_CHECKPOINT, false},
     {"resume", NULL, "goes on from the last checkpoint in the folder for the results",
@@ -103,6 +104,7 @@ static bough_status take_option(bough_option_flag flag, const char *text, bough_
     case BOUGH_OPTION_OUT: options->out = text; break;
     case BOUGH_OPTION_THREADS: return take_threads(text, options);
     case BOUGH_OPTION_PART: return take_part(text, options);
+    case BOUGH_OPTION_CASE: options->only = text; break;
     case BOUGH_OPTION_CHECKPOINT: options->checkpoint = text; break;
     case BOUGH_OPTION_RESUME: options->resume = true; break;
     case BOUGH_OPTION_QUIET: options->quiet = true; break;

@@ -17,6 +17,7 @@ typedef enum bough_option_flag {
     BOUGH_OPTION_PART = 1 << 4,
     BOUGH_OPTION_CHECKPOINT = 1 << 5,
     BOUGH_OPTION_RESUME = 1 << 6,
+    BOUGH_OPTION_CASE = 1 << 7,
 } bough_option_flag;
 
 typedef enum bough_operand {
@@ -40,6 +41,7 @@ typedef struct bough_options {
     const char **set; // (n_set) replacements "key=value", in their order
     const char *out;  // NULL: named after the scene
     int threads;      // 0: as the scene says
+    const char *only; // load case of a study; NULL: all
     int part, parts;  // of a study, from 1; 0: all of it
     const char *checkpoint; // simulated time between checkpoints; NULL: none
     bool resume;            // from the last one

@@ -12,7 +12,14 @@
 // -- recording ------------------------------------------------------------------------------------
 
 static bough_status sample_row(void *self, double t) {
-    return bough_recorder_sample(((bough_job *)self)->recorder, t);
+    bough_job *job = self;
+    bough_status status = bough_recorder_sample(job->recorder, t);
+    const bough_simulation *s = job->run.simulation;
+    if (t < s->scene->simulation.output.from - 1e-6 * s->master->macro_step) return status;
+    const double *value = bough_recorder_values(job->recorder);
+    for (int i = 0; i < job->run.channels.count; i++)
+        bough_sample_statistics_add(&job->statistics[i], t, value[i]);
+    return status;
 }
 
 static bough_status sample_frame(void *self, double t) {
@@ -106,6 +113,9 @@ bough_status bough_job_build(bough_job *job) {
     if (bough_is_ok(&status)) status = bough_run_estimate(job->arena, &job->run);
     if (!bough_is_ok(&status)) return status;
     record(job);
+    size_t n = (size_t)job->run.channels.count;
+    job->statistics = bough_arena_take(job->arena, (n + 1) * sizeof *job->statistics);
+    if (!job->statistics) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     job->build_s = bough_wall_clock() - began;
     return status;
 }

@@ -5,6 +5,7 @@
 #include "apps/bough/checkpoint.h"
 #include "apps/bough/options.h"
 #include "apps/output/recorder.h"
+#include "apps/output/statistics.h"
 #include "apps/output/vertices.h"
 #include "apps/simulation/run.h"
 #include "apps/simulation/shape.h"
@@ -15,6 +16,7 @@ typedef struct bough_job {
     bough_run run;
     const char *folder;
     bough_recorder *recorder;
+    bough_sample_statistics *statistics; // (run.channels.count) of the rows
     bough_shape shape;
     bough_frames *frames;     // NULL: none are stored
     bough_vertices *vertices; // NULL: none are stored

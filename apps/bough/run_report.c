@@ -159,6 +159,24 @@ static void write_estimates(bough_summary *s, const bough_run *run) {
     bough_summary_end(s);
 }
 
+// Of the channels' rows from simulation.output.from on.
+static void write_statistics(bough_summary *s, const bough_job *job) {
+    bough_summary_number(s, "statistics_from", job->run.simulation->scene->simulation.output.from);
+    bough_summary_object(s, "statistics");
+    for (int k = 0; k < job->run.channels.count; k++) {
+        const bough_sample_statistics *x = &job->statistics[k];
+        if (!(x->n > 0)) continue;
+        bough_summary_object(s, job->run.channels.channel[k].name);
+        bough_summary_text(s, "unit", job->run.channels.channel[k].unit);
+        bough_summary_number(s, "min", x->least);
+        bough_summary_number(s, "max", x->most);
+        bough_summary_number(s, "mean", x->mean);
+        bough_summary_number(s, "std", bough_sample_statistics_deviation(x));
+        bough_summary_end(s);
+    }
+    bough_summary_end(s);
+}
+
 static void write_subsystem(bough_summary *s, const bough_run *run, int member) {
     const bough_subsystem *subsystem = run->simulation->master->assembly->member[member];
     bough_statistics done = bough_run_statistics(run, member);
@@ -191,6 +209,7 @@ bough_status bough_run_summarise(const bough_job *job) {
     write_accuracy(&s, run);
     write_interfaces(&s, run);
     write_estimates(&s, run);
+    write_statistics(&s, job);
     const bough_assembly *assembly = run->simulation->master->assembly;
     bough_summary_array(&s, "subsystems");
     for (int i = 0; i < assembly->n_member; i++)

@@ -83,7 +83,8 @@ void bough_levels_follow(bough_levels *levels, double x) {
     levels->last = x;
 }
 
-void bough_levels_merge(bough_levels *levels, const bough_levels *part, double weight) {
+void bough_levels_merge(bough_levels *levels, const bough_levels *part, double inside,
+                        double crossed) {
     if (!part->started) return;
     double least = ldexp((double)part->low, part->exponent);
     double most = ldexp((double)part->high, part->exponent);
@@ -94,8 +95,8 @@ void bough_levels_merge(bough_levels *levels, const bough_levels *part, double w
     bough_levels same = *part;
     coarsen(&same, levels->exponent);
     for (int64_t k = same.low; k <= same.high; k++) {
-        levels->inside[slot(k)] += weight * same.inside[slot(k)];
-        levels->crossed[slot(k)] += weight * same.crossed[slot(k)];
+        levels->inside[slot(k)] += inside * same.inside[slot(k)];
+        levels->crossed[slot(k)] += crossed * same.crossed[slot(k)];
     }
 }
 

@@ -26,8 +26,9 @@ void bough_levels_add(bough_levels *levels, double x, double count);
 // Adds 1 in the bin of x, and the crossings on the way from the value before.
 void bough_levels_follow(bough_levels *levels, double x);
 
-// Adds the counts of `part` times `weight`.
-void bough_levels_merge(bough_levels *levels, const bough_levels *part, double weight);
+// Adds the counts of `part`: those in bins times `inside`, its crossings times `crossed`.
+void bough_levels_merge(bough_levels *levels, const bough_levels *part, double inside,
+                        double crossed);
 
 double bough_levels_width(const bough_levels *levels);
 double bough_levels_inside(const bough_levels *levels, int64_t bin);

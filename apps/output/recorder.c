@@ -189,4 +189,6 @@ bough_status bough_recorder_finish(bough_recorder *r, const bough_status *outcom
     return bough_folder_commit(r->path, file);
 }
 
+const double *bough_recorder_values(const bough_recorder *recorder) { return recorder->value; }
+
 long bough_recorder_rows(const bough_recorder *recorder) { return recorder->rows; }

@@ -36,6 +36,9 @@ bough_status bough_recorder_keep(bough_recorder *recorder, bough_kept *kept);
 // Returns BOUGH_IO when the file could not be written to its end, and then leaves the partial.
 bough_status bough_recorder_finish(bough_recorder *recorder, const bough_status *outcome);
 
+// The values of the last row (channels->count).
+const double *bough_recorder_values(const bough_recorder *recorder);
+
 // Rows written so far.
 long bough_recorder_rows(const bough_recorder *recorder);
 

@@ -81,6 +81,8 @@ static bough_status add_data(const char *folder, FILE *out) {
     bough_status status = add_file(folder, "summary.json", "summary", out, &any);
     if (bough_is_ok(&status)) status = add_file(folder, "table.txt", "table", out, &any);
     if (bough_is_ok(&status)) status = add_rows(folder, out, &any);
+    if (bough_is_ok(&status)) status = add_file(folder, "cases.csv", "cases", out, &any);
+    if (bough_is_ok(&status)) status = add_file(folder, "extremes.csv", "extremes", out, &any);
     if (bough_is_ok(&status)) status = add_file(folder, "plot.svg", "plot", out, &any);
     if (bough_is_ok(&status)) {
         status = add_part(folder, "channels", bough_report_channels, out, &any);

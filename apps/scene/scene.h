@@ -52,6 +52,7 @@ typedef struct bough_scene_solver {
 typedef struct bough_scene_output {
     const bough_node *node;
     double interval; // [s], a multiple of the macro step
+    double from;     // of the statistics: what is before does not count [s]
     double frames;   // between stored shapes [s]; 0: none
     double vertices; // between stored vertices [s]; 0: none
     bool binary;     // channels.outb beside channels.out

@@ -2,6 +2,7 @@
 #include "apps/study/study.h"
 
 #include "apps/config/schema.h"
+#include "apps/study/load_set.h"
 #include "apps/study/study_internal.h"
 #include "core/input_file.h"
 
@@ -68,7 +69,7 @@ static bool is_mapping(bough_schema_reader *r, const bough_node *node, const cha
     return false;
 }
 
-static void read_settings(bough_schema_reader *r, const bough_node *node, void *field) {
+void bough_study_read_settings(bough_schema_reader *r, const bough_node *node, void *field) {
     bough_study_settings *settings = field;
     if (!is_mapping(r, node, "keys of the scene with their values")) return;
     settings->item = bough_arena_take(r->arena, (size_t)node->n * sizeof *settings->item);
@@ -79,6 +80,19 @@ static void read_settings(bough_schema_reader *r, const bough_node *node, void *
 }
 
 // -- grid -----------------------------------------------------------------------------------------
+
+// A value given twice would be run twice and count double.
+static void check_different(bough_schema_reader *r, const bough_study_axis *axis) {
+    const bough_study_settings *value = &axis->value;
+    for (int i = 1; i < value->n; i++) {
+        for (int k = 0; k < i && value->item[i].value && value->item[k].value; k++) {
+            if (strcmp(value->item[i].value, value->item[k].value) != 0) continue;
+            bough_schema_error(r, value->item[i].node, axis->key, "'%.80s' is given twice",
+                               value->item[i].value);
+            return;
+        }
+    }
+}
 
 static void read_axis(bough_schema_reader *r, const bough_node *key, const bough_node *values,
                       bough_study_axis *axis) {
@@ -94,6 +108,7 @@ static void read_axis(bough_schema_reader *r, const bough_node *key, const bough
     axis->value.n = values->n;
     for (int i = 0; i < values->n; i++)
         read_setting(r, key->text, values->value[i], &axis->value.item[i]);
+    check_different(r, axis);
 }
 
 static bool ends_with(const char *text, const char *end) {
@@ -113,7 +128,7 @@ static const char *short_label(const bough_study_grid *grid, int axis) {
     return key;
 }
 
-static void read_grid(bough_schema_reader *r, const bough_node *node, void *field) {
+void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void *field) {
     bough_study_grid *grid = field;
     if (!is_mapping(r, node, "keys of the scene, each with a list of values")) return;
     if (node->n > BOUGH_STUDY_AXES) {
@@ -217,16 +232,17 @@ static const bough_key study_keys[] = {
     {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
      .help = "file of the scene, relative to the study"},
     {.name = "kind", .kind = BOUGH_KEY_CHOICE,
-     .choices = CHOICES("work-precision", "timing", "stability"), .required = true, AT(kind),
+     .choices = CHOICES("work-precision", "timing", "stability", "sweep", "load-set"), .required = true, AT(kind),
      .help = "work-precision: time and difference to the reference of every cell of the grid; "
              "timing: what the cells cost, in turns; stability: map of errors and diagnoses, each "
-             "against a reference with its own model parameters"},
-    {.name = "reference", .kind = BOUGH_KEY_CUSTOM, .read = read_settings, .required = true,
+             "against a reference with its own model parameters; sweep: statistics of every cell; "
+             "load-set: lifetime loads of weighted cases (both: docs/loads.md)"},
+    {.name = "reference", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings, .required = true,
      .form = "{KEY: VALUE, ...}", AT(reference), .help = "replacements that make the reference"},
-    {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = read_grid, .required = true,
+    {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_grid, .required = true,
      .form = "{KEY: [VALUE, ...], ...}", AT(grid),
      .help = "a run for each combination of the values"},
-    {.name = "common", .kind = BOUGH_KEY_CUSTOM, .read = read_settings,
+    {.name = "common", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings,
      .form = "{KEY: VALUE, ...}", AT(common), .help = "replacements for every run"},
     {.name = "measures", .kind = BOUGH_KEY_LIST, .of = &measure_schema, .count = 1,
      .required = true, AT(measure), .count_offset = offsetof(bough_study, n_measure),
@@ -296,6 +312,21 @@ static bool is_verification(const bough_node *root, bough_errors *errors) {
     return false;
 }
 
+static bool is_load_set(const bough_node *root) {
+    const bough_node *kind = bough_node_find(root, "kind");
+    return kind && kind->kind == BOUGH_SCALAR &&
+           (strcmp(kind->text, "sweep") == 0 || strcmp(kind->text, "load-set") == 0);
+}
+
+// The kinds that have keys of their own.
+static bough_status read_load_set(bough_arena *arena, const bough_node *root, bough_errors *errors,
+                                  bough_study *s) {
+    bough_status status;
+    s->load_set = bough_load_set_read(arena, s->file, root, s->threads, errors, &status);
+    if (s->load_set) s->kind = s->load_set->sweep ? BOUGH_STUDY_SWEEP : BOUGH_STUDY_LOAD_SET;
+    return status;
+}
+
 bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
                               bough_errors *errors, bough_study **study) {
     *study = NULL;
@@ -305,6 +336,12 @@ bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
     s->file = bough_arena_string(arena, path);
     s->threads = threads;
     if (is_verification(root, errors)) return finish(path, arena, errors);
+    if (is_load_set(root)) {
+        bough_status status = read_load_set(arena, root, errors, s);
+        if (bough_is_ok(&status)) status = finish(path, arena, errors);
+        if (bough_is_ok(&status)) *study = s;
+        return status;
+    }
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
     bough_schema_read(&reader, &study_schema, root, s);
     bough_status status = finish(path, arena, errors);

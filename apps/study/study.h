@@ -18,6 +18,8 @@ typedef enum bough_study_kind {
     BOUGH_STUDY_WORK_PRECISION,
     BOUGH_STUDY_TIMING,
     BOUGH_STUDY_STABILITY,
+    BOUGH_STUDY_SWEEP,
+    BOUGH_STUDY_LOAD_SET,
 } bough_study_kind;
 
 // A replacement in the scene.
@@ -92,6 +94,7 @@ typedef struct bough_study {
     bough_study_measure *measure; // (n_measure)
     int repeat;                   // runs of each cell; times are their medians
     int threads;                  // 0: as the scene says
+    struct bough_load_set *load_set; // all there is of kinds sweep and load-set, else NULL
 
     // by bough_study_expand
     int n_reference; // 1; of kind stability one for each combination of the model's parameters

@@ -2,7 +2,12 @@
 #ifndef BOUGH_APPS_STUDY_STUDY_INTERNAL_H
 #define BOUGH_APPS_STUDY_STUDY_INTERNAL_H
 
+#include "apps/config/schema.h"
 #include "apps/study/study.h"
+
+// Readers of keys with their values, and of keys with lists of values.
+void bough_study_read_settings(bough_schema_reader *r, const bough_node *node, void *field);
+void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void *field);
 
 // Makes the cells of the grid and the reference cell.
 void bough_study_expand(bough_arena *arena, bough_study *study, bough_errors *errors);

@@ -1,6 +1,7 @@
 #include "apps/study/study_perform.h"
 
 #include "apps/output/folder.h"
+#include "apps/study/load_set_perform.h"
 #include "apps/study/study_plot.h"
 #include "apps/study/study_stability.h"
 #include "apps/study/study_store.h"
@@ -121,13 +122,20 @@ typedef bough_status perform_function(bough_arena *arena, const bough_study *stu
                                       const bough_study_options *options);
 
 static perform_function *const kinds[] = {[BOUGH_STUDY_WORK_PRECISION] = work_precision,
+                                          [BOUGH_STUDY_SWEEP] = bough_load_set_perform,
+                                          [BOUGH_STUDY_LOAD_SET] = bough_load_set_perform,
                                           [BOUGH_STUDY_TIMING] = bough_timing_perform,
                                           [BOUGH_STUDY_STABILITY] = bough_stability_perform};
 
 bough_status bough_study_perform(bough_arena *arena, const bough_study *study,
                                  const bough_study_options *options) {
-    if (options->parts > 0 && study->kind != BOUGH_STUDY_STABILITY) {
-        return bough_fail(BOUGH_INVALID, "only studies of kind stability run in parts");
+    bool shared = study->kind >= BOUGH_STUDY_STABILITY;
+    if (options->parts > 0 && !shared) {
+        return bough_fail(BOUGH_INVALID,
+                          "only studies of kind stability, sweep and load-set run in parts");
+    }
+    if (options->only && study->kind != BOUGH_STUDY_LOAD_SET) {
+        return bough_fail(BOUGH_INVALID, "only a load set has load cases to choose by --case");
     }
     return kinds[study->kind](arena, study, options);
 }

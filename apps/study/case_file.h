@@ -1,0 +1,20 @@
+// The result of one case as a file of the study's folder, cases/NUMBER.case: text, complete or absent.
+// Every number is written so that it is read as the same one.
+#ifndef BOUGH_APPS_STUDY_CASE_FILE_H
+#define BOUGH_APPS_STUDY_CASE_FILE_H
+
+#include "apps/study/case_run.h"
+
+bough_status bough_case_write(const char *folder, const bough_load_set *set, int number,
+                              const bough_case_result *result);
+
+// Reads a result into memory of bough_case_take. result->done is false when there is none, or one of
+// other input.
+bough_status bough_case_read(const char *folder, const bough_load_set *set, int number,
+                             bough_case_result *result);
+
+// Whether there is a result of this input, without reading its counts; its outcome in *outcome.
+bool bough_case_exists(const char *folder, const bough_load_set *set, int number,
+                       bough_status *outcome);
+
+#endif

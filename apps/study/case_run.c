@@ -1,0 +1,125 @@
+#include "apps/study/case_run.h"
+
+#include "apps/output/folder.h"
+#include "apps/output/recorder.h"
+#include "apps/simulation/run.h"
+
+#include <time.h>
+
+typedef struct case_run {
+    const bough_load_set *set;
+    bough_run run;
+    bough_recorder *recorder; // NULL: no series
+    int *column;              // (n_channel) of the set's channels among the run's
+    double *chosen;           // (n_channel)
+    bough_counts *counts;
+} case_run;
+
+static double cpu_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+bool bough_case_take(bough_arena *arena, const bough_load_set *set, bough_case_result *result) {
+    *result = (bough_case_result){.outcome = bough_ok()};
+    return bough_counts_take(arena, set->n_channel, set->n_slope, set->slope, &result->counts);
+}
+
+// -- recording ------------------------------------------------------------------------------------
+
+static bough_status sample(void *self, double t) {
+    case_run *r = self;
+    if (r->recorder) {
+        bough_status status = bough_recorder_sample(r->recorder, t);
+        if (!bough_is_ok(&status)) return status;
+    }
+    if (t < r->set->from - 1e-6 * r->run.simulation->master->macro_step) return bough_ok();
+    const double *value = bough_run_values(&r->run);
+    for (int i = 0; i < r->set->n_channel; i++) r->chosen[i] = value[r->column[i]];
+    bough_counts_add(r->counts, t, r->chosen);
+    return bough_ok();
+}
+
+static bough_status find_channels(bough_arena *arena, case_run *r) {
+    const bough_load_set *s = r->set;
+    r->column = bough_arena_take(arena, (size_t)s->n_channel * sizeof *r->column);
+    r->chosen = bough_arena_doubles(arena, (size_t)s->n_channel);
+    if (!r->column || !r->chosen) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    for (int i = 0; i < s->n_channel; i++) {
+        r->column[i] = bough_channels_find(&r->run.channels, s->channel[i]);
+        if (r->column[i] < 0) {
+            return bough_fail(BOUGH_FAILED, "this case has no channel '%.80s'", s->channel[i]);
+        }
+    }
+    return bough_ok();
+}
+
+static bough_status open_series(bough_arena *arena, const bough_load_case *c, const char *folder,
+                                case_run *r) {
+    if (!r->set->series) return bough_ok();
+    bough_status status = bough_folder_make(folder);
+    bough_recorder_def def = {.folder = folder, .title = c->settings, .channels = &r->run.channels};
+    return bough_is_ok(&status) ? bough_recorder_open(arena, &def, &r->recorder) : status;
+}
+
+// -- the run --------------------------------------------------------------------------------------
+
+// Every scene was read when the study began: an error now is none of the case.
+static bough_status read_scene(bough_arena *arena, const bough_load_case *c, bough_scene **scene) {
+    bough_errors errors = {.arena = arena};
+    bough_status status = bough_scene_read(arena, c->scene, c->set, c->n_set, &errors, scene);
+    if (status.code != BOUGH_INVALID) return status;
+    return bough_fail(BOUGH_IO, "the scene '%.150s' or a file of it has changed or is gone since the "
+                                "study began", c->scene);
+}
+
+// What cannot be built is a case that fails.
+static bough_status build(bough_arena *arena, const bough_load_case *c, const char *folder,
+                          case_run *r) {
+    bough_scene *scene;
+    bough_status status = read_scene(arena, c, &scene);
+    if (!bough_is_ok(&status)) return status;
+    scene->simulation.threads = 1;
+    status = bough_run_create(arena, scene, &r->run);
+    if (bough_is_ok(&status)) status = find_channels(arena, r);
+    if (status.code == BOUGH_INVALID) status.code = BOUGH_FAILED;
+    return bough_is_ok(&status) ? open_series(arena, c, folder, r) : status;
+}
+
+static bough_status run_in(bough_arena *arena, const bough_load_case *c, const char *folder,
+                           bool (*stop)(void), case_run *r, bough_case_result *result) {
+    bough_status status = build(arena, c, folder, r);
+    if (!bough_is_ok(&status)) return status;
+    double interval = r->run.simulation->scene->simulation.output.interval;
+    bough_run_record_at(&r->run, (bough_run_record){interval, .sample = sample, .self = r});
+    r->run.beside = true;
+    r->run.stop = stop;
+    bough_run_all(&r->run);
+    bough_counts_finish(r->counts);
+    result->time = r->run.simulation->master->time;
+    result->counted = result->time - r->set->from;
+    if (!r->recorder) return r->run.outcome;
+    bough_status end = bough_recorder_finish(r->recorder, &r->run.outcome);
+    return bough_is_ok(&r->run.outcome) ? end : r->run.outcome;
+}
+
+// A run that fails says something about its settings; these outcomes do not.
+static bool ends_study(bough_code code) {
+    return code == BOUGH_INTERRUPTED || code == BOUGH_OUT_OF_MEMORY || code == BOUGH_IO;
+}
+
+bough_status bough_case_run(const bough_load_set *set, const bough_load_case *c, const char *folder,
+                            bool (*stop)(void), bough_case_result *result) {
+    bough_arena *arena = bough_arena_create();
+    if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    double wall = bough_wall_clock(), cpu = cpu_clock();
+    case_run r = {.set = set, .counts = &result->counts};
+    result->outcome = run_in(arena, c, folder, stop, &r, result);
+    result->cpu = cpu_clock() - cpu;
+    result->wall = bough_wall_clock() - wall;
+    bough_arena_destroy(arena);
+    if (ends_study(result->outcome.code)) return result->outcome;
+    result->done = true;
+    return bough_ok();
+}

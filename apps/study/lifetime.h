@@ -1,0 +1,43 @@
+// What the cases of a load set come to over the turbine's life. Sums run in the order of the cases,
+// so that results of cases that several processes have run give the same bits.
+#ifndef BOUGH_APPS_STUDY_LIFETIME_H
+#define BOUGH_APPS_STUDY_LIFETIME_H
+
+#include "apps/study/case_run.h"
+
+// An extreme of a channel, its partial safety factor in it.
+typedef struct bough_extreme {
+    bool found;
+    double value;  // in the channel's unit
+    double at;     // [s]
+    int number;    // of its case
+    double *row;   // (n_channel) all channels at that moment, times the same factor
+} bough_extreme;
+
+typedef struct bough_lifetime_channel {
+    double damage[BOUGH_MOST_SLOPES]; // Σ n Sᵐ over the life
+    double cycles;
+    bough_levels ranges; // cycles by their range
+    bough_levels levels; // hours at each level, upward crossings
+    bough_extreme least, most;
+} bough_lifetime_channel;
+
+typedef struct bough_lifetime {
+    const bough_load_set *set;
+    bough_lifetime_channel *channel; // (n_channel)
+    int n_failed, n_missing;         // cases
+    double hours;                    // of the life that are in the sums
+    double total;                    // hours and events of all cases
+    double lacking;                  // share of the cases' weight that failed or is missing
+    double simulated, cpu;           // of all runs [s]
+} bough_lifetime;
+
+bool bough_lifetime_take(bough_arena *arena, const bough_load_set *set, bough_lifetime *lifetime);
+
+// Adds the next case; a result that is not done is missing.
+void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *result);
+
+// Damage-equivalent load of a channel over the life, for the k-th slope.
+double bough_lifetime_equivalent(const bough_lifetime *l, int channel, int slope);
+
+#endif

@@ -1,0 +1,12 @@
+// Performs a sweep or a load set.
+#ifndef BOUGH_APPS_STUDY_LOAD_SET_PERFORM_H
+#define BOUGH_APPS_STUDY_LOAD_SET_PERFORM_H
+
+#include "apps/study/study_perform.h"
+
+// Runs the cases that the folder does not hold and nobody else runs, one a thread, and when all are
+// there writes the tables. BOUGH_FAILED when cases failed; the others are run.
+bough_status bough_load_set_perform(bough_arena *arena, const bough_study *study,
+                                    const bough_study_options *options);
+
+#endif
