@@ -123,11 +123,11 @@ static void load_stations(const bough_rotor *rotor, const blade_rows *rows) {
     }
 }
 
-// The line loads on the vertices.
-static void spread(const bough_rotor *rotor, const double *restrict line, double *restrict load) {
-    int n = rotor->n_vertex;
+// The line loads of the stations by n rows of the mapping: on the vertices, or along the segments.
+static void spread(int n, const vertex_row *rows, const double *restrict line,
+                   double *restrict load) {
     for (int i = 0; i < n; i++) {
-        vertex_row row = rotor->row[i];
+        vertex_row row = rows[i];
         double sum[LOAD] = {0};
         for (int k = 0; k < row.count; k++) {
             const double *from = line + LOAD * (row.first + k);
@@ -163,7 +163,9 @@ void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion
     induce(rotor, motion, blade, data->scratch);
     ask_polars(rotor, motion->time, blade, data);
     load_stations(rotor, r);
-    spread(rotor, r->load, data->load + 6 * blade * rotor->n_vertex);
+    int n = rotor->n_vertex;
+    spread(n, rotor->row, r->load, data->load + 6 * blade * n);
+    spread(n - 1, rotor->segment_row, r->load, data->line + 6 * blade * (n - 1));
     sum_blade(rotor, motion, blade, data);
 }
 

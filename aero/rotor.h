@@ -110,6 +110,8 @@ typedef struct bough_rotor_data {
     // computed by bough_rotor_sample
     double *load; // (n_blade × 6 × n_vertex) force on each vertex, moment about it, in the axes of
                   // the blade's frame [N, N m]
+    double *line; // (n_blade × 6 × (n_vertex − 1)) the same loads per length, their mean over each
+                  // segment between two vertices, same axes [N/m, N]
     double thrust;        // along the shaft [N]
     double torque;        // about the shaft [N m]
     bough_vec3 disk_wind; // mean of the disturbed wind over all stations [m/s]

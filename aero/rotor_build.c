@@ -127,9 +127,10 @@ static void place_stations(const bough_rotor_def *def, const bough_polar *polar,
     }
 }
 
-// Adds ∫ hat_i N_j ds over [a, b], on which all are linear; by Simpson's rule, exact for products.
+// Adds ∫ hat_i N_j ds and ∫ N_j ds/h over [a, b], on which all are linear; by Simpson's rule, exact
+// for products.
 static void add_interval(const bough_rotor_def *def, double a, double b, int vertex, int station,
-                         double *dense) {
+                         double *dense, double *mean) {
     const double *x = def->vertex_span;
     double x0 = x[vertex], dx = x[vertex + 1] - x0;
     double y0 = def->station[station].span, dy = def->station[station + 1].span - y0;
@@ -142,11 +143,14 @@ static void add_interval(const bough_rotor_def *def, double a, double b, int ver
         here[1] += w * (1 - hat) * load;
         next[0] += w * hat * (1 - load);
         next[1] += w * hat * load;
+        mean[vertex * def->n_station + station] += w / dx * (1 - load);
+        mean[vertex * def->n_station + station + 1] += w / dx * load;
     }
 }
 
-// dense (n_vertex × n_station): what each vertex takes of each station's line load [m].
-static void fill_mapping(const bough_rotor_def *def, double *dense) {
+// dense (n_vertex × n_station): what each vertex takes of each station's line load [m]; mean
+// (n_vertex − 1 × n_station): its share in the mean over a segment.
+static void fill_mapping(const bough_rotor_def *def, double *dense, double *mean) {
     int vertex = 0, last = def->n_vertex - 2;
     for (int j = 0; j + 1 < def->n_station; j++) {
         double a = def->station[j].span, end = def->station[j + 1].span;
@@ -154,22 +158,22 @@ static void fill_mapping(const bough_rotor_def *def, double *dense) {
             while (vertex < last && def->vertex_span[vertex + 1] <= a)
                 vertex++;
             double b = vertex < last ? fmin(end, def->vertex_span[vertex + 1]) : end;
-            add_interval(def, a, b, vertex, j, dense);
+            add_interval(def, a, b, vertex, j, dense, mean);
             a = b;
         }
     }
 }
 
 // Keeps of each dense row the stretch from its first to its last entry.
-static void compress_rows(const bough_rotor *rotor, const double *dense) {
-    for (int i = 0; i < rotor->n_vertex; i++) {
-        const double *d = dense + i * rotor->n_station;
-        int first = 0, end = rotor->n_station;
+static void compress_rows(int n, int n_station, const double *dense, vertex_row *row) {
+    for (int i = 0; i < n; i++) {
+        const double *d = dense + i * n_station;
+        int first = 0, end = n_station;
         while (first < end && d[first] == 0)
             first++;
         while (end > first && d[end - 1] == 0)
             end--;
-        rotor->row[i] = (vertex_row){first, end - first, d + first};
+        row[i] = (vertex_row){first, end - first, d + first};
     }
 }
 
@@ -215,8 +219,10 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
     size_t n_station = (size_t)def->n_station, n_vertex = (size_t)def->n_vertex;
     bough_rotor *rotor = bough_arena_take(arena, sizeof *rotor);
     vertex_row *row = bough_arena_take(arena, n_vertex * sizeof *row);
+    vertex_row *segment_row = bough_arena_take(arena, (n_vertex - 1) * sizeof *segment_row);
     double *dense = bough_arena_doubles(arena, n_vertex * n_station);
-    if (!rotor || !row || !dense) {
+    double *mean = bough_arena_doubles(arena, (n_vertex - 1) * n_station);
+    if (!rotor || !row || !segment_row || !dense || !mean) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's aerodynamics.");
     }
     *rotor = (bough_rotor){.n_blade = def->n_blade,
@@ -228,7 +234,8 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                            .skew = def->skew,
                            .induction = def->induction,
                            .inflow = def->inflow,
-                           .row = row};
+                           .row = row,
+                           .segment_row = segment_row};
     if (!take_stations(arena, rotor->stride, &rotor->station)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's stations.");
     }
@@ -238,8 +245,9 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
     if (bough_is_ok(&status)) status = bough_tower_build(arena, &def->tower, &rotor->tower);
     if (!bough_is_ok(&status)) return status;
     place_stations(def, polar, rotor);
-    fill_mapping(def, dense);
-    compress_rows(rotor, dense);
+    fill_mapping(def, dense, mean);
+    compress_rows(def->n_vertex, def->n_station, dense, row);
+    compress_rows(def->n_vertex - 1, def->n_station, mean, segment_row);
     if (def->stall != BOUGH_STALL_NONE) status = prepare_stall(arena, rotor);
     if (bough_is_ok(&status)) *result = rotor;
     return status;
@@ -287,6 +295,7 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
     size_t n_blade = (size_t)rotor->n_blade;
     *data = (bough_rotor_data){0};
     data->load = bough_arena_doubles(arena, 6 * n_blade * (size_t)rotor->n_vertex);
+    data->line = bough_arena_doubles(arena, 6 * n_blade * (size_t)(rotor->n_vertex - 1));
     struct bough_rotor_scratch *s = bough_arena_take(arena, sizeof *s);
     data->scratch = s;
     if (s) {

@@ -33,6 +33,7 @@ struct bough_rotor {
     bough_tower tower;
     station_rows station;
     vertex_row *row;                    // (n_vertex)
+    vertex_row *segment_row;            // (n_vertex − 1) the mean over a segment, weights [-]
     const bough_stall_airfoil *airfoil; // (n_station); NULL: static polars
 };
 

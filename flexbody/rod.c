@@ -26,6 +26,7 @@ static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
     m->strain0 = bough_arena_doubles(arena, 6 * s);
     m->stiffness = bough_arena_doubles(arena, 21 * s);
     m->damping = bough_arena_doubles(arena, 21 * s);
+    m->line = bough_arena_doubles(arena, 36 * s);
     m->mass = bough_arena_doubles(arena, s);
     m->moment = bough_arena_doubles(arena, 3 * s);
     m->inertia = bough_arena_doubles(arena, 6 * s);
@@ -49,6 +50,7 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
         m->stiffness[k * s + n] = def->stiffness[21 * n + k];
         m->damping[k * s + n] = def->damping[21 * n + k];
     }
+    for (int k = 0; k < 36 && def->line != NULL; k++) m->line[k * s + n] = def->line[36 * n + k];
     vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
     vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
     segment_geometry shape = segment_shape(left, right, 1 / h);
@@ -125,8 +127,11 @@ bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
     scratch->segment = bough_arena_doubles(arena, 9 * (size_t)model->stride);
     scratch->load = bough_rod_vertex_rows(arena, model, 6);
     scratch->follower = bough_rod_vertex_rows(arena, model, 6);
-    return scratch->vertex != NULL && scratch->segment != NULL && scratch->load != NULL &&
-           scratch->follower != NULL;
+    scratch->rest = model->strain0;
+    scratch->turning = false;
+    scratch->along = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    scratch->own_rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    return !bough_arena_exhausted(arena);
 }
 
 bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
@@ -134,21 +139,49 @@ bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
     loads->start = 0;
     loads->value = bough_rod_vertex_rows(arena, model, 6);
     loads->rate = bough_rod_vertex_rows(arena, model, 6);
+    loads->rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
     loads->ramped = NULL;
-    return loads->value != NULL && loads->rate != NULL;
+    if (bough_arena_exhausted(arena)) return false;
+    memcpy(loads->rest, model->strain0, 6 * (size_t)model->stride * sizeof *loads->rest);
+    return true;
 }
 
-double *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
-                               const bough_rod_model *model, bool follower, const double ramp[2]) {
+bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
+                                              const bough_rod_model *model, bool follower,
+                                              const double ramp[2]) {
     for (bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
-        if (l->follower == follower && l->start == ramp[0] && l->end == ramp[1]) return l->value;
+        if (l->follower == follower && l->start == ramp[0] && l->end == ramp[1]) return l;
     }
     bough_rod_ramped_load *fresh = bough_arena_take(arena, sizeof *fresh);
-    double *value = bough_rod_vertex_rows(arena, model, 6);
-    if (fresh == NULL || value == NULL) return NULL;
-    *fresh = (bough_rod_ramped_load){loads->ramped, ramp[0], ramp[1], follower, value};
+    if (fresh == NULL) return NULL;
+    *fresh = (bough_rod_ramped_load){.next = loads->ramped,
+                                     .start = ramp[0],
+                                     .end = ramp[1],
+                                     .follower = follower,
+                                     .value = bough_rod_vertex_rows(arena, model, 6),
+                                     .line = bough_arena_doubles(arena, 6 * (size_t)model->stride)};
+    if (fresh->value == NULL || fresh->line == NULL) return NULL;
     loads->ramped = fresh;
-    return value;
+    return fresh;
+}
+
+void bough_rod_line_strain(const bough_rod_model *m, const double *line, double *along) {
+    int s = m->stride, n = m->n_segment;
+    for (int i = 0; i < 6; i++) {
+        const double *restrict d = m->line + 6 * i * s;
+        double *restrict row = along + i * s;
+#pragma omp simd
+        for (int k = 0; k < n; k++) {
+            double sum = 0;
+            for (int j = 0; j < 6; j++) sum += d[j * s + k] * line[j * n + k];
+            row[k] = sum;
+        }
+    }
+}
+
+void bough_rod_loads_along(const bough_rod_model *m, const double *line, bough_rod_loads *loads) {
+    bough_rod_line_strain(m, line, loads->rest);
+    for (int k = 0; k < 6 * m->stride; k++) loads->rest[k] += m->strain0[k];
 }
 
 double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t) {

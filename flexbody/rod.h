@@ -53,6 +53,8 @@ typedef struct bough_rod_def {
                                           // (N × 21) [N, N m, N m²]; order V₁V₂V₃U₁U₂U₃
     const double *damping;                // likewise (N × 21) [N s, N m s, N m² s]
     const bough_vertex_inertia *inertia;  // (N + 1)
+    const double *line;                   // D per segment, 6×6 by rows (N × 36) [1/N, 1/N m …]:
+                                          // mean strain per load along it; NULL: none
     bool carries; // bodies at its end: the last vertex belongs to them as the root to the carrier
 } bough_rod_def;
 
@@ -69,7 +71,8 @@ typedef struct bough_rod_model {
     double *inverse_length;     // 1/h (stride) [1/m]
     double *strain0;            // V⁰, U⁰ (6 × stride)
     double *stiffness;          // C (21 × stride)
-    double *damping;            // D (21 × stride)
+    double *damping;            // (21 × stride)
+    double *line;               // D (36 × stride), by rows
     double *mass;               // of moving vertices (stride) [kg]
     double *moment;             // first moment s = mζ of moving vertices (3 × stride) [kg m]
     double *inertia;            // of moving vertices (6 × stride) [kg m²]
@@ -87,14 +90,22 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
     return bough_rod_carries(m) ? BOUGH_ROD_MOST_OUTPUTS : BOUGH_ROD_OUTPUTS;
 }
 
-// Loads on the vertices that grow: value × factor, the factor rising linearly from 0 at `start` to 1
-// at `end` (end <= start: always 1). Dead ones are resolved in BRF axes, followers in the section
-// axes of each vertex, with which they turn.
+// A load along the rod acts twice (THEORY 6): lumped to the vertices by hat functions, which is all
+// that the balances see, and as the strain D q of each segment under a load q per length, by which
+// its elastic law, stress = C (e − e⁰ − D q), is that of the loaded segment. Linear statics is then
+// exact at the vertices for loads that are uniform over each segment.
+
+// Loads that grow: value × factor, the factor rising linearly from 0 at `start` to 1 at `end`
+// (end <= start: always 1). Dead ones are resolved in BRF axes, followers in the section axes of each
+// vertex and segment, with which they turn.
 typedef struct bough_rod_ramped_load {
     struct bough_rod_ramped_load *next;
     double start, end; // [s]
     bool follower;
-    double *value; // force then moment (6 × stride), vertex 0 included [N, N m]
+    double *value; // on vertices: force then moment (6 × stride), vertex 0 included [N, N m]
+    double *line;  // the part of `value` that is spread along whole segments, per length: force then
+                   // moment (6 × stride) [N/m, N]
+    bool along;    // there is such a part
 } bough_rod_ramped_load;
 
 // Loads on the vertices: value + (t − start)·rate, resolved in BRF axes, and all ramped loads.
@@ -102,6 +113,8 @@ typedef struct bough_rod_loads {
     double start;  // [s]
     double *value; // force then moment (6 × stride), vertex 0 included [N, N m]
     double *rate;  // (6 × stride) [N/s, N m/s]
+    double *rest;  // strains without stress: e⁰ + D q of loads along the segments (6 × stride), set
+                   // by bough_rod_loads_along; it does not change in time
     bough_rod_ramped_load *ramped; // NULL: none
 } bough_rod_loads;
 
@@ -112,6 +125,11 @@ typedef struct bough_rod_scratch {
                      // vertex in their section axes (9 × stride), zero at N
     double *load;    // loads at the time of evaluation (6 × stride), in BRF axes
     double *follower; // the followers among them in section axes (6 × stride); set if there are any
+    // set with the loads:
+    const double *rest; // strains without stress (6 × stride); before any loads e⁰
+    bool turning;       // part of it is made by dead loads along the segments and turns with them:
+    double *along;      // these in the axes of the segments' middles (6 × stride) [N/m, N]
+    double *own_rest;   // (6 × stride)
 } bough_rod_scratch;
 
 // Builds the constant model. BOUGH_INVALID names the segment or vertex that is not usable.
@@ -127,13 +145,22 @@ bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
 bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
                           const bough_rod_model *model);
 
-// The values (6 × stride) of the ramped load of this kind and ramp, a new one of zeros if there is
-// none yet. NULL when memory is exhausted.
-double *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
-                               const bough_rod_model *model, bool follower, const double ramp[2]);
+// The ramped load of this kind and ramp, a new one of zeros if there is none yet. NULL when memory is
+// exhausted.
+bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
+                                              const bough_rod_model *model, bool follower,
+                                              const double ramp[2]);
 
 // Share of a ramped load at time t.
 double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t);
+
+// Sets loads->rest for the loads along the segments, given per length (6 × n_segment: force, then
+// moment [N/m, N]) in the axes of a segment's middle (bough_rod_line_axes); their vertex loads are
+// the caller's.
+void bough_rod_loads_along(const bough_rod_model *m, const double *line, bough_rod_loads *loads);
+
+// D q of such loads, to along (6 × stride).
+void bough_rod_line_strain(const bough_rod_model *m, const double *line, double *along);
 
 bool bough_rod_loads_follow(const bough_rod_loads *loads); // whether any load is a follower
 
@@ -158,7 +185,7 @@ bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads
                           double *rate);
 
 // The same at another time and input, `state` being that of the last bough_rod_derivative with this
-// scratch: only segments that touch the input are evaluated anew.
+// scratch: only segments that touch the input, or whose loads change in time, are evaluated anew.
 bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                                 const double *state, const double *input,
                                 bough_rod_scratch *scratch, double *rate);
@@ -174,11 +201,15 @@ void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads
                           const double *state, const double *input, bough_rod_scratch *scratch,
                           double *wrench);
 
-// Elastic energy [J] of the configuration in scratch->vertex.
+// Loads at time t into scratch, after a gathering.
+void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                    bough_rod_scratch *scratch);
+
+// Elastic energy [J] of the configuration in scratch->vertex, under the loads that scratch had last.
 double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch);
 
 // Elastic force and moment (6) in the middle of segment n, in section axes there, of the
-// configuration in scratch->vertex [N, N m].
+// configuration in scratch->vertex, under the loads that scratch had last [N, N m].
 void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n,
                       double stress[6]);
 

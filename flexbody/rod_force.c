@@ -55,7 +55,7 @@ void bough_rod_gather_root(const bough_rod_model *m, const double *state, const 
 
 bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
     int s = m->stride;
-    const double *restrict vertex = scratch->vertex, *restrict e0 = m->strain0;
+    const double *restrict vertex = scratch->vertex, *restrict rest = scratch->rest;
     const double *restrict c = m->stiffness, *restrict d = m->damping;
     const double *restrict length = m->length, *restrict inverse = m->inverse_length;
     double *restrict out = scratch->segment;
@@ -65,8 +65,7 @@ bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_s
         vertex_state l = load_vertex(vertex, s, n), r = load_vertex(vertex, s, n + 1);
         segment_geometry shape = segment_shape(l, r, inverse[n]);
         strain rate = strain_rate(shape, segment_motion(shape, l, r), inverse[n]);
-        strain e = {bough_sub(shape.stretch, load3(e0, s, n)),
-                    bough_axpy(inverse[n], shape.phi, bough_scale(-1, load3(e0 + 3 * s, s, n)))};
+        strain e = elastic_strain(shape, inverse[n], rest, s, n);
         strain elastic = symmetric_times(c, s, n, e), viscous = symmetric_times(d, s, n, rate);
         strain stress = {bough_add(elastic.v, viscous.v), bough_add(elastic.u, viscous.u)};
         segment_force f = stress_force(shape, stress, length[n]);
@@ -77,6 +76,12 @@ bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_s
         least = w < least ? w : least;
     }
     return least >= 0.5;
+}
+
+static bough_mat3 middle_of(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
+    vertex_state l = load_vertex(scratch->vertex, m->stride, n);
+    vertex_state r = load_vertex(scratch->vertex, m->stride, n + 1);
+    return segment_shape(l, r, m->inverse_length[n]).r;
 }
 
 // Adds the ramped loads; followers are resolved by the sections in scratch->vertex.
@@ -101,16 +106,57 @@ static void add_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
     }
 }
 
-// Loads at time t into scratch->load, after the gathering.
-static void loads_at(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                     bough_rod_scratch *scratch) {
+static bool loads_lie_along(const bough_rod_loads *loads) {
+    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        if (l->along) return true;
+    }
+    return false;
+}
+
+// Adds D q of the ramped loads along the segments: the dead ones turned into their middles.
+static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                      bough_rod_scratch *scratch) {
+    int s = m->stride;
+    size_t bytes = 6 * (size_t)s * sizeof(double);
+    memcpy(scratch->own_rest, loads->rest, bytes);
+    memset(scratch->along, 0, bytes);
+    scratch->rest = scratch->own_rest;
+    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        double factor = bough_rod_ramp_factor(l, t);
+        if (!l->along) continue;
+        scratch->turning = scratch->turning || !l->follower;
+        for (int n = 0; n < m->n_segment; n++) {
+            bough_vec3 f = bough_scale(factor, load3(l->line, s, n));
+            bough_vec3 moment = bough_scale(factor, load3(l->line + 3 * s, s, n));
+            if (!l->follower) {
+                bough_mat3 r = middle_of(m, scratch, n);
+                f = bough_mat3_tmul(r, f);
+                moment = bough_mat3_tmul(r, moment);
+                store3(scratch->along, s, n, bough_add(load3(scratch->along, s, n), f));
+                store3(scratch->along + 3 * s, s, n,
+                       bough_add(load3(scratch->along + 3 * s, s, n), moment));
+            }
+            double *rest = scratch->own_rest;
+            strain e = line_strain(m->line, s, n, f, moment);
+            store3(rest, s, n, bough_add(load3(rest, s, n), e.v));
+            store3(rest + 3 * s, s, n, bough_add(load3(rest + 3 * s, s, n), e.u));
+        }
+    }
+}
+
+void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                    bough_rod_scratch *scratch) {
     double elapsed = t - loads->start; // all that bough_rod_vertex_rows took: whole registers
     const double *restrict value = loads->value, *restrict rate = loads->rate;
     double *restrict load = scratch->load;
     int count = 6 * m->stride;
 #pragma omp simd
     for (int k = 1 - BOUGH_LANES; k <= count; k++) load[k] = value[k] + elapsed * rate[k];
-    if (loads->ramped != NULL) add_ramped(m, loads, t, scratch);
+    scratch->rest = loads->rest;
+    scratch->turning = false;
+    if (loads->ramped == NULL) return;
+    add_ramped(m, loads, t, scratch);
+    if (loads_lie_along(loads)) add_along(m, loads, t, scratch);
 }
 
 // (11) solved for the accelerations, all vertices: the linear part goes out in BRF axes.
@@ -179,7 +225,7 @@ bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads
                           const double *state, const double *input, bough_rod_scratch *scratch,
                           double *rate) {
     bough_rod_gather(m, state, input, scratch);
-    loads_at(m, loads, t, scratch);
+    bough_rod_load(m, loads, t, scratch);
     // whole registers: segments beyond the last exert nothing
     if (!bough_rod_forces(m, 0, bough_padded(m->n_segment), scratch)) return false;
     return balance_vertices(m, state, input, scratch, rate);
@@ -190,9 +236,10 @@ bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads 
                                 bough_rod_scratch *scratch, double *rate) {
     int n = m->n_segment;
     gather_input(m, input, scratch->vertex);
-    loads_at(m, loads, t, scratch);
-    bool ok = bough_rod_forces(m, 0, 1, scratch);
-    if (bough_rod_carries(m)) ok = bough_rod_forces(m, n - 1, n, scratch) && ok;
+    bough_rod_load(m, loads, t, scratch);
+    bool all = loads_lie_along(loads);
+    bool ok = bough_rod_forces(m, 0, all ? bough_padded(n) : 1, scratch);
+    if (bough_rod_carries(m) && !all) ok = bough_rod_forces(m, n - 1, n, scratch) && ok;
     return ok && balance_vertices(m, state, input, scratch, rate);
 }
 
@@ -201,7 +248,7 @@ void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *load
                            double *wrench) {
     int s = m->stride;
     bough_rod_gather_root(m, state, input, scratch);
-    loads_at(m, loads, t, scratch);
+    bough_rod_load(m, loads, t, scratch);
     bough_rod_forces(m, 0, 1, scratch);
     const double *f = scratch->segment;
     bough_vec3 moment = bough_mat3_mul(m->root, bough_v3(f[3 * s], f[4 * s], f[5 * s]));
@@ -214,7 +261,7 @@ void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads
                           double *wrench) {
     int s = m->stride, end = m->n_segment;
     bough_rod_gather(m, state, input, scratch);
-    loads_at(m, loads, t, scratch);
+    bough_rod_load(m, loads, t, scratch);
     bough_rod_forces(m, end - 1, end, scratch);
     bough_mat3 r = matrix_of(load_vertex(scratch->vertex, s, end).p);
     const double *f = scratch->segment + end - 1, *load = scratch->load + end;
@@ -226,29 +273,35 @@ void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads
     memcpy(wrench, values, sizeof values);
 }
 
-static strain elastic_strain(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
+static strain strain_of(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
     int s = m->stride;
     vertex_state l = load_vertex(scratch->vertex, s, n);
     vertex_state r = load_vertex(scratch->vertex, s, n + 1);
     segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
-    return (strain){bough_sub(shape.stretch, load3(m->strain0, s, n)),
-                    bough_axpy(m->inverse_length[n], shape.phi,
-                               bough_scale(-1, load3(m->strain0 + 3 * s, s, n)))};
+    return elastic_strain(shape, m->inverse_length[n], scratch->rest, s, n);
 }
 
 double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch) {
     double energy = 0;
     for (int n = 0; n < m->n_segment; n++) {
-        strain e = elastic_strain(m, scratch, n);
+        strain e = strain_of(m, scratch, n);
         strain stress = symmetric_times(m->stiffness, m->stride, n, e);
         energy += 0.5 * m->length[n] * (bough_dot(e.v, stress.v) + bough_dot(e.u, stress.u));
     }
     return energy;
 }
 
+// By the balance of the segment's left half: pretwist and curvature make it differ a little from what
+// the strains are conjugate to.
 void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n,
                       double stress[6]) {
-    strain s = symmetric_times(m->stiffness, m->stride, n, elastic_strain(m, scratch, n));
-    const double values[6] = {s.v.x, s.v.y, s.v.z, s.u.x, s.u.y, s.u.z};
+    vertex_state l = load_vertex(scratch->vertex, m->stride, n);
+    vertex_state r = load_vertex(scratch->vertex, m->stride, n + 1);
+    segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
+    strain e = strain_of(m, scratch, n), s = symmetric_times(m->stiffness, m->stride, n, e);
+    segment_force f = stress_force(shape, s, m->length[n]);
+    bough_vec3 half = bough_scale(0.5 * m->length[n], shape.stretch);
+    bough_vec3 moment = bough_sub(half_backward(shape.v, shape.t, f.ll), bough_cross(half, s.v));
+    const double values[6] = {s.v.x, s.v.y, s.v.z, moment.x, moment.y, moment.z};
     memcpy(stress, values, sizeof values);
 }

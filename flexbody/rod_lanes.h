@@ -49,22 +49,52 @@ static inline strain add_strain(strain a, strain b) {
     return (strain){bough_add(a.v, b.v), bough_add(a.u, b.u)};
 }
 
+// e − e⁰ − D q of a segment, `rest` the strains without stress
+static inline strain elastic_strain(segment_geometry shape, double inverse_h,
+                                    const double *restrict rest, int s, int n) {
+    return (strain){bough_sub(shape.stretch, load3(rest, s, n)),
+                    bough_axpy(inverse_h, shape.phi,
+                               bough_scale(-1, load3(rest + 3 * s, s, n)))};
+}
+
+// D q of a load per length in the axes of the segment's middle
+static inline strain line_strain(const double *restrict line, int s, int n, bough_vec3 force,
+                                 bough_vec3 moment) {
+#define D(i, j) line[(6 * (i) + (j)) * s + n]
+#define ROW(i)                                                                                     \
+    (D(i, 0) * force.x + D(i, 1) * force.y + D(i, 2) * force.z + D(i, 3) * moment.x +              \
+     D(i, 4) * moment.y + D(i, 5) * moment.z)
+    return (strain){{ROW(0), ROW(1), ROW(2)}, {ROW(3), ROW(4), ROW(5)}};
+#undef ROW
+#undef D
+}
+
+// Change of the elastic strain where dead loads `along` the segment turn against its middle.
+static inline strain add_turned(strain change, const double *restrict line,
+                                const double *restrict along, int s, int n, bough_vec3 middle) {
+    bough_vec3 force = bough_cross(load3(along, s, n), middle);
+    bough_vec3 moment = bough_cross(load3(along + 3 * s, s, n), middle);
+    strain e = line_strain(line, s, n, force, moment);
+    return (strain){bough_sub(change.v, e.v), bough_sub(change.u, e.u)};
+}
+
 // Derivative of the forces of segment n along variations of its vertices.
-static inline segment_force segment_tangent(const bough_rod_model *m, const double *vertex, int n,
+static inline segment_force segment_tangent(const bough_rod_model *m,
+                                            const bough_rod_scratch *scratch, int n,
                                             const vertex_variation *dl,
                                             const vertex_variation *dr) {
     int s = m->stride;
     double h = m->length[n], inverse = m->inverse_length[n];
-    vertex_state l = load_vertex(vertex, s, n), r = load_vertex(vertex, s, n + 1);
+    vertex_state l = load_vertex(scratch->vertex, s, n), r = load_vertex(scratch->vertex, s, n + 1);
     segment_geometry shape = segment_shape(l, r, inverse);
     segment_rate motion = segment_motion(shape, l, r);
-    strain e = {bough_sub(shape.stretch, load3(m->strain0, s, n)),
-                bough_axpy(inverse, shape.phi, bough_scale(-1, load3(m->strain0 + 3 * s, s, n)))};
+    strain e = elastic_strain(shape, inverse, scratch->rest, s, n);
     strain rate = strain_rate(shape, motion, inverse);
     strain stress = add_strain(symmetric_times(m->stiffness, s, n, e),
                                symmetric_times(m->damping, s, n, rate));
     segment_variation d = shape_variation(shape, *dl, *dr, inverse);
     strain de = {d.stretch, bough_scale(inverse, d.phi)};
+    if (scratch->turning) de = add_turned(de, m->line, scratch->along, s, n, d.middle);
     strain drate = rate_variation(shape, motion, d, dl, dr, inverse);
     strain dstress = add_strain(symmetric_times(m->stiffness, s, n, de),
                                 symmetric_times(m->damping, s, n, drate));

@@ -1,5 +1,9 @@
 #include "flexbody/rod_load.h"
 
+#include "flexbody/rod_lanes.h"
+
+#include <string.h>
+
 // What the two vertices of a segment take of a load on it.
 typedef struct shares {
     double left, right; // of force and moment
@@ -38,26 +42,34 @@ static bough_vec3 couple_at(const bough_rod_model *m, int n, int i, double arm,
 }
 
 static void add_to_segment(const bough_rod_model *m, int n, shares s, const double *wrench,
-                           bool follower, double *value) {
-    bough_vec3 left = couple_at(m, n, n, s.couple, wrench, follower);
-    bough_vec3 right = couple_at(m, n, n + 1, -s.couple, wrench, follower);
-    add_to_vertex(m, n, s.left, left, wrench, value);
-    add_to_vertex(m, n + 1, s.right, right, wrench, value);
+                           bough_rod_ramped_load *load) {
+    bough_vec3 left = couple_at(m, n, n, s.couple, wrench, load->follower);
+    bough_vec3 right = couple_at(m, n, n + 1, -s.couple, wrench, load->follower);
+    add_to_vertex(m, n, s.left, left, wrench, load->value);
+    add_to_vertex(m, n + 1, s.right, right, wrench, load->value);
 }
 
-static void lump_point(const bough_rod_model *m, double at, const double *wrench, bool follower,
-                       double *value) {
+static void lump_point(const bough_rod_model *m, double at, const double *wrench,
+                       bough_rod_ramped_load *load) {
     int n = 0;
     while (n < m->n_segment - 1 && at >= m->span[n + 1]) n++;
     double h = m->span[n + 1] - m->span[n];
     double xi = bough_clamp((at - m->span[n]) / h, 0, 1);
-    add_to_segment(m, n, point_shares(h, xi), wrench, follower, value);
+    add_to_segment(m, n, point_shares(h, xi), wrench, load);
+}
+
+// Shares of a line from `from` to `to` in the segment; the whole of it has no couples.
+static shares covered_shares(double h, double from, double to) {
+    shares high = line_shares(h, to), low = line_shares(h, from);
+    shares s = {high.left - low.left, high.right - low.right, high.couple - low.couple};
+    if (from == 0 && to == 1) s.couple = 0;
+    return s;
 }
 
 void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const double *wrench,
-                    bool follower, double *value) {
+                    bough_rod_ramped_load *load) {
     if (reach.to == reach.from) {
-        lump_point(m, reach.from, wrench, follower, value);
+        lump_point(m, reach.from, wrench, load);
         return;
     }
     for (int n = 0; n < m->n_segment; n++) {
@@ -65,8 +77,74 @@ void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const doubl
         double from = bough_clamp((reach.from - m->span[n]) / h, 0, 1);
         double to = bough_clamp((reach.to - m->span[n]) / h, 0, 1);
         if (to <= from) continue;
-        shares high = line_shares(h, to), low = line_shares(h, from);
-        shares s = {high.left - low.left, high.right - low.right, high.couple - low.couple};
-        add_to_segment(m, n, s, wrench, follower, value);
+        add_to_segment(m, n, covered_shares(h, from, to), wrench, load);
+        if (from > 0 || to < 1) continue;
+        load->along = true;
+        for (int c = 0; c < 6; c++) load->line[c * m->stride + n] += wrench[c];
+    }
+}
+
+// The stress −C D q of segment n on its two vertices, in BRF or, of a follower, in section axes, added
+// to value.
+static void lump_stress(const bough_rod_model *m, int n, strain line, bool follower,
+                        double *value) {
+    int s = m->stride;
+    vertex_state l = {.x = m->position0[n], .p = m->rotation0[n]};
+    vertex_state r = {.x = m->position0[n + 1], .p = m->rotation0[n + 1]};
+    segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
+    strain minus = {bough_scale(-1, line.v), bough_scale(-1, line.u)};
+    strain stress = symmetric_times(m->stiffness, s, n, minus);
+    segment_force f = stress_force(shape, stress, m->length[n]);
+    const bough_vec3 force[2] = {f.f, bough_scale(-1, f.f)}, moment[2] = {f.ll, f.lr};
+    const bough_quaternion p[2] = {l.p, r.p};
+    for (int side = 0; side < 2; side++) {
+        bough_mat3 axes = bough_rotation_matrix(p[side]);
+        double *to = value + n + side;
+        bough_vec3 pull = follower ? bough_mat3_tmul(axes, force[side]) : force[side];
+        bough_vec3 turn = follower ? moment[side] : bough_mat3_mul(axes, moment[side]);
+        store3(to, s, 0, bough_add(load3(to, s, 0), pull));
+        store3(to + 3 * s, s, 0, bough_add(load3(to + 3 * s, s, 0), turn));
+    }
+}
+
+void bough_rod_lump_strain(const bough_rod_model *m, const double *line_strain, double *value) {
+    int s = m->stride;
+    for (int n = 0; n < m->n_segment; n++) {
+        strain line = {load3(line_strain, s, n), load3(line_strain + 3 * s, s, n)};
+        lump_stress(m, n, line, false, value);
+    }
+}
+
+void bough_rod_lump_line(const bough_rod_model *m, bough_rod_ramped_load *load) {
+    int s = m->stride;
+    for (int n = 0; n < m->n_segment && load->along; n++) {
+        vertex_state l = {.x = m->position0[n], .p = m->rotation0[n]};
+        vertex_state r = {.x = m->position0[n + 1], .p = m->rotation0[n + 1]};
+        bough_mat3 middle = segment_shape(l, r, m->inverse_length[n]).r;
+        bough_vec3 f = load3(load->line, s, n), moment = load3(load->line + 3 * s, s, n);
+        if (!load->follower) {
+            f = bough_mat3_tmul(middle, f);
+            moment = bough_mat3_tmul(middle, moment);
+        }
+        lump_stress(m, n, line_strain(m->line, s, n, f, moment), load->follower, load->value);
+    }
+    memset(load->line, 0, 6 * (size_t)s * sizeof *load->line);
+    load->along = false;
+}
+
+void bough_rod_line_axes(int n_segment, const double *rotation, const double *line,
+                         double *turned) {
+    int n = n_segment, v = n + 1;
+    for (int k = 0; k < n; k++) {
+        bough_quaternion p[2];
+        for (int side = 0; side < 2; side++) {
+            const double *q = rotation + k + side;
+            p[side] = bough_quaternion_normalised(
+                (bough_quaternion){q[0], q[v], q[2 * v], q[3 * v]});
+        }
+        double dot = p[0].w * p[1].w + p[0].x * p[1].x + p[0].y * p[1].y + p[0].z * p[1].z;
+        bough_mat3 r = mid_frame(p[0], p[1], copysign(1.0, dot), 1 / (1 + fabs(dot)));
+        store3(turned, n, k, bough_mat3_tmul(r, load3(line, n, k)));
+        store3(turned + 3 * n, n, k, bough_mat3_tmul(r, load3(line + 3 * n, n, k)));
     }
 }

@@ -9,12 +9,23 @@ typedef struct bough_rod_reach {
     double from, to; // [m]
 } bough_rod_reach;
 
-// Adds to value (6 × stride) a wrench (force, moment) [N, N m], or per length [N/m, N m/m], resolved
-// in BRF axes, or for a follower in section axes. Forces and moments are shared by hat functions;
-// between the vertices a force also bends, which the equal and opposite moments of a linear element
-// on its two vertices account for: on a uniform mesh under a uniform load they stay at the ends only.
-// Their direction is that of the undeformed rod.
+// Adds to the load a wrench (force, moment) [N, N m], or per length [N/m, N m/m], in the load's axes.
+// Vertices share it by hat functions. What covers whole segments goes to load->line as well, exact for
+// any section tables. Of a force that acts at a place in a segment or on a part of it, the equal and
+// opposite moments of a linear element on the two vertices account for its bending there, exact for
+// uniform sections; their direction is that of the undeformed rod.
 void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const double *wrench,
-                    bool follower, double *value);
+                    bough_rod_ramped_load *load);
+
+// Puts what load->line does to the undeformed rod into load->value: forces and moments on the two
+// vertices of each segment that cancel. For bodies that know loads on vertices only.
+void bough_rod_lump_line(const bough_rod_model *m, bough_rod_ramped_load *load);
+
+// The same of a strain D q (6 × stride) on a dead load: adds to value (6 × stride).
+void bough_rod_lump_strain(const bough_rod_model *m, const double *line_strain, double *value);
+
+// Loads per length in the axes of the segments' middles (6 × n_segment) from those in BRF axes (same);
+// `rotation` are the vertices' quaternions, of about unit length (4 × (n_segment + 1)).
+void bough_rod_line_axes(int n_segment, const double *rotation, const double *line, double *turned);
 
 #endif

@@ -51,7 +51,7 @@ void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, con
     vertex_variation l = {0}, r = {0};
     if (input_rate != NULL) l = root_variation(m, input_rate);
     if (state_rate != NULL) r = state_variation(m, state, state_rate, 0);
-    segment_force f = segment_tangent(m, scratch->vertex, 0, &l, &r);
+    segment_force f = segment_tangent(m, scratch, 0, &l, &r);
     bough_vec3 moment = bough_mat3_mul(r0, f.ll);
     const double values[BOUGH_ROD_OUTPUTS] = {f.f.x, f.f.y, f.f.z, moment.x, moment.y, moment.z};
     memcpy(wrench, values, sizeof values);
@@ -84,7 +84,7 @@ void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *load
     if (at->input_rate != NULL) {
         r = end_variation(at->input + BOUGH_ROD_INPUTS, at->input_rate + BOUGH_ROD_INPUTS);
     }
-    segment_force f = segment_tangent(m, scratch->vertex, m->n, &l, &r);
+    segment_force f = segment_tangent(m, scratch, m->n, &l, &r);
     segment_force load = load_variation(m, loads, scratch, r.phi);
     bough_vec3 force = bough_sub(load.f, f.f), moment = bough_add(load.lr, f.lr);
     const double values[BOUGH_ROD_END_OUTPUTS] = {force.x,  force.y,  force.z,
@@ -135,7 +135,7 @@ static void root_columns(const bough_rod_model *m, const double *state,
         if (j / 3 == 2) continue;
         e[j] = 1;
         vertex_variation l = root_variation(m, e), r = {0};
-        segment_force f = segment_tangent(m, scratch->vertex, 0, &l, &r);
+        segment_force f = segment_tangent(m, scratch, 0, &l, &r);
         vertex_response(m, scratch, 0, bough_scale(-1, f.f), f.lr, column);
     }
 }
@@ -147,7 +147,7 @@ static void end_columns(const bough_rod_model *m, const double *end,
         double e[BOUGH_ROD_END_INPUTS] = {0};
         e[j] = 1;
         vertex_variation l = {0}, r = end_variation(end, e);
-        segment_force f = segment_tangent(m, scratch->vertex, m->n, &l, &r);
+        segment_force f = segment_tangent(m, scratch, m->n, &l, &r);
         vertex_response(m, scratch, m->n - 1, f.f, f.ll, column);
     }
 }

@@ -30,6 +30,12 @@ static double rounding_of(const bough_rod_model *m) {
     return DBL_EPSILON * largest;
 }
 
+static bool take_ramped(bough_arena *arena, const bough_rod_model *m, bough_rod_ramped_load *load) {
+    load->value = bough_arena_doubles(arena, 6 * (size_t)m->stride);
+    load->line = bough_arena_doubles(arena, 6 * (size_t)m->stride);
+    return load->value != NULL && load->line != NULL;
+}
+
 bool bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bough_rod_model *m) {
     size_t states = (size_t)BOUGH_ROD_STATES * m->n;
     bool ok = bough_rod_scratch_init(&work->scratch, arena, m);
@@ -40,8 +46,9 @@ bool bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
     work->trial = bough_arena_doubles(arena, states);
     work->step = bough_arena_doubles(arena, (size_t)W8 * m->n);
     work->rounding = rounding_of(m);
-    work->follower = (bough_rod_ramped_load){
-        .follower = true, .value = bough_arena_doubles(arena, 6 * (size_t)m->stride)};
+    work->follower = (bough_rod_ramped_load){.follower = true};
+    work->dead = (bough_rod_ramped_load){.follower = false};
+    ok = take_ramped(arena, m, &work->follower) && take_ramped(arena, m, &work->dead) && ok;
     return ok && !bough_arena_exhausted(arena);
 }
 
@@ -125,16 +132,38 @@ static bool converge(const bough_rod_model *m, const double *input,
     return false;
 }
 
+// Adds the whole of the ramped loads of one kind. Whether there are any.
+static bool sum_ramped(const bough_rod_model *m, const bough_rod_loads *loads, double share,
+                       bough_rod_ramped_load *sum) {
+    size_t count = 6 * (size_t)m->stride;
+    bool any = false;
+    memset(sum->value, 0, count * sizeof(double));
+    memset(sum->line, 0, count * sizeof(double));
+    sum->along = false;
+    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        if (l->follower != sum->follower) continue;
+        any = true;
+        sum->along = sum->along || l->along;
+        for (size_t k = 0; k < count; k++) sum->value[k] += share * l->value[k];
+        for (size_t k = 0; k < count; k++) sum->line[k] += share * l->line[k];
+    }
+    return any;
+}
+
 static void scale_loads(const bough_rod_model *m, const bough_rod_loads *loads, double share,
                         bough_rod_static *w) {
     int count = 6 * m->stride;
-    for (int k = 0; k < count; k++) w->scaled.value[k] = share * loads->value[k];
-    memset(w->follower.value, 0, (size_t)count * sizeof(double));
-    for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
-        double *to = l->follower ? w->follower.value : w->scaled.value;
-        for (int k = 0; k < count; k++) to[k] += share * l->value[k];
+    for (int k = 0; k < count; k++) {
+        w->scaled.value[k] = share * loads->value[k];
+        w->scaled.rest[k] = m->strain0[k] + share * (loads->rest[k] - m->strain0[k]);
     }
-    w->scaled.ramped = bough_rod_loads_follow(loads) ? &w->follower : NULL;
+    w->scaled.ramped = NULL;
+    bough_rod_ramped_load *const kinds[2] = {&w->follower, &w->dead};
+    for (int k = 0; k < 2; k++) {
+        if (!sum_ramped(m, loads, share, kinds[k])) continue;
+        kinds[k]->next = w->scaled.ramped;
+        w->scaled.ramped = kinds[k];
+    }
 }
 
 // Centrifugal forces grow with the square of the twist.

@@ -24,7 +24,7 @@ typedef struct bough_rod_static {
     bough_rod_tangent tangent;
     bough_rod_blocks blocks;
     bough_rod_loads scaled; // the loads of the present increment
-    bough_rod_ramped_load follower; // the followers among them
+    bough_rod_ramped_load follower, dead; // its ramped ones
     double *rate;           // (13 n)
     double *step;           // (n × 8)
     double *trial;          // (13 n)

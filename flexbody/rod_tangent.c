@@ -144,14 +144,14 @@ static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scr
 }
 
 // Segments first..first + 7 and the vertices at their right ends.
-static void linearise_eight(const bough_rod_model *m, const double *vertex, int first,
+static void linearise_eight(const bough_rod_model *m, const bough_rod_scratch *scratch, int first,
                             bough_rod_tangent *k) {
     _Alignas(64) double base[BOUGH_ROD_BASE * LANES];
     bough_rod_eight eight;
     eight.first = first;
     double *position = k->variation + (size_t)TANGENTS * first;
-    bough_rod_base(m, vertex, first, base);
-    bough_rod_position_variation(m, vertex, first, base, position);
+    bough_rod_base(m, scratch, first, base);
+    bough_rod_position_variation(m, scratch, first, base, position);
     bough_rod_velocity_variation(m, first, base, eight.velocity);
     for (int j = 0; j < 3; j++) {
         mass_columns(m, k, first, j, eight.mass);
@@ -170,7 +170,7 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
     rotation_columns(m, rate + (size_t)BOUGH_ROD_U * m->n, input, scratch, k);
     if (bough_rod_loads_follow(loads)) add_followers(m, scratch, k);
     for (int first = 0; first < m->n_segment; first += LANES) {
-        linearise_eight(m, scratch->vertex, first, k);
+        linearise_eight(m, scratch, first, k);
     }
     return true;
 }

@@ -44,10 +44,11 @@ static inline segment_geometry load_shape(const double *restrict base, int l) {
     return s;
 }
 
-void bough_rod_base(const bough_rod_model *m, const double *vertex, int first, double *base) {
+void bough_rod_base(const bough_rod_model *m, const bough_rod_scratch *scratch, int first,
+                    double *base) {
     int s = m->stride;
-    const double *restrict at = vertex + first, *restrict c = m->stiffness + first;
-    const double *restrict d = m->damping + first, *restrict e0 = m->strain0 + first;
+    const double *restrict at = scratch->vertex + first, *restrict c = m->stiffness + first;
+    const double *restrict d = m->damping + first, *restrict rest = scratch->rest + first;
     const double *restrict inverse = m->inverse_length + first;
     double *restrict out = base;
 #pragma omp simd
@@ -55,8 +56,7 @@ void bough_rod_base(const bough_rod_model *m, const double *vertex, int first, d
         vertex_state left = load_vertex(at, s, l), right = load_vertex(at, s, l + 1);
         segment_geometry shape = segment_shape(left, right, inverse[l]);
         segment_rate motion = segment_motion(shape, left, right);
-        strain e = {bough_sub(shape.stretch, load3(e0, s, l)),
-                    bough_axpy(inverse[l], shape.phi, bough_scale(-1, load3(e0 + 3 * s, s, l)))};
+        strain e = elastic_strain(shape, inverse[l], rest, s, l);
         strain rate = strain_rate(shape, motion, inverse[l]);
         strain stress = add_strain(symmetric_times(c, s, l, e), symmetric_times(d, s, l, rate));
         store_shape(out, l, shape);
@@ -84,11 +84,14 @@ static inline void store_force(double *restrict column, int l, segment_force f) 
     store3(column + LANES * DIRECTIONS * LR, LANES * DIRECTIONS, l, f.lr);
 }
 
-static inline void position_direction(const bough_rod_model *m, const double *restrict at,
-                                      int first, const double *restrict base,
+// `turning`: D q turns as well.
+static inline void position_direction(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                      bool turning, int first, const double *restrict base,
                                       vertex_variation dl, vertex_variation dr,
                                       double *restrict column) {
     int s = m->stride;
+    const double *restrict at = scratch->vertex + first, *restrict along = scratch->along + first;
+    const double *restrict line = m->line + first;
     const double *restrict c = m->stiffness + first, *restrict damping = m->damping + first;
     const double *restrict inverse = m->inverse_length + first, *restrict h = m->length + first;
 #pragma omp simd
@@ -103,6 +106,7 @@ static inline void position_direction(const bough_rod_model *m, const double *re
                          load3(base + LANES * (BASE_STRESS + 3), LANES, l)};
         segment_variation d = shape_variation(shape, dl, dr, inverse[l]);
         strain de = {d.stretch, bough_scale(inverse[l], d.phi)};
+        if (turning) de = add_turned(de, line, along, s, l, d.middle);
         strain drate = rate_variation(shape, motion, d, &dl, &dr, inverse[l]);
         strain dstress = add_strain(symmetric_times(c, s, l, de),
                                     symmetric_times(damping, s, l, drate));
@@ -110,12 +114,17 @@ static inline void position_direction(const bough_rod_model *m, const double *re
     }
 }
 
-void bough_rod_position_variation(const bough_rod_model *m, const double *vertex, int first,
-                                  const double *base, double *variation) {
+void bough_rod_position_variation(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                  int first, const double *base, double *variation) {
     for (int k = 0; k < DIRECTIONS; k++) {
         vertex_variation dl, dr;
+        double *column = variation + LANES * k;
         unit_variation(k, false, &dl, &dr);
-        position_direction(m, vertex + first, first, base, dl, dr, variation + LANES * k);
+        if (scratch->turning) {
+            position_direction(m, scratch, true, first, base, dl, dr, column);
+        } else {
+            position_direction(m, scratch, false, first, base, dl, dr, column);
+        }
     }
 }
 

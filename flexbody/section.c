@@ -1,15 +1,22 @@
 #include "flexbody/section.h"
 
 #include "core/symmetric6.h"
+#include "flexbody/rod_segment.h"
 
 #include <string.h>
 
-enum { POINTS = 4 }; // of Gauss–Legendre quadrature on each stretch without a station inside
+enum { MOST_HALVINGS = 40 };
 
-static const double gauss_at[POINTS] = {-0.8611363115940526, -0.3399810435848563,
-                                        0.3399810435848563, 0.8611363115940526};
-static const double gauss_weight[POINTS] = {0.3478548451374538, 0.6521451548625461,
-                                            0.6521451548625461, 0.3478548451374538};
+enum { POINTS = 8 }; // of Gauss–Legendre quadrature on each stretch without a station inside
+
+static const double gauss_at[POINTS] = {-0.9602898564975363, -0.7966664774136267,
+                                        -0.5255324099163290, -0.1834346424956498,
+                                        0.1834346424956498,  0.5255324099163290,
+                                        0.7966664774136267,  0.9602898564975363};
+static const double gauss_weight[POINTS] = {0.1012285362903763, 0.2223810344533745,
+                                            0.3137066458778873, 0.3626837833783620,
+                                            0.3626837833783620, 0.3137066458778873,
+                                            0.2223810344533745, 0.1012285362903763};
 
 // The table with the arc length of each station.
 typedef struct axis {
@@ -104,18 +111,59 @@ typedef struct stretch {
     double from, to; // [m]
 } stretch;
 
+typedef void (*visitor)(void *context, double s, double weight);
+
+static void integrate_piece(double from, double to, visitor visit, void *context) {
+    double half = 0.5 * (to - from);
+    for (int p = 0; p < POINTS; p++) {
+        visit(context, 0.5 * (from + to) + half * gauss_at[p], half * gauss_weight[p]);
+    }
+}
+
+// How often a stretch is to be halved towards its softer end: compliances, 1/(a + b s), then vary by
+// little more than a factor of two over each piece.
+static int halvings(const axis *a, double soft, double stiff) {
+    bough_section_station low = section_at(a, soft), high = section_at(a, stiff);
+    double ratio = 1;
+    for (int i = 0; i < 6; i++) {
+        int k = bough_symmetric6_index(i, i);
+        if (low.stiffness[k] > 0) ratio = fmax(ratio, high.stiffness[k] / low.stiffness[k]);
+    }
+    return (int)fmin(ceil(log2(ratio) - 0.5), MOST_HALVINGS);
+}
+
+// A stretch without a station inside.
+static void integrate_stretch(const axis *a, double from, double to, visitor visit,
+                              void *context) {
+    double middle = 0.5 * (from + to), inside = to - 1e-9 * (to - from); // before a station
+    int below = halvings(a, from, inside), above = halvings(a, inside, from);
+    if (below == 0 && above == 0) {
+        integrate_piece(from, to, visit, context);
+        return;
+    }
+    double low = from + ldexp(middle - from, -below), high = to - ldexp(to - middle, -above);
+    integrate_piece(from, low, visit, context);
+    for (int k = below - 1; k >= 0; k--) {
+        double next = from + ldexp(middle - from, -k);
+        integrate_piece(low, next, visit, context);
+        low = next;
+    }
+    for (int k = 1; k <= above; k++) {
+        double next = to - ldexp(to - middle, -k);
+        integrate_piece(low, next, visit, context);
+        low = next;
+    }
+    integrate_piece(high, to, visit, context);
+}
+
 // Calls visit(context, s, weight) at the quadrature points of a stretch, split at the stations.
-static void integrate(stretch x, void (*visit)(void *context, double s, double weight),
-                      void *context) {
+static void integrate(stretch x, visitor visit, void *context) {
     double from = x.from;
     for (int k = 0; k < x.axis->n && from < x.to; k++) {
         double to = k + 1 < x.axis->n ? x.axis->arc[k + 1] : x.to;
         if (to <= from) continue;
         if (to > x.to) to = x.to;
-        for (int p = 0; p < POINTS; p++) {
-            double half = 0.5 * (to - from);
-            visit(context, 0.5 * (from + to) + half * gauss_at[p], half * gauss_weight[p]);
-        }
+        integrate_stretch(x.axis, from, to, visit, context);
         from = to;
     }
 }
@@ -167,19 +215,41 @@ static void carry(double distance, matrix6 t) {
     t[4][0] = -distance;
 }
 
+// The stress that a load per length, uniform over a segment of length h, adds to the one carried from
+// the middle: n = −f σ, m = d₃×f (σ² − h²/4)/2 − m σ. Its moments vanish at both ends, where the
+// vertices take the halves of the load.
+static void line_stress(double distance, double h, matrix6 stress) {
+    double bend = 0.5 * (distance * distance - 0.25 * h * h);
+    memset(stress, 0, sizeof(matrix6));
+    for (int i = 0; i < 6; i++) stress[i][i] = -distance;
+    stress[3][1] = -bend;
+    stress[4][0] = bend;
+}
+
 typedef struct segment_sum {
     const axis *axis;
+    double length;        // [m]
     double middle, twist; // of the segment's mid frame [m, rad]
     double compliance[21]; // ∫ Tᵀ F T
     double loss[21];       // ∫ Tᵀ F D F T
+    matrix6 line;          // ∫ Tᵀ F S, S of line_stress
     bool definite;
 } segment_sum;
+
+// sum += weight·aᵀ b
+static void add_product(double weight, matrix6 a, matrix6 b, matrix6 sum) {
+    for (int i = 0; i < 6; i++) {
+        for (int j = 0; j < 6; j++) {
+            for (int k = 0; k < 6; k++) sum[i][j] += weight * a[k][i] * b[k][j];
+        }
+    }
+}
 
 static void add_compliance(void *context, double s, double weight) {
     segment_sum *c = context;
     bough_section_station x = section_at(c->axis, s);
     double compliance[21], damping[21], turn = -(x.twist - c->twist);
-    matrix6 t, f, d, ft;
+    matrix6 t, f, d, ft, line;
     if (!bough_symmetric6_inverse(x.stiffness, compliance)) {
         c->definite = false;
         return;
@@ -198,27 +268,70 @@ static void add_compliance(void *context, double s, double weight) {
         }
     }
     add_congruent(weight, ft, d, c->loss);
+    line_stress(s - c->middle, c->length, line);
+    add_product(weight, ft, line, c->line);
 }
+
+// The rod's strains by the mean strains of a straight, untwisted segment, e = Q (γ, κ), linearised at
+// the undeformed one: with a and b the rotations of the ends in the middle's axes,
+//     κ = (b − a)/h,  U = H κ,  γ = Δx/h + V×(a + b)/2,  V = γ + (h/2) V×(κ×t)    (rod_segment.h).
+static void strain_map(segment_geometry shape, double h, matrix6 q) {
+    const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    memset(q, 0, sizeof(matrix6));
+    for (int j = 0; j < 3; j++) {
+        bough_vec3 shear = bough_cross(shape.stretch, bough_cross(unit[j], shape.t));
+        bough_vec3 bend = rotation_tangent(shape.c, shape.g, shape.v, unit[j]);
+        const double column[6] = {0.5 * h * shear.x, 0.5 * h * shear.y, 0.5 * h * shear.z,
+                                  bend.x, bend.y, bend.z};
+        q[j][j] = 1;
+        for (int i = 0; i < 6; i++) q[i][3 + j] = column[i];
+    }
+}
+
+// Sums over a segment divided by its length, in the rod's strains.
+static void change_strains(segment_sum *c, matrix6 q) {
+    matrix6 turned, compliance, line = {{0}};
+    double f[21] = {0};
+    for (int i = 0; i < 36; i++) turned[i / 6][i % 6] = q[i % 6][i / 6];
+    unpack(c->compliance, compliance);
+    add_congruent(1 / c->length, turned, compliance, f);
+    memcpy(c->compliance, f, sizeof f);
+    unpack(c->loss, compliance);
+    memset(f, 0, sizeof f);
+    add_congruent(1 / c->length, turned, compliance, f);
+    memcpy(c->loss, f, sizeof f);
+    add_product(1 / c->length, turned, c->line, line);
+    memcpy(c->line, line, sizeof line);
+}
+
+// What a segment is discretised to.
+typedef struct segment_law {
+    double *stiffness, *damping; // (21)
+    double *line;                // (36) by rows
+} segment_law;
 
 // Stiffness and damping of a segment whose end forces are met exactly in linear statics: the
 // inverse of the compliance that the stress, constant force and linear moment, meets on its way
 // through the section tables. Bending within the segment appears as compliance in shear
-// (MacNeal's residual bending flexibility). Damping dissipates what the sections would.
-static bool segment_matrices(const axis *a, double from, double to, double *stiffness,
-                             double *damping) {
-    segment_sum c = {.axis = a, .middle = 0.5 * (from + to), .definite = true};
-    matrix6 k, loss;
+// (MacNeal's residual bending flexibility). Damping dissipates what the sections would. `line` is the
+// mean strain that a load along the segment makes (THEORY 6).
+static bool segment_matrices(const axis *a, const bough_rod_def *def, int n, segment_law law) {
+    double from = def->span[n], to = def->span[n + 1];
+    vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
+    vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
+    segment_sum c = {
+        .axis = a, .length = to - from, .middle = 0.5 * (from + to), .definite = true};
+    matrix6 q, k, loss;
     c.twist = 0.5 * (section_at(a, from).twist + section_at(a, to).twist);
     integrate((stretch){a, from, to}, add_compliance, &c);
-    for (int i = 0; i < 21; i++) {
-        c.compliance[i] /= to - from;
-        c.loss[i] /= to - from;
-    }
-    if (!c.definite || !bough_symmetric6_inverse(c.compliance, stiffness)) return false;
-    unpack(stiffness, k);
+    strain_map(segment_shape(left, right, 1 / c.length), c.length, q);
+    change_strains(&c, q);
+    if (!c.definite || !bough_symmetric6_inverse(c.compliance, law.stiffness)) return false;
+    unpack(law.stiffness, k);
     unpack(c.loss, loss);
-    memset(damping, 0, 21 * sizeof *damping);
-    add_congruent(1, k, loss, damping);
+    memset(law.damping, 0, 21 * sizeof *law.damping);
+    add_congruent(1, k, loss, law.damping);
+    memcpy(law.line, c.line, sizeof c.line);
     return true;
 }
 
@@ -365,7 +478,7 @@ static bool lump_inertia(bough_arena *arena, const axis *a, const bough_rod_def 
 // -- whole ----------------------------------------------------------------------------------------
 
 typedef struct arrays {
-    double *span, *stiffness, *damping;
+    double *span, *stiffness, *damping, *line;
     bough_vec3 *position;
     bough_quaternion *rotation;
     bough_vertex_inertia *inertia;
@@ -376,6 +489,7 @@ static arrays take_arrays(bough_arena *arena, int n) {
     arrays a = {.span = bough_arena_doubles(arena, vertices),
                 .stiffness = bough_arena_doubles(arena, 21 * (size_t)n),
                 .damping = bough_arena_doubles(arena, 21 * (size_t)n),
+                .line = bough_arena_doubles(arena, 36 * (size_t)n),
                 .position = bough_arena_take(arena, vertices * sizeof(bough_vec3)),
                 .rotation = bough_arena_take(arena, vertices * sizeof(bough_quaternion)),
                 .inertia = bough_arena_take(arena, vertices * sizeof(bough_vertex_inertia))};
@@ -397,6 +511,7 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
                            .rotation = m.rotation,
                            .stiffness = m.stiffness,
                            .damping = m.damping,
+                           .line = m.line,
                            .inertia = m.inertia};
     for (int i = 0; i <= n_segment; i++) {
         m.span[i] = axis_length(&a) * i / n_segment;
@@ -407,8 +522,9 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
         return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", table->name);
     }
     for (int k = 0; k < n_segment; k++) {
-        if (!segment_matrices(&a, m.span[k], m.span[k + 1], m.stiffness + 21 * (size_t)k,
-                              m.damping + 21 * (size_t)k)) {
+        segment_law law = {m.stiffness + 21 * (size_t)k, m.damping + 21 * (size_t)k,
+                           m.line + 36 * (size_t)k};
+        if (!segment_matrices(&a, def, k, law)) {
             return bough_fail(BOUGH_INVALID, "rod %s: the stiffness between %g m and %g m is not"
                               " positive definite", table->name, m.span[k], m.span[k + 1]);
         }

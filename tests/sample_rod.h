@@ -32,8 +32,15 @@ static inline sample_arrays sample_take(bough_arena *arena, int n) {
 }
 
 static inline bough_rod_def sample_def(int n, sample_arrays a, bool carries) {
-    return (bough_rod_def){"sample",    n,         a.span,    a.position, a.rotation,
-                           a.stiffness, a.damping, a.inertia, carries};
+    return (bough_rod_def){.name = "sample",
+                           .n_segment = n,
+                           .span = a.span,
+                           .position = a.position,
+                           .rotation = a.rotation,
+                           .stiffness = a.stiffness,
+                           .damping = a.damping,
+                           .inertia = a.inertia,
+                           .carries = carries};
 }
 
 static inline bough_rod_model *sample_build(bough_arena *arena, int n, sample_arrays a,

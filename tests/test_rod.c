@@ -207,23 +207,54 @@ static void second_evaluation_at_a_state_is_the_same(void **context) {
 }
 
 // Half of the ramp is reached at the time of evaluation.
-static double *ramped(fixture *f, bool follower) {
+static bough_rod_ramped_load *ramped(fixture *f, bool follower) {
     const double ramp[2] = {0.25, 0.75};
-    double *value = bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp);
-    assert_non_null(value);
-    assert_ptr_equal(value, bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp));
-    return value;
+    bough_rod_ramped_load *l =
+        bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp);
+    assert_non_null(l);
+    assert_ptr_equal(l, bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp));
+    return l;
 }
 
 static void newton_solution_knows_follower_loads(void **context) {
     fixture *f = *context;
     unsigned seed = 21;
-    double *follower = ramped(f, true), *dead = ramped(f, false);
+    double *follower = ramped(f, true)->value, *dead = ramped(f, false)->value;
     for (int k = 0; k < 6 * f->model->stride; k++) {
         follower[k] = 5 * sample_random(&seed);
         dead[k] = 5 * sample_random(&seed);
     }
     check_newton(f);
+}
+
+// Random loads along all segments, dead ones and followers, and strains by them.
+static void lay_along(fixture *f) {
+    unsigned seed = 23;
+    bough_rod_ramped_load *load[2] = {ramped(f, true), ramped(f, false)};
+    for (int k = 0; k < 36 * f->model->stride; k++) f->model->line[k] = 0.05 * sample_random(&seed);
+    for (int kind = 0; kind < 2; kind++) {
+        load[kind]->along = true;
+        for (int k = 0; k < 6 * f->model->stride; k++) load[kind]->line[k] = 5 * sample_random(&seed);
+    }
+}
+
+// D q turns in the segments where the loads along them are dead.
+static void newton_solution_knows_loads_along_segments(void **context) {
+    fixture *f = *context;
+    lay_along(f);
+    check_newton(f);
+}
+
+static void second_evaluation_knows_loads_along_segments(void **context) {
+    fixture *f = *context;
+    double first[STATES], again[STATES];
+    lay_along(f);
+    derivative(f, f->state, f->input, first);
+    assert_true(bough_rod_derivative_again(f->model, &f->loads, 0.7, f->state, f->input,
+                                           &f->scratch, again));
+    assert_true(bough_rod_derivative(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch,
+                                     first));
+    for (int k = 0; k < STATES; k++) check_near(again[k], first[k], 1e-12, 1e-12);
 }
 
 // A follower load is at every state the dead load that its section's rotation makes of it.
@@ -232,7 +263,7 @@ static void follower_load_turns_with_its_section(void **context) {
     int s = f->model->stride;
     unsigned seed = 8;
     double with[STATES], same[STATES], wrench[2][6];
-    double *value = ramped(f, true);
+    double *value = ramped(f, true)->value;
     for (int k = 0; k < 6 * s; k++) value[k] = sample_random(&seed);
     derivative(f, f->state, f->input, with);
     bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, wrench[0]);
@@ -277,8 +308,7 @@ static void input_columns_match_differences(void **context) {
     }
 }
 
-static void wrench_tangent_matches_differences(void **context) {
-    fixture *f = *context;
+static void check_wrench_tangent(fixture *f) {
     unsigned seed = 9;
     const double eps = 1e-6;
     double ds[STATES], du[BOUGH_ROD_INPUTS], y[STATES], u[BOUGH_ROD_INPUTS], side[2][6], d[6];
@@ -290,8 +320,16 @@ static void wrench_tangent_matches_differences(void **context) {
         for (int k = 0; k < BOUGH_ROD_INPUTS; k++) u[k] = f->input[k] + step * du[k];
         bough_rod_root_wrench(f->model, &f->loads, 0.5, y, u, &f->scratch, side[s]);
     }
+    bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, d);
     bough_rod_wrench_tangent(f->model, f->state, f->input, ds, du, &f->scratch, d);
     for (int k = 0; k < 6; k++) check_near(d[k], (side[1][k] - side[0][k]) / (2 * eps), 1e-7, 1e-7);
+}
+
+static void wrench_tangent_matches_differences(void **context) { check_wrench_tangent(*context); }
+
+static void wrench_tangent_knows_loads_along_segments(void **context) {
+    lay_along(*context);
+    check_wrench_tangent(*context);
 }
 
 // p and −p are the same rotation at any vertex.
@@ -339,6 +377,10 @@ int main(void) {
         cmocka_unit_test(newton_solution_holds_for_any_number_of_segments),
         cmocka_unit_test(second_evaluation_at_a_state_is_the_same),
         cmocka_unit_test_setup_teardown(newton_solution_knows_follower_loads, setup, teardown),
+        cmocka_unit_test_setup_teardown(newton_solution_knows_loads_along_segments, setup, teardown),
+        cmocka_unit_test_setup_teardown(second_evaluation_knows_loads_along_segments, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(wrench_tangent_knows_loads_along_segments, setup, teardown),
         cmocka_unit_test_setup_teardown(follower_load_turns_with_its_section, setup, teardown),
         cmocka_unit_test(ramped_load_grows_between_its_times),
         cmocka_unit_test_setup_teardown(input_columns_match_differences, setup, teardown),

@@ -191,7 +191,7 @@ static void rotating_rod_stiffens_as_wrights(void **context) {
 static void press(bar *b, double force) {
     const double constant[2] = {0, 0};
     build(b, (uniform){1e8, 1e8, 1, 9, 10, 1, 1e-8, 0}, 60);
-    double *value = bough_rod_loads_ramped(&b->loads, b->arena, b->model, true, constant);
+    double *value = bough_rod_loads_ramped(&b->loads, b->arena, b->model, true, constant)->value;
     value[2 * b->model->stride + b->model->n] = -force;
     solve(b, at_rest);
 }
@@ -286,7 +286,8 @@ static void modes_are_eigenvalues_of_the_equation_of_motion(void **context) {
     b.state = bough_arena_doubles(b.arena, STATES);
     assert_true(bough_rod_loads_init(&b.loads, b.arena, b.model));
     assert_true(bough_rod_static_init(&b.work, b.arena, b.model));
-    double *follower = bough_rod_loads_ramped(&b.loads, b.arena, b.model, true, constant);
+    double *follower =
+        bough_rod_loads_ramped(&b.loads, b.arena, b.model, true, constant)->value;
     for (int k = 0; k < 6 * b.model->stride; k++) {
         follower[k] = sample_random(&seed);
         b.loads.value[k] = sample_random(&seed);

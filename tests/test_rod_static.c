@@ -98,7 +98,7 @@ static void follower_tip(double force, int mesh, double tip[2]) {
     bough_arena *arena = bough_arena_create();
     int n = 100 << mesh;
     bent b = straight_rod(arena, n, 100, stiffness);
-    bough_rod_loads_ramped(&b.loads, arena, b.model, true, constant)[n] = force;
+    bough_rod_loads_ramped(&b.loads, arena, b.model, true, constant)->value[n] = force;
     solve(&b, bough_rod_static_options_default());
     tip[0] = vertex(&b, n).z - 100;
     tip[1] = vertex(&b, n).x;

@@ -132,6 +132,7 @@ bough_status bough_steady_settled(bough_arena *arena, const bough_simulation *s,
            (size_t)BOUGH_ROD_STATES * m->n * sizeof *input);
     steady->work.scaled = *bough_rod_body_loads(beam->rod);
     bough_rod_gather(m, steady->state, steady->input, &steady->work.scratch);
+    bough_rod_load(m, &steady->work.scaled, time, &steady->work.scratch);
     return bough_ok();
 }
 

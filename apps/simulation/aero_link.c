@@ -1,16 +1,21 @@
 #include "apps/simulation/aero_link.h"
 
 #include "core/base.h"
+#include "flexbody/rod_load.h"
 
 #include <math.h>
 #include <string.h>
 
-// A blade's loads at the last sample and the value the load signal has reached, in the body's axes:
-// per vertex force and moment (6 × vertices) of a rod, or the resultant (6) on a rigid body.
+// A blade's loads at the last sample and the value the load signal has reached. Of a rod per vertex
+// force and moment in the body's axes (6 × vertices), then the same per length along each segment in
+// the axes of its middle (6 × segments); on a rigid body the resultant (6).
 typedef struct blade_loads {
     const bough_beam *beam;
     double *sampled, *reached; // (n)
     double *value, *rate;      // (n) of the signal that the body has, since the last sample
+    double *fresh;             // (n)
+    double *along;             // per length, between the samples (6 × segments) of a rod
+    double *strain, *lumped;   // of a modal body, D q and the loads of it (6 × the mesh's stride)
     int n;
 } blade_loads;
 
@@ -26,7 +31,7 @@ struct bough_aero_link {
     double factor;      // of the ramp at the last sample
     double evaluated;   // time of what `data` holds [s]; NAN: none that a sample may use
     bough_vec3 hub;     // at the start, ground axes [m]
-    double start;       // of the signals, the last sample's time [s]
+    double start, span; // of the signals, from the last sample to the next [s]
     bool started;
 };
 
@@ -40,6 +45,19 @@ static bough_status same_mesh(const bough_aero_link *l, const bough_beam *beam) 
                       first->def.n_segment, beam->def.n_segment);
 }
 
+// How many numbers a blade's loads are, and what only some bodies need.
+static void take_kind(bough_arena *arena, int n_vertex, blade_loads *blade) {
+    const bough_beam *beam = blade->beam;
+    size_t segments = (size_t)n_vertex - 1;
+    blade->n = beam->port < 0 ? 6 : 6 * n_vertex;
+    if (beam->port >= 0) blade->along = bough_arena_doubles(arena, 6 * segments);
+    if (beam->rod != NULL) blade->n += 6 * (int)segments;
+    if (beam->modal == NULL) return;
+    size_t stride = (size_t)bough_beam_mesh(beam)->stride;
+    blade->strain = bough_arena_doubles(arena, 6 * stride);
+    blade->lumped = bough_arena_doubles(arena, 6 * stride);
+}
+
 static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
     const bough_scene_turbine *turbine = &l->simulation->scene->turbine;
     l->n_blade = turbine->n_blade;
@@ -51,7 +69,8 @@ static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
         bough_status status = same_mesh(l, blade->beam);
         if (!bough_is_ok(&status)) return status;
         l->n_vertex = blade->beam->def.n_segment + 1;
-        blade->n = blade->beam->port < 0 ? 6 : 6 * l->n_vertex;
+        take_kind(arena, l->n_vertex, blade);
+        blade->fresh = bough_arena_doubles(arena, (size_t)blade->n);
         blade->sampled = bough_arena_doubles(arena, (size_t)blade->n);
         blade->reached = bough_arena_doubles(arena, (size_t)blade->n);
         blade->value = bough_arena_doubles(arena, (size_t)blade->n);
@@ -275,12 +294,12 @@ static double ramp_factor(const double ramp[2], double t) {
 // Value at `start` and rate until `span` later of the signal of fresh loads. Linear: from what was
 // reached to the value extrapolated from the last two samples, so that loads are continuous and not
 // late.
-static void follow(const bough_aero_link *l, const double *restrict fresh, double span,
-                   blade_loads *blade) {
+static void follow(const bough_aero_link *l, blade_loads *blade) {
     bool held = l->simulation->scene->aero.hold == BOUGH_SCENE_CONSTANT || !l->started;
     double *restrict value = blade->value, *restrict rate = blade->rate;
     double *restrict reached = blade->reached, *restrict sampled = blade->sampled;
-    double factor = l->factor;
+    const double *restrict fresh = blade->fresh;
+    double factor = l->factor, span = l->span;
     for (int k = 0; k < blade->n; k++) {
         double now = factor * fresh[k];
         value[k] = held ? now : reached[k];
@@ -305,6 +324,12 @@ static void put(bough_aero_link *l, int b) {
         memcpy(rod->rate + c * stride, blade->rate + c * n, n * sizeof(double));
     }
     rod->start = l->start;
+    if (blade->beam->rod == NULL) return;
+    int first = 6 * l->n_vertex; // along the segments: the middle of the signal, held
+    for (int k = first; k < blade->n; k++) {
+        blade->along[k - first] = blade->value[k] + 0.5 * l->span * blade->rate[k];
+    }
+    bough_rod_loads_along(bough_beam_mesh(blade->beam), blade->along, rod);
 }
 
 // The resultant of the loads on a rigid blade's vertices.
@@ -320,14 +345,37 @@ static void sum_loads(const bough_aero_link *l, int b, double sum[6]) {
     bough_wrench_store(total, sum);
 }
 
-static void apply(bough_aero_link *l, int b, double span) {
-    double resultant[6];
-    const double *fresh = l->data.load + 6 * b * l->n_vertex;
-    if (l->blade[b].beam->port < 0) {
-        sum_loads(l, b, resultant);
-        fresh = resultant;
+// The loads on a rod's vertices and along its segments.
+static void take_loads(const bough_aero_link *l, int b, blade_loads *blade) {
+    int n = l->n_vertex;
+    const double *line = l->data.line + 6 * b * (n - 1);
+    const double *rotation = l->moving[b].vertex + BOUGH_BLADE_ROTATION * n;
+    memcpy(blade->fresh, l->data.load + 6 * b * n, 6 * (size_t)n * sizeof(double));
+    bough_rod_line_axes(n - 1, rotation, line,
+                        blade->beam->rod != NULL ? blade->fresh + 6 * n : blade->along);
+}
+
+// A modal body knows loads on vertices only.
+static void lump_line(const bough_aero_link *l, blade_loads *blade) {
+    const bough_rod_model *m = bough_beam_mesh(blade->beam);
+    int n = l->n_vertex, s = m->stride;
+    memset(blade->lumped, 0, 6 * (size_t)s * sizeof(double));
+    bough_rod_line_strain(m, blade->along, blade->strain);
+    bough_rod_lump_strain(m, blade->strain, blade->lumped);
+    for (int c = 0; c < 6; c++) {
+        for (int i = 0; i < n; i++) blade->fresh[c * n + i] += blade->lumped[c * s + i];
     }
-    follow(l, fresh, span, &l->blade[b]);
+}
+
+static void apply(bough_aero_link *l, int b) {
+    blade_loads *blade = &l->blade[b];
+    if (blade->beam->port < 0) {
+        sum_loads(l, b, blade->fresh);
+    } else {
+        take_loads(l, b, blade);
+        if (blade->beam->modal != NULL) lump_line(l, blade);
+    }
+    follow(l, blade);
     put(l, b);
 }
 
@@ -362,7 +410,8 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     bough_aero_link *l = self;
     if (l->evaluated != t) evaluate(l, t);
     l->start = t;
-    for (int b = 0; b < l->n_blade; b++) apply(l, b, t_next - t);
+    l->span = t_next - t;
+    for (int b = 0; b < l->n_blade; b++) apply(l, b);
     *jumped = !l->started || l->simulation->scene->aero.hold == BOUGH_SCENE_CONSTANT;
     l->started = true;
     return bough_ok();
@@ -400,7 +449,7 @@ bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t) {
 
 // -- saving ---------------------------------------------------------------------------------------
 
-enum { SCALARS = 3, PER_LOAD = 4 };
+enum { SCALARS = 4, PER_LOAD = 4 };
 
 int bough_aero_link_size(const bough_aero_link *link) {
     int n = SCALARS + bough_rotor_memory_size(link->rotor);
@@ -412,6 +461,7 @@ int bough_aero_link_size(const bough_aero_link *link) {
 void bough_aero_link_save(const bough_aero_link *link, double *to) {
     *to++ = link->factor;
     *to++ = link->start;
+    *to++ = link->span;
     *to++ = link->started;
     for (int b = 0; b < link->n_blade; b++) {
         const blade_loads *blade = &link->blade[b];
@@ -426,6 +476,7 @@ void bough_aero_link_save(const bough_aero_link *link, double *to) {
 void bough_aero_link_restore(bough_aero_link *link, const double *from) {
     link->factor = *from++;
     link->start = *from++;
+    link->span = *from++;
     link->started = *from++ != 0;
     for (int b = 0; b < link->n_blade; b++) {
         const blade_loads *blade = &link->blade[b];

@@ -37,12 +37,13 @@ bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s) {
         const bough_beam *beam = bough_simulation_beam(s, load->body);
         const bough_rod_model *m = bough_beam_mesh(beam);
         bool follower = load->frame == BOUGH_SCENE_LOAD_FOLLOWER;
-        double *value = bough_rod_loads_ramped(bough_beam_loads(beam), arena, m, follower,
-                                               load->ramp);
-        if (value == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "loads: out of memory");
+        bough_rod_ramped_load *to = bough_rod_loads_ramped(bough_beam_loads(beam), arena, m,
+                                                           follower, load->ramp);
+        if (to == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "loads: out of memory");
         double wrench[6];
         resolve(s, beam, load, wrench);
-        bough_rod_lump(m, reach_of(load, m), wrench, follower, value);
+        bough_rod_lump(m, reach_of(load, m), wrench, to);
+        if (beam->modal != NULL) bough_rod_lump_line(m, to);
     }
     return bough_ok();
 }
