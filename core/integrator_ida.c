@@ -1,6 +1,7 @@
-// SUNDIALS IDA behind integrator_ida.h. The Newton matrix is the caller's: an empty matrix object
-// whose "Jacobian" call is dae->setup, and a linear solver whose solve is dae->solve.
-#include "core/integrator_ida.h"
+// SUNDIALS IDA, variable-order BDF of the DASSL family, on ẏ − f(t, y) = 0. The Newton matrix is the
+// system's: an empty matrix object whose "Jacobian" call linearises and factors, and a linear solver
+// whose solve is the system's. The only user of IDA.
+#include "core/integrator.h"
 
 #include "core/vector.h"
 
@@ -12,8 +13,10 @@
 
 enum { MESSAGE = 160, MOST_STEPS = 200000 }; // per call
 
-struct bough_ida {
-    bough_dae dae;
+typedef struct ida_run {
+    bough_ode ode;
+    double gamma;         // of the factors: 1/cj
+    bool started;
     const double *weight; // 1/(rtol·scale) (n)
     SUNContext context;
     void *memory;
@@ -23,7 +26,7 @@ struct bough_ida {
     long jacobians;
     bough_statistics before; // of the runs before the last start
     char message[MESSAGE];   // of IDA
-};
+} ida_run;
 
 // -- callbacks -------------------------------------------------------------------------------
 
@@ -34,33 +37,40 @@ static bool all_finite(const double *x, int n) {
     return true;
 }
 
+// ẏ − f; 1 makes IDA try a smaller step
 static int residual(double t, N_Vector y, N_Vector rate, N_Vector out, void *self) {
-    bough_ida *ida = self;
+    ida_run *ida = self;
+    const double *of = bough_vector_data(rate);
     double *r = bough_vector_data(out);
-    bool ok = ida->dae.residual(ida->dae.self, t, bough_vector_data(y), bough_vector_data(rate), r);
-    return ok && all_finite(r, ida->dae.n) ? 0 : 1; // 1: IDA tries a smaller step
+    if (!ida->ode.derivative(ida->ode.self, t, bough_vector_data(y), r)) return 1;
+    for (int i = 0; i < ida->ode.n; i++)
+        r[i] = of[i] - r[i];
+    return all_finite(r, ida->ode.n) ? 0 : 1;
 }
 
 // NOLINTNEXTLINE(readability-function-size): SUNDIALS fixes the parameters
 static int jacobian(double t, double cj, N_Vector y, N_Vector rate, N_Vector r, SUNMatrix j,
                     void *self, N_Vector t1, N_Vector t2, N_Vector t3) {
-    (void)r, (void)j, (void)t1, (void)t2, (void)t3;
-    bough_ida *ida = self;
+    (void)rate, (void)r, (void)j, (void)t1, (void)t2, (void)t3;
+    ida_run *ida = self;
     ida->jacobians++;
-    return ida->dae.setup(ida->dae.self, t, bough_vector_data(y), bough_vector_data(rate), cj) ? 0
-                                                                                               : 1;
+    ida->gamma = 1 / cj;
+    return ida->ode.linearise(ida->ode.self, t, bough_vector_data(y)) &&
+                   ida->ode.factor(ida->ode.self, ida->gamma)
+               ? 0
+               : 1;
 }
 
 static int weights(N_Vector y, N_Vector out, void *self) {
     (void)y;
-    bough_ida *ida = self;
-    memcpy(bough_vector_data(out), ida->weight, (size_t)ida->dae.n * sizeof(double));
+    ida_run *ida = self;
+    memcpy(bough_vector_data(out), ida->weight, (size_t)ida->ode.n * sizeof(double));
     return 0;
 }
 
 static void remember(int code, const char *module, const char *function, char *text, void *self) {
     (void)code, (void)module, (void)function;
-    bough_ida *ida = self;
+    ida_run *ida = self;
     snprintf(ida->message, MESSAGE, "%s", text);
 }
 
@@ -93,12 +103,15 @@ static int solver_setup(SUNLinearSolver s, SUNMatrix m) {
     return 0; // the Jacobian call has factored already
 }
 
+// (cj − J)⁻¹ b
 static int solver_solve(SUNLinearSolver s, SUNMatrix m, N_Vector x, N_Vector b, double tolerance) {
     (void)m, (void)tolerance;
-    bough_ida *ida = s->content;
-    double *to = bough_vector_data(x), *from = bough_vector_data(b);
-    if (to != from) memcpy(to, from, (size_t)ida->dae.n * sizeof(double));
-    ida->dae.solve(ida->dae.self, to);
+    ida_run *ida = s->content;
+    double *to = bough_vector_data(x);
+    const double *from = bough_vector_data(b);
+    for (int i = 0; i < ida->ode.n; i++)
+        to[i] = ida->gamma * from[i];
+    ida->ode.solve(ida->ode.self, to);
     return 0;
 }
 
@@ -108,7 +121,7 @@ static int solver_free(SUNLinearSolver s) {
     return 0;
 }
 
-static bool create_algebra(bough_ida *ida) {
+static bool create_algebra(ida_run *ida) {
     ida->matrix = SUNMatNewEmpty(ida->context);
     ida->solver = SUNLinSolNewEmpty(ida->context);
     if (ida->matrix == NULL || ida->solver == NULL) return false;
@@ -127,7 +140,7 @@ static bool create_algebra(bough_ida *ida) {
 // -- construction ----------------------------------------------------------------------------
 
 static void release(void *object) {
-    bough_ida *ida = object;
+    ida_run *ida = object;
     if (ida->memory != NULL) IDAFree(&ida->memory);
     if (ida->solver != NULL) SUNLinSolFree(ida->solver);
     if (ida->matrix != NULL) SUNMatDestroy(ida->matrix);
@@ -136,16 +149,16 @@ static void release(void *object) {
     if (ida->context != NULL) SUNContext_Free(&ida->context);
 }
 
-static bool create_objects(bough_ida *ida) {
-    if (!bough_vector_room(ida->dae.n)) return false;
+static bool create_objects(ida_run *ida) {
+    if (!bough_vector_room(ida->ode.n)) return false;
     if (SUNContext_Create(NULL, &ida->context) != 0) return false;
-    ida->y = bough_vector_create(ida->dae.n, ida->context);
-    ida->rate = bough_vector_create(ida->dae.n, ida->context);
+    ida->y = bough_vector_create(ida->ode.n, ida->context);
+    ida->rate = bough_vector_create(ida->ode.n, ida->context);
     ida->memory = IDACreate(ida->context);
     return ida->y != NULL && ida->rate != NULL && ida->memory != NULL && create_algebra(ida);
 }
 
-static bool configure(bough_ida *ida) {
+static bool configure(ida_run *ida) {
     void *m = ida->memory;
     return IDASetErrHandlerFn(m, remember, ida) == IDA_SUCCESS &&
            IDASetUserData(m, ida) == IDA_SUCCESS &&
@@ -156,31 +169,27 @@ static bool configure(bough_ida *ida) {
            IDASetMaxNumSteps(m, MOST_STEPS) == IDA_SUCCESS;
 }
 
-bough_status bough_ida_create(bough_arena *arena, const bough_dae *dae, const double *scale,
-                              double rtol, bough_ida **out) {
-    if (!(rtol > 0)) {
-        return bough_fail(BOUGH_INVALID, "%s: IDA's relative tolerance must be positive, not %g",
-                          dae->name, rtol);
-    }
-    bough_ida *ida = bough_arena_take(arena, sizeof *ida);
-    double *weight = bough_arena_doubles(arena, (size_t)dae->n);
+static bough_status create(bough_arena *arena, const bough_ode *ode,
+                           const bough_integrator_options *options, void **self) {
+    ida_run *ida = bough_arena_take(arena, sizeof *ida);
+    double *weight = bough_arena_doubles(arena, (size_t)ode->n);
     if (ida == NULL || weight == NULL) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for IDA", dae->name);
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for IDA", ode->name);
     }
-    for (int i = 0; i < dae->n; i++)
-        weight[i] = 1 / (rtol * scale[i]);
-    ida->dae = *dae;
+    for (int i = 0; i < ode->n; i++)
+        weight[i] = 1 / (options->rtol * ode->scale[i]);
+    ida->ode = *ode;
     ida->weight = weight;
-    *out = ida;
+    *self = ida;
     bool created = create_objects(ida) && configure(ida);
     bough_arena_on_destroy(arena, release, ida);
     if (created && !bough_arena_exhausted(arena)) return bough_ok();
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for IDA. %s", dae->name, ida->message);
+    return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for IDA. %s", ode->name, ida->message);
 }
 
 // -- stepping --------------------------------------------------------------------------------
 
-static void add_counts(const bough_ida *ida, bough_statistics *sum) {
+static void add_counts(const ida_run *ida, bough_statistics *sum) {
     long steps = 0, residuals = 0, setups = 0, failed = 0, iterations = 0, not_converged = 0;
     IDAGetNumSteps(ida->memory, &steps);
     IDAGetNumResEvals(ida->memory, &residuals);
@@ -195,56 +204,68 @@ static void add_counts(const bough_ida *ida, bough_statistics *sum) {
     sum->iterations += iterations;
 }
 
-static bough_status failure(bough_ida *ida, double t, int flag) {
+static bough_status failure(ida_run *ida, double t, int flag) {
     const char *advice = "try a smaller macro step, another tolerance or another coupling scheme";
     if (flag == IDA_TOO_MUCH_WORK) {
         return bough_fail(BOUGH_FAILED,
                           "%s at t = %.9g s: IDA took %d steps without reaching the end of the "
                           "macro step; %s",
-                          ida->dae.name, t, (int)MOST_STEPS, advice);
+                          ida->ode.name, t, (int)MOST_STEPS, advice);
     }
-    return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: IDA failed (code %d: %s); %s", ida->dae.name,
+    return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: IDA failed (code %d: %s); %s", ida->ode.name,
                       t, flag, ida->message, advice);
 }
 
-bough_status bough_ida_start(bough_ida *ida, double t, const double *y, const double *rate) {
-    size_t size = (size_t)ida->dae.n * sizeof(double);
-    memcpy(bough_vector_data(ida->y), y, size);
-    memcpy(bough_vector_data(ida->rate), rate, size);
+// With order 1 from y, whose rate is f.
+static bough_status start(ida_run *ida, double t, const double *y) {
+    double *rate = bough_vector_data(ida->rate);
+    memcpy(bough_vector_data(ida->y), y, (size_t)ida->ode.n * sizeof *y);
+    if (!ida->ode.derivative(ida->ode.self, t, y, rate) || !all_finite(rate, ida->ode.n)) {
+        return bough_fail(BOUGH_FAILED,
+                          "%s at t = %.9g s: the accelerations are not finite; try a smaller "
+                          "macro step",
+                          ida->ode.name, t);
+    }
     add_counts(ida, &ida->before);
     ida->before.restarts++;
-    ida->message[0] = 0;
+    ida->before.derivatives++;
     int flag = IDAReInit(ida->memory, t, ida->y, ida->rate);
-    return flag == IDA_SUCCESS ? bough_ok() : failure(ida, t, flag);
+    ida->started = flag == IDA_SUCCESS;
+    return ida->started ? bough_ok() : failure(ida, t, flag);
 }
 
-bough_status bough_ida_advance(bough_ida *ida, double t1, double *y, double *rate) {
-    double reached = t1;
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
+                            double *y) {
+    (void)pause;
+    ida_run *ida = self;
     ida->message[0] = 0;
-    int flag = IDASetStopTime(ida->memory, t1);
-    if (flag >= 0) flag = IDASolve(ida->memory, t1, &reached, ida->y, ida->rate, IDA_NORMAL);
-    if (flag < 0) {
-        IDAGetCurrentTime(ida->memory, &reached);
-        return failure(ida, reached, flag);
+    if (restart || !ida->started) {
+        bough_status status = start(ida, *t, y);
+        if (!bough_is_ok(&status)) return status;
     }
-    size_t size = (size_t)ida->dae.n * sizeof(double);
-    memcpy(y, bough_vector_data(ida->y), size);
-    memcpy(rate, bough_vector_data(ida->rate), size);
+    int flag = IDASetStopTime(ida->memory, t1);
+    if (flag >= 0) flag = IDASolve(ida->memory, t1, t, ida->y, ida->rate, IDA_NORMAL);
+    if (flag < 0) {
+        IDAGetCurrentTime(ida->memory, t);
+        ida->started = false;
+        return failure(ida, *t, flag);
+    }
+    *t = t1;
+    memcpy(y, bough_vector_data(ida->y), (size_t)ida->ode.n * sizeof *y);
     return bough_ok();
 }
 
-bough_status bough_ida_dense(bough_ida *ida, double t, double *y, double *rate) {
-    size_t size = (size_t)ida->dae.n * sizeof(double);
-    int flag = IDAGetDky(ida->memory, t, 0, ida->y);
-    if (flag == IDA_SUCCESS) flag = IDAGetDky(ida->memory, t, 1, ida->rate);
-    if (flag != IDA_SUCCESS) return failure(ida, t, flag);
-    memcpy(y, bough_vector_data(ida->y), size);
-    memcpy(rate, bough_vector_data(ida->rate), size);
-    return bough_ok();
-}
-
-void bough_ida_statistics(const bough_ida *ida, bough_statistics *sum) {
-    *sum = ida->before;
-    sum->jacobians = ida->jacobians;
+static void statistics(const void *self, bough_statistics *sum) {
+    const ida_run *ida = self;
+    bough_statistics_add(sum, &ida->before);
+    sum->jacobians += ida->jacobians;
     add_counts(ida, sum);
 }
+
+const bough_integrator_ops bough_integrator_ida = {
+    .name = "ida",
+    .title = "IDA",
+    .create = create,
+    .advance = advance,
+    .statistics = statistics,
+};

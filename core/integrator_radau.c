@@ -1,6 +1,11 @@
-// Radau IIA of order 5; notation of Hairer and Wanner: stages z_i = Y_i − y, w = T⁻¹ z, and
+// Radau IIA of order 5. A one-step method: an input that jumps costs it nothing but a Jacobian, and a
+// copy of it is complete. Dense algebra, the Jacobian by differences: for small systems.
+// Method: E. Hairer, G. Wanner, Solving Ordinary Differential Equations II, section IV.8:
+// simplified Newton iterations on the stages, transformed to one real and one complex system; step
+// size by the predictive controller; the Jacobian is kept while the iterations converge fast.
+// Notation of Hairer and Wanner: stages z_i = Y_i − y, w = T⁻¹ z, and
 // T⁻¹ A⁻¹ T = diag(γ, (α −β; β α)).
-#include "core/integrator_radau.h"
+#include "core/integrator.h"
 
 #include "core/base.h"
 #include "core/linalg.h"
@@ -9,6 +14,7 @@
 #include <string.h>
 
 enum { STAGES = 3, MOST_ITERATIONS = 7, MOST_STEPS = 200000 }; // steps per call
+enum { MOST_STATES = 400 };
 
 static const double root6 = 2.4494897427831781;
 static const double node[STAGES] = {0.15505102572168219, 0.64494897427831781, 1};
@@ -41,9 +47,10 @@ typedef struct history {
     bool jacobian;                 // it may be used
     bool current;                  // it was taken at the present time
     bool rejected;                 // the last attempt was
+    bool started;                  // all this belongs to the state
 } history;
 
-struct bough_radau {
+typedef struct radau {
     bough_ode ode;
     double *weight;          // 1/tolerance (n)
     double newton_tolerance; // in units of the tolerance
@@ -58,11 +65,11 @@ struct bough_radau {
     int *real_pivot, *complex_pivot;
     double present; // the step size whose factors are really there
     bough_statistics count;
-};
+} radau;
 
 // -- construction ----------------------------------------------------------------------------
 
-static bool take(bough_arena *arena, bough_radau *r) {
+static bool take(bough_arena *arena, radau *r) {
     size_t n = (size_t)r->ode.n;
     size_t head = (sizeof(history) + sizeof(double) - 1) / sizeof(double);
     size_t count = head + 4 * n + n * n;
@@ -88,13 +95,10 @@ static bool take(bough_arena *arena, bough_radau *r) {
     return true;
 }
 
-bough_status bough_radau_create(bough_arena *arena, const bough_ode *ode, const double *scale,
-                                double rtol, bough_radau **out) {
-    if (!(rtol > 0)) {
-        return bough_fail(BOUGH_INVALID, "%s: Radau's relative tolerance must be positive, not %g",
-                          ode->name, rtol);
-    }
-    bough_radau *r = bough_arena_take(arena, sizeof *r);
+static bough_status create(bough_arena *arena, const bough_ode *ode,
+                           const bough_integrator_options *options, void **self) {
+    double rtol = options->rtol;
+    radau *r = bough_arena_take(arena, sizeof *r);
     if (r != NULL) r->ode = *ode;
     if (r == NULL || !take(arena, r)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for Radau", ode->name);
@@ -103,15 +107,15 @@ bough_status bough_radau_create(bough_arena *arena, const bough_ode *ode, const 
     // follow rtol.
     double inner = 0.1 * pow(rtol, 2.0 / 3);
     for (int i = 0; i < ode->n; i++)
-        r->weight[i] = 1 / (inner * scale[i]);
+        r->weight[i] = 1 / (inner * ode->scale[i]);
     r->newton_tolerance = fmax(10 * 2.3e-16 / inner, fmin(0.03, sqrt(inner)));
-    *out = r;
+    *self = r;
     return bough_ok();
 }
 
 // -- norms and vectors -----------------------------------------------------------------------
 
-static double square(const bough_radau *r, const double *x) {
+static double square(const radau *r, const double *x) {
     double sum = 0;
     for (int i = 0; i < r->ode.n; i++)
         sum += x[i] * r->weight[i] * (x[i] * r->weight[i]);
@@ -119,7 +123,7 @@ static double square(const bough_radau *r, const double *x) {
 }
 
 // Infinite where a value is not finite.
-static double norm(const bough_radau *r, const double *x) {
+static double norm(const radau *r, const double *x) {
     double size = sqrt(square(r, x) / r->ode.n);
     return isnan(size) ? HUGE_VAL : size;
 }
@@ -131,7 +135,8 @@ static bool all_finite(const double *x, int n) {
     return true;
 }
 
-static bool evaluate(bough_radau *r, double t, const double *y, double *rate) {
+static bool evaluate(radau *r, double t, const double *y, double *rate) {
+    r->count.derivatives++;
     return r->ode.derivative(r->ode.self, t, y, rate) && all_finite(rate, r->ode.n);
 }
 
@@ -158,7 +163,7 @@ static void cubics(double s, double value[STAGES]) {
 // -- one step --------------------------------------------------------------------------------
 
 // (γ/h) E − J and ((α + iβ)/h) E − J
-static bool factor(bough_radau *r, double h) {
+static bool factor(radau *r, double h) {
     int n = r->ode.n;
     size_t square_size = (size_t)n * (size_t)n;
     for (size_t k = 0; k < square_size; k++) {
@@ -177,12 +182,30 @@ static bool factor(bough_radau *r, double h) {
            bough_complex_factor(n, r->complex, r->complex_pivot);
 }
 
+// ∂f/∂y at (t, y) by one-sided differences, whose increments balance truncation against cancellation
+static bool differentiate(radau *r, double t) {
+    static const double increment = 1.5e-8;
+    int n = r->ode.n;
+    if (!evaluate(r, t, r->y, r->point)) return false;
+    for (int j = 0; j < n; j++) {
+        double kept = r->y[j], *column = r->matrix + (size_t)n * (size_t)j;
+        r->y[j] = kept + increment * r->ode.scale[j];
+        double d = r->y[j] - kept;
+        bool ok = evaluate(r, t, r->y, column);
+        r->y[j] = kept;
+        if (!ok) return false;
+        for (int i = 0; i < n; i++)
+            column[i] = (column[i] - r->point[i]) / d;
+    }
+    return true;
+}
+
 // The Jacobian and factors for a step of h. Both may be older: they only steer the iteration.
-static bool prepare(bough_radau *r, double h) {
+static bool prepare(radau *r, double h) {
     history *past = r->past;
     if (!past->jacobian) {
         r->count.jacobians++;
-        if (!r->ode.jacobian(r->ode.self, past->time, r->y, r->matrix)) return false;
+        if (!differentiate(r, past->time)) return false;
         past->jacobian = past->current = true;
         past->factored = r->present = 0;
     }
@@ -191,7 +214,7 @@ static bool prepare(bough_radau *r, double h) {
 }
 
 // The last step's polynomial, carried on, starts the iteration; without one the stages start at 0.
-static void guess_stages(bough_radau *r, double h) {
+static void guess_stages(radau *r, double h) {
     int n = r->ode.n;
     const history *past = r->past;
     memset(r->trial, 0, STAGES * (size_t)n * sizeof(double));
@@ -207,7 +230,7 @@ static void guess_stages(bough_radau *r, double h) {
     mix(n, inverse, r->trial, r->w);
 }
 
-static bool evaluate_stages(bough_radau *r, double t, double h) {
+static bool evaluate_stages(radau *r, double t, double h) {
     int n = r->ode.n;
     for (int s = 0; s < STAGES; s++) {
         for (int i = 0; i < n; i++)
@@ -218,7 +241,7 @@ static bool evaluate_stages(bough_radau *r, double t, double h) {
 }
 
 // The increments of w, in place of the right sides T⁻¹ f − (T⁻¹ A⁻¹ T / h) w; their norm
-static double improve(bough_radau *r, double h, double *increment) {
+static double improve(radau *r, double h, double *increment) {
     int n = r->ode.n;
     const double *w1 = r->w, *w2 = r->w + n, *w3 = r->w + 2 * n;
     double *d1 = increment, *d2 = increment + n, *d3 = increment + 2 * n;
@@ -241,7 +264,7 @@ static double improve(bough_radau *r, double h, double *increment) {
 
 // Newton's iteration on the stages, into r->trial. Where it does not converge, *shrink is by what
 // factor to shorten the step.
-static bool solve_stages(bough_radau *r, double h, double *shrink) {
+static bool solve_stages(radau *r, double h, double *shrink) {
     history *past = r->past;
     double last = 0, ratio = 0;
     *shrink = 0.5;
@@ -280,7 +303,7 @@ static bool solve_stages(bough_radau *r, double h, double *shrink) {
 
 // The difference to the embedded solution of order 3, in units of the tolerance:
 // ((γ/h) E − J)⁻¹ (f(t, y) + Σ e_i z_i / h); of a first or repeated step filtered once more.
-static double estimate_error(bough_radau *r, double h) {
+static double estimate_error(radau *r, double h) {
     int n = r->ode.n;
     const double e[STAGES] = {-(13 + 7 * root6) / 3, (-13 + 7 * root6) / 3, -1.0 / 3};
     double *sum = r->f, *filtered = r->f + n;
@@ -304,7 +327,7 @@ static double estimate_error(bough_radau *r, double h) {
 
 // Of the two controllers the one that asks for less: the elementary one, and the one that predicts
 // the error from how it changed over the last two steps.
-static double next_step(bough_radau *r, double h, double error, double effort) {
+static double next_step(radau *r, double h, double error, double effort) {
     history *past = r->past;
     double quotient = pow(error, 0.25) / (safety * effort);
     quotient = bough_clamp(quotient, 1 / most_growing, most_shrinking);
@@ -315,7 +338,7 @@ static double next_step(bough_radau *r, double h, double error, double effort) {
     return h / quotient;
 }
 
-static void accept(bough_radau *r, double t1, double h, double error, double next) {
+static void accept(radau *r, double t1, double h, double error, double next) {
     history *past = r->past;
     int n = r->ode.n;
     memcpy(r->z, r->trial, STAGES * (size_t)n * sizeof(double));
@@ -336,7 +359,7 @@ static void accept(bough_radau *r, double t1, double h, double error, double nex
 }
 
 // From time to `end`, a step of h; on failure a shorter one is proposed.
-static void attempt(bough_radau *r, double end, double h) {
+static void attempt(radau *r, double end, double h) {
     history *past = r->past;
     double effort = 0.5, error = NAN;
     bool solved =
@@ -354,7 +377,7 @@ static void attempt(bough_radau *r, double end, double h) {
 }
 
 // A first step after the size of y, f and the change of f along an Euler step
-static double first_step(bough_radau *r, double span) {
+static double first_step(radau *r, double span) {
     const history *past = r->past;
     int n = r->ode.n;
     if (!evaluate(r, past->time, r->y, r->rate)) return 1e-6 * span;
@@ -371,27 +394,23 @@ static double first_step(bough_radau *r, double span) {
 
 // -- calls -----------------------------------------------------------------------------------
 
-void bough_radau_start(bough_radau *r, double t, const double *y) {
-    *r->past = (history){.time = t, .remainder = 1};
-    memcpy(r->y, y, (size_t)r->ode.n * sizeof(double));
+// The step size is kept where f jumps.
+static void start(radau *r, double t) {
+    double step = r->past->started ? r->past->step : 0;
+    *r->past = (history){.time = t, .step = step, .remainder = 1, .started = true};
     r->present = 0;
     r->count.restarts++;
 }
 
-void bough_radau_jump(bough_radau *r) {
-    *r->past = (history){.time = r->past->time, .step = r->past->step, .remainder = 1};
-    r->present = 0;
-    r->count.restarts++;
-}
-
-static bough_status failure(const bough_radau *r, const char *what) {
+static bough_status failure(const radau *r, const char *what) {
     return bough_fail(BOUGH_FAILED,
                       "%s at t = %.9g s: Radau IIA %s; try a smaller macro step, another tolerance "
                       "or another coupling scheme",
                       r->ode.name, r->past->time, what);
 }
 
-bough_status bough_radau_advance(bough_radau *r, double t1, double *y) {
+// Integrates to exactly t1, never evaluating f beyond it.
+static bough_status cross(radau *r, double t1) {
     history *past = r->past;
     double shortest = 1e-14 * fmax(fabs(t1), t1 - past->time);
     for (int k = 0; past->time < t1; k++) {
@@ -404,31 +423,41 @@ bough_status bough_radau_advance(bough_radau *r, double t1, double *y) {
         if (!last && 2 * h > left) h = 0.5 * left; // no tiny last step
         attempt(r, last ? t1 : past->time + h, h);
     }
-    memcpy(y, r->y, (size_t)r->ode.n * sizeof(double));
     return bough_ok();
 }
 
-void bough_radau_dense(const bough_radau *r, double t, double *y) {
-    int n = r->ode.n;
-    double value[STAGES];
-    assert(r->past->length > 0);
-    cubics((t - r->past->start) / r->past->length, value);
-    for (int i = 0; i < n; i++) {
-        const double *z = r->z + i; // y at the step's start is r->y − z₃
-        y[i] = r->y[i] - z[2 * n] + value[0] * z[0] + value[1] * z[n] + value[2] * z[2 * n];
-    }
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
+                            double *y) {
+    (void)pause;
+    radau *r = self;
+    history *past = r->past;
+    if (restart || !past->started) start(r, *t);
+    memcpy(r->y, y, (size_t)r->ode.n * sizeof(double));
+    bough_status status = cross(r, t1);
+    *t = past->time;
+    past->started = bough_is_ok(&status);
+    memcpy(y, r->y, (size_t)r->ode.n * sizeof(double));
+    return status;
 }
 
-// -- copies ----------------------------------------------------------------------------------
-
-size_t bough_radau_save_size(const bough_radau *r) { return r->bytes; }
-
-void bough_radau_save(const bough_radau *r, void *copy) { memcpy(copy, r->past, r->bytes); }
-
-// The factors are no part of a copy: the same Jacobian and step size give the same ones.
-void bough_radau_restore(bough_radau *r, const void *copy) {
-    memcpy(r->past, copy, r->bytes);
-    r->present = 0;
+// The factors are no part of it: the same Jacobian and step size give the same ones.
+static void transfer(void *self, bough_snapshot *s) {
+    radau *r = self;
+    bough_snapshot_take(s, r->past, r->bytes);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) r->present = 0;
 }
 
-void bough_radau_statistics(const bough_radau *r, bough_statistics *sum) { *sum = r->count; }
+static void statistics(const void *self, bough_statistics *sum) {
+    const radau *r = self;
+    bough_statistics_add(sum, &r->count);
+}
+
+const bough_integrator_ops bough_integrator_radau = {
+    .name = "radau5",
+    .title = "Radau IIA",
+    .most_states = MOST_STATES,
+    .create = create,
+    .advance = advance,
+    .statistics = statistics,
+    .transfer = transfer,
+};

@@ -74,10 +74,13 @@ typedef struct bough_subsystem_ops {
     void (*output)(void *self, double t, const double *state, const double *input, double *output);
 
     // ∂h/∂y·state_rate + ∂h/∂u·input_rate: output_rate (n_output). Either rate may be NULL for 0.
-    // With the rates of a motion it is the output's rate of change, else a tangent.
     void (*output_tangent)(void *self, double t, const double *state, const double *input,
                            const double *state_rate, const double *input_rate,
                            double *output_rate);
+
+    // ∂h/∂t: drift (n_output). NULL: 0.
+    void (*output_drift)(void *self, double t, const double *state, const double *input,
+                         double *drift);
 
     // ∂f/∂u: column (n_input × n_state), column j = ∂f/∂u_j as row j of the array.
     void (*input_columns)(void *self, double t, const double *state, const double *input,

@@ -3,18 +3,16 @@
 
 #include "core/base.h"
 #include "core/dynamics.h"
-#include "core/integrator_ida.h"
-#include "core/integrator_radau.h"
 #include "core/linalg.h"
 #include "core/loop.h"
 #include "core/tree_build.h"
 #include "core/tree_newton.h"
 
+#include <stdint.h>
 #include <string.h>
 
-// Finite differences: the cube root of the rounding error for central, the square root for
-// one-sided ones balances truncation against cancellation.
-static const double central_increment = 6e-6, onesided_increment = 1.5e-8;
+// Central differences: the cube root of the rounding error balances truncation against cancellation.
+static const double central_increment = 6e-6;
 
 // A quaternion's length is no state of the motion; past this the integrator starts anew with 1.
 static const double drift_limit = 1e-3;
@@ -29,15 +27,16 @@ typedef struct tree_subsystem {
     const bough_signal *signal;          // while advancing
     double *input;                       // (n_input) at the evaluation's time
     bool started;                        // the integrator's history belongs to the state
-    bough_ida *ida;                      // one of them, none without states
-    bough_radau *radau;
-    double *own_state, *own_rate;        // (n) of IDA: quaternions not normalised; of Radau
-                                         // own_rate is scratch
-    bough_tree_newton *ida_newton, *newton; // of a tree without closures; with them dense:
-    double *ida_matrix, *newton_matrix;     // (n × n, column-major)
-    int *ida_pivot, *newton_pivot;          // (n)
-    double gamma;                           // of the last newton_setup
-    double *y, *r, *base, *plus, *minus; // (n) scratch
+    bool prescribed;                     // some joints' motions are given
+    bough_integrator integrator;         // none without states
+    double *own_state;                   // (n) of the integrator: quaternions not normalised
+    bough_tree_newton *micro_newton, *newton; // of own steps, of newton_setup; NULL with closures:
+    double *micro_matrix, *newton_matrix;     // (n × n, column-major)
+    int *micro_pivot, *newton_pivot;          // (n)
+    double micro_gamma, gamma;                // of their factors
+    double micro_time, *micro_state, *micro_input; // where own steps linearised
+    double *placed;                      // (n) a state with the given motions in place
+    double *r, *plus, *minus, *y;        // (n) scratch
     long newton_setups, derivatives;
 } tree_subsystem;
 
@@ -50,10 +49,20 @@ static bool all_finite(const double *x, int n) {
     return true;
 }
 
+// The state with prescribed joints where they are at t: f and h depend on their motion, not on the
+// states that stand for it, so that nothing drifts whoever integrates.
+static const double *place(tree_subsystem *s, double t, const double *state) {
+    if (!s->prescribed) return state;
+    memcpy(s->placed, state, (size_t)s->n * sizeof(double));
+    bough_tree_prescribe(s->tree, t, s->placed);
+    return s->placed;
+}
+
 static bool derivative(void *self, double t, const double *state, const double *input,
                        double *rate) {
     tree_subsystem *s = self;
     s->derivatives++;
+    state = place(s, t, state);
     bough_tree_kinematics(s->tree, state, s->data);
     bough_tree_coordinate_rate(s->tree, state, rate); // q̇ = N(q) v
     bool ok = bough_tree_forward_dynamics(s->tree, s->data, t, input, rate + s->tree->n_q);
@@ -98,8 +107,9 @@ static void end_tangents(const tree_subsystem *s, const double *state, const dou
 }
 
 static void output(void *self, double t, const double *state, const double *input, double *out) {
-    (void)t, (void)input;
+    (void)input;
     tree_subsystem *s = self;
+    state = place(s, t, state);
     bough_tree_kinematics(s->tree, state, s->data);
     for (int p = 0; p < s->tree->n_ports; p++, out += BOUGH_PORT_OUTPUTS) {
         const bough_frame *port = &s->tree->ports[p];
@@ -110,15 +120,12 @@ static void output(void *self, double t, const double *state, const double *inpu
     end_outputs(s, state, out);
 }
 
-// NOLINTNEXTLINE(readability-function-size): the contract fixes the parameters
-static void output_tangent(void *self, double t, const double *state, const double *input,
-                           const double *state_rate, const double *input_rate, double *out) {
-    (void)t, (void)input, (void)input_rate; // a wrench moves nothing at once
-    tree_subsystem *s = self;
+// Of the outputs with a change of the state: out (n_output).
+static void outputs_change(tree_subsystem *s, const double *state, const double *change,
+                           double *out) {
     memset(out, 0, (size_t)bough_tree_n_outputs(s->tree) * sizeof(double));
-    if (state_rate == NULL) return;
     bough_tree_kinematics(s->tree, state, s->data);
-    bough_tree_tangent(s->tree, state, state_rate, s->data);
+    bough_tree_tangent(s->tree, state, change, s->data);
     for (int p = 0; p < s->tree->n_ports; p++, out += BOUGH_PORT_OUTPUTS) {
         const bough_frame *port = &s->tree->ports[p];
         if (port->link < 0) continue;
@@ -127,14 +134,55 @@ static void output_tangent(void *self, double t, const double *state, const doub
         store3(bough_mat3_tmul(port->placement.rotation, s->data->gravity_rate[port->link]),
                out + 6);
     }
-    end_tangents(s, state, state_rate, out);
+    end_tangents(s, state, change, out);
+}
+
+// x with the entries of prescribed joints made 0, or, `given`, with all others.
+static void select_states(const tree_subsystem *s, bool given, double *x) {
+    for (int i = 0; i < s->tree->n_links; i++) {
+        const bough_link *link = &s->tree->links[i];
+        if ((link->motion != NULL) == given) continue;
+        for (int k = 0; k < link->n_coordinates; k++)
+            x[link->first_coordinate + k] = 0;
+        for (int k = 0; k < link->n_speeds; k++)
+            x[s->tree->n_q + link->first_speed + k] = 0;
+    }
+}
+
+// NOLINTNEXTLINE(readability-function-size): the contract fixes the parameters
+static void output_tangent(void *self, double t, const double *state, const double *input,
+                           const double *state_rate, const double *input_rate, double *out) {
+    (void)input, (void)input_rate; // a wrench moves nothing at once
+    tree_subsystem *s = self;
+    if (state_rate == NULL) {
+        memset(out, 0, (size_t)bough_tree_n_outputs(s->tree) * sizeof(double));
+        return;
+    }
+    if (s->prescribed) {
+        memcpy(s->y, state_rate, (size_t)s->n * sizeof(double));
+        select_states(s, false, s->y);
+        state_rate = s->y;
+    }
+    outputs_change(s, place(s, t, state), state_rate, out);
+}
+
+// ∂h/∂t: what prescribed joints do.
+static void output_drift(void *self, double t, const double *state, const double *input,
+                         double *drift) {
+    tree_subsystem *s = self;
+    if (!s->prescribed || !derivative(s, t, state, input, s->y)) {
+        memset(drift, 0, (size_t)bough_tree_n_outputs(s->tree) * sizeof(double));
+        return;
+    }
+    select_states(s, true, s->y);
+    outputs_change(s, s->placed, s->y, drift);
 }
 
 static void input_columns(void *self, double t, const double *state, const double *input,
                           double *column) {
     tree_subsystem *s = self;
     const bough_tree *tree = s->tree;
-    bough_tree_kinematics(tree, state, s->data);
+    bough_tree_kinematics(tree, place(s, t, state), s->data);
     bough_tree_forward_dynamics(tree, s->data, t, input, s->r); // for its factors
     for (int j = 0; j < bough_tree_n_inputs(tree); j++, column += s->n) {
         double unit[BOUGH_PORT_INPUTS] = {0};
@@ -151,9 +199,10 @@ static void input_columns(void *self, double t, const double *state, const doubl
 // The increment of a state that keeps y + δ − y exact to its last digit
 static double increment_at(double y, double relative) { return relative * fmax(1, fabs(y)); }
 
-// f is defined for quaternions of any length, so its derivative by components is consistent.
+// I − γ ∂f/∂y, factored. f is defined for quaternions of any length, so its derivative by components
+// is consistent.
 static bool dense_setup(tree_subsystem *s, double t, const double *state, const double *input,
-                        double gamma) {
+                        double gamma, double *matrix, int *pivot) {
     int n = s->n;
     memcpy(s->y, state, (size_t)n * sizeof(double));
     for (int j = 0; j < n; j++) {
@@ -166,12 +215,19 @@ static bool dense_setup(tree_subsystem *s, double t, const double *state, const 
         ok = ok && derivative(s, t, s->y, input, s->minus);
         s->y[j] = state[j];
         if (!ok) return false;
-        double *column = s->newton_matrix + (size_t)n * (size_t)j, factor = gamma / (high - low);
+        double *column = matrix + (size_t)n * (size_t)j, factor = gamma / (high - low);
         for (int i = 0; i < n; i++)
             column[i] = -factor * (s->plus[i] - s->minus[i]);
         column[j] += 1;
     }
-    return bough_dense_factor(n, s->newton_matrix, s->newton_pivot);
+    return bough_dense_factor(n, matrix, pivot);
+}
+
+static bool setup(tree_subsystem *s, double t, const double *state, const double *input,
+                  double gamma, bough_tree_newton *newton) {
+    return derivative(s, t, state, input, s->plus) &&
+           bough_tree_newton_setup(newton, s->data, t, input, place(s, t, state),
+                                   s->plus + s->tree->n_q, 1 / gamma);
 }
 
 static bool newton_setup(void *self, double t, const double *state, const double *input,
@@ -179,109 +235,78 @@ static bool newton_setup(void *self, double t, const double *state, const double
     tree_subsystem *s = self;
     s->newton_setups++;
     s->gamma = gamma;
-    if (s->newton == NULL) return dense_setup(s, t, state, input, gamma);
-    return derivative(s, t, state, input, s->plus) &&
-           bough_tree_newton_setup(s->newton, s->data, t, input, state, s->plus + s->tree->n_q,
-                                   1 / gamma);
+    if (s->newton != NULL) return setup(s, t, state, input, gamma, s->newton);
+    return dense_setup(s, t, state, input, gamma, s->newton_matrix, s->newton_pivot);
 }
 
-// x = b + γ δf, in the form of tree_newton.h: c δq − δ(N v) = c b_q and c δv − c b_v = δv̇.
-static void newton_solve(void *self, double *x) {
-    tree_subsystem *s = self;
-    if (s->newton == NULL) {
-        bough_dense_solve(s->n, 1, s->newton_matrix, s->newton_pivot, x);
-        return;
-    }
+// x = b + γ δf, in the form of tree_newton.h: c δq − δ(N v) = c b_q and c δv − c b_v = δv̇. Nothing
+// depends on the states of prescribed joints: their x is b.
+static void solve(tree_subsystem *s, bough_tree_newton *newton, double gamma, double *x) {
     const bough_tree *tree = s->tree;
-    double c = 1 / s->gamma;
+    double c = 1 / gamma;
+    if (s->prescribed) {
+        memcpy(s->y, x, (size_t)s->n * sizeof(double));
+        select_states(s, false, x);
+    }
     for (int i = 0; i < tree->n_v; i++) {
         s->r[i] = -c * x[tree->n_q + i];
-        s->plus[i] = x[tree->n_q + i];
         x[tree->n_q + i] = 0;
     }
     for (int i = 0; i < tree->n_q; i++)
         x[i] *= c;
-    for (int i = 0; i < tree->n_links; i++) { // δq̇ = δv, δv̇ = 0
-        const bough_link *link = &tree->links[i];
-        if (link->motion == NULL) continue;
-        double *q = x + link->first_coordinate, *v = x + tree->n_q + link->first_speed;
-        v[0] = s->plus[link->first_speed];
-        q[0] = s->gamma * (q[0] + v[0]);
-    }
-    bough_tree_newton_solve(s->newton, s->r, x);
+    bough_tree_newton_solve(newton, s->r, x);
+    if (!s->prescribed) return;
+    select_states(s, true, s->y);
+    for (int i = 0; i < s->n; i++)
+        x[i] += s->y[i];
 }
 
-// -- own steps by IDA ------------------------------------------------------------------------
+static void newton_solve(void *self, double *x) {
+    tree_subsystem *s = self;
+    if (s->newton != NULL) {
+        solve(s, s->newton, s->gamma, x);
+    } else {
+        bough_dense_solve(s->n, 1, s->newton_matrix, s->newton_pivot, x);
+    }
+}
+
+// -- own steps -------------------------------------------------------------------------------
 
 // A tree without ports may be advanced without a signal.
 static void evaluate_input(tree_subsystem *s, double t) {
     if (s->signal != NULL && s->signal->n > 0) bough_signal_value(s->signal, t, s->input);
 }
 
-// Prescribed joints are where they should be, not where their integrated acceleration takes them.
-static void prescribed_rows(const bough_tree *tree, double t, const double *y, double *r) {
-    for (int i = 0; i < tree->n_links; i++) {
-        const bough_link *link = &tree->links[i];
-        if (link->motion == NULL) continue;
-        int q = link->first_coordinate, v = tree->n_q + link->first_speed;
-        bough_motion_point p = bough_motion_at(link->motion, t);
-        r[q] = y[q] - p.q;
-        r[v] = y[v] - p.v;
-    }
+static bool own_derivative(void *self, double t, const double *y, double *rate) {
+    tree_subsystem *s = self;
+    evaluate_input(s, t);
+    return derivative(s, t, y, s->input, rate);
 }
 
-static bool residual(void *self, double t, const double *y, const double *rate, double *r) {
+static bool own_linearise(void *self, double t, const double *y) {
     tree_subsystem *s = self;
-    const bough_tree *tree = s->tree;
     evaluate_input(s, t);
-    if (s->data->loops != NULL) { // the multipliers need the forward dynamics anyway
-        bool ok = derivative(s, t, y, s->input, r);
-        for (int i = 0; i < s->n; i++)
-            r[i] = rate[i] - r[i];
-        prescribed_rows(tree, t, y, r);
-        return ok;
-    }
-    bough_tree_kinematics(tree, y, s->data);
-    bough_tree_coordinate_rate(tree, y, r);
-    for (int i = 0; i < tree->n_q; i++)
-        r[i] = rate[i] - r[i]; // q̇ − N(q) v
-    bough_tree_inverse_dynamics(tree, s->data, t, s->input, rate + tree->n_q, r + tree->n_q);
-    prescribed_rows(tree, t, y, r);
+    s->micro_time = t;
+    memcpy(s->micro_state, y, (size_t)s->n * sizeof(double));
+    memcpy(s->micro_input, s->input, (size_t)bough_tree_n_inputs(s->tree) * sizeof(double));
     return true;
 }
 
-// ∂F/∂y + cj ∂F/∂ẏ by columns: F is linear in the rates, so that cj may be of any size.
-static bool residual_setup(void *self, double t, const double *y, const double *rate, double cj) {
+static bool own_factor(void *self, double gamma) {
     tree_subsystem *s = self;
-    int n = s->n;
-    if (s->ida_newton != NULL) {
-        evaluate_input(s, t);
-        return bough_tree_newton_setup(s->ida_newton, s->data, t, s->input, y,
-                                       rate + s->tree->n_q, cj);
-    }
-    residual(s, t, y, rate, s->base);
-    memcpy(s->y, y, (size_t)n * sizeof(double));
-    memcpy(s->r, rate, (size_t)n * sizeof(double));
-    for (int j = 0; j < n; j++) {
-        double high = y[j] + increment_at(y[j], onesided_increment), d = high - y[j];
-        s->y[j] = high;
-        s->r[j] = rate[j] + cj * d;
-        residual(s, t, s->y, s->r, s->plus);
-        s->y[j] = y[j];
-        s->r[j] = rate[j];
-        double *column = s->ida_matrix + (size_t)n * (size_t)j;
-        for (int i = 0; i < n; i++)
-            column[i] = (s->plus[i] - s->base[i]) / d;
-    }
-    return bough_dense_factor(n, s->ida_matrix, s->ida_pivot);
+    double t = s->micro_time;
+    const double *state = s->micro_state, *input = s->micro_input;
+    s->micro_gamma = gamma;
+    if (s->micro_newton != NULL) return setup(s, t, state, input, gamma, s->micro_newton);
+    return dense_setup(s, t, state, input, gamma, s->micro_matrix, s->micro_pivot);
 }
 
-static void residual_solve(void *self, double *x) {
+static void own_solve(void *self, double *x) {
     tree_subsystem *s = self;
-    if (s->ida_newton != NULL) {
-        bough_tree_newton_solve(s->ida_newton, NULL, x);
+    if (s->micro_newton != NULL) {
+        solve(s, s->micro_newton, s->micro_gamma, x);
     } else {
-        bough_dense_solve(s->n, 1, s->ida_matrix, s->ida_pivot, x);
+        bough_dense_solve(s->n, 1, s->micro_matrix, s->micro_pivot, x);
     }
 }
 
@@ -302,69 +327,17 @@ static bool has_drifted(const tree_subsystem *s) {
     return false;
 }
 
-// f under the signal, prescribed joints where they should be; its derivative by one-sided differences
-static bool rate_of_change(void *self, double t, const double *y, double *rate) {
-    tree_subsystem *s = self;
-    evaluate_input(s, t);
-    memcpy(s->own_rate, y, (size_t)s->n * sizeof(double));
-    bough_tree_prescribe(s->tree, t, s->own_rate);
-    return derivative(s, t, s->own_rate, s->input, rate);
-}
-
-static bool rate_jacobian(void *self, double t, const double *y, double *matrix) {
-    tree_subsystem *s = self;
-    int n = s->n;
-    if (!rate_of_change(s, t, y, s->base)) return false;
-    memcpy(s->y, y, (size_t)n * sizeof(double));
-    for (int j = 0; j < n; j++) {
-        double d = j < s->tree->n_q ? onesided_increment : increment_at(y[j], onesided_increment);
-        s->y[j] = y[j] + d;
-        d = s->y[j] - y[j];
-        if (!rate_of_change(s, t, s->y, s->plus)) return false;
-        s->y[j] = y[j];
-        for (int i = 0; i < n; i++)
-            matrix[(size_t)n * (size_t)j + (size_t)i] = (s->plus[i] - s->base[i]) / d;
-    }
-    return true;
-}
-
-static bough_status start_radau(tree_subsystem *s) {
-    if (s->started) bough_radau_jump(s->radau);
-    if (!s->started) bough_radau_start(s->radau, s->time, s->state);
-    s->started = true;
-    return bough_ok();
-}
-
-static bough_status start(tree_subsystem *s) {
-    if (s->radau != NULL) return start_radau(s);
-    evaluate_input(s, s->time);
-    if (!derivative(s, s->time, s->state, s->input, s->own_rate)) {
-        return bough_fail(BOUGH_FAILED,
-                          "%s at t = %.9g s: the accelerations are not finite; try a smaller "
-                          "macro step",
-                          s->name, s->time);
-    }
-    s->started = true;
-    return bough_ida_start(s->ida, s->time, s->state, s->own_rate);
-}
-
 static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
     tree_subsystem *s = self;
-    if (s->n == 0) {
-        s->time = t1;
-        return bough_ok();
-    }
     bough_status status = bough_ok();
     s->signal = input;
-    if (restart || !s->started) status = start(s);
-    if (bough_is_ok(&status)) {
-        status = s->radau != NULL ? bough_radau_advance(s->radau, t1, s->own_state)
-                                  : bough_ida_advance(s->ida, t1, s->own_state, s->own_rate);
+    if (s->n > 0) {
+        memcpy(s->own_state, s->state, (size_t)s->n * sizeof(double));
+        status = bough_integrator_advance(&s->integrator, s->time, t1, restart || !s->started,
+                                          s->own_state);
     }
-    if (!bough_is_ok(&status)) {
-        s->started = false;
-        return status;
-    }
+    s->started = bough_is_ok(&status);
+    if (!s->started) return status;
     s->time = t1;
     memcpy(s->state, s->own_state, (size_t)s->n * sizeof(double));
     bough_tree_prescribe(s->tree, t1, s->state);
@@ -375,45 +348,46 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
 
 // -- state -----------------------------------------------------------------------------------
 
-// Of Radau all is kept, of IDA, whose history the library hides, nothing.
+static void transfer(tree_subsystem *s, bough_snapshot *copy) {
+    bool kept = s->integrator.ops != NULL && s->integrator.ops->transfer != NULL;
+    double started = s->started && kept;
+    bough_snapshot_take(copy, &s->time, sizeof s->time);
+    bough_snapshot_take(copy, &started, sizeof started);
+    bough_snapshot_doubles(copy, s->state, s->n);
+    if (kept) s->integrator.ops->transfer(s->integrator.self, copy);
+    if (copy->move == BOUGH_SNAPSHOT_RESTORE) s->started = started != 0;
+}
+
 static size_t save_size(void *self) {
-    tree_subsystem *s = self;
-    size_t own = s->radau != NULL ? bough_radau_save_size(s->radau) : 0;
-    return (2 + (size_t)s->n) * sizeof(double) + own;
+    bough_snapshot s = {.move = BOUGH_SNAPSHOT_MEASURE};
+    transfer(self, &s);
+    return s.used;
 }
 
 static void save(void *self, void *copy) {
-    tree_subsystem *s = self;
-    double *to = copy;
-    to[0] = s->time;
-    to[1] = s->started && s->radau != NULL;
-    memcpy(to + 2, s->state, (size_t)s->n * sizeof(double));
-    if (s->radau != NULL) bough_radau_save(s->radau, to + 2 + s->n);
+    bough_snapshot s = {.move = BOUGH_SNAPSHOT_SAVE, .copy = copy};
+    transfer(self, &s);
+}
+
+static void restore(void *self, const void *copy) {
+    bough_snapshot s = {.move = BOUGH_SNAPSHOT_RESTORE, .copy = (char *)(uintptr_t)copy};
+    transfer(self, &s);
 }
 
 static void set_state(void *self, double t, const double *state) {
     tree_subsystem *s = self;
     s->time = t;
     memmove(s->state, state, (size_t)s->n * sizeof(double));
+    bough_tree_prescribe(s->tree, t, s->state);
     normalise(s);
     s->started = false;
 }
 
-static void restore(void *self, const void *copy) {
-    tree_subsystem *s = self;
-    const double *from = copy;
-    s->time = from[0];
-    s->started = from[1] != 0;
-    memcpy(s->state, from + 2, (size_t)s->n * sizeof(double));
-    if (s->radau != NULL) bough_radau_restore(s->radau, from + 2 + s->n);
-}
-
 static void statistics(void *self, bough_statistics *sum) {
-    tree_subsystem *s = self;
+    const tree_subsystem *s = self;
     *sum = (bough_statistics){0};
-    if (s->ida != NULL) bough_ida_statistics(s->ida, sum);
-    if (s->radau != NULL) bough_radau_statistics(s->radau, sum);
-    sum->derivatives += s->derivatives;
+    if (s->integrator.ops != NULL) s->integrator.ops->statistics(s->integrator.self, sum);
+    sum->derivatives = s->derivatives;
     sum->factorisations += s->newton_setups;
 }
 
@@ -433,6 +407,7 @@ static const bough_subsystem_ops operations = {
     .derivative = derivative,
     .output = output,
     .output_tangent = output_tangent,
+    .output_drift = output_drift,
     .input_columns = input_columns,
     .newton_setup = newton_setup,
     .newton_solve = newton_solve,
@@ -448,74 +423,76 @@ static const bough_subsystem_ops operations = {
 // -- construction ----------------------------------------------------------------------------
 
 static bool take(bough_arena *arena, tree_subsystem *s) {
-    size_t n = (size_t)s->n;
-    double **vectors[] = {&s->state, &s->scale, &s->own_state, &s->own_rate, &s->y,
-                          &s->r,     &s->base,  &s->plus,      &s->minus};
+    size_t n = (size_t)s->n, n_input = (size_t)bough_tree_n_inputs(s->tree);
+    double **vectors[] = {&s->state,  &s->scale, &s->own_state, &s->micro_state, &s->placed,
+                          &s->y,      &s->r,     &s->plus,      &s->minus};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         *vectors[i] = bough_arena_doubles(arena, n);
     }
-    s->input = bough_arena_doubles(arena, (size_t)bough_tree_n_inputs(s->tree));
+    s->input = bough_arena_doubles(arena, n_input);
+    s->micro_input = bough_arena_doubles(arena, n_input);
     return !bough_arena_exhausted(arena);
 }
 
-static bough_status take_newton(bough_arena *arena, tree_subsystem *s, bool ida) {
+static bough_status take_newton(bough_arena *arena, tree_subsystem *s) {
     size_t n = (size_t)s->n;
     bough_status status = bough_ok();
     if (s->tree->n_closures == 0) {
         status = bough_tree_newton_create(arena, s->tree, &s->newton);
-        if (ida && bough_is_ok(&status)) {
-            status = bough_tree_newton_create(arena, s->tree, &s->ida_newton);
-        }
-        return status;
+        if (!bough_is_ok(&status)) return status;
+        return bough_tree_newton_create(arena, s->tree, &s->micro_newton);
     }
     s->newton_matrix = bough_arena_doubles(arena, n * n);
     s->newton_pivot = bough_arena_take(arena, n * sizeof(int));
-    if (ida) s->ida_matrix = bough_arena_doubles(arena, n * n);
-    if (ida) s->ida_pivot = bough_arena_take(arena, n * sizeof(int));
+    s->micro_matrix = bough_arena_doubles(arena, n * n);
+    s->micro_pivot = bough_arena_take(arena, n * sizeof(int));
     if (!bough_arena_exhausted(arena)) return status;
     return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's Newton matrices");
 }
 
 static bough_status create_integrator(bough_arena *arena, tree_subsystem *s,
-                                      bough_tree_solver solver, double rtol) {
+                                      const bough_integrator_options *options) {
     if (s->n == 0) return bough_ok();
-    if (solver == BOUGH_TREE_RADAU) {
-        bough_ode ode = {s->name, s->n, s, rate_of_change, rate_jacobian};
-        return bough_radau_create(arena, &ode, s->scale, rtol, &s->radau);
-    }
-    bough_dae dae = {.name = s->name,
+    bough_ode ode = {.name = s->name,
                      .n = s->n,
+                     .scale = s->scale,
                      .self = s,
-                     .residual = residual,
-                     .setup = residual_setup,
-                     .solve = residual_solve};
-    return bough_ida_create(arena, &dae, s->scale, rtol, &s->ida);
+                     .derivative = own_derivative,
+                     .linearise = own_linearise,
+                     .factor = own_factor,
+                     .solve = own_solve};
+    return bough_integrator_create(arena, &ode, options, &s->integrator);
 }
 
-static void describe(tree_subsystem *s, bough_subsystem *subsystem) {
+static void describe(tree_subsystem *s, const bough_integrator_options *options,
+                     bough_subsystem *subsystem) {
     *subsystem = (bough_subsystem){
         .name = s->name,
         .kind = "tree",
-        .solver = s->radau != NULL ? "Radau IIA" : "IDA",
+        .solver = bough_integrator_find(options->kind)->title,
         .n_state = s->n,
         .n_input = bough_tree_n_inputs(s->tree),
         .n_output = bough_tree_n_outputs(s->tree),
         .scale = s->scale,
         .time = &s->time,
         .state = s->state,
+        .own_error = s->integrator.own_error,
         .ops = &operations,
         .self = s,
     };
 }
 
 bough_status bough_tree_subsystem_create(bough_arena *arena, bough_tree *tree, const char *name,
-                                         double start_time, bough_tree_solver solver, double rtol,
+                                         double start_time,
+                                         const bough_integrator_options *options,
                                          bough_subsystem *subsystem) {
     tree_subsystem *s = bough_arena_take(arena, sizeof *s);
     if (s == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's integrator");
     s->tree = tree;
     s->n = tree->n_q + tree->n_v;
     s->name = bough_arena_string(arena, name);
+    for (int i = 0; i < tree->n_links; i++)
+        s->prescribed = s->prescribed || tree->links[i].motion != NULL;
     bough_status status = bough_tree_data_create(arena, tree, &s->data);
     if (!bough_is_ok(&status)) return status;
     if (!take(arena, s)) {
@@ -524,8 +501,8 @@ bough_status bough_tree_subsystem_create(bough_arena *arena, bough_tree *tree, c
     for (int i = 0; i < s->n; i++)
         s->scale[i] = 1;
     set_state(s, start_time, tree->initial);
-    status = take_newton(arena, s, solver == BOUGH_TREE_IDA);
-    if (bough_is_ok(&status)) status = create_integrator(arena, s, solver, rtol);
-    if (bough_is_ok(&status)) describe(s, subsystem);
+    status = take_newton(arena, s);
+    if (bough_is_ok(&status)) status = create_integrator(arena, s, options);
+    if (bough_is_ok(&status)) describe(s, options, subsystem);
     return status;
 }

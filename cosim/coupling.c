@@ -15,6 +15,7 @@ static bool take(bough_coupling *c, bough_arena *arena) {
     for (int p = 0; p < BOUGH_HISTORY; p++) c->past[p] = bough_arena_doubles(arena, n_input);
     c->start_rate = bough_arena_doubles(arena, n_output);
     c->end_output = bough_arena_doubles(arena, n_output);
+    c->output_drift = bough_arena_doubles(arena, n_output);
     c->end_rate = bough_arena_doubles(arena, n_output);
     c->state_rate = bough_arena_doubles(arena, (size_t)a->n_state);
     c->seen = bough_arena_doubles(arena, n_input);
@@ -141,6 +142,11 @@ bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const d
     double *state_rate = c->state_rate + c->assembly->state_offset[member];
     if (!s->ops->derivative(s->self, t, s->state, input, state_rate)) return false;
     s->ops->output_tangent(s->self, t, s->state, input, state_rate, input_rate, rate);
+    if (s->ops->output_drift == NULL) return true;
+    double *drift = c->output_drift + c->assembly->output_offset[member];
+    s->ops->output_drift(s->self, t, s->state, input, drift);
+    for (int k = 0; k < s->n_output; k++)
+        rate[k] += drift[k];
     return true;
 }
 

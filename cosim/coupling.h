@@ -2,6 +2,7 @@
 #ifndef BOUGH_COSIM_COUPLING_H
 #define BOUGH_COSIM_COUPLING_H
 
+#include "core/integrator.h"
 #include "core/pool.h"
 #include "core/snapshot.h"
 #include "cosim/accelerate.h"
@@ -27,7 +28,7 @@ typedef struct bough_scheme_options {
     bool reversed;     // sequential schemes take the last stage first
     bough_interpolation interpolation; // sequential schemes
     double theta;      // ramp: 1/2 … 1; 0 chooses by the ratio of interface inertias
-    double rtol;       // monolithic: tolerance relative to the members' scales
+    bough_integrator_options integrator; // monolithic
     bough_exchange exchange;        // iterated
     bough_acceleration accelerator; // iterated
     double relaxation;              // iterated: the accelerator's first factor, 0 … 1
@@ -80,6 +81,7 @@ typedef struct bough_coupling {
 
     // scratch
     double *state_rate;       // (n_state)
+    double *output_drift;     // (n_output)
     double *seen, *seen_rate; // (n_input)
 
     // by the ramp scheme: the members' answers to its last step, whose factors they hold unless

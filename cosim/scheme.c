@@ -22,7 +22,7 @@ bough_scheme_options bough_scheme_options_default(void) {
     return (bough_scheme_options){.name = "ramp",
                                   .order = 1,
                                   .interpolation = BOUGH_HERMITE,
-                                  .rtol = 1e-6,
+                                  .integrator = {.kind = BOUGH_IDA, .rtol = 1e-6},
                                   .accelerator = BOUGH_ACCELERATE_IQN_ILS,
                                   .relaxation = 0.5,
                                   .tolerance = 1e-6,

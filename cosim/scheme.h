@@ -35,7 +35,7 @@ struct bough_scheme {
     void (*choose)(const bough_coupling *c, bough_scheme_options *options);
 };
 
-// name "ramp", order 1, sequential, Hermite, theta automatic, rtol 1e-6; end
+// name "ramp", order 1, sequential, Hermite, theta automatic, IDA to 1e-6; end
 // values by IQN-ILS from relaxation 1/2 to 1e-6 in at most 30 iterations.
 bough_scheme_options bough_scheme_options_default(void);
 

@@ -14,7 +14,7 @@ struct bough_modal_body {
     bough_modal_chain chain;
     bough_modal_newton micro_newton; // of the sub-solver
     bough_modal_newton newton;       // of newton_setup
-    bough_micro micro;
+    bough_integrator micro;
 };
 
 // -- the sub-solver's view ------------------------------------------------------------------------
@@ -93,7 +93,7 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
     b->input = input;
     bough_modal_hold_loads(b->model, &b->loads, b->time, t1, &b->chain);
     bough_status status =
-        b->micro.advance(b->micro.self, b->time, t1, restart || b->moved, b->state);
+        bough_integrator_advance(&b->micro, b->time, t1, restart || b->moved, b->state);
     bough_modal_release_loads(&b->chain);
     b->moved = !bough_is_ok(&status);
     b->time = t1;
@@ -137,7 +137,7 @@ static void set_state(void *self, double t, const double *state) {
 
 static void statistics(void *self, bough_statistics *sum) {
     const bough_modal_body *b = self;
-    b->micro.statistics(b->micro.self, sum);
+    b->micro.ops->statistics(b->micro.self, sum);
 }
 
 // -- life -----------------------------------------------------------------------------------------
@@ -165,7 +165,7 @@ static void set_scale(bough_modal_body *b) {
 }
 
 bough_status bough_modal_body_create(bough_arena *arena, const bough_modal_model *model,
-                                     double start, bough_micro_options micro, const double *input,
+                                     double start, bough_integrator_options micro, const double *input,
                                      bough_modal_body **body) {
     bough_modal_body *b = bough_arena_take(arena, sizeof *b);
     if (b == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", model->name);
@@ -179,24 +179,35 @@ bough_status bough_modal_body_create(bough_arena *arena, const bough_modal_model
     set_scale(b);
     bough_ode ode = {.name = model->name,
                      .n = model->n_state,
+                     .scale = b->scale,
                      .self = b,
                      .derivative = micro_derivative,
-                     .derivative_again = micro_derivative,
                      .linearise = micro_linearise,
                      .factor = micro_factor,
                      .solve = micro_solve};
-    bough_status status = bough_micro_create(arena, &ode, b->scale, micro, &b->micro);
+    bough_status status = bough_integrator_create(arena, &ode, &micro, &b->micro);
     if (bough_is_ok(&status)) *body = b;
     return status;
 }
 
 bough_subsystem bough_modal_body_subsystem(bough_modal_body *body) {
     static const bough_subsystem_ops ops = {
-        derivative, output, output_tangent, input_columns, newton_setup, newton_solve, advance,
-        save_size,  save,   restore,        set_state,     statistics, NULL, NULL, NULL};
+        .derivative = derivative,
+        .output = output,
+        .output_tangent = output_tangent,
+        .input_columns = input_columns,
+        .newton_setup = newton_setup,
+        .newton_solve = newton_solve,
+        .advance = advance,
+        .save_size = save_size,
+        .save = save,
+        .restore = restore,
+        .set_state = set_state,
+        .statistics = statistics,
+    };
     return (bough_subsystem){.name = body->model->name,
                              .kind = "modal",
-                             .solver = body->micro.name,
+                             .solver = body->micro.ops->title,
                              .n_state = body->model->n_state,
                              .n_input = BOUGH_ROD_INPUTS,
                              .n_output = BOUGH_ROD_OUTPUTS,

@@ -4,7 +4,7 @@
 #define BOUGH_FLEXBODY_MODAL_SUBSYSTEM_H
 
 #include "core/subsystem.h"
-#include "flexbody/micro.h"
+#include "core/integrator.h"
 #include "flexbody/modal_chain.h"
 
 typedef struct bough_modal_body bough_modal_body;
@@ -13,7 +13,7 @@ typedef struct bough_modal_body bough_modal_body;
 // with `input` (9) at time `start`; tolerances are those of a rod for the vertex that a shape moves
 // most.
 bough_status bough_modal_body_create(bough_arena *arena, const bough_modal_model *model,
-                                     double start, bough_micro_options micro, const double *input,
+                                     double start, bough_integrator_options micro, const double *input,
                                      bough_modal_body **body);
 
 // The contract's view; valid as long as the arena.

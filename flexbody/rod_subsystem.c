@@ -14,7 +14,7 @@ struct bough_rod_body {
     bough_rod_scratch scratch;
     bough_rod_tangent micro_tangent; // of the sub-solver
     bough_rod_tangent newton;        // of newton_setup
-    bough_micro micro;
+    bough_integrator micro;
 };
 
 // -- the sub-solver's view --------------------------------------------------------------------------
@@ -117,8 +117,8 @@ static void newton_solve(void *self, double *x) {
 static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
     bough_rod_body *b = self;
     b->input = input;
-    bough_status status = b->micro.advance(b->micro.self, b->time, t1, restart || b->moved,
-                                            b->state);
+    bough_status status = bough_integrator_advance(&b->micro, b->time, t1, restart || b->moved,
+                                                   b->state);
     normalise(b);
     b->moved = !bough_is_ok(&status);
     b->time = t1;
@@ -128,9 +128,8 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
 static bough_status advance_part(void *self, double pause, double t1, const bough_signal *input,
                                  bool restart) {
     bough_rod_body *b = self;
-    if (b->micro.advance_part == NULL) return advance(self, t1, input, restart);
     b->input = input;
-    bough_status status = b->micro.advance_part(b->micro.self, &b->time, pause, t1,
+    bough_status status = b->micro.ops->advance(b->micro.self, &b->time, pause, t1,
                                                 restart || b->moved, b->state);
     if (b->time >= t1) normalise(b);
     b->moved = !bough_is_ok(&status);
@@ -175,7 +174,7 @@ static void restore(void *self, const void *copy) {
 
 static void statistics(void *self, bough_statistics *sum) {
     const bough_rod_body *b = self;
-    b->micro.statistics(b->micro.self, sum);
+    b->micro.ops->statistics(b->micro.self, sum);
 }
 
 // δp ← δp − p (p·δp)/|p|²
@@ -208,7 +207,7 @@ static bool take_memory(bough_rod_body *b, bough_arena *arena) {
 }
 
 bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *model, double start,
-                                   bough_micro_options micro, const double *input,
+                                   bough_integrator_options micro, const double *input,
                                    bough_rod_body **body) {
     // error scales of x, p, u, W: a tenth of a radian weighs as a metre
     static const double scale[BOUGH_ROD_STATES] = {1, 1, 1, 0.1, 0.1, 0.1, 0.1,
@@ -226,25 +225,39 @@ bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *mo
     for (int k = 0; k < BOUGH_ROD_STATES * n; k++) b->scale[k] = scale[k / n];
     bough_ode ode = {.name = model->name,
                      .n = BOUGH_ROD_STATES * n,
+                     .scale = b->scale,
                      .self = b,
                      .derivative = micro_derivative,
                      .derivative_again = micro_derivative_again,
                      .linearise = micro_linearise,
                      .factor = micro_factor,
                      .solve = micro_solve};
-    bough_status status = bough_micro_create(arena, &ode, b->scale, micro, &b->micro);
+    bough_status status = bough_integrator_create(arena, &ode, &micro, &b->micro);
     if (bough_is_ok(&status)) *body = b;
     return status;
 }
 
 bough_subsystem bough_rod_body_subsystem(bough_rod_body *body) {
     static const bough_subsystem_ops ops = {
-        derivative, output, output_tangent, input_columns, newton_setup, newton_solve, advance,
-        save_size,  save,   restore,        set_state,     statistics, project,      advance_part,
-        newton_refactor};
+        .derivative = derivative,
+        .output = output,
+        .output_tangent = output_tangent,
+        .input_columns = input_columns,
+        .newton_setup = newton_setup,
+        .newton_solve = newton_solve,
+        .advance = advance,
+        .save_size = save_size,
+        .save = save,
+        .restore = restore,
+        .set_state = set_state,
+        .statistics = statistics,
+        .project = project,
+        .advance_part = advance_part,
+        .newton_refactor = newton_refactor,
+    };
     return (bough_subsystem){.name = body->model->name,
                              .kind = "rod",
-                             .solver = body->micro.name,
+                             .solver = body->micro.ops->title,
                              .n_state = BOUGH_ROD_STATES * body->model->n,
                              .n_input = bough_rod_n_inputs(body->model),
                              .n_output = bough_rod_n_outputs(body->model),

@@ -5,7 +5,7 @@
 #define BOUGH_FLEXBODY_ROD_SUBSYSTEM_H
 
 #include "core/subsystem.h"
-#include "flexbody/micro.h"
+#include "core/integrator.h"
 #include "flexbody/rod.h"
 
 typedef struct bough_rod_body bough_rod_body;
@@ -14,7 +14,7 @@ typedef struct bough_rod_body bough_rod_body;
 // with `input` (the first 9) at time `start`; tolerances are relative to 1 m, 0.1 rad, 1 m/s,
 // 0.1 rad/s.
 bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *model, double start,
-                                   bough_micro_options micro, const double *input,
+                                   bough_integrator_options micro, const double *input,
                                    bough_rod_body **body);
 
 // The contract's view; valid as long as the arena.

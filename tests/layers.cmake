@@ -155,9 +155,9 @@ endforeach()
 owned_by("^core/linalg\\.c$" "${include}(lapacke?|cblas)|[^A-Za-z0-9_][sdcz][a-z][a-z0-9]+_[ \t]*\\("
   "only core/linalg.c calls LAPACK")
 owned_by("^core/integrator_ida\\.c$" "${include}ida/" "only core/integrator_ida.c uses IDA")
-owned_by("^flexbody/[^/]*\\.c$" "${include}(cvode|arkode)/" "only flexbody/*.c uses CVODE and ARKODE")
-owned_by("^(core|flexbody)/" "${include}(sundials|nvector|sunmatrix|sunlinsol)"
-  "only core/ and flexbody/ use SUNDIALS")
+owned_by("^core/[^/]*\\.c$" "${include}(cvode|arkode)/" "only core/*.c uses CVODE and ARKODE")
+owned_by("^core/" "${include}(sundials|nvector|sunmatrix|sunlinsol)"
+  "only core/ uses SUNDIALS")
 owned_by("^core/pool\\.c$" "${include}omp\\.h|#[ \t]*pragma[ \t]+omp[ \t]+([^s]|s[^i])|[^a-z_]omp_[a-z]"
   "only core/pool.c uses OpenMP, but for simd loops")
 owned_by("^none$" "pthread_create|thrd_create" "threads are OpenMP's")

@@ -25,21 +25,22 @@ typedef struct fixture {
     bough_subsystem s;
 } fixture;
 
-static inline fixture build_with(const bough_tree_def *def, bough_tree_solver solver, double rtol) {
+static inline fixture build_with(const bough_tree_def *def, bough_integrator_kind solver, double rtol) {
     fixture f = {.arena = bough_arena_create()};
     bough_status status = bough_tree_create(f.arena, def, &f.tree);
     if (!bough_is_ok(&status)) print_error("%s\n", status.message);
     assert_int_equal(status.code, BOUGH_OK);
     status = bough_tree_data_create(f.arena, f.tree, &f.data);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0, solver, rtol, &f.s);
+    status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0,
+                                         &(bough_integrator_options){solver, rtol, 0, 0.8}, &f.s);
     assert_int_equal(status.code, BOUGH_OK);
     assert_true(f.s.n_state <= MOST);
     return f;
 }
 
 static inline fixture build(const bough_tree_def *def, double rtol) {
-    return build_with(def, BOUGH_TREE_IDA, rtol);
+    return build_with(def, BOUGH_IDA, rtol);
 }
 
 static inline void advance(fixture *f, double t1, bool restart) {
@@ -92,7 +93,7 @@ static inline bough_body_def random_body(unsigned *seed, const char *name, int p
 
 // Every kind of joint, branches, a welded body in between, bodies out of order, two ports (one on
 // the welded body), a joint load with a ramp and an external wrench.
-static inline fixture everything_with(bough_tree_solver solver, double rtol) {
+static inline fixture everything_with(bough_integrator_kind solver, double rtol) {
     static const char *names[] = {"a", "b", "c", "d", "e", "f", "g", "h", "i", "j"};
     static const int parents[] = {8, 0, 7, 9, 3, 4, BOUGH_GROUND, BOUGH_GROUND, 2, 2};
     static const bough_joint_kind kinds[] = {
@@ -136,7 +137,7 @@ static inline fixture everything_with(bough_tree_solver solver, double rtol) {
     return f;
 }
 
-static inline fixture everything(double rtol) { return everything_with(BOUGH_TREE_IDA, rtol); }
+static inline fixture everything(double rtol) { return everything_with(BOUGH_IDA, rtol); }
 
 static const double some_input[12] = {1, -2, 0.5, 0.3, 0.8, -0.6, -1, 0.4, 2, 0.7, -0.1, 0.9};
 

@@ -5,7 +5,7 @@
 #include "tests/check.h"
 
 #include "core/linalg.h"
-#include "flexbody/micro.h"
+#include "core/integrator.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -21,7 +21,7 @@ static const double columns[N][N] = {{2.0 / 3, 2.0 / 3, 1.0 / 3},
 
 typedef struct problem {
     bough_arena *arena;
-    bough_micro micro;
+    bough_integrator micro;
     double wall;   // f has no value beyond [s]
     bool lasting;  // nor anywhere once it was asked for there
     bool broken;
@@ -93,19 +93,19 @@ static void exact(double t, double *y) {
 }
 
 // The system under a sub-solver; scale (N) must outlive it.
-static problem *create_scaled(bough_micro_kind kind, const double *scale, double rtol) {
+static problem *create_scaled(bough_integrator_kind kind, const double *scale, double rtol) {
     problem *p = calloc(1, sizeof *p);
     assert_non_null(p);
     p->arena = bough_arena_create();
     p->wall = (double)INFINITY;
-    bough_ode ode = {"stiff", N, p, derivative, derivative, linearise, factor, solve};
-    bough_micro_options options = {.kind = kind, .rtol = rtol};
-    bough_status status = bough_micro_create(p->arena, &ode, scale, options, &p->micro);
+    bough_ode ode = {"stiff", N, scale, p, derivative, NULL, linearise, factor, solve};
+    bough_integrator_options options = {.kind = kind, .rtol = rtol};
+    bough_status status = bough_integrator_create(p->arena, &ode, &options, &p->micro);
     assert_int_equal(status.code, BOUGH_OK);
     return p;
 }
 
-static problem *create_kind(bough_micro_kind kind, double rtol) {
+static problem *create_kind(bough_integrator_kind kind, double rtol) {
     static const double scale[N] = {1, 1, 1};
     return create_scaled(kind, scale, rtol);
 }
@@ -116,7 +116,7 @@ static void destroy(problem *p) {
 }
 
 static bough_status try_advance(problem *p, double t, double t1, bool restart, double *y) {
-    return p->micro.advance(p->micro.self, t, t1, restart, y);
+    return bough_integrator_advance(&p->micro, t, t1, restart, y);
 }
 
 static void advance(problem *p, double t, double t1, bool restart, double *y) {
@@ -126,7 +126,7 @@ static void advance(problem *p, double t, double t1, bool restart, double *y) {
 }
 
 static void add_counts(const problem *p, bough_statistics *sum) {
-    p->micro.statistics(p->micro.self, sum);
+    p->micro.ops->statistics(p->micro.self, sum);
 }
 
 static bough_statistics counts(const problem *p) {

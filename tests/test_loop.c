@@ -95,12 +95,13 @@ typedef struct fixture {
     bough_subsystem s;
 } fixture;
 
-static fixture build(const bough_tree_def *def, bough_tree_solver solver, double rtol) {
+static fixture build(const bough_tree_def *def, bough_integrator_kind solver, double rtol) {
     fixture f = {.arena = bough_arena_create()};
     bough_status status = bough_tree_create(f.arena, def, &f.tree);
     if (bough_is_ok(&status)) status = bough_tree_data_create(f.arena, f.tree, &f.data);
     if (bough_is_ok(&status)) {
-        status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0, solver, rtol, &f.s);
+        status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0,
+                                         &(bough_integrator_options){solver, rtol, 0, 0.8}, &f.s);
     }
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
     assert_true(f.s.n_state <= MOST);
@@ -199,13 +200,13 @@ static void compare_wrenches(fixture *open, fixture *closed) {
 static void closures_act_as_the_joints_they_replace(void **state) {
     (void)state;
     for (int k = 0; k < KINDS; k++) {
-        for (int solver = BOUGH_TREE_IDA; solver <= BOUGH_TREE_RADAU; solver++) {
+        for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {
             bough_body_def b[2];
             bough_marker_def m[2];
             bough_closure_def c;
             base_and_arm(b, kinds[k]);
             bough_tree_def def = {.gravity = down, .n_bodies = 2, .bodies = b};
-            fixture open = build(&def, BOUGH_TREE_RADAU, 1e-11);
+            fixture open = build(&def, BOUGH_RADAU5, 1e-11);
             bough_tree_kinematics(open.tree, open.s.state, open.data);
             def = closed_def(b, m, &c, &open);
             fixture closed = build(&def, solver, 1e-9);
@@ -304,7 +305,7 @@ static void windows_follow_their_one_equation(void **state) {
     (void)state;
     windows w;
     for (int n = 1; n <= WINDOWS; n++) {
-        for (int solver = BOUGH_TREE_IDA; solver <= BOUGH_TREE_RADAU; solver++) {
+        for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {
             make_windows(&w, n, BOUGH_JOINT_REVOLUTE);
             fixture f = build(&w.def, solver, 1e-8);
             assert_int_equal(f.tree->n_rows, 5 * n);
@@ -328,7 +329,7 @@ static void windows_pass_the_singular_position(void **state) {
     (void)state;
     windows w;
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
-    for (int solver = BOUGH_TREE_IDA; solver <= BOUGH_TREE_RADAU; solver++) {
+    for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {
         fixture f = build(&w.def, solver, 1e-9);
         for (int k = 1; k <= 1000; k++)
             advance(&f, 0.01 * k, k == 1);
@@ -347,13 +348,13 @@ static void closed_trees_fulfil_the_contract(void **state) {
     const bough_port_def port = {.name = "port", .marker = 1};
     const double input[6] = {1, 2, 3, -1, -2, 0.5};
     double y[MOST];
-    for (int solver = BOUGH_TREE_IDA; solver <= BOUGH_TREE_RADAU; solver++) {
+    for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {
         bough_body_def b[2];
         bough_marker_def m[2];
         bough_closure_def c[2];
         base_and_arm(b, BOUGH_JOINT_REVOLUTE);
         bough_tree_def def = {.gravity = down, .n_bodies = 2, .bodies = b};
-        fixture open = build(&def, BOUGH_TREE_RADAU, 1e-11);
+        fixture open = build(&def, BOUGH_RADAU5, 1e-11);
         bough_tree_kinematics(open.tree, open.s.state, open.data);
         def = closed_def(b, m, c, &open);
         c[1] = c[0];
@@ -384,7 +385,7 @@ static void driven_cranks_take_the_torque_of_the_weights(void **state) {
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
     w.body[0].motion = (bough_motion_def){.given = true, .speed = true, .from = 1, .to = 1};
     w.body[1].speeds[0] = w.body[2].speeds[0] = 0; // they follow
-    for (int solver = BOUGH_TREE_IDA; solver <= BOUGH_TREE_RADAU; solver++) {
+    for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {
         fixture f = build(&w.def, solver, 1e-9);
         check_near(f.s.state[4], 1, 1e-9, 0);
         for (int k = 1; k <= 10; k++) {
@@ -406,7 +407,7 @@ static void violations_decay(void **state) {
     windows w;
     double y[MOST];
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
-    fixture f = build(&w.def, BOUGH_TREE_RADAU, 1e-9);
+    fixture f = build(&w.def, BOUGH_RADAU5, 1e-9);
     memcpy(y, f.s.state, (size_t)f.s.n_state * sizeof(double));
     y[1] += 0.01;
     f.s.ops->set_state(f.s.self, 0, y);
@@ -430,7 +431,7 @@ static void loops_are_assembled_from_near(void **state) {
     w.body[1].coordinates[0] = 0.52;
     w.body[2].coordinates[0] = -0.53;
     w.body[1].speeds[0] = w.body[2].speeds[0] = 0; // they follow
-    fixture f = build(&w.def, BOUGH_TREE_RADAU, 1e-9);
+    fixture f = build(&w.def, BOUGH_RADAU5, 1e-9);
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     check_closed(&f, 1e-10);
     assert_true(f.tree->closure_moved > 1e-3 && f.tree->closure_moved < 0.05);
@@ -466,7 +467,7 @@ static void arches_are_assembled(void **state) {
                           .markers = marker,
                           .n_closures = 1,
                           .closures = &closure};
-    fixture f = build(&def, BOUGH_TREE_RADAU, 1e-8);
+    fixture f = build(&def, BOUGH_RADAU5, 1e-8);
     bough_tree_kinematics(f.tree, f.s.state, f.data);
     check_closed(&f, 1e-9);
     assert_int_equal(f.tree->closure_rank, 2);

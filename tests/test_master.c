@@ -130,7 +130,7 @@ static star star_run(const char *scheme, double macro_step, int threads) {
     star s;
     bough_master_def def = definition(macro_step, 4);
     def.scheme.name = scheme;
-    def.scheme.rtol = 1e-10;
+    def.scheme.integrator.rtol = 1e-10;
     bough_arena *arena = bough_arena_create();
     bough_status status = bough_pool_create(arena, threads, &def.pool);
     if (bough_is_ok(&status)) status = star_build(&s, def);

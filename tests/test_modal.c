@@ -28,7 +28,7 @@ static bough_modal_body *body_of(bough_arena *arena, const bough_modal_model *m,
                                  const double *input) {
     bough_modal_body *body = NULL;
     bough_status status = bough_modal_body_create(
-        arena, m, 0, (bough_micro_options){.rtol = 1e-8}, input, &body);
+        arena, m, 0, (bough_integrator_options){.kind = BOUGH_CVODE_BDF, .rtol = 1e-8}, input, &body);
     assert_int_equal(status.code, BOUGH_OK);
     return body;
 }

@@ -19,7 +19,7 @@ typedef struct pair {
 static bough_rod_body *make(bough_arena *arena, bough_rod_model *model, const double *input) {
     bough_rod_body *body = NULL;
     bough_status status = bough_rod_body_create(arena, model, 0,
-                                                (bough_micro_options){.rtol = 1e-6}, input, &body);
+                                                (bough_integrator_options){.kind = BOUGH_CVODE_BDF, .rtol = 1e-6}, input, &body);
     assert_int_equal(status.code, BOUGH_OK);
     bough_rod_loads *loads = bough_rod_body_loads(body);
     sample_loads(model, loads);

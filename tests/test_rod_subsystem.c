@@ -22,7 +22,7 @@ static const double at_rest[BOUGH_ROD_INPUTS] = {0};
 static rod make(bough_arena *arena, bough_rod_model *model, double rtol, const double *input) {
     rod r = {.arena = arena, .model = model};
     bough_status status = bough_rod_body_create(
-        arena, model, 0, (bough_micro_options){.rtol = rtol}, input, &r.body);
+        arena, model, 0, (bough_integrator_options){.kind = BOUGH_CVODE_BDF, .rtol = rtol}, input, &r.body);
     assert_int_equal(status.code, BOUGH_OK);
     r.s = bough_rod_body_subsystem(r.body);
     return r;
@@ -68,7 +68,7 @@ static void operations_agree_on_a_deformed_loaded_rod(void **context) {
     contract_point at = {0.5, state, input, 1e-5};
     contract_check(&r.s, at, 0.03, 0.01);
     // by steps between which it may pause
-    bough_micro_options steps = {BOUGH_MICRO_ROSENBROCK, 1e-3, 2e-3, 0};
+    bough_integrator_options steps = {BOUGH_ROSENBROCK, 1e-3, 2e-3, 0};
     rod rosenbrock = {.arena = r.arena};
     bough_status status = bough_rod_body_create(r.arena, r.model, 0, steps, input, &rosenbrock.body);
     assert_true(bough_is_ok(&status));

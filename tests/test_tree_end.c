@@ -64,7 +64,8 @@ static fixture make(void) {
     assert_int_equal(status.code, BOUGH_OK);
     status = bough_tree_data_create(f.arena, f.tree, &f.data);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0, BOUGH_TREE_IDA, 1e-8, &f.s);
+    status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0,
+                                         &(bough_integrator_options){BOUGH_IDA, 1e-8, 0, 0}, &f.s);
     assert_int_equal(status.code, BOUGH_OK);
     for (int i = 0; i < f.s.n_state; i++) f.state[i] = sin(2.3 * i + 0.4);
     int p = f.tree->links[f.tree->ends[0].link].first_coordinate + 3;

@@ -4,7 +4,7 @@
 
 static void tree_fulfils_the_contract(void **state) {
     (void)state;
-    for (int solver = BOUGH_TREE_IDA; solver <= BOUGH_TREE_RADAU; solver++) {
+    for (int solver = BOUGH_IDA; solver <= BOUGH_ROSENBROCK; solver++) {
         fixture f = everything_with(solver, 1e-8);
         double y[MOST];
         memcpy(y, f.s.state, (size_t)f.s.n_state * sizeof(double));
@@ -46,7 +46,7 @@ static void restored_copies_repeat_bit_by_bit(void **state) {
 // Radau is a one-step method: a copy of it lacks nothing.
 static void radau_goes_on_from_a_copy_as_if_nothing_had_been(void **state) {
     (void)state;
-    fixture f = everything_with(BOUGH_TREE_RADAU, 1e-7), tight = everything(1e-11);
+    fixture f = everything_with(BOUGH_RADAU5, 1e-7), tight = everything(1e-11);
     size_t n = (size_t)f.s.n_state * sizeof(double);
     double coefficient[48] = {0}, first[MOST];
     for (int i = 0; i < 24; i++)

@@ -30,22 +30,11 @@ typedef struct bough_scene_coupling {
     bough_scheme_options options; // name and rtol left out; tolerance 0: three times micro.rtol
 } bough_scene_coupling;
 
-typedef enum bough_scene_master_kind {
-    BOUGH_SCENE_IDA,
-    BOUGH_SCENE_RADAU,
-} bough_scene_master_kind;
-typedef enum bough_scene_micro_kind {
-    BOUGH_SCENE_CVODE_BDF,
-    BOUGH_SCENE_GENERALIZED_ALPHA,
-    BOUGH_SCENE_ARKODE_ESDIRK,
-    BOUGH_SCENE_ROSENBROCK,
-} bough_scene_micro_kind;
-
 typedef struct bough_scene_solver {
     const bough_node *node;
-    int solver;  // bough_scene_master_kind or bough_scene_micro_kind
+    int solver;  // bough_integrator_kind
     double rtol; // [-]
-    double step; // micro, generalised-α and Rosenbrock: longest step [s]
+    double step; // generalised-α and Rosenbrock: longest step [s]; 0: none
     double rho;  // its spectral radius at infinite frequency [-]
 } bough_scene_solver;
 

@@ -10,27 +10,32 @@
     {.name = "rtol", .kind = BOUGH_KEY_NUMBER, .range = "[1e-14, 0.1]", .fallback = value,         \
      .offset = offsetof(bough_scene_solver, rtol), .example = "1e-5",                              \
      .help = "relative tolerance"}
+#define RHO                                                                                        \
+    {.name = "rho", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.8", AT(rho),       \
+     .example = "0.6",                                                                             \
+     .help = "of generalized-alpha: what a step leaves of the highest frequencies"}
+#define AT(field) .offset = offsetof(bough_scene_solver, field)
 static const bough_key master_keys[] = {
     {.name = "solver", .kind = BOUGH_KEY_CHOICE, .fallback = "ida",
-     .choices = CHOICES("ida", "radau5"), .offset = offsetof(bough_scene_solver, solver),
-     .help = "time integrator: BDF of variable order, or Radau IIA of order 5, which input that "
-             "jumps does not slow, with dense algebra, for trees of up to some hundred states; the "
-             "monolithic scheme has its own, ida"},
+     .choice = bough_integrator_name, AT(solver),
+     .help = "time integrator: BDF of variable order (ida, cvode-bdf), Runge-Kutta of order 4 "
+             "(arkode-esdirk) or, for up to 400 states, 5 (radau5), generalized-alpha of order 2, or a "
+             "linearly implicit Runge-Kutta method of order 3 (rosenbrock); of the monolithic scheme "
+             "for all bodies together"},
     RTOL("1e-6"),
+    {.name = "step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "[1e-7, 10]",
+     AT(step), .example = "10 ms",
+     .help = "of generalized-alpha and rosenbrock: longest step; default the macro step"},
+    RHO,
 };
-#define AT(field) .offset = offsetof(bough_scene_solver, field)
 static const bough_key micro_keys[] = {
     {.name = "solver", .kind = BOUGH_KEY_CHOICE, .fallback = "cvode-bdf",
-     .choices = CHOICES("cvode-bdf", "generalized-alpha", "arkode-esdirk",
-                        "rosenbrock"), AT(solver),
-     .help = "time integrator of each rod"},
+     .choice = bough_integrator_name, AT(solver), .help = "time integrator of each rod"},
     RTOL("1e-4"),
     {.name = "step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "[1e-7, 10]",
      .fallback = "5e-3", AT(step), .example = "10 ms",
      .help = "of generalized-alpha and rosenbrock: longest step"},
-    {.name = "rho", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.8", AT(rho),
-     .example = "0.6",
-     .help = "of generalized-alpha: what a step leaves of the highest frequencies"},
+    RHO,
 };
 #undef AT
 static const bough_schema master_schema = {SCHEMA("a solver", bough_scene_solver, master_keys)};

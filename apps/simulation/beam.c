@@ -2,7 +2,7 @@
 #include "apps/simulation/build.h"
 #include "flexbody/rod_linear.h"
 
-static bough_status build_rod(bough_arena *arena, bough_beam *beam, bough_micro_options micro,
+static bough_status build_rod(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
                               const double *input, bough_subsystem *subsystem) {
     bough_rod_model *model = NULL;
     bough_status status = bough_rod_create(arena, &beam->def, &model);
@@ -12,7 +12,7 @@ static bough_status build_rod(bough_arena *arena, bough_beam *beam, bough_micro_
     return status;
 }
 
-bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_micro_options micro,
+bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
                               const double *input, bough_subsystem *subsystem) {
     const bough_scene_modal *modal = &beam->body->modal;
     if (beam->body->fidelity == BOUGH_SCENE_ROD) {

@@ -68,6 +68,25 @@ static size_t count_corners(const bough_scene *scene) {
 
 // -- parts ----------------------------------------------------------------------------------------
 
+static bough_integrator_options solver_options(const bough_scene_solver *solver) {
+    return (bough_integrator_options){(bough_integrator_kind)solver->solver, solver->rtol,
+                                      solver->step, solver->rho};
+}
+
+static bough_scheme_options scheme_options(const bough_scene *scene) {
+    bough_scheme_options options = scene->simulation.coupling.options;
+    options.name = bough_scheme_name(scene->simulation.coupling.scheme);
+    // A body answers with the noise of its own tolerance, below which nothing converges: measured
+    // on the turbine, residuals stall at 0.2 to 0.6 of the micro rtol.
+    double noise = 0;
+    for (int i = 0; i < scene->n_body; i++) {
+        noise = fmax(noise, bough_scene_micro(scene, &scene->body[i])->rtol);
+    }
+    if (!(options.tolerance > 0)) options.tolerance = 3 * noise;
+    options.integrator = solver_options(&scene->simulation.master);
+    return options;
+}
+
 static bough_status build_tree(bough_builder *b) {
     b->force.n_marker = b->s->n_beam;
     bough_force_link_fill(b->scene, &b->force);
@@ -103,22 +122,12 @@ static bough_status build_tree(bough_builder *b) {
         bough_tree_kinematics(s->tree, s->tree->initial, s->view);
         bough_force_link_rest(scene, s->view, s->tree);
     }
-    const bough_scene_solver *master = &scene->simulation.master;
-    bough_tree_solver solver =
-        master->solver == BOUGH_SCENE_RADAU ? BOUGH_TREE_RADAU : BOUGH_TREE_IDA;
-    return bough_tree_subsystem_create(b->arena, s->tree, "tree", 0, solver, master->rtol,
-                                       &s->trunk);
+    bough_integrator_options master = solver_options(&scene->simulation.master);
+    // the tree's own method is never asked, and the scheme's may not suit it
+    if (bough_scheme_find(scheme_options(scene).name)->one_system) master.kind = BOUGH_ROSENBROCK;
+    return bough_tree_subsystem_create(b->arena, s->tree, "tree", 0, &master, &s->trunk);
 }
 
-static bough_micro_options micro_options(const bough_builder *b, const bough_scene_body *body) {
-    static const bough_micro_kind kinds[] = {
-        [BOUGH_SCENE_CVODE_BDF] = BOUGH_MICRO_CVODE_BDF,
-        [BOUGH_SCENE_GENERALIZED_ALPHA] = BOUGH_MICRO_GENERALIZED_ALPHA,
-        [BOUGH_SCENE_ARKODE_ESDIRK] = BOUGH_MICRO_ARKODE_ESDIRK,
-        [BOUGH_SCENE_ROSENBROCK] = BOUGH_MICRO_ROSENBROCK};
-    const bough_scene_solver *micro = bough_scene_micro(b->scene, body);
-    return (bough_micro_options){kinds[micro->solver], micro->rtol, micro->step, micro->rho};
-}
 
 static bough_status build_rods(bough_builder *b) {
     bough_simulation *s = b->s;
@@ -128,7 +137,7 @@ static bough_status build_rods(bough_builder *b) {
     for (int k = 0; k < s->n_beam; k++) {
         bough_beam *beam = &s->beam[k];
         if (beam->port < 0) continue;
-        bough_status status = bough_beam_build(b->arena, beam, micro_options(b, beam->body),
+        bough_status status = bough_beam_build(b->arena, beam, solver_options(bough_scene_micro(b->scene, beam->body)),
                                                motion + BOUGH_PORT_OUTPUTS * beam->port,
                                                &s->rod[beam->port]);
         if (!bough_is_ok(&status)) return status;
@@ -174,20 +183,6 @@ static void connect(bough_builder *b) {
         add_port(b, k, &motion, &wrench);
         if (beam->end >= 0) connect_end(b, beam);
     }
-}
-
-static bough_scheme_options scheme_options(const bough_scene *scene) {
-    bough_scheme_options options = scene->simulation.coupling.options;
-    options.name = bough_scheme_name(scene->simulation.coupling.scheme);
-    options.rtol = scene->simulation.master.rtol;
-    // A body answers with the noise of its own tolerance, below which nothing converges: measured
-    // on the turbine, residuals stall at 0.2 to 0.6 of the micro rtol.
-    double noise = 0;
-    for (int i = 0; i < scene->n_body; i++) {
-        noise = fmax(noise, bough_scene_micro(scene, &scene->body[i])->rtol);
-    }
-    if (!(options.tolerance > 0)) options.tolerance = 3 * noise;
-    return options;
 }
 
 // The run starts from equilibrium: the members move there before their master is built.

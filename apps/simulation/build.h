@@ -80,7 +80,7 @@ bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam
                                      bough_quaternion *rotation);
 // Builds the flexible body of a beam, a rod or a modal body, in a frame that moves with `input` (9)
 // at the start.
-bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_micro_options micro,
+bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
                               const double *input, bough_subsystem *subsystem);
 
 // Of a flexible beam: its mesh, its loads, and the state of its vertices from `first` on at `view` as

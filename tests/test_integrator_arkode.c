@@ -2,7 +2,7 @@
 #include "tests/stiff_modes.h"
 
 static const char *solver(void) { return "ARKODE"; }
-static problem *create(double rtol) { return create_kind(BOUGH_MICRO_ARKODE_ESDIRK, rtol); }
+static problem *create(double rtol) { return create_kind(BOUGH_ARKODE_ESDIRK, rtol); }
 
 static double error_with(double rtol) {
     problem *p = create(rtol);
@@ -34,7 +34,7 @@ static void tolerance_is_relative_to_the_scale(void **context) {
     static const double scales[2][N] = {{1, 1, 1}, {1e-3, 1e-3, 1e-3}};
     double y[2][N];
     for (int k = 0; k < 2; k++) {
-        problem *p = create_scaled(BOUGH_MICRO_ARKODE_ESDIRK, scales[k], k == 0 ? 1e-6 : 1e-3);
+        problem *p = create_scaled(BOUGH_ARKODE_ESDIRK, scales[k], k == 0 ? 1e-6 : 1e-3);
         exact(0, y[k]);
         advance(p, 0, 1, true, y[k]);
         destroy(p);

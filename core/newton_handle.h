@@ -1,9 +1,9 @@
-// What SUNDIALS wants of a matrix and a linear solver, for a body that factors and solves its own
-// Newton matrix I − γ ∂f/∂y: handles only. Shared by the sub-solvers that are SUNDIALS integrators.
-#ifndef BOUGH_FLEXBODY_NEWTON_HANDLE_H
-#define BOUGH_FLEXBODY_NEWTON_HANDLE_H
+// What SUNDIALS wants of a matrix and a linear solver, for a system that factors and solves its own
+// Newton matrix I − γ ∂f/∂y: handles only. Shared by the methods that are SUNDIALS integrators.
+#ifndef BOUGH_CORE_NEWTON_HANDLE_H
+#define BOUGH_CORE_NEWTON_HANDLE_H
 
-#include "flexbody/micro.h"
+#include "core/integrator.h"
 
 #include <sundials/sundials_linearsolver.h>
 #include <sundials/sundials_matrix.h>
@@ -21,9 +21,8 @@ typedef struct bough_newton_handle {
     long jacobians, factorisations;
 } bough_newton_handle;
 
-// False when memory is exhausted; destroy in any case. Tolerance rtol · scale per state (n).
-bool bough_newton_handle_create(bough_newton_handle *handle, const bough_ode *ode,
-                                const double *scale, double rtol);
+// False when memory is exhausted; destroy in any case. Tolerance rtol · scale per state.
+bool bough_newton_handle_create(bough_newton_handle *handle, const bough_ode *ode, double rtol);
 void bough_newton_handle_destroy(bough_newton_handle *handle);
 
 // Callbacks of an integrator whose user data is the handle.

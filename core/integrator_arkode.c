@@ -1,18 +1,19 @@
-#include "flexbody/micro_arkode.h"
-
+// SUNDIALS ARKODE: a singly diagonally implicit Runge–Kutta method with an explicit
+// first stage (ESDIRK), order 4 with error control, L-stable, with the system's own Newton solver. One
+// step at a time, so that a jump of the inputs costs a start, not an order. The only user of ARKODE.
+#include "core/newton_handle.h"
 #include "core/vector.h"
-#include "flexbody/newton_handle.h"
 
 #include <arkode/arkode_arkstep.h>
 
 #include <string.h>
 
-struct bough_micro_arkode {
+typedef struct arkode_run {
     bough_newton_handle newton;
     void *arkode;
     bool started;
     bough_statistics past; // of the integrations before the last restart
-};
+} arkode_run;
 
 static int linear_system(sunrealtype t, N_Vector y, N_Vector fy, SUNMatrix m, SUNMatrix mass,
                          sunbooleantype jok, sunbooleantype *jcur, sunrealtype gamma, void *user,
@@ -24,16 +25,16 @@ static int linear_system(sunrealtype t, N_Vector y, N_Vector fy, SUNMatrix m, SU
 // -- life -----------------------------------------------------------------------------------------
 
 static void destroy(void *object) {
-    bough_micro_arkode *micro = object;
-    if (micro->arkode != NULL) ARKStepFree(&micro->arkode);
-    bough_newton_handle_destroy(&micro->newton);
+    arkode_run *run = object;
+    if (run->arkode != NULL) ARKStepFree(&run->arkode);
+    bough_newton_handle_destroy(&run->newton);
 }
 
 enum { MOST_STEPS = 20000 }; // per macro step, as of the other sub-solvers
 
-static bool configure(bough_micro_arkode *micro) {
-    void *arkode = micro->arkode;
-    bough_newton_handle *newton = &micro->newton;
+static bool configure(arkode_run *run) {
+    void *arkode = run->arkode;
+    bough_newton_handle *newton = &run->newton;
     int bad = ARKStepSetErrHandlerFn(arkode, bough_newton_handle_message, newton);
     bad |= ARKStepSetUserData(arkode, newton);
     bad |= ARKStepWFtolerances(arkode, bough_newton_handle_weights);
@@ -48,14 +49,13 @@ static bool configure(bough_micro_arkode *micro) {
     return bad == 0;
 }
 
-bough_status bough_micro_arkode_create(bough_arena *arena, const bough_ode *ode,
-                                       const double *scale, double rtol,
-                                       bough_micro_arkode **micro) {
-    bough_micro_arkode *m = bough_arena_take(arena, sizeof *m);
+static bough_status create(bough_arena *arena, const bough_ode *ode,
+                           const bough_integrator_options *options, void **self) {
+    arkode_run *m = bough_arena_take(arena, sizeof *m);
     if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
     bough_arena_on_destroy(arena, destroy, m);
     bough_newton_handle *newton = &m->newton;
-    bool ok = !bough_arena_exhausted(arena) && bough_newton_handle_create(newton, ode, scale, rtol);
+    bool ok = !bough_arena_exhausted(arena) && bough_newton_handle_create(newton, ode, options->rtol);
     if (ok) {
         m->arkode =
             ARKStepCreate(NULL, bough_newton_handle_rate, 0, newton->y, newton->context);
@@ -67,35 +67,35 @@ bough_status bough_micro_arkode_create(bough_arena *arena, const bough_ode *ode,
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for ARKODE: %s", ode->name,
                           newton->text);
     }
-    *micro = m;
+    *self = m;
     return bough_ok();
 }
 
 // -- steps ----------------------------------------------------------------------------------------
 
-static void collect(const bough_micro_arkode *micro, bough_statistics *sum) {
+static void collect(const arkode_run *run, bough_statistics *sum) {
     long steps = 0, errors = 0, solves = 0, none = 0, rates = 0, iterations = 0;
-    ARKStepGetNumSteps(micro->arkode, &steps);
-    ARKStepGetNumErrTestFails(micro->arkode, &errors);
-    ARKStepGetNumStepSolveFails(micro->arkode, &solves);
-    ARKStepGetNumRhsEvals(micro->arkode, &none, &rates);
-    ARKStepGetNumNonlinSolvIters(micro->arkode, &iterations);
+    ARKStepGetNumSteps(run->arkode, &steps);
+    ARKStepGetNumErrTestFails(run->arkode, &errors);
+    ARKStepGetNumStepSolveFails(run->arkode, &solves);
+    ARKStepGetNumRhsEvals(run->arkode, &none, &rates);
+    ARKStepGetNumNonlinSolvIters(run->arkode, &iterations);
     sum->steps += steps;
     sum->failed_steps += errors + solves;
     sum->derivatives += rates;
     sum->iterations += iterations;
 }
 
-static bough_status start(bough_micro_arkode *micro, double t) {
-    bough_newton_handle *newton = &micro->newton;
-    if (micro->started) collect(micro, &micro->past); // ARKODE's counters restart from zero
-    int flag = ARKStepReInit(micro->arkode, NULL, bough_newton_handle_rate, t, newton->y);
+static bough_status start(arkode_run *run, double t) {
+    bough_newton_handle *newton = &run->newton;
+    if (run->started) collect(run, &run->past); // ARKODE's counters restart from zero
+    int flag = ARKStepReInit(run->arkode, NULL, bough_newton_handle_rate, t, newton->y);
     if (flag != ARK_SUCCESS) {
         return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: ARKODE cannot start: %s",
                           newton->ode.name, t, newton->text);
     }
-    if (micro->started) micro->past.restarts++;
-    micro->started = true;
+    if (run->started) run->past.restarts++;
+    run->started = true;
     return bough_ok();
 }
 
@@ -119,36 +119,48 @@ static const char *reason(const bough_newton_handle *newton, int flag) {
     }
 }
 
-bough_status bough_micro_arkode_advance(bough_micro_arkode *micro, double t, double t1,
-                                        bool restart, double *y) {
-    bough_newton_handle *newton = &micro->newton;
-    double *own = bough_vector_data(newton->y), reached = t;
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
+                            double *y) {
+    (void)pause;
+    arkode_run *run = self;
+    bough_newton_handle *newton = &run->newton;
+    double *own = bough_vector_data(newton->y), reached = *t;
     memcpy(own, y, (size_t)newton->ode.n * sizeof *own);
-    if (restart || !micro->started) {
-        bough_status status = start(micro, t);
+    if (restart || !run->started) {
+        bough_status status = start(run, *t);
         if (!bough_is_ok(&status)) return status;
     }
     newton->refused = false;
-    ARKStepSetStopTime(micro->arkode, t1);
+    ARKStepSetStopTime(run->arkode, t1);
     int flag = ARK_SUCCESS;
     // one step a call: the interpolant of a call to the end may miss a stiff state there
     for (int n = 0; flag >= 0 && reached < t1; n++) {
         flag = n == MOST_STEPS ? ARK_TOO_MUCH_WORK
-                               : ARKStepEvolve(micro->arkode, t1, newton->y, &reached,
+                               : ARKStepEvolve(run->arkode, t1, newton->y, &reached,
                                                ARK_ONE_STEP);
     }
     if (flag < 0) {
-        ARKStepGetCurrentTime(micro->arkode, &reached);
+        ARKStepGetCurrentTime(run->arkode, &reached);
         return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: ARKODE ESDIRK cannot go on: %s",
                           newton->ode.name, reached, reason(newton, flag));
     }
+    *t = t1;
     memcpy(y, own, (size_t)newton->ode.n * sizeof *own);
     return bough_ok();
 }
 
-void bough_micro_arkode_statistics(const bough_micro_arkode *micro, bough_statistics *sum) {
-    bough_statistics_add(sum, &micro->past);
-    sum->jacobians += micro->newton.jacobians;
-    sum->factorisations += micro->newton.factorisations;
-    if (micro->started) collect(micro, sum);
+static void statistics(const void *self, bough_statistics *sum) {
+    const arkode_run *run = self;
+    bough_statistics_add(sum, &run->past);
+    sum->jacobians += run->newton.jacobians;
+    sum->factorisations += run->newton.factorisations;
+    if (run->started) collect(run, sum);
 }
+
+const bough_integrator_ops bough_integrator_arkode = {
+    .name = "arkode-esdirk",
+    .title = "ARKODE ESDIRK",
+    .create = create,
+    .advance = advance,
+    .statistics = statistics,
+};

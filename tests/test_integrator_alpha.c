@@ -1,7 +1,7 @@
 // Generalised-α on a damped oscillator beside a stiff mode, forced, with a known solution.
 #include "tests/check.h"
 
-#include "flexbody/micro_alpha.h"
+#include "core/integrator.h"
 
 #include <string.h>
 
@@ -9,7 +9,7 @@
 static const double omega = 12, zeta = 0.02, lambda = 4e4;
 
 typedef struct problem {
-    bough_micro_alpha *micro;
+    bough_integrator micro;
     double gamma;
     bool broken; // f has no value
     long linearisations;
@@ -62,9 +62,9 @@ static void start(double *y) {
 static bough_arena *build(problem *p, double step, double rho) {
     static const double scale[3] = {1, 1, 1};
     bough_arena *arena = bough_arena_create();
-    bough_ode ode = {"sample", 3, p, derivative, derivative, linearise, factor, solve};
-    bough_status status = bough_micro_alpha_create(
-        arena, &ode, scale, (bough_micro_alpha_options){step, rho, 1e-10}, &p->micro);
+    bough_ode ode = {"sample", 3, scale, p, derivative, NULL, linearise, factor, solve};
+    bough_integrator_options options = {BOUGH_GENERALIZED_ALPHA, 1e-10, step, rho};
+    bough_status status = bough_integrator_create(arena, &ode, &options, &p->micro);
     assert_int_equal(status.code, BOUGH_OK);
     return arena;
 }
@@ -75,7 +75,7 @@ static double error_with(double step, double rho) {
     bough_arena *arena = build(&p, step, rho);
     start(y);
     for (int k = 0; k < 10; k++) {
-        bough_status status = bough_micro_alpha_advance(p.micro, 0.2 * k, 0.2 * (k + 1), false, y);
+        bough_status status = bough_integrator_advance(&p.micro, 0.2 * k, 0.2 * (k + 1), false, y);
         assert_int_equal(status.code, BOUGH_OK);
     }
     assert_true(fabs(y[2] - cos(2.0)) < 1e-3); // the stiff mode neither rings nor lags
@@ -113,13 +113,13 @@ static void its_own_error_is_told(void **context) {
         problem p = {0};
         double y[1] = {1}, end = 2, h = 0.01;
         bough_arena *arena = bough_arena_create();
-        bough_ode ode = {"decay", 1, &p, decay, decay, linearise, factor, solve_decay};
-        bough_status status = bough_micro_alpha_create(
-            arena, &ode, scale, (bough_micro_alpha_options){h, rho, 1e-10}, &p.micro);
+        bough_ode ode = {"decay", 1, scale, &p, decay, NULL, linearise, factor, solve_decay};
+        bough_integrator_options options = {BOUGH_GENERALIZED_ALPHA, 1e-10, h, rho};
+        bough_status status = bough_integrator_create(arena, &ode, &options, &p.micro);
         assert_true(bough_is_ok(&status));
-        status = bough_micro_alpha_advance(p.micro, 0, end, true, y);
+        status = bough_integrator_advance(&p.micro, 0, end, true, y);
         assert_true(bough_is_ok(&status));
-        double told = bough_micro_alpha_error(p.micro)[0] / (1 - exp(-end));
+        double told = p.micro.own_error[0] / (1 - exp(-end));
         check_near(told, (y[0] - exp(-end)) / (end * exp(-end)), 0.2, 0);
         bough_arena_destroy(arena);
     }
@@ -133,7 +133,7 @@ static void highest_frequencies_are_damped_as_asked(void **context) {
     bough_arena *arena = build(&p, 0.01, 0.5);
     start(y);
     y[2] = 2; // off the solution by one
-    bough_micro_alpha_advance(p.micro, 0, 0.2, false, y);
+    bough_integrator_advance(&p.micro, 0, 0.2, false, y);
     double left = fabs(y[2] - cos(0.2));
     assert_true(left < pow(0.55, 19) * 30 + 1e-4);
     assert_true(isfinite(left));
@@ -146,9 +146,9 @@ static void what_has_no_value_ends_with_a_diagnosis(void **context) {
     double y[3];
     bough_arena *arena = build(&p, 0.01, 0.8);
     start(y);
-    bough_micro_alpha_advance(p.micro, 0, 0.1, false, y);
+    bough_integrator_advance(&p.micro, 0, 0.1, false, y);
     p.broken = true;
-    bough_status status = bough_micro_alpha_advance(p.micro, 0.1, 0.2, false, y);
+    bough_status status = bough_integrator_advance(&p.micro, 0.1, 0.2, false, y);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "sample"));
     assert_non_null(strstr(status.message, "0.1 s"));
@@ -162,9 +162,9 @@ static void counts_its_work(void **context) {
     bough_statistics sum = {0};
     bough_arena *arena = build(&p, 0.01, 0.8);
     start(y);
-    bough_micro_alpha_advance(p.micro, 0, 0.1, false, y);
-    bough_micro_alpha_advance(p.micro, 0.1, 0.2, true, y);
-    bough_micro_alpha_statistics(p.micro, &sum);
+    bough_integrator_advance(&p.micro, 0, 0.1, false, y);
+    bough_integrator_advance(&p.micro, 0.1, 0.2, true, y);
+    p.micro.ops->statistics(p.micro.self, &sum);
     assert_int_equal(sum.steps, 20);
     assert_int_equal(sum.restarts, 1);
     assert_int_equal(sum.failed_steps, 0);

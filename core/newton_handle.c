@@ -1,4 +1,4 @@
-#include "flexbody/newton_handle.h"
+#include "core/newton_handle.h"
 
 #include "core/vector.h"
 
@@ -66,8 +66,7 @@ static SUNLinearSolver solver_create(bough_newton_handle *handle) {
     return s;
 }
 
-bool bough_newton_handle_create(bough_newton_handle *handle, const bough_ode *ode,
-                                const double *scale, double rtol) {
+bool bough_newton_handle_create(bough_newton_handle *handle, const bough_ode *ode, double rtol) {
     handle->ode = *ode;
     if (!bough_vector_room(ode->n)) return false;
     if (SUNContext_Create(NULL, &handle->context) != 0) return false;
@@ -79,7 +78,7 @@ bool bough_newton_handle_create(bough_newton_handle *handle, const bough_ode *od
               handle->solver != NULL;
     if (!ok) return false;
     double *weight = bough_vector_data(handle->weight);
-    for (int i = 0; i < ode->n; i++) weight[i] = 1 / (rtol * scale[i]);
+    for (int i = 0; i < ode->n; i++) weight[i] = 1 / (rtol * ode->scale[i]);
     return true;
 }
 

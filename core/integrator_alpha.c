@@ -1,4 +1,10 @@
-#include "flexbody/micro_alpha.h"
+// The generalised-α method for first-order systems (Jansen, Whiting, Hulbert 2000):
+// second order, unconditionally stable, the highest frequencies damped by ρ∞ per step, equal steps
+// with one factorisation for as long as Newton's method converges with it.
+//
+//     ẏ_m = f(t + α_f h, y_f),  ẏ_m = ẏ₀ + α_m(ẏ₁ − ẏ₀),  y_f = y₀ + α_f(y₁ − y₀),
+//     y₁ = y₀ + h ẏ₀ + γ h(ẏ₁ − ẏ₀)
+#include "core/integrator.h"
 
 #include <math.h>
 
@@ -9,10 +15,11 @@ static const double forget = 0.3;   // share of an earlier step's contraction th
 static const double newton_share = 0.1; // of rtol: what Newton's method may leave
 static const double rounding = 1e-9; // of times and steps that are meant to be equal, relative
 
-struct bough_micro_alpha {
+typedef struct alpha {
     bough_ode ode;
     double *weight; // 1/scale (n)
-    bough_micro_alpha_options options;
+    double step; // longest [s]
+    double rtol; // Newton's method ends below rtol · scale
     double am, af, gamma;  // α_m, α_f, γ
     double factored;       // γ of I − γ ∂f/∂y in the factors; 0: none
     bool stale;            // the tangents are to be renewed
@@ -24,18 +31,19 @@ struct bough_micro_alpha {
     double *slope;         // (n) of ẏ over the last step
     double last;           // its length, 0: there is none since the start [s]
     bough_statistics sum;
-};
+} alpha;
 
-bough_status bough_micro_alpha_create(bough_arena *arena, const bough_ode *ode,
-                                      const double *scale, bough_micro_alpha_options options,
-                                      bough_micro_alpha **micro) {
-    bough_micro_alpha *m = bough_arena_take(arena, sizeof *m);
+static bough_status create(bough_arena *arena, const bough_ode *ode,
+                           const bough_integrator_options *options, void **self) {
+    alpha *m = bough_arena_take(arena, sizeof *m);
     size_t n = (size_t)ode->n;
     if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
+    *self = m;
     m->ode = *ode;
-    m->options = options;
-    m->am = 0.5 * (3 - options.rho) / (1 + options.rho);
-    m->af = 1 / (1 + options.rho);
+    m->step = options->step > 0 ? options->step : (double)INFINITY;
+    m->rtol = options->rtol;
+    m->am = 0.5 * (3 - options->rho) / (1 + options->rho);
+    m->af = 1 / (1 + options->rho);
     m->gamma = 0.5 + m->am - m->af;
     m->weight = bough_arena_doubles(arena, n);
     m->rate = bough_arena_doubles(arena, n);
@@ -48,13 +56,12 @@ bough_status bough_micro_alpha_create(bough_arena *arena, const bough_ode *ode,
     if (bough_arena_exhausted(arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
     }
-    for (size_t i = 0; i < n; i++) m->weight[i] = 1 / scale[i];
-    *micro = m;
+    for (size_t i = 0; i < n; i++) m->weight[i] = 1 / ode->scale[i];
     return bough_ok();
 }
 
 // y₁ and ẏ₁ with ẏ unchanged over the step.
-static void predict(bough_micro_alpha *m, const double *restrict y, double h) {
+static void predict(alpha *m, const double *restrict y, double h) {
     double *restrict next = m->next, *restrict next_rate = m->next_rate;
     const double *restrict rate = m->rate;
 #pragma omp simd
@@ -64,7 +71,7 @@ static void predict(bough_micro_alpha *m, const double *restrict y, double h) {
     }
 }
 
-static bool renew_factors(bough_micro_alpha *m, double t, const double *y, double gamma) {
+static bool renew_factors(alpha *m, double t, const double *y, double gamma) {
     if (m->stale) {
         m->sum.jacobians++;
         if (!m->ode.linearise(m->ode.self, t, y)) return false;
@@ -80,7 +87,7 @@ static bool renew_factors(bough_micro_alpha *m, double t, const double *y, doubl
 }
 
 // f(t + α_f h, y_f) − ẏ_m into residual
-static bool balance(bough_micro_alpha *m, double t, const double *restrict y, double h) {
+static bool balance(alpha *m, double t, const double *restrict y, double h) {
     double *restrict middle = m->middle, *restrict residual = m->residual;
     const double *restrict next = m->next, *restrict rate = m->rate;
     const double *restrict next_rate = m->next_rate;
@@ -95,7 +102,7 @@ static bool balance(bough_micro_alpha *m, double t, const double *restrict y, do
 }
 
 // Adds the solved step to ẏ₁ and y₁; returns its size against scale, root mean square.
-static double correct(bough_micro_alpha *m, double h) {
+static double correct(alpha *m, double h) {
     double *restrict next = m->next, *restrict next_rate = m->next_rate;
     const double *restrict step = m->residual, *restrict weight = m->weight;
     double inverse = 1 / m->am, share = m->gamma * h, sum = 0;
@@ -117,8 +124,8 @@ static double remainder_share(double contraction) {
 
 // Newton's method for one step: it ends when what is left, by the contraction seen with these
 // factors, is small; so most steps take one iteration. False when it does not converge.
-static bool converge(bough_micro_alpha *m, double t, const double *y, double h) {
-    double limit = newton_share * m->options.rtol, before = 0;
+static bool converge(alpha *m, double t, const double *y, double h) {
+    double limit = newton_share * m->rtol, before = 0;
     for (int k = 0; k < MOST_ITERATIONS; k++) {
         m->sum.iterations++;
         if (!balance(m, t, y, h)) return false;
@@ -138,7 +145,7 @@ static bool converge(bough_micro_alpha *m, double t, const double *y, double h) 
 }
 
 // y, ẏ₀ ← y₁, ẏ₁
-static void accept(bough_micro_alpha *m, double h, double *restrict y) {
+static void accept(alpha *m, double h, double *restrict y) {
     double af = m->af, am = m->am, s = af - am;
     double constant = 1.0 / 12 - 0.5 * s * s + 0.5 * (af * (1 - af) - am * (1 - am));
     double factor = m->last > 0 ? constant * h * h * h * 2 / (h + m->last) : 0;
@@ -157,7 +164,7 @@ static void accept(bough_micro_alpha *m, double h, double *restrict y) {
 }
 
 // One step from y at t; y receives y₁. With stale tangents a failed step is tried once more.
-static bool take_step(bough_micro_alpha *m, double t, double h, double *y) {
+static bool take_step(alpha *m, double t, double h, double *y) {
     double gamma = m->af * m->gamma * h / m->am;
     for (int attempt = 0; attempt < 2; attempt++) {
         if (attempt > 0) m->stale = true;
@@ -174,7 +181,7 @@ static bool take_step(bough_micro_alpha *m, double t, double h, double *y) {
     return false;
 }
 
-static bool start(bough_micro_alpha *m, double t, const double *y) {
+static bool start(alpha *m, double t, const double *y) {
     if (m->started) m->sum.restarts++;
     m->started = true;
     m->stale = true;
@@ -183,16 +190,17 @@ static bool start(bough_micro_alpha *m, double t, const double *y) {
     return m->ode.derivative(m->ode.self, t, y, m->rate);
 }
 
-bough_status bough_micro_alpha_advance(bough_micro_alpha *micro, double t, double t1, bool restart,
-                                       double *y) {
-    bough_micro_alpha *m = micro;
-    double at = t, longest = m->options.step;
-    bool ok = (!restart && m->started) || start(m, t, y);
-    for (int halvings = 0; ok && at < t1;) {
-        double parts = ceil((t1 - at) / longest * (1 - rounding));
-        double h = (t1 - at) / parts;
-        if (take_step(m, at, h, y)) {
-            at = parts <= 1 ? t1 : at + h;
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
+                            double *y) {
+    (void)pause;
+    alpha *m = self;
+    double longest = m->step;
+    bool ok = (!restart && m->started) || start(m, *t, y);
+    for (int halvings = 0; ok && *t < t1;) {
+        double parts = fmax(1, ceil((t1 - *t) / longest * (1 - rounding)));
+        double h = (t1 - *t) / parts;
+        if (take_step(m, *t, h, y)) {
+            *t = parts <= 1 ? t1 : *t + h;
         } else {
             ok = ++halvings <= MOST_HALVINGS;
             longest = 0.5 * h;
@@ -202,13 +210,24 @@ bough_status bough_micro_alpha_advance(bough_micro_alpha *micro, double t, doubl
     m->started = false;
     return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: generalised-α cannot go on: Newton's method"
                       " does not converge with steps of %.2g s; try a shorter micro step",
-                      m->ode.name, at, longest);
+                      m->ode.name, *t, longest);
 }
 
-double *bough_micro_alpha_error(const bough_micro_alpha *micro) {
-    return micro != NULL ? micro->own_error : NULL;
+static double *own_error(void *self) {
+    alpha *m = self;
+    return m->own_error;
 }
 
-void bough_micro_alpha_statistics(const bough_micro_alpha *micro, bough_statistics *sum) {
-    bough_statistics_add(sum, &micro->sum);
+static void statistics(const void *self, bough_statistics *sum) {
+    const alpha *m = self;
+    bough_statistics_add(sum, &m->sum);
 }
+
+const bough_integrator_ops bough_integrator_alpha = {
+    .name = "generalized-alpha",
+    .title = "generalised-α",
+    .create = create,
+    .advance = advance,
+    .statistics = statistics,
+    .own_error = own_error,
+};

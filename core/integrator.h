@@ -1,0 +1,89 @@
+// Integrators: any method on any system. One file per method; this is the table.
+//
+// A method sees a system under its inputs as ẏ = f(t, y), with the solution of Newton's systems
+// (I − γ ∂f/∂y) x = b beside it: a rod, the tree, two masses or a whole assembly.
+#ifndef BOUGH_CORE_INTEGRATOR_H
+#define BOUGH_CORE_INTEGRATOR_H
+
+#include "core/arena.h"
+#include "core/snapshot.h"
+#include "core/status.h"
+#include "core/subsystem.h"
+
+// ẏ = f(t, y). Callbacks return false where there is no finite value.
+typedef struct bough_ode {
+    const char *name; // of the body, for messages
+    int n;
+    const double *scale; // (n) tolerance = rtol · scale; borrowed
+    void *self;
+    // f: rate (n)
+    bool (*derivative)(void *self, double t, const double *y, double *rate);
+    // The same at another time, y being that of the last call: may be cheaper. NULL: it is not.
+    bool (*derivative_again)(void *self, double t, const double *y, double *rate);
+    bool (*linearise)(void *self, double t, const double *y); // tangents of f
+    bool (*factor)(void *self, double gamma);                 // I − γ ∂f/∂y of the last tangents
+    void (*solve)(void *self, double *x);                     // in place
+} bough_ode;
+
+typedef enum bough_integrator_kind {
+    BOUGH_IDA,
+    BOUGH_CVODE_BDF,
+    BOUGH_ARKODE_ESDIRK,
+    BOUGH_RADAU5,
+    BOUGH_GENERALIZED_ALPHA,
+    BOUGH_ROSENBROCK,
+} bough_integrator_kind;
+
+typedef struct bough_integrator_options {
+    bough_integrator_kind kind;
+    double rtol; // tolerance per state: rtol · scale; of Newton's method in generalised-α
+    double step; // longest step of generalised-α and the Rosenbrock method [s]; 0: none
+    double rho;  // of generalised-α: spectral radius at infinite frequency, 0 … 1
+} bough_integrator_options;
+
+// A method. One that is created hands its memory to the other calls as `self`.
+typedef struct bough_integrator_ops {
+    const char *name;  // in scenes
+    const char *title; // in messages
+    int most_states;   // of a system it suits; 0: any number
+    bough_status (*create)(bough_arena *arena, const bough_ode *ode,
+                           const bough_integrator_options *options, void **self);
+    // Integrates y (n) from *t to exactly t1, never evaluating f beyond it; one that can stop on the
+    // way ends with the first step that reaches `pause`. *t tells where it is. `restart`: y was
+    // changed or f jumps at *t.
+    bough_status (*advance)(void *self, double *t, double pause, double t1, bool restart,
+                            double *y);
+    void (*statistics)(const void *self, bough_statistics *sum); // added to sum
+    // (n) sum of the errors of all steps, by the method's own estimate. NULL: it has none.
+    double *(*own_error)(void *self);
+    // All that its next step depends on, apart from t and y. NULL: it starts anew.
+    void (*transfer)(void *self, bough_snapshot *s);
+} bough_integrator_ops;
+
+typedef struct bough_integrator {
+    const bough_integrator_ops *ops;
+    void *self;
+    double *own_error; // (n) as above, or NULL; readers set it to zero
+} bough_integrator;
+
+const bough_integrator_ops *bough_integrator_find(bough_integrator_kind kind);
+
+// Name of the method at that place of the table, as of bough_integrator_kind; NULL beyond its end.
+const char *bough_integrator_name(int index);
+
+// The integrator of the options' kind in the arena. BOUGH_INVALID where the tolerance is not
+// positive or the method does not suit so large a system.
+bough_status bough_integrator_create(bough_arena *arena, const bough_ode *ode,
+                                     const bough_integrator_options *options,
+                                     bough_integrator *integrator);
+
+static inline bough_status bough_integrator_advance(const bough_integrator *i, double t, double t1,
+                                                    bool restart, double *y) {
+    return i->ops->advance(i->self, &t, t1, t1, restart, y);
+}
+
+extern const bough_integrator_ops bough_integrator_ida, bough_integrator_cvode,
+    bough_integrator_arkode, bough_integrator_radau, bough_integrator_alpha,
+    bough_integrator_rosenbrock;
+
+#endif
