@@ -16,7 +16,7 @@ bough_status bough_breakdown_create(bough_arena *arena, const bough_assembly *as
 void bough_breakdown_keep(bough_breakdown *b);
 
 // The failure of the coupling's present step with what the coupling has to do with it. `before`: what
-// the judgement before the run found; if that was nothing, the states kept are judged: the members'
+// the judgement before the run gave; if that was nothing, the states kept are judged: the members'
 // own are lost.
 bough_status bough_breakdown_explain(bough_breakdown *b, bough_coupling *c,
                                      const bough_stability_advice *before, bough_status cause);

@@ -11,7 +11,7 @@ static bool take(bough_coupling *c, bough_arena *arena) {
     size_t n_member = (size_t)a->n_member;
     c->output = bough_arena_doubles(arena, n_output);
     c->input = bough_arena_doubles(arena, n_input);
-    c->used = bough_arena_doubles(arena, n_input);
+    c->applied = bough_arena_doubles(arena, n_input);
     for (int p = 0; p < BOUGH_HISTORY; p++) c->past[p] = bough_arena_doubles(arena, n_input);
     c->start_rate = bough_arena_doubles(arena, n_output);
     c->end_output = bough_arena_doubles(arena, n_output);
@@ -44,7 +44,7 @@ bough_status bough_coupling_create(bough_arena *arena, const bough_assembly *ass
     if (!take(c, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     c->t0 = c->t1 = *assembly->member[0]->time;
     bough_assembly_outputs(assembly, c->t0, c->output, c->input);
-    memcpy(c->used, c->input, (size_t)assembly->n_input * sizeof(double));
+    memcpy(c->applied, c->input, (size_t)assembly->n_input * sizeof(double));
     memcpy(c->past[0], c->input, (size_t)assembly->n_input * sizeof(double));
     c->past_time[0] = c->t0;
     c->n_past = 1;
@@ -290,7 +290,7 @@ void bough_coupling_exchange(bough_coupling *c) {
         if (a->stage[i] == 0) settle(c, i);
     }
     for (int i = 0; i < a->n_member; i++) {
-        bough_signal_value(&c->signal[i], c->t1, c->used + a->input_offset[i]);
+        bough_signal_value(&c->signal[i], c->t1, c->applied + a->input_offset[i]);
     }
     double *oldest = c->past[BOUGH_HISTORY - 1];
     for (int p = BOUGH_HISTORY - 1; p > 0; p--) {
@@ -313,7 +313,7 @@ void bough_coupling_snapshot(bough_coupling *c, bough_snapshot *s) {
     }
     bough_snapshot_doubles(s, c->output, a->n_output);
     bough_snapshot_doubles(s, c->input, a->n_input);
-    bough_snapshot_doubles(s, c->used, a->n_input);
+    bough_snapshot_doubles(s, c->applied, a->n_input);
     if (c->deficit) bough_snapshot_doubles(s, c->deficit, a->n_input);
     for (int p = 0; p < BOUGH_HISTORY; p++) bough_snapshot_doubles(s, c->past[p], a->n_input);
     bough_snapshot_doubles(s, c->past_time, BOUGH_HISTORY);

@@ -8,7 +8,7 @@
 #include "cosim/accelerate.h"
 #include "cosim/condense.h"
 
-// What a later stage sees of what an earlier stage has already found.
+// What a later stage sees of what an earlier stage has already obtained.
 typedef enum bough_interpolation {
     BOUGH_HERMITE,    // cubic from values and rates at both ends
     BOUGH_POLYNOMIAL, // through the new value and `order` earlier ones; order 0 holds the new value
@@ -57,7 +57,7 @@ typedef struct bough_coupling {
     // by bough_coupling_exchange: at the end of the last step
     double *output; // (n_output) of all members at their current states
     double *input;  // (n_input) the same, as their receivers see it
-    double *used;   // (n_input) what the receivers saw on the step, at its end
+    double *applied; // (n_input) what acted on the receivers on the step, at its end
     double *deficit; // (n_input) ∫ of what a port was − what its receiver saw, over all steps;
                      // of stage 0; NULL unless the scheme pays it back
     int n_past;     // valid entries of the two below

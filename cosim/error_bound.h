@@ -1,6 +1,6 @@
 // The bound on the coupling error of one interface. Its error is looked at over windows of at least
 // a second and 64 steps, by two measures that must agree:
-//   - the defect, what a force turned out to be minus what its receiver was told, as its root mean
+//   - the defect, what a force turned out to be minus what was applied to its receiver, as its root mean
 //     square relative to the largest force so far,
 //   - the gross energy residual Σ|∫ defect · twist dt| relative to the energy exchanged.
 // Beyond the bound on both over two windows that do not shrink, and well above the error that the

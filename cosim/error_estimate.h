@@ -17,7 +17,7 @@
 
 #include "cosim/coupling.h"
 
-// What is told to people is ε times this: measured against monolithic runs, ε alone is 0.8 to 2.3 of
+// What is reported is ε times this: measured against monolithic runs, ε alone is 0.8 to 2.3 of
 // the error on oscillators and 0.3 to 1.4 on a rotor in the wind, whose air amplifies errors.
 enum { BOUGH_ERROR_SAFETY = 2 };
 
@@ -47,7 +47,7 @@ long bough_error_estimate_batches(const bough_error_estimate *e);
 // linearised.
 const double *bough_error_estimate_states(const bough_error_estimate *e);
 
-// Largest error so far of what input j should be given, told, in the port's unit: by ε, not by δ.
+// Largest error so far of input j, as reported, in the port's unit: by ε, not by δ.
 double bough_error_estimate_input(const bough_error_estimate *e, int j);
 
 #endif

@@ -1,5 +1,5 @@
 // The growth watch looks at the interface defect, what a force turned out to be at T_{k+1} minus
-// what its receiver was told. An explicit coupling beyond its limit makes it grow exponentially, at
+// what was applied to its receiver. An explicit coupling beyond its limit makes it grow exponentially, at
 // rates as slow as 0.2 per second and under physical oscillation, so it is reduced to its maxima
 // over windows of two lengths, and a run of growing windows raises the alarm only when
 //   - the total growth is large (limit below),
@@ -254,7 +254,7 @@ static bough_status watch_size(const bough_monitor *m, bough_coupling *c, group 
 static bough_status judge_group(const bough_monitor *m, bough_coupling *c, group *g) {
     double difference[3];
     for (int i = 0; i < g->count; i++) {
-        difference[i] = c->input[g->first + i] - c->used[g->first + i];
+        difference[i] = c->input[g->first + i] - c->applied[g->first + i];
     }
     double defect = norm(difference, g->count), size = norm(c->input + g->first, g->count);
     g->magnitude = fmax(g->magnitude, size);
@@ -273,7 +273,7 @@ static double dot(const double *x, const double *y, int n) {
     return sum;
 }
 
-// Trapezoidal work of the wrench that came out, and of its difference from the one used.
+// Trapezoidal work of the wrench that came out, and of its difference from the one applied.
 static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     double half = (c->t1 - c->t0) / 2;
@@ -285,9 +285,9 @@ static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
         const double *v0 = m->previous + f->twist, *v1 = c->input + f->twist;
         double obtained0 = dot(m->previous + f->wrench, v0, f->count);
         double obtained1 = dot(c->input + f->wrench, v1, f->count);
-        double used = dot(m->start + f->wrench, v0, f->count) +
-                      dot(c->used + f->wrench, v1, f->count);
-        double residual = half * (obtained0 + obtained1 - used);
+        double applied = dot(m->start + f->wrench, v0, f->count) +
+                         dot(c->applied + f->wrench, v1, f->count);
+        double residual = half * (obtained0 + obtained1 - applied);
         double exchanged = half * (fabs(obtained0) + fabs(obtained1));
         m->account[k].total.residual += residual;
         m->account[k].total.exchanged += exchanged;

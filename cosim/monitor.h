@@ -9,10 +9,10 @@ typedef struct bough_monitor bough_monitor;
 
 // What the monitor has to say at the end.
 typedef struct bough_coupling_report {
-    double defect_max; // largest |obtained − used| at a synchronisation point, of a force, moment
+    double defect_max; // largest |obtained − applied| at a synchronisation point, of a force, moment
                        // or velocity relative to its own largest magnitude [1]
     double defect_rms; // its root mean square over the steps, of the worst port [1]
-    double energy_residual;  // Σ over interfaces |∫ (obtained − used wrench) · twist dt| [J]
+    double energy_residual;  // Σ over interfaces |∫ (obtained − applied wrench) · twist dt| [J]
     double energy_exchanged; // Σ over interfaces ∫ |wrench · twist| dt [J]
 } bough_coupling_report;
 
@@ -29,7 +29,7 @@ bough_coupling_report bough_monitor_report(const bough_monitor *m, const bough_c
 
 // Energy at one interface over the run so far [J].
 typedef struct bough_interface_energy {
-    double residual;  // ∫ (obtained − used wrench) · twist dt
+    double residual;  // ∫ (obtained − applied wrench) · twist dt
     double exchanged; // ∫ |wrench · twist| dt
 } bough_interface_energy;
 bough_interface_energy bough_monitor_energy(const bough_monitor *m, int interface);

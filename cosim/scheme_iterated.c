@@ -6,14 +6,13 @@
 //   - waveform: at the Lobatto points too, where the sub-solvers stop on their way. The input is the
 //     cubic through them. What it misses is orthogonal to linear functions: the order is 6.
 // Other inputs are the same polynomials through what their source really did. With end values a
-// member is so told a position and a speed that do not belong together, which a stiff one does not
+// member so gets a position and a speed that do not belong together, which a stiff one does not
 // forgive; and cubics through values and rates at both ends would, converged, ring on a light
 // interface body: measured, a carrier of a hundredth of its inertia fails at 20 ms.
 //
-// A sweep takes the stages in order and tells what
-// the feedback turned out to be; an accelerator turns that into the next values. Before each repetition
-// the members return to T_k and restart their integrators, the first sweep likewise, so that equal
-// values give equal answers.
+// A sweep takes the stages in order and gives the feedback that results; an accelerator turns that
+// into the next values. Before each repetition the members return to T_k and restart their
+// integrators, the first sweep likewise, so that equal values give equal results.
 //
 // Converged is not yet stable: measured on a mass a ten-thousandth of the other (test_scheme.c), a
 // linear force holds to a macro step of about 3.5 over its frequency (11 ms), a quadratic one at none
@@ -47,8 +46,8 @@ struct bough_iteration {
     void **copy;                    // (n_member) states at T_k
     int n_node;
     const double *node; // (n_node) in (0, 1], the last is 1
-    double *told;       // (n_node × n_input) values of the inputs in use
-    double *found;      // (n_node × n_output) outputs in the last sweep; of end values the coupling's
+    double *prescribed; // (n_node × n_input) values of the inputs in use
+    double *obtained;   // (n_node × n_output) outputs in the last sweep; of end values the coupling's
     int n_input;        // of all members
     int n;              // feedback inputs
     int *input;         // (n) their numbers over all inputs
@@ -56,8 +55,8 @@ struct bough_iteration {
     bool *is_feedback;  // (n_input)
     double *size;       // (n) of a group's first: its largest norm so far
     double *scale;      // (n)
-    double *guess;      // (n_node × n) scaled values told
-    double *image;      // (n_node × n) what they turned out to be
+    double *guess;      // (n_node × n) scaled values prescribed
+    double *image;      // (n_node × n) the values obtained
     double *change;     // (n_input) scratch
 };
 
@@ -74,7 +73,7 @@ static bough_status check(const bough_scheme_options *o) {
                           o->tolerance, o->iterations);
     }
     if (o->accelerator == BOUGH_ACCELERATE_NEWTON && o->reversed) {
-        return bough_fail(BOUGH_INVALID, "iterated coupling: interface-newton lets stage 0 lead");
+        return bough_fail(BOUGH_INVALID, "iterated coupling: interface-newton needs the leader first");
     }
     return bough_ok();
 }
@@ -101,7 +100,7 @@ static bool take(bough_iteration *it, const bough_assembly *a, bough_arena *aren
     it->input = bough_arena_take(arena, n * sizeof *it->input);
     it->group = bough_arena_take(arena, n * sizeof *it->group);
     it->is_feedback = bough_arena_take(arena, n * sizeof *it->is_feedback);
-    it->told = bough_arena_doubles(arena, n_node * n);
+    it->prescribed = bough_arena_doubles(arena, n_node * n);
     it->size = bough_arena_doubles(arena, n);
     it->scale = bough_arena_doubles(arena, n);
     it->guess = bough_arena_doubles(arena, n_node * n);
@@ -141,13 +140,13 @@ bough_status bough_iteration_create(bough_coupling *c, bough_arena *arena) {
     it->n_node = waveform ? MOST_NODES : 1;
     it->node = waveform ? lobatto : end_point;
     bool taken = take(it, c->assembly, arena);
-    it->found = c->end_output;
-    if (waveform) it->found = bough_arena_doubles(arena, MOST_NODES * (size_t)c->assembly->n_output);
-    if (!taken || !it->found) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    it->obtained = c->end_output;
+    if (waveform) it->obtained = bough_arena_doubles(arena, MOST_NODES * (size_t)c->assembly->n_output);
+    if (!taken || !it->obtained) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (waveform) {
         c->n_within = it->n_node;
         c->within_time = it->node;
-        c->within = it->found;
+        c->within = it->obtained;
     }
     find_feedback(it, c);
     c->iteration = it;
@@ -182,7 +181,7 @@ static void interpolate(bough_coupling *c, int member, int j) {
     int n = it->n_node, earlier = n > 1 ? 1 : c->options.order;
     for (int k = 0; k < n; k++) {
         time[k] = node_time(c, k);
-        value[k] = it->told + k * a->n_input + j;
+        value[k] = it->prescribed + k * a->n_input + j;
     }
     for (int p = 0; p < earlier && p < c->n_past; p++, n++) {
         time[n] = c->past_time[p];
@@ -191,8 +190,8 @@ static void interpolate(bough_coupling *c, int member, int j) {
     bough_port_polynomial(&c->signal[member], j - a->input_offset[member], 1, n, time, value);
 }
 
-// Advances a member from node to node, its feedback as told and the rest as it was, and finds its
-// outputs under that.
+// Advances a member from node to node, its feedback as prescribed and the rest as obtained, and
+// evaluates its outputs.
 static void advance(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const bough_subsystem *s = a->member[member];
@@ -200,7 +199,7 @@ static void advance(bough_coupling *c, int member) {
     double *seen = c->seen + a->input_offset[member];
     for (int j = a->input_offset[member]; j < a->input_offset[member + 1]; j++) {
         for (int k = 0; k < it->n_node && !it->is_feedback[j]; k++) {
-            it->told[k * a->n_input + j] = it->found[k * a->n_output + a->source[j]];
+            it->prescribed[k * a->n_input + j] = it->obtained[k * a->n_output + a->source[j]];
         }
         interpolate(c, member, j);
         c->followed[j] = it->n_node > 1 && !it->is_feedback[j];
@@ -211,7 +210,7 @@ static void advance(bough_coupling *c, int member) {
         if (!bough_is_ok(&c->status[member])) return;
         bough_signal_value(&c->signal[member], t, seen);
         s->ops->output(s->self, t, s->state, seen,
-                       it->found + k * a->n_output + a->output_offset[member]);
+                       it->obtained + k * a->n_output + a->output_offset[member]);
     }
 }
 
@@ -237,24 +236,24 @@ static void predict(bough_coupling *c) {
             bough_sequence_extrapolate(c, i, j, degree);
         }
         for (int k = 0; k < it->n_node; k++) {
-            double *told = it->told + k * a->n_input + first;
-            bough_signal_value(&c->signal[i], node_time(c, k), told);
+            double *prescribed = it->prescribed + k * a->n_input + first;
+            bough_signal_value(&c->signal[i], node_time(c, k), prescribed);
         }
     }
 }
 
-// Sizes of the ports from what the first sweep found; they hold for the step.
+// Sizes of the ports from what the first sweep gave; they hold for the step.
 static void update_scales(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     bough_iteration *it = c->iteration;
-    const double *found = it->found + (it->n_node - 1) * a->n_output;
-    const double *told = it->told + (it->n_node - 1) * a->n_input;
+    const double *obtained = it->obtained + (it->n_node - 1) * a->n_output;
+    const double *prescribed = it->prescribed + (it->n_node - 1) * a->n_input;
     double largest = 0;
     for (int k = 0; k < it->n;) {
         int first = k;
         double sum = 0;
         for (; k < it->n && it->group[k] == first; k++) {
-            double value = found[a->source[it->input[k]]], old = told[it->input[k]];
+            double value = obtained[a->source[it->input[k]]], old = prescribed[it->input[k]];
             sum += fmax(value * value, old * old);
         }
         it->size[first] = fmax(it->size[first], sqrt(sum));
@@ -271,11 +270,12 @@ static double evaluate(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     bough_iteration *it = c->iteration;
     for (int p = 0; p < it->n_node; p++) {
-        const double *told = it->told + p * a->n_input, *found = it->found + p * a->n_output;
+        const double *prescribed = it->prescribed + p * a->n_input;
+        const double *obtained = it->obtained + p * a->n_output;
         for (int k = 0; k < it->n; k++) {
             int j = it->input[k];
-            it->guess[p * it->n + k] = told[j] / it->scale[k];
-            it->image[p * it->n + k] = found[a->source[j]] / it->scale[k];
+            it->guess[p * it->n + k] = prescribed[j] / it->scale[k];
+            it->image[p * it->n + k] = obtained[a->source[j]] / it->scale[k];
         }
     }
     return bough_accelerator_take(it->accelerator, it->guess, it->image);
@@ -285,9 +285,9 @@ static void correct(bough_coupling *c) {
     bough_iteration *it = c->iteration;
     bough_accelerator_next(it->accelerator, it->guess);
     for (int p = 0; p < it->n_node; p++) {
-        double *told = it->told + p * c->assembly->n_input;
+        double *prescribed = it->prescribed + p * c->assembly->n_input;
         for (int k = 0; k < it->n; k++) {
-            told[it->input[k]] = it->scale[k] * it->guess[p * it->n + k];
+            prescribed[it->input[k]] = it->scale[k] * it->guess[p * it->n + k];
         }
     }
 }

@@ -2,7 +2,7 @@
 // every member, linearised at T_k,
 //     (I − θH J) Δ = H f(T_k + θH, y, u) + θH B δu,   o^ = h(T_{k+1}, y, u) + C Δ + D δu,
 // the end-of-step port values are found by solving the coupled linear interface equations. Stage 0
-// then advances under forces that run linearly from the value used at the last step's end to the
+// then advances under forces that run linearly from the value applied at the last step's end to the
 // predicted one: continuous, so that its integrator keeps its history. The other members follow
 // once with the cubic of the motion it really made.
 //
@@ -31,7 +31,7 @@ typedef struct ramp {
     double *base;         // (n_output) h at the start values
     double *output;       // (n_output) change of the outputs with that
     double *change;       // (n_input) changes of the inputs
-    double *input; // (n_input) at the start of the step, as linearised: what leaders have used
+    double *input; // (n_input) at the start of the step, as linearised: what was applied to leaders
     double theta;  // of the present step
     double final;  // after the damped first steps
     double damped; // steps that begin before are damped [s]
@@ -92,13 +92,13 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
 
 // -- the θ-step of every member -------------------------------------------------------------------
 
-// Leaders start from the inputs that they used last: that is where the ramp starts.
+// Leaders start from the inputs that were applied last: that is where the ramp starts.
 static void choose_inputs(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     ramp *r = c->scheme_data;
     for (int i = 0; i < a->n_member; i++) {
         size_t first = (size_t)a->input_offset[i], n = (size_t)a->member[i]->n_input;
-        const double *from = leads(c, i) ? c->used : c->input;
+        const double *from = leads(c, i) ? c->applied : c->input;
         memcpy(r->input + first, from + first, n * sizeof(double));
     }
 }
@@ -308,7 +308,7 @@ static bool held(const ramp *r) { return r->theta >= 1; }
 
 // The ramp with its parabola.
 static void set_repaying(bough_coupling *c, bough_signal *signal, int local, int j, double end) {
-    double h = c->t1 - c->t0, start = c->used[j];
+    double h = c->t1 - c->t0, start = c->applied[j];
     double impulse = c->deficit[j] - h * h * h / 12 * bough_coupling_curvature(c, j, end);
     double middle = 0.5 * (start + end) + 1.5 * impulse / h;
     const double time[] = {c->t0, c->t0 + 0.5 * h, c->t1};
@@ -322,7 +322,7 @@ static void set_ramps(bough_coupling *c, int member) {
     bough_signal *signal = &c->signal[member];
     for (int j = a->input_offset[member], local = 0; j < a->input_offset[member + 1];
          j++, local++) {
-        double start = c->used[j], end = start + r->change[j];
+        double start = c->applied[j], end = start + r->change[j];
         if (!r->repays) c->deficit[j] = 0;
         if (held(r)) {
             bough_port_hold(signal, local, 1, &end);

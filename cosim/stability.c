@@ -17,7 +17,7 @@ static const double sub_step = 5e-3;  // of the linear members at most [s]; a qu
 static const double exact = 1e-4;     // share of an eigenvalue
 static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
 
-// The map z → z after `repeat` macro steps; z = (states, inputs one and two steps ago, used inputs,
+// The map z → z after `repeat` macro steps; z = (states, inputs one and two steps ago, applied inputs,
 // deficit impulses).
 typedef struct map {
     bough_arena *arena;
@@ -115,7 +115,7 @@ static void load(map *m, const double *z) {
     memcpy(c->past[0], c->input, size);
     memcpy(c->past[1], z + a->n_state, size);
     memcpy(c->past[2], z + a->n_state + a->n_input, size);
-    memcpy(c->used, z + a->n_state + 2 * a->n_input, size);
+    memcpy(c->applied, z + a->n_state + 2 * a->n_input, size);
     for (int j = 0; j < a->n_input && c->deficit != NULL; j++) {
         bool paid = j < a->input_offset[1];
         c->deficit[j] = paid ? z[a->n_state + 3 * a->n_input + j] : 0;
@@ -135,7 +135,7 @@ static void store(const map *m, double *z) {
     size_t size = (size_t)a->n_input * sizeof(double);
     memcpy(z + a->n_state, c->past[1], size);
     memcpy(z + a->n_state + a->n_input, c->past[2], size);
-    memcpy(z + a->n_state + 2 * a->n_input, c->used, size);
+    memcpy(z + a->n_state + 2 * a->n_input, c->applied, size);
     if (c->deficit != NULL) memcpy(z + a->n_state + 3 * a->n_input, c->deficit, size);
 }
 

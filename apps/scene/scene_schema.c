@@ -106,7 +106,7 @@ static const bough_schema output_schema = {SCHEMA("the output", bough_scene_outp
 static const bough_key step_control_keys[] = {
     {.name = "tolerance", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0",
      AT(tolerance), .example = "1e-3",
-     .help = "of what a port turned out to be against what it was told, relative to "
+     .help = "of what a port turned out to be against what was applied, relative to "
                             "its largest value so far; 0: fixed steps"},
     {.name = "min", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .fallback = "0.1 ms", AT(min), .example = "1 ms", .help = "shortest macro step"},

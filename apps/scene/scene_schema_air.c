@@ -170,7 +170,7 @@ static const bough_key wind_keys[] = {
     {.name = "reference_length", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH,
      .range = "> 0", .required = true, .when_key = "kind", .when = "wnd", AT(reference_length),
      .example = "126 m",
-     .help = "over which the file's linear shears are told: the rotor's diameter"},
+     .help = "over which the file's linear shears are given: the rotor's diameter"},
     {.name = "direction", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
      AT(direction), .example = "15 deg", .help = "where the wind blows to, from ground x about z: the yaw misalignment of a rotor "
              "that faces x"},

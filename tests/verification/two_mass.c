@@ -145,7 +145,7 @@ static int parts(const bough_two_mass *m) { return m->master->coupling->deficit 
 static void exchange_memory(bough_two_mass *m, double *z, bool load) {
     bough_coupling *c = m->master->coupling;
     size_t size = (size_t)m->master->assembly->n_input * sizeof(double);
-    double *const part[4] = {c->past[1], c->past[2], c->used, c->deficit};
+    double *const part[4] = {c->past[1], c->past[2], c->applied, c->deficit};
     for (int i = 0; i < 2; i++) {
         if (load) m->subsystem[i].ops->set_state(&m->mass[i], 0, z + 2 * i);
         if (!load) memcpy(z + 2 * i, m->mass[i].y, sizeof m->mass[i].y);
