@@ -9,7 +9,7 @@
 #include "core/subsystem.h"
 
 // A subsystem and when it advances: members of one stage in parallel; sequential schemes take the
-// stages in order. Stage 0 is the master.
+// stages in order. The members of stage 0 are the leaders.
 typedef struct bough_member {
     const bough_subsystem *subsystem; // borrowed; outlives the assembly
     int stage;

@@ -92,39 +92,39 @@ bough_status bough_coupling_each(bough_coupling *c, int stage,
     return first_failure(c);
 }
 
-typedef struct led_list {
+typedef struct leader_list {
     bough_coupling *coupling;
-    bough_lead_work work;
-    int n_lead, n_follow, shift;
-} led_list;
+    bough_leader_work work;
+    int n_leader, n_follow, shift;
+} leader_list;
 
 // Leaders; what followers prepare, gone round by as many, so that with one leader each keeps the
 // thread that it has in a list without leaders; followers.
-static void run_led(void *data, int k) {
-    const led_list *w = data;
+static void run_leading(void *data, int k) {
+    const leader_list *w = data;
     bough_coupling *c = w->coupling;
-    const int *follower = c->turn + w->n_lead;
-    int place = k - w->n_lead, follow = place - w->n_follow;
+    const int *follower = c->turn + w->n_leader;
+    int place = k - w->n_leader, follow = place - w->n_follow;
     if (place < 0) {
         w->work.lead(c, c->turn[k]);
     } else if (follow < 0) {
         w->work.prepare(c, follower[(place + w->shift) % w->n_follow]);
     } else {
         int prepared = (follow + w->n_follow - w->shift) % w->n_follow;
-        for (int lead = 0; lead < w->n_lead; lead++) bough_pool_await(c->pool, lead);
-        bough_pool_await(c->pool, w->n_lead + prepared);
+        for (int lead = 0; lead < w->n_leader; lead++) bough_pool_await(c->pool, lead);
+        bough_pool_await(c->pool, w->n_leader + prepared);
         if (bough_is_ok(&c->status[follower[follow]])) w->work.follow(c, follower[follow]);
     }
 }
 
-bough_status bough_coupling_each_led(bough_coupling *c, bough_lead_work work) {
+bough_status bough_coupling_each_leading(bough_coupling *c, bough_leader_work work) {
     int n = c->assembly->n_member;
-    led_list w = {.coupling = c, .work = work, .n_lead = list_stage(c, 0)};
+    leader_list w = {.coupling = c, .work = work, .n_leader = list_stage(c, 0)};
     for (int i = 0; i < n; i++) {
-        if (!in_stage(c, 0, i)) c->turn[w.n_lead + w.n_follow++] = i;
+        if (!in_stage(c, 0, i)) c->turn[w.n_leader + w.n_follow++] = i;
     }
-    if (w.n_follow > 0) w.shift = w.n_lead % w.n_follow;
-    bough_pool_run(c->pool, w.n_lead + 2 * w.n_follow, run_led, &w);
+    if (w.n_follow > 0) w.shift = w.n_leader % w.n_follow;
+    bough_pool_run(c->pool, w.n_leader + 2 * w.n_follow, run_leading, &w);
     return first_failure(c);
 }
 
@@ -233,7 +233,7 @@ static void lead_restarted(bough_coupling *c, int member) {
     lead(c, member, true);
 }
 
-bough_status bough_coupling_advance_lead(bough_coupling *c, int stage, bool restart) {
+bough_status bough_coupling_advance_leaders(bough_coupling *c, int stage, bool restart) {
     return bough_coupling_each(c, stage, restart ? lead_restarted : lead_kept);
 }
 
@@ -270,7 +270,7 @@ double bough_coupling_curvature(const bough_coupling *c, int j, double end) {
 }
 
 // What a port was over the step, by that parabola, less what its receiver saw.
-static void settle(bough_coupling *c, int member) {
+static void add_deficit(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const bough_signal *s = &c->signal[member];
     double h = c->t1 - c->t0;
@@ -287,7 +287,7 @@ void bough_coupling_exchange(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     bough_assembly_outputs(a, c->t1, c->output, c->input);
     for (int i = 0; i < a->n_member && c->deficit != NULL; i++) {
-        if (a->stage[i] == 0) settle(c, i);
+        if (a->stage[i] == 0) add_deficit(c, i);
     }
     for (int i = 0; i < a->n_member; i++) {
         bough_signal_value(&c->signal[i], c->t1, c->applied + a->input_offset[i]);

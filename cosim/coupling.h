@@ -59,7 +59,7 @@ typedef struct bough_coupling {
     double *input;  // (n_input) the same, as their receivers see it
     double *applied; // (n_input) what acted on the receivers on the step, at its end
     double *deficit; // (n_input) ∫ of what a port was − what its receiver saw, over all steps;
-                     // of stage 0; NULL unless the scheme pays it back
+                     // of the leaders; NULL unless the scheme pays it back
     int n_past;     // valid entries of the two below
     double past_time[BOUGH_HISTORY]; // the last synchronisation points, newest first [s]
     double *past[BOUGH_HISTORY];     // (n_input each) inputs there
@@ -112,14 +112,14 @@ enum { BOUGH_ALL_STAGES = -1 };
 bough_status bough_coupling_each(bough_coupling *c, int stage,
                                  void (*work)(bough_coupling *c, int member));
 
-// The same for lead(c, member) of stage 0 beside prepare(c, member) of all others, and then
+// The same for lead(c, member) of the leaders (stage 0) beside prepare(c, member) of all others, and then
 // follow(c, member) of those. Nobody follows who has failed to prepare.
-typedef struct bough_lead_work {
+typedef struct bough_leader_work {
     void (*lead)(bough_coupling *c, int member);
     void (*prepare)(bough_coupling *c, int member);
     void (*follow)(bough_coupling *c, int member);
-} bough_lead_work;
-bough_status bough_coupling_each_led(bough_coupling *c, bough_lead_work work);
+} bough_leader_work;
+bough_status bough_coupling_each_leading(bough_coupling *c, bough_leader_work work);
 
 // Sets the span of every signal to the step.
 void bough_coupling_begin(bough_coupling *c);
@@ -133,7 +133,7 @@ bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const d
 bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart);
 
 // The same, and finds what a later stage needs: start_rate, end_output, end_rate.
-bough_status bough_coupling_advance_lead(bough_coupling *c, int stage, bool restart);
+bough_status bough_coupling_advance_leaders(bough_coupling *c, int stage, bool restart);
 
 // Fills input j (numbered over all inputs) of its member from the new output that feeds it.
 void bough_coupling_interpolate(bough_coupling *c, int member, int j);

@@ -1,20 +1,20 @@
 // Ramp, linearly implicit (the default scheme). From one linearly implicit θ-step of size H of
 // every member, linearised at T_k,
 //     (I − θH J) Δ = H f(T_k + θH, y, u) + θH B δu,   o^ = h(T_{k+1}, y, u) + C Δ + D δu,
-// the end-of-step port values are found by solving the coupled linear interface equations. Stage 0
-// then advances under forces that run linearly from the value applied at the last step's end to the
-// predicted one: continuous, so that its integrator keeps its history. The other members follow
-// once with the cubic of the motion it really made.
+// the end-of-step port values are found by solving the coupled linear interface equations. The
+// leaders (stage 0) then advance under forces that run linearly from the value applied at the last
+// step's end to the predicted one: continuous, so that their integrators keep their history. The
+// other members follow once with the cubic of the motion that resulted.
 //
 // The ramp carries a parabola that is zero at both ends: it gives the impulse that the force's
-// curvature adds, and pays back what earlier steps turned out to owe. So momentum is handed over to
-// third order at no cost; on heavy interface bodies only, because elsewhere late payment rings.
+// curvature adds, and makes up for the impulse deficit of earlier steps. So momentum is handed over
+// to third order at no cost; on heavy interface bodies only, because elsewhere late payment rings.
 //
 // θ = 1/2: order 3 with that impulse, 2 without. On an interface body that is light against what
-// hangs on it, or with θ > 1/2, the first step takes θ = 1, damped and of order 1. Where, as the eigenvalues of the
-// macro step tell, the trapezoidal rule rings there, all steps take the least θ that does not:
-// somewhat above 1/2, of order 1 with an error 2θ − 1 times as large. Where none does, the step is
-// repeated with waveforms (iteration.h). The interface is solved as condense.h does, stage 0 leading.
+// hangs on it, or with θ > 1/2, the first step takes θ = 1, damped and of order 1. Where, as the
+// eigenvalues of the macro step tell, the trapezoidal rule rings there, all steps take the least θ
+// that does not: somewhat above 1/2, of order 1 with an error 2θ − 1 times as large. Where none does,
+// the step is repeated with waveforms (iteration.h). The interface is solved as condense.h does.
 #include "cosim/condense.h"
 #include "cosim/iteration.h"
 #include "cosim/port.h"
@@ -62,7 +62,7 @@ static bough_status check_shape(const bough_coupling *c) {
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
             if (leads(c, i) != leads(c, a->source_member[j])) continue;
-            return bough_fail(BOUGH_INVALID, "scheme ramp: stage 0 and the later stages may only "
+            return bough_fail(BOUGH_INVALID, "scheme ramp: leaders and followers may only "
                                              "be connected with each other; use another scheme");
         }
     }
@@ -195,8 +195,8 @@ static bough_status predict(bough_coupling *c) {
     r->middle = c->t0 + r->gamma;
     c->interface = r->interface;
     c->interface_gamma = r->gamma;
-    bough_lead_work work = {predict_leader, prepare_follower, predict_follower};
-    bough_status status = bough_coupling_each_led(c, work);
+    bough_leader_work work = {predict_leader, prepare_follower, predict_follower};
+    bough_status status = bough_coupling_each_leading(c, work);
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) expect_inputs(c, i);
@@ -354,7 +354,7 @@ static bough_status step(bough_coupling *c) {
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) set_ramps(c, i);
     }
-    status = bough_coupling_advance_lead(c, 0, c->restart || held(c->scheme_data));
+    status = bough_coupling_advance_leaders(c, 0, c->restart || held(c->scheme_data));
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) continue;

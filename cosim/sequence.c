@@ -39,7 +39,7 @@ bough_status bough_sequence_step(bough_coupling *c, int degree) {
     for (int k = 0; k < n && bough_is_ok(&status); k++) {
         int stage = c->options.reversed ? n - 1 - k : k;
         bool restart = prepare(c, stage, degree) || c->restart;
-        status = k < n - 1 ? bough_coupling_advance_lead(c, stage, restart)
+        status = k < n - 1 ? bough_coupling_advance_leaders(c, stage, restart)
                            : bough_coupling_advance(c, stage, restart);
     }
     return status;

@@ -308,7 +308,7 @@ static bool likely(const ritz *r) {
 
 // Known well enough to say on which side of 1 it lies. Where modes are nearly parallel a small
 // residual is not enough: the value must have been there before the last vectors came.
-static bool settled(const map *m, const ritz *r) {
+static bool certain(const map *m, const ritz *r) {
     return likely(r) && moved(m, r) < margin(r);
 }
 
@@ -393,7 +393,7 @@ static bough_status choose(map *m, bough_stability *result) {
         }
         candidate.suspected = fmax(result->suspected, candidate.growth);
         result->suspected = candidate.suspected;
-        if (!settled(m, &found[k])) continue;
+        if (!certain(m, &found[k])) continue;
         *result = candidate;
         return status;
     }
@@ -409,7 +409,7 @@ static bool decided(const map *m) {
         if (r.pair) k++;
     }
     bool turns = top.pair || m->value[top.column] < 0;
-    return turns && top.modulus > 1.2 && top.residual < exact * top.modulus && settled(m, &top);
+    return turns && top.modulus > 1.2 && top.residual < exact * top.modulus && certain(m, &top);
 }
 
 static bough_status judge(map *m, const bough_assembly *a, const bough_scheme_options *options,

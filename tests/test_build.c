@@ -56,7 +56,7 @@ static void rods_take_ports_in_the_order_of_the_scene(void **context) {
         assert_string_equal(s->tree->ports[beam->port].name, names[k]);
     }
     assert_null(bough_simulation_beam(s, 1));
-    assert_ptr_equal(s->master->assembly->member[0], &s->trunk);
+    assert_ptr_equal(s->master->assembly->member[0], &s->leader);
     bough_arena_destroy(arena);
 }
 
@@ -93,14 +93,14 @@ static void rigid_blades_leave_the_tree_alone(void **context) {
     bough_simulation *s = scene_build(arena, runup, sets);
     assert_int_equal(s->n_rod, 0);
     assert_int_equal(s->n_beam, 3);
-    assert_int_equal(s->trunk.n_state, 2);
-    assert_int_equal(s->trunk.n_input, 0);
+    assert_int_equal(s->leader.n_state, 2);
+    assert_int_equal(s->leader.n_input, 0);
     assert_int_equal(s->master->assembly->n_member, 1);
     assert_int_equal(s->master->assembly->n_state, 2);
     for (int k = 0; k < 3; k++) assert_null(s->beam[k].rod);
     assert_non_null(s->aero); // which loads them as bodies
     for (int k = 0; k < 10; k++) scene_step(s);
-    assert_true(s->trunk.state[1] > 0.5);
+    assert_true(s->leader.state[1] > 0.5);
     bough_arena_destroy(arena);
 }
 
@@ -121,7 +121,7 @@ static void modal_blades_move_as_rods(void **context) {
         assert_true((s->beam[0].rod != NULL) == (k == 0));
         for (int i = 0; i < 50; i++) scene_step(s);
         bough_simulation_update(s);
-        speed[k] = s->trunk.state[1];
+        speed[k] = s->leader.state[1];
         tip[k] = bough_simulation_beam_tip(s, &s->beam[0], &turn).x - s->beam[0].def.position[48].x;
         bough_arena_destroy(arena);
     }
@@ -168,7 +168,7 @@ static void end_of_a_rod_is_connected_to_its_body(void **context) {
     assert_int_equal(s->n_end, 1);
     assert_int_equal(s->tree->n_bodies, 3);
     assert_string_equal(s->tree->ends[0].name, "cable end");
-    assert_int_equal(s->trunk.n_state, 13); // the end is free, the weight welded to it
+    assert_int_equal(s->leader.n_state, 13); // the end is free, the weight welded to it
     assert_int_equal(s->rod[0].n_state, 13 * 3);
     assert_int_equal(a->n_interface, 2);
     assert_int_equal(a->interface[1].body, 1);

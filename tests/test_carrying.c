@@ -244,7 +244,7 @@ static void end_of_run(const char *scheme, const char *macro_step, double end[4]
     bough_vec3 x = tip_of(s);
     int q, v;
     assert_true(bough_tree_joint_rows(s->tree, 2, &q, &v));
-    const double values[4] = {x.x, x.y, x.z, s->trunk.state[q]};
+    const double values[4] = {x.x, x.y, x.z, s->leader.state[q]};
     memcpy(end, values, sizeof values);
     bough_arena_destroy(arena);
 }

@@ -23,8 +23,8 @@ static void steer(bough_simulation *s, double t, double h) {
 static void check_given(const bough_simulation *s, int body, double angle, double speed) {
     int q, v;
     assert_true(bough_tree_joint_rows(s->tree, body, &q, &v));
-    check_near(s->trunk.state[q], angle, 0, 1e-13);
-    check_near(s->trunk.state[v], speed, 0, 1e-13);
+    check_near(s->leader.state[q], angle, 0, 1e-13);
+    check_near(s->leader.state[v], speed, 0, 1e-13);
 }
 
 static void run(const char *scheme, const char *solver, const char *rtol, bool steered, end *at) {

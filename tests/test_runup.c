@@ -71,8 +71,8 @@ static void record(bough_simulation *s, history *h) {
     int rotor = s->scene->turbine.rotor;
     bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->bodies[rotor]);
     h->time[k] = s->master->time;
-    h->angle[k] = s->trunk.state[0];
-    h->speed[k] = s->trunk.state[1];
+    h->angle[k] = s->leader.state[0];
+    h->speed[k] = s->leader.state[1];
     h->thrust[k] = factor * aero->thrust;
     h->torque[k] = factor * aero->torque;
     h->load[k] = load_torque * fmin(s->master->time / 20, 1);

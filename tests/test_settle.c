@@ -17,7 +17,7 @@ static bough_settling settled(bough_simulation *s) {
 static double joint_angle(const bough_simulation *s, int body) {
     int coordinate, speed;
     assert_true(bough_tree_joint_rows(s->tree, body, &coordinate, &speed));
-    return s->trunk.state[coordinate];
+    return s->leader.state[coordinate];
 }
 
 // A bob of 1 kg at 1 m from the horizontal on a spring: k θ + m g cos θ = 0.

@@ -19,7 +19,7 @@ struct bough_session {
     char error[ERROR_TEXT];
 };
 
-static int settle(bough_session *s, bough_status status) {
+static int conclude(bough_session *s, bough_status status) {
     bool good = bough_is_ok(&status);
     s->code = good ? BOUGH_SESSION_OK : bough_exit_code(status.code);
     if (good || status.message[0]) snprintf(s->error, sizeof s->error, "%s", status.message);
@@ -92,7 +92,7 @@ size_t bough_session_size(const bough_session *s) { return s->size; }
 int bough_session_save(bough_session *s, void *copy) {
     if (!s->open || failed(s)) return s->code;
     bough_status status = bough_run_storable(&s->run);
-    if (!bough_is_ok(&status)) return settle(s, status);
+    if (!bough_is_ok(&status)) return conclude(s, status);
     bough_session_values(s);
     take(s, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0});
     return bough_session_restore(s, copy);
@@ -101,10 +101,10 @@ int bough_session_save(bough_session *s, void *copy) {
 int bough_session_restore(bough_session *s, const void *copy) {
     if (!s->open) return s->code;
     bough_status status = check_copy(s, copy);
-    if (!bough_is_ok(&status)) return settle(s, status);
+    if (!bough_is_ok(&status)) return conclude(s, status);
     take(s, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, (char *)(uintptr_t)copy, 0});
     s->run.sampled = true; // the values are in the copy
-    return settle(s, bough_ok());
+    return conclude(s, bough_ok());
 }
 
 // -- opening and stepping -------------------------------------------------------------------------
@@ -130,7 +130,7 @@ bough_session *bough_session_open(const char *scene, const char *const *set, int
     bough_session *s = calloc(1, sizeof *s);
     if (!s) return NULL;
     s->arena = bough_arena_create();
-    settle(s, s->arena ? build(s, scene, set, count)
+    conclude(s, s->arena ? build(s, scene, set, count)
                        : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory"));
     return s;
 }
@@ -146,7 +146,7 @@ const char *bough_session_warning(const bough_session *s) {
 int bough_session_step(bough_session *s) {
     if (!s->open || failed(s)) return s->code;
     if (bough_run_done(&s->run)) return BOUGH_SESSION_DONE;
-    return settle(s, bough_run_step(&s->run));
+    return conclude(s, bough_run_step(&s->run));
 }
 
 double bough_session_time(const bough_session *s) {

@@ -122,7 +122,7 @@ static void print_bodies(const bough_simulation *s) {
     int moving = bough_simulation_n_joints(s);
     printf("joints: %d moving, %d fixed\n", moving, n - moving);
     printf("tree: %d state%s (%d of position, %d of speed), %s, rtol %.6g\n", tree->n_q + tree->n_v,
-           plural(tree->n_q + tree->n_v), tree->n_q, tree->n_v, s->trunk.solver,
+           plural(tree->n_q + tree->n_v), tree->n_q, tree->n_v, s->leader.solver,
            s->scene->simulation.master.rtol);
     printf("states: %d\n", s->master->assembly->n_state);
     printf("loads: %d\n", s->scene->n_load);

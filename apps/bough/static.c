@@ -76,8 +76,8 @@ static void print_rod(bough_steady *x) {
 static void print_joints(const bough_simulation *s) {
     for (int i = 0; i < s->tree->n_links; i++) {
         const bough_link *link = &s->tree->links[i];
-        const double *q = s->trunk.state + link->first_coordinate;
-        const double *v = s->trunk.state + s->tree->n_q + link->first_speed;
+        const double *q = s->leader.state + link->first_coordinate;
+        const double *v = s->leader.state + s->tree->n_q + link->first_speed;
         printf("joint %s: %s", s->tree->bodies[link->body].name,
                bough_joint_name(link->joint.kind));
         if (link->joint.kind == BOUGH_JOINT_REVOLUTE) {

@@ -118,7 +118,7 @@ static bough_status check_scene(bough_arena *arena, const char *folder) {
 }
 
 // Moves the files to their place, the scene last: with it the model is whole; or removes them.
-static bough_status settle_files(const char *from, const char *folder, bool good) {
+static bough_status finish_files(const char *from, const char *folder, bool good) {
     char old[BOUGH_PATH_MAX], path[BOUGH_PATH_MAX];
     bough_status status = bough_ok();
     for (int i = BOUGH_N_IMPORT_FILE - 1; i >= 0; i--) {
@@ -142,8 +142,8 @@ static bough_status publish(bough_draft *d, const char *folder) {
     if (!bough_is_ok(&status)) return status;
     status = write_files(draft, d->file_text);
     if (bough_is_ok(&status)) status = check_scene(d->arena, draft);
-    bough_status settled = settle_files(draft, folder, bough_is_ok(&status));
-    if (bough_is_ok(&status)) status = settled;
+    bough_status finished = finish_files(draft, folder, bough_is_ok(&status));
+    if (bough_is_ok(&status)) status = finished;
     if (!bough_is_ok(&status) && !present) rmdir(folder);
     return status;
 }

@@ -125,7 +125,7 @@ static bough_status build_tree(bough_builder *b) {
     bough_integrator_options master = solver_options(&scene->simulation.master);
     // the tree's own method is never asked, and the scheme's may not suit it
     if (bough_scheme_find(scheme_options(scene).name)->one_system) master.kind = BOUGH_ROSENBROCK;
-    return bough_tree_subsystem_create(b->arena, s->tree, "tree", 0, &master, &s->trunk);
+    return bough_tree_subsystem_create(b->arena, s->tree, "tree", 0, &master, &s->leader);
 }
 
 
@@ -133,7 +133,7 @@ static bough_status build_rods(bough_builder *b) {
     bough_simulation *s = b->s;
     double *motion = bough_arena_doubles(b->arena, (size_t)bough_tree_n_outputs(s->tree) + 1);
     if (motion == NULL) return out_of_memory();
-    s->trunk.ops->output(s->trunk.self, 0, s->trunk.state, NULL, motion);
+    s->leader.ops->output(s->leader.self, 0, s->leader.state, NULL, motion);
     for (int k = 0; k < s->n_beam; k++) {
         bough_beam *beam = &s->beam[k];
         if (beam->port < 0) continue;
@@ -170,7 +170,7 @@ static void connect_end(bough_builder *b, const bough_beam *beam) {
 
 static void connect(bough_builder *b) {
     bough_simulation *s = b->s;
-    b->member[0] = (bough_member){&s->trunk, 0};
+    b->member[0] = (bough_member){&s->leader, 0};
     for (int i = 0; i < s->n_beam; i++) {
         const bough_beam *beam = &s->beam[i];
         int k = beam->port;

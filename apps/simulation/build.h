@@ -32,7 +32,7 @@ typedef struct bough_simulation {
     bough_tree *tree;
     bough_tree_data *view; // for queries between steps
     double *acceleration;  // of the tree (n_v), scratch of queries
-    bough_subsystem trunk;
+    bough_subsystem leader;
     int first_marker;      // of the tree, the first of those that the scene names
     int n_beam;
     bough_beam *beam;      // (n_beam) bodies that have a rod, in the scene's order

@@ -33,7 +33,7 @@ static int blade_body(const bough_control_link *l, int b) {
 static bough_motion_point joint_point(const bough_simulation *s, int body) {
     int q, v;
     bough_tree_joint_rows(s->tree, body, &q, &v);
-    return (bough_motion_point){s->trunk.state[q], s->trunk.state[v], 0};
+    return (bough_motion_point){s->leader.state[q], s->leader.state[v], 0};
 }
 
 bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation, int load,

@@ -23,7 +23,7 @@ bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s,
 }
 
 static bough_subsystem *member(bough_simulation *s, int i) {
-    return i == 0 ? &s->trunk : &s->rod[i - 1];
+    return i == 0 ? &s->leader : &s->rod[i - 1];
 }
 
 static void sample(const bough_error_probe *p, double *value) {

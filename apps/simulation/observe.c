@@ -18,8 +18,8 @@
 static void joint_state(const bough_simulation *s, int body, double *coordinate, double *speed) {
     int q, v;
     bough_tree_joint_rows(s->tree, body, &q, &v);
-    *coordinate = s->trunk.state[q];
-    *speed = s->trunk.state[v];
+    *coordinate = s->leader.state[q];
+    *speed = s->leader.state[v];
 }
 
 static void sample_rotor(void *self, double t, double *value) {
@@ -59,7 +59,7 @@ static int n_recorded(const bough_scene *scene, int body) {
 static void joint_rates(const bough_simulation *s, int body, const double *q, double *rate) {
     int coordinate, speed;
     bough_tree_joint_rows(s->tree, body, &coordinate, &speed);
-    const double *v = s->trunk.state + speed;
+    const double *v = s->leader.state + speed;
     int n = joint_channels[s->scene->body[body].joint.kind].n;
     if (s->scene->body[body].joint.kind == BOUGH_SCENE_PLANAR) {
         bough_joint_rate(&s->tree->links[s->tree->bodies[body].link].joint, q, v, rate);
@@ -76,7 +76,7 @@ static void sample_joints(void *self, double t, double *value) {
         if (n == 0) continue;
         double rate[3];
         bough_tree_joint_rows(s->tree, i, &coordinate, &speed);
-        const double *q = s->trunk.state + coordinate;
+        const double *q = s->leader.state + coordinate;
         joint_rates(s, i, q, rate);
         for (int k = 0; k < n; k++, value += 2) {
             bool angle = joint_channels[s->scene->body[i].joint.kind].coordinate[k].angle;

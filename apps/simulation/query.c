@@ -7,7 +7,7 @@
 #include <string.h>
 
 void bough_simulation_update(bough_simulation *s) {
-    bough_tree_kinematics(s->tree, s->trunk.state, s->view);
+    bough_tree_kinematics(s->tree, s->leader.state, s->view);
 }
 
 int bough_simulation_n_joints(const bough_simulation *s) {
@@ -29,7 +29,7 @@ double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam)
     if (joint->kind != BOUGH_SCENE_REVOLUTE || joint->axis != 2) return beam->body->pitch;
     int coordinate, speed;
     bough_tree_joint_rows(s->tree, (int)(beam->body - s->scene->body), &coordinate, &speed);
-    return beam->body->pitch - s->trunk.state[coordinate];
+    return beam->body->pitch - s->leader.state[coordinate];
 }
 
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
@@ -91,7 +91,7 @@ bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam
         stride = last;
         x = bough_beam_state(s, beam, last) + last - 1;
     } else {
-        x = s->trunk.state + s->tree->links[s->tree->ends[beam->end].link].first_coordinate;
+        x = s->leader.state + s->tree->links[s->tree->ends[beam->end].link].first_coordinate;
     }
     const double *p = x + 3 * stride;
     *rotation = bough_quaternion_normalised(

@@ -207,7 +207,7 @@ static bough_status settle_members(bough_arena *arena, bough_simulation *s,
     bough_coupled *coupled;
     bough_equilibrium_def def = bough_equilibrium_def_default();
     double *state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
-    int *row = bough_arena_take(arena, ((size_t)s->trunk.n_state + 1) * sizeof *row);
+    int *row = bough_arena_take(arena, ((size_t)s->leader.n_state + 1) * sizeof *row);
     if (!state || !row) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = bough_coupled_create(arena, assembly, NULL, &coupled);
     if (!bough_is_ok(&status)) return status;

@@ -58,7 +58,7 @@ static void check_speed(bough_simulation *s) {
     if (!control->node || control->kind != BOUGH_SCENE_VARIABLE_SPEED) return;
     int rotor = s->scene->turbine.rotor, q, v;
     bough_tree_joint_rows(s->tree, rotor, &q, &v);
-    double speed = s->trunk.state[v], rated = control->law.rated_speed / control->gear_ratio;
+    double speed = s->leader.state[v], rated = control->law.rated_speed / control->gear_ratio;
     if (fabs(speed) <= most_over_rated * fabs(rated)) return;
     bough_validity_pass(s->validity, BOUGH_LIMIT_ROTOR_SPEED, rotor, s->master->time,
                         speed * (30 / BOUGH_PI));

@@ -5,7 +5,7 @@
 #include "apps/simulation/build.h"
 
 typedef enum bough_clock_part {
-    BOUGH_CLOCK_LEADERS,         // own steps of stage 0, the tree
+    BOUGH_CLOCK_LEADERS,         // own steps of the leader, the tree
     BOUGH_CLOCK_FOLLOWERS,       // own steps of the other members
     BOUGH_CLOCK_LEADER_MODEL,    // derivatives, outputs, tangents and factors for the coupling
     BOUGH_CLOCK_FOLLOWER_MODEL,

@@ -325,8 +325,8 @@ static bough_status look(void *self) {
 // What a step of the tree takes.
 static void count_work(case_run *r) {
     bough_statistics work;
-    const bough_subsystem *trunk = &r->run->simulation->trunk;
-    trunk->ops->statistics(trunk->self, &work);
+    const bough_subsystem *leader = &r->run->simulation->leader;
+    leader->ops->statistics(leader->self, &work);
     for (int i = 0; i < r->x->n_expect; i++) {
         const bough_verify_expect *e = &r->x->expect[i];
         if (e->diagnosis || e->quantity.what != BOUGH_VERIFY_WORK || work.steps == 0) continue;
