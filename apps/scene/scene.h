@@ -421,6 +421,32 @@ typedef enum bough_scene_controller {
     BOUGH_SCENE_BLADED,
 } bough_scene_controller;
 
+typedef enum bough_scene_event_kind {
+    BOUGH_SCENE_START,
+    BOUGH_SCENE_STOP,
+    BOUGH_SCENE_EMERGENCY_STOP,
+    BOUGH_SCENE_GRID_LOSS,
+    BOUGH_SCENE_PITCH_STUCK,
+    BOUGH_SCENE_PITCH_RUNAWAY,
+    BOUGH_SCENE_YAW_RUNAWAY,
+} bough_scene_event_kind;
+
+// What happens to the turbine at a time, or from then on when a channel passes a threshold.
+typedef struct bough_scene_event {
+    const bough_node *node;
+    int kind;              // bough_scene_event_kind
+    double at;             // not before [s]
+    const char *channel;   // NULL: at that time
+    double above, below;   // threshold in the channel's unit, one of the two
+    bool falls;            // `threshold` is that of `below`
+    double threshold;
+    int blade;             // from 1, of the faults of one blade; else 0
+    const char *body_name; // YAW_RUNAWAY: on the yaw joint
+    int body;              // its index
+    double angle;          // pitch of stops and a runaway, yaw [rad]; stops: 0: 90 degrees ("auto")
+    double rate;           // with which it is gone to [rad/s]; 0: that of the kind ("auto")
+} bough_scene_event;
+
 // Of generator torque, and of pitch where the blades hang on joints with a motion.
 typedef struct bough_scene_control {
     const bough_node *node; // NULL: no controller
@@ -429,6 +455,8 @@ typedef struct bough_scene_control {
     double gear_ratio;      // generator speed over rotor speed
     double efficiency;      // electrical over mechanical power
     const char *library, *input; // BLADED: paths; no input: ""
+    int n_event;
+    bough_scene_event *event; // (n_event)
     bough_controller_def law;    // BLADED: only the pitch rate is used
 } bough_scene_control;
 

@@ -35,6 +35,59 @@ static const bough_key law_keys[] = {
 static const bough_schema law_schema = {.name = "the law's constants",
     .size = sizeof(bough_controller_def), .n_key = COUNT(law_keys), .key = law_keys};
 
+#define FAULTS "pitch-stuck|pitch-runaway"
+#define AT(member) .offset = offsetof(bough_scene_event, member)
+static const bough_key event_keys[] = {
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE,
+     .choices = CHOICES("start", "stop", "emergency-stop", "grid-loss", "pitch-stuck",
+                        "pitch-runaway", "yaw-runaway"),
+     .required = true, AT(kind),
+     .help = "start: until then the turbine idles with the pitch of its joints; stop: to feather, the "
+             "torque gone in 10 s; emergency-stop: to feather as fast as it may, no torque; grid-loss: "
+             "no torque, the pitch controlled; one blade that stays or goes away; a yaw drive that "
+             "turns"},
+    {.name = "at", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = ">= 0",
+     .fallback = "0", AT(at), .example = "90 s", .help = "when; with a channel not before"},
+    {.name = "channel", .kind = BOUGH_KEY_TEXT, AT(channel), .example = "GenSpeed",
+     .help = "that passes the threshold; left out: at the time"},
+    {.name = "above", .kind = BOUGH_KEY_NUMBER, AT(above), .example = "1300",
+     .help = "threshold in the channel's unit"},
+    {.name = "below", .kind = BOUGH_KEY_NUMBER, AT(below), .example = "100",
+     .help = "threshold in the channel's unit"},
+    {.name = "blade", .kind = BOUGH_KEY_INTEGER, .range = "[1, 3]", .required = true,
+     .when_key = "kind", .when = FAULTS, AT(blade), .example = "2", .help = "of the turbine's"},
+    {.name = "body", .kind = BOUGH_KEY_TEXT, .required = true, .when_key = "kind",
+     .when = "yaw-runaway", AT(body_name), .example = "yaw",
+     .help = "on the yaw joint, which must have a motion"},
+    {.name = "angle", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .word = "auto",
+     .fallback = "auto", .when_key = "kind",
+     .when = "stop|emergency-stop|pitch-runaway|yaw-runaway", AT(angle), .example = "20 deg",
+     .help = "gone to; auto: of stops 90 degrees, else 0"},
+    {.name = "rate", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGULAR_SPEED, .range = "> 0",
+     .word = "auto", .fallback = "auto", .when_key = "kind",
+     .when = "stop|emergency-stop|pitch-runaway|yaw-runaway", AT(rate), .example = "2 deg/s",
+     .help = "auto: a stop 4 deg/s, the yaw 0.3 deg/s, else the law's pitch_rate, which no pitch "
+             "exceeds"},
+};
+#undef AT
+
+static void check_event(bough_schema_reader *r, void *item) {
+    bough_scene_event *e = item;
+    bool above = bough_node_find(e->node, "above"), below = bough_node_find(e->node, "below");
+    if (above + below != (e->channel != NULL)) {
+        bough_schema_error(r, e->node, "", e->channel ? "'channel' needs one of 'above' and 'below'"
+                                                      : "a threshold needs its 'channel'");
+    }
+    if (!e->channel && !bough_node_find(e->node, "at")) {
+        bough_schema_error(r, e->node, "", "expected 'at' or 'channel': when it happens");
+    }
+    e->falls = below;
+    e->threshold = below ? e->below : e->above;
+}
+
+static const bough_schema event_schema = {.name = "an event", .size = sizeof(bough_scene_event),
+    .n_key = COUNT(event_keys), .key = event_keys, .check = check_event};
+
 #define AT(member) .offset = offsetof(bough_scene_control, member)
 static const bough_key control_keys[] = {
     {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("variable-speed", "bladed"),
@@ -57,6 +110,9 @@ static const bough_key control_keys[] = {
      .help = "the controller's own input file, relative to the scene"},
     {.name = "law", .kind = BOUGH_KEY_MAPPING, .of = &law_schema, AT(law),
      .help = "constants; those of the NREL 5 MW turbine where left out"},
+    {.name = "events", .kind = BOUGH_KEY_LIST, .of = &event_schema, AT(event),
+     .count_offset = offsetof(bough_scene_control, n_event),
+     .help = "what happens to the turbine, at most 8"},
 };
 #undef AT
 // clang-format on

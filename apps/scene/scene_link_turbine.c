@@ -159,6 +159,27 @@ static bool has_pitch_joint(const bough_scene_body *b) {
     return b->joint.kind == BOUGH_SCENE_REVOLUTE && b->joint.motion.node != NULL;
 }
 
+static void link_event(bough_schema_reader *r, bough_scene *s, int i) {
+    bough_scene_event *e = &s->control.event[i];
+    bool pitches = e->kind == BOUGH_SCENE_START || e->kind == BOUGH_SCENE_STOP ||
+                   e->kind == BOUGH_SCENE_EMERGENCY_STOP || e->blade > 0;
+    bough_link_at(r, "control.events[%d]", i);
+    if (pitches && s->turbine.n_blade > 0 && s->turbine.blade[0] >= 0 &&
+        !has_pitch_joint(&s->body[s->turbine.blade[0]])) {
+        bough_schema_error(r, e->node, "", "needs blades on pitch joints: revolute with 'motion'");
+    }
+    if (e->blade > s->turbine.n_blade) {
+        bough_schema_error(r, bough_link_value(e->node, "blade"), "blade",
+                           "the turbine has %d blades", s->turbine.n_blade);
+    }
+    if (e->body_name == NULL) return;
+    const bough_node *node = bough_link_value(e->node, "body");
+    e->body = bough_link_body(r, s, node, "body", e->body_name);
+    if (e->body >= 0 && s->body[e->body].joint.motion.node == NULL) {
+        bough_schema_error(r, node, "body", "the joint of '%s' has no 'motion'", e->body_name);
+    }
+}
+
 void bough_link_control(bough_schema_reader *r, bough_scene *s) {
     if (s->control.node == NULL) return;
     bough_link_at(r, "control");
@@ -177,4 +198,10 @@ void bough_link_control(bough_schema_reader *r, bough_scene *s) {
                                b->name);
         }
     }
+    if (s->control.n_event > 8) {
+        bough_link_at(r, "control");
+        bough_schema_error(r, bough_link_value(s->control.node, "events"), "events",
+                           "expected at most 8, got %d", s->control.n_event);
+    }
+    for (int i = 0; i < s->control.n_event && s->turbine.blade; i++) link_event(r, s, i);
 }

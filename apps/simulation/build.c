@@ -268,6 +268,9 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
         status = bough_control_link_build(arena, b.s, b.n_load - 1, &b.s->control);
     }
     if (bough_is_ok(&status)) status = build_master(&b);
+    if (bough_is_ok(&status) && b.s->control != NULL) {
+        status = bough_control_link_watch(arena, b.s->control);
+    }
     if (bough_is_ok(&status) && bough_arena_exhausted(arena)) status = out_of_memory();
     if (bough_is_ok(&status)) *simulation = b.s;
     return status;

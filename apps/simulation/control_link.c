@@ -2,6 +2,7 @@
 
 #include "aero/discon.h"
 #include "apps/simulation/aero_link.h"
+#include "apps/simulation/events.h"
 #include "core/base.h"
 
 #include <string.h>
@@ -23,6 +24,8 @@ struct bough_control_link {
     bough_discon *discon; // NULL: the law
     int load, n_blade;
     bool steers; // the blades have pitch joints
+    bough_events *events; // NULL: none
+    bough_event_state event[BOUGH_MOST_EVENTS]; // as far as there are events
     memory now;
 };
 
@@ -53,6 +56,10 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
         return bough_controller_check(&l->control->law);
     }
     return bough_discon_open(arena, l->control->library, l->control->input, &l->discon);
+}
+
+bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *link) {
+    return bough_events_build(arena, link->simulation, &link->events);
 }
 
 // -- sample ---------------------------------------------------------------------------------------
@@ -93,6 +100,7 @@ static bough_discon_sensed sense(const bough_control_link *l, double t, double s
 
 static bough_status decide(bough_control_link *l, const bough_discon_sensed *x,
                            bough_discon_demand *demand) {
+    if (l->events && bough_events_idle(l->events, l->event)) return bough_ok();
     if (l->discon) return bough_discon_call(l->discon, x, demand);
     bough_controller_state *law = &l->now.law;
     bough_controller_advance(&l->control->law, x->generator_speed, x->pitch[0], x->step, law);
@@ -124,9 +132,15 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     bough_motion_point rotor = joint_point(s, s->scene->turbine.rotor);
     double speed = control->gear_ratio * rotor.v;
     bough_discon_sensed sensed = sense(l, t, step, speed, rotor.q);
-    bough_discon_demand demand;
+    bough_discon_demand demand = {0};
+    if (l->events) {
+        bough_events_look(l->events, &sensed, l->event);
+    }
     bough_status status = decide(l, &sensed, &demand);
     if (!bough_is_ok(&status)) return status;
+    if (l->events) {
+        bough_events_change(l->events, &sensed, l->event, &demand);
+    }
     double before = l->now.started != 0 ? l->now.torque : demand.torque;
     bough_tree_steer_load(s->tree, l->load, t, step, -control->gear_ratio * before,
                           -control->gear_ratio * demand.torque);
@@ -150,15 +164,20 @@ void bough_control_link_generator(const bough_control_link *l, double *speed, do
     *power = l->control->efficiency * l->now.speed * l->now.torque;
 }
 
+static size_t event_bytes(const bough_control_link *l) {
+    return l->events ? (size_t)l->control->n_event * sizeof *l->event : 0;
+}
+
 int bough_control_link_size(const bough_control_link *link) {
-    (void)link;
-    return sizeof(memory) / sizeof(double);
+    return (int)((sizeof(memory) + event_bytes(link)) / sizeof(double));
 }
 
 void bough_control_link_save(const bough_control_link *link, double *to) {
     memcpy(to, &link->now, sizeof link->now);
+    memcpy(to + sizeof(memory) / sizeof(double), link->event, event_bytes(link));
 }
 
 void bough_control_link_restore(bough_control_link *link, const double *from) {
     memcpy(&link->now, from, sizeof link->now);
+    memcpy(link->event, from + sizeof(memory) / sizeof(double), event_bytes(link));
 }

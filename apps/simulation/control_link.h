@@ -12,6 +12,9 @@ typedef struct bough_control_link bough_control_link;
 bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simulation, int load,
                                       bough_control_link **link);
 
+// Takes the scene's events into account; called when all else is built.
+bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *link);
+
 // The sampled load for the master's loop.
 bough_sampled_load bough_control_link_load(bough_control_link *link);
 

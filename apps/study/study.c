@@ -7,6 +7,8 @@
 #include "core/input_file.h"
 
 #include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 // -- replacements ---------------------------------------------------------------------------------
@@ -25,25 +27,41 @@ static const char *write_set(bough_arena *arena, const char *key, const bough_no
     return set;
 }
 
-// "[1, 2]" of a list of scalars, "{a: 1, b: 2}" of a mapping to scalars; NULL when it is neither.
-static const char *write_flow(bough_arena *arena, const bough_node *value) {
+// A value in one line: 'text', [1, 2], {a: [1, 2]}. False when it is deeper than the stack of calls
+// should be.
+static bool put_flow(FILE *f, const bough_node *value) {
+    enum { DEEPEST = 8 };
+    if (value->height > DEEPEST) return false;
+    if (value->kind == BOUGH_SCALAR) {
+        if (value->quoted) fputc('\'', f);
+        for (const char *c = value->text; *c; c++) {
+            if (value->quoted && *c == '\'') fputc('\'', f);
+            fputc(*c, f);
+        }
+        if (value->quoted) fputc('\'', f);
+        return true;
+    }
     bool mapping = value->kind == BOUGH_MAPPING;
-    size_t size = 3, used = 0;
+    fputc(mapping ? '{' : '[', f);
     for (int i = 0; i < value->n; i++) {
-        if (value->value[i]->kind != BOUGH_SCALAR) return NULL;
-        size += strlen(value->value[i]->text) + 2;
-        if (mapping) size += strlen(value->key[i]->text) + 2;
+        if (i) fputs(", ", f);
+        if (mapping) fprintf(f, "%s: ", value->key[i]->text);
+        if (!put_flow(f, value->value[i])) return false;
     }
-    char *text = bough_arena_take(arena, size);
-    if (!text) return NULL;
-    text[used++] = mapping ? '{' : '[';
-    for (int i = 0; i < value->n; i++) {
-        used += (size_t)snprintf(text + used, size - used, "%s%s%s%s", i ? ", " : "",
-                                 mapping ? value->key[i]->text : "", mapping ? ": " : "",
-                                 value->value[i]->text);
-    }
-    text[used++] = mapping ? '}' : ']';
-    return text;
+    fputc(mapping ? '}' : ']', f);
+    return true;
+}
+
+static const char *write_flow(bough_arena *arena, const bough_node *value) {
+    char *text = NULL;
+    size_t size = 0;
+    FILE *f = open_memstream(&text, &size);
+    if (!f) return NULL;
+    bool whole = put_flow(f, value);
+    fclose(f);
+    const char *kept = whole ? bough_arena_string(arena, text) : NULL;
+    free(text);
+    return kept;
 }
 
 static void read_setting(bough_schema_reader *r, const char *key, const bough_node *value,

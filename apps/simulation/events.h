@@ -1,0 +1,37 @@
+// Events in the turbine's operation: start, stop, loss of the grid, faults of pitch and yaw, at given
+// times or when a channel passes a threshold. They change what the controller demands.
+#ifndef BOUGH_APPS_SIMULATION_EVENTS_H
+#define BOUGH_APPS_SIMULATION_EVENTS_H
+
+#include "aero/discon.h"
+#include "apps/simulation/build.h"
+
+enum { BOUGH_MOST_EVENTS = 8 };
+
+// Doubles only, saved and restored with the controller's memory.
+typedef struct bough_event_state {
+    double happened; // 0: not yet
+    double since;    // [s]
+    double torque;   // of the generator then [N m]
+    double angle;    // of the blade's pitch or the yaw joint then [rad]
+    double running;  // after a start: whether the law's own torque holds
+} bough_event_state;
+
+typedef struct bough_events bough_events;
+
+// The events of the scene's control block; NULL without. Called when all else is built.
+bough_status bough_events_build(bough_arena *arena, bough_simulation *simulation,
+                                bough_events **events);
+
+// Whether the turbine idles at t because its start is yet to come.
+bool bough_events_idle(const bough_events *events, const bough_event_state *state);
+
+// Looks which events have happened by the time of what is sensed.
+void bough_events_look(bough_events *events, const bough_discon_sensed *sensed,
+                       bough_event_state *state);
+
+// What they make of the controller's demand for the next step.
+void bough_events_change(const bough_events *events, const bough_discon_sensed *sensed,
+                         bough_event_state *state, bough_discon_demand *demand);
+
+#endif
