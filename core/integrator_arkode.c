@@ -49,6 +49,31 @@ static bool configure(arkode_run *run) {
     return bad == 0;
 }
 
+typedef struct trial {
+    int n, calls;
+} trial;
+
+static bool rate_once(void *self, double t, const double *y, double *rate) {
+    (void)t, (void)y;
+    trial *one = self;
+    memset(rate, 0, (size_t)one->n * sizeof *rate);
+    return one->calls++ == 0;
+}
+
+// ARKODE takes its memory in its first step: one that ends at the second rate, when all is taken.
+static bool take_memory(arkode_run *run) {
+    bough_newton_handle *newton = &run->newton;
+    bough_ode ode = newton->ode;
+    trial one = {.n = ode.n};
+    double reached;
+    newton->ode.self = &one;
+    newton->ode.derivative = rate_once;
+    int flag = ARKStepEvolve(run->arkode, 1, newton->y, &reached, ARK_ONE_STEP);
+    newton->ode = ode;
+    newton->text[0] = '\0';
+    return flag < 0 && flag != ARK_MEM_FAIL && one.calls > 1;
+}
+
 static bough_status create(bough_arena *arena, const bough_ode *ode,
                            const bough_integrator_options *options, void **self) {
     arkode_run *m = bough_arena_take(arena, sizeof *m);
@@ -63,7 +88,7 @@ static bough_status create(bough_arena *arena, const bough_ode *ode,
     if (!ok || m->arkode == NULL) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory for ARKODE", ode->name);
     }
-    if (!configure(m)) {
+    if (!configure(m) || !take_memory(m)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for ARKODE: %s", ode->name,
                           newton->text);
     }

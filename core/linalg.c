@@ -31,8 +31,10 @@ extern void dsyevr_(const char *job, const char *range, const char *uplo, const 
                     size_t range_length, size_t uplo_length);
 extern void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int *info,
                     size_t triangle_length);
-// Only OpenBLAS has it; other libraries leave the symbol null.
+// Only OpenBLAS has these; other libraries leave the symbols null.
 extern void openblas_set_num_threads(int n) __attribute__((weak));
+extern void *blas_memory_alloc(int unused) __attribute__((weak));
+extern void blas_memory_free(void *block) __attribute__((weak));
 
 static void one_thread(void) {
     if (openblas_set_num_threads) openblas_set_num_threads(1);
@@ -92,26 +94,56 @@ static void solve_small(int n, const double *factor, const int *pivot, double *x
     }
 }
 
-// The library keeps what the first call takes: for the process, and so is this.
-bool bough_linalg_room(int threads) {
-    enum { WORK = 129 << 20, MOST = 64 };
-    static atomic_bool kept;
-    if (atomic_load(&kept)) return true;
-    void *volatile block[MOST] = {0};
+// -- room -----------------------------------------------------------------------------------------
+
+enum { MOST_ROOMS = 64 }; // one for each call that goes on at the same time
+
+static bool has_addresses(int rooms) {
+    enum { WORK = 129 << 20 };
+    void *volatile block[MOST_ROOMS] = {0};
     bool room = true;
-    for (int i = 0; i < threads && i < MOST && room; i++) {
+    for (int i = 0; i < rooms && room; i++) {
         block[i] = malloc(WORK);
         room = block[i] != NULL;
     }
-    for (int i = 0; i < MOST; i++) free(block[i]);
-    if (!room) return false;
+    for (int i = 0; i < rooms; i++) free(block[i]);
+    return room;
+}
+
+// The library keeps rooms once they are taken, and takes one more only when all are in use.
+static void take_rooms(int rooms) {
+    void *block[MOST_ROOMS];
     double a = 1;
     int n = 1, pivot, info = 0;
     prepare();
     dgetrf_(&n, &n, &a, &n, &pivot, &info);
-    atomic_store(&kept, true);
+    if (!blas_memory_alloc || !blas_memory_free) return;
+    for (int i = 0; i < rooms; i++) block[i] = blas_memory_alloc(0);
+    for (int i = 0; i < rooms; i++) blas_memory_free(block[i]);
+}
+
+// The rooms are the process's, and so are these counts.
+static atomic_int users, rooms_taken;
+
+static void leave(void *threads) {
+    atomic_fetch_sub(&users, *(int *)threads);
+}
+
+bool bough_linalg_room(bough_arena *arena, int threads) {
+    int *own = bough_arena_take(arena, sizeof *own);
+    if (!own) return false;
+    *own = threads;
+    int rooms = atomic_fetch_add(&users, threads) + threads;
+    bough_arena_on_destroy(arena, leave, own);
+    if (rooms > MOST_ROOMS) rooms = MOST_ROOMS;
+    if (rooms <= atomic_load(&rooms_taken)) return true;
+    if (!has_addresses(rooms)) return false;
+    take_rooms(rooms);
+    atomic_store(&rooms_taken, rooms);
     return true;
 }
+
+// -- LU -------------------------------------------------------------------------------------------
 
 bool bough_dense_factor(int n, double *a, int *pivot) {
     if (n == 0) return true;

@@ -3,11 +3,14 @@
 #ifndef BOUGH_CORE_LINALG_H
 #define BOUGH_CORE_LINALG_H
 
+#include "core/arena.h"
+
 #include <stdbool.h>
 
-// Whether the library has room to work in on so many threads; asked when a model is built.
-// OpenBLAS wants 128 MB of addresses a thread and, where it does not get them, tries for ever.
-bool bough_linalg_room(int threads);
+// Takes the room that the library works in, on so many threads beside those of all arenas that live:
+// when a model is built, so that no step does. False where there is none. OpenBLAS wants 128 MB of
+// addresses a thread and, where it does not get them, tries for ever.
+bool bough_linalg_room(bough_arena *arena, int threads);
 
 // LU factors of a (n × n, column-major) in place, with row interchanges in pivot (n). False when a
 // is singular or not finite.

@@ -91,7 +91,7 @@ typedef struct bough_coupling {
 
     // by the ramp scheme, for the summary
     double theta;           // in use
-    double interface_ratio; // spectral radius of the interface's answer to itself at the first step;
+    double interface_ratio; // spectral radius of the interface's answer to itself about the initial state;
                             // NaN: not known
 
     long sweeps; // by the iterated scheme: runs of all members over a macro step so far

@@ -103,8 +103,9 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     if (!bough_is_ok(&status)) return status;
     if (!m->control) judge(m);
     evaluate_loads(m);
+    m->coupling->t1 = m->coupling->t0 + m->macro_step;
     *master = m;
-    return status;
+    return scheme->prepare ? scheme->prepare(m->coupling, arena) : status;
 }
 
 bool bough_master_done(const bough_master *m) {

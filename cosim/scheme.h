@@ -25,6 +25,9 @@ struct bough_scheme {
     bool one_system; // all members are one system: there is no coupling error to judge or estimate
     // Takes the scheme's memory, checks its options; NULL when it needs neither.
     bough_status (*create)(bough_coupling *c, bough_arena *arena);
+    // Chooses what stays for the run by the initial state and a first step from t0 to t1, and takes the
+    // memory for it; NULL: nothing. A failure that the first step will meet again is left to that.
+    bough_status (*prepare)(bough_coupling *c, bough_arena *arena);
     // Takes all members from t0 to t1.
     bough_status (*step)(bough_coupling *c);
     // What its own memory carries from step to step; factors are made anew. NULL: nothing.

@@ -41,7 +41,6 @@ typedef struct ramp {
     bool fresh;    // followers are linearised in this step
     int age;       // steps since they were
     double span;   // θH then [s]
-    bough_arena *arena;
 } ramp;
 
 static bool leads(const bough_coupling *c, int member) { return c->assembly->stage[member] == 0; }
@@ -82,7 +81,6 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     r->input = bough_arena_doubles(arena, (size_t)a->n_input);
     c->deficit = bough_arena_doubles(arena, (size_t)a->n_input);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    r->arena = arena;
     r->damped = -HUGE_VAL;
     r->chosen = c->options.theta > 0;
     r->theta = r->final = r->chosen ? c->options.theta : 0.5;
@@ -301,6 +299,22 @@ static bough_status choose_theta(bough_coupling *c) {
     return status;
 }
 
+// For repeated steps: their memory, and what they exchange.
+static bough_status prepare_repetition(bough_coupling *c, bough_arena *arena) {
+    c->options.exchange = BOUGH_EXCHANGE_WAVEFORM;
+    return bough_iteration_create(c, arena);
+}
+
+// Members that have no finite rate of change are left to the first step, which names them.
+static bough_status prepare(bough_coupling *c, bough_arena *arena) {
+    const ramp *r = c->scheme_data;
+    bough_status status = choose_theta(c);
+    c->refactor = true; // loads are sampled before the first step
+    if (status.code == BOUGH_FAILED) return bough_ok();
+    if (!bough_is_ok(&status) || !r->repeats) return status;
+    return prepare_repetition(c, arena);
+}
+
 // -- the step -------------------------------------------------------------------------------------
 
 // Backward Euler's companion: a ramp would bring back the ringing that θ = 1 damps.
@@ -335,22 +349,16 @@ static void set_ramps(bough_coupling *c, int member) {
 }
 
 static bough_status repeat(bough_coupling *c) {
-    const ramp *r = c->scheme_data;
-    bough_status status = bough_ok();
     memset(c->deficit, 0, (size_t)c->assembly->n_input * sizeof(double));
-    c->options.exchange = BOUGH_EXCHANGE_WAVEFORM;
-    if (!c->iteration) status = bough_iteration_create(c, r->arena);
-    return bough_is_ok(&status) ? bough_iteration_step(c) : status;
+    return bough_iteration_step(c);
 }
 
 static bough_status step(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
-    const ramp *r = c->scheme_data;
-    if (r->repeats) return repeat(c);
+    if (c->iteration) return repeat(c);
     bough_coupling_begin(c);
     bough_status status = c->theta > 0 ? predict_damped(c) : choose_theta(c);
     if (!bough_is_ok(&status)) return status;
-    if (r->repeats) return repeat(c);
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) set_ramps(c, i);
     }
@@ -377,10 +385,6 @@ static void snapshot(bough_coupling *c, bough_snapshot *s) {
     bough_snapshot_take(s, &r->damped, sizeof r->damped);
     bough_snapshot_take(s, &r->chosen, sizeof r->chosen);
     bough_snapshot_take(s, &r->repays, sizeof r->repays);
-    bough_snapshot_take(s, &r->repeats, sizeof r->repeats);
-    if (!r->repeats) return;
-    c->options.exchange = BOUGH_EXCHANGE_WAVEFORM;
-    if (!c->iteration) bough_iteration_create(c, r->arena);
     if (c->iteration) bough_iteration_snapshot(c, s);
 }
 
@@ -402,6 +406,7 @@ const bough_scheme bough_scheme_ramp = {
     .instead = "monolithic",
     .reads = BOUGH_READS_THETA,
     .create = create,
+    .prepare = prepare,
     .step = step,
     .snapshot = snapshot,
     .defect_order = defect_order,

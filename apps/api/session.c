@@ -109,6 +109,9 @@ int bough_session_restore(bough_session *s, const void *copy) {
 
 // -- opening and stepping -------------------------------------------------------------------------
 
+// The first region of a thread starts its team; later ones find it.
+static void start_threads(void *unused) { (void)unused; }
+
 static bough_status build(bough_session *s, const char *path, const char *const *set, int count) {
     bough_errors errors = {.arena = s->arena};
     bough_scene *scene = NULL;
@@ -122,6 +125,7 @@ static bough_status build(bough_session *s, const char *path, const char *const 
     status = bough_run_create(s->arena, scene, &s->run);
     if (!bough_is_ok(&status)) return status;
     s->open = true;
+    bough_pool_region(s->run.simulation->pool, start_threads, NULL);
     describe_copy(s);
     return status;
 }

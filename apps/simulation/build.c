@@ -249,7 +249,7 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
                                     bough_simulation **simulation) {
     bough_builder b = {.arena = arena, .scene = scene};
     int asked = scene->simulation.threads, threads = asked > 0 ? asked : bough_pool_default(1);
-    if (!bough_linalg_room(threads) || !take_arrays(&b)) return out_of_memory();
+    if (!bough_linalg_room(arena, threads) || !take_arrays(&b)) return out_of_memory();
     bough_status status = bough_pool_create(arena, threads, &b.s->pool);
     if (bough_is_ok(&status)) status = bough_build_bodies(&b);
     if (bough_is_ok(&status)) set_loads(&b);
