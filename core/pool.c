@@ -1,5 +1,6 @@
 #include "core/pool.h"
 
+#include <assert.h>
 #include <omp.h>
 #include <pthread.h>
 #include <sched.h>
@@ -30,6 +31,7 @@ struct bough_pool {
     int n_asked;  // threads
     int n_thread; // of the last region; n_asked before the first
     bool open;    // a region is
+    bool listing; // a list is in progress; the caller's
     bool crowded; // more threads than processors
     // the list in progress, written before `list` tells of it
     bough_task task;
@@ -161,9 +163,12 @@ void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data) {
         for (int k = 0; k < n; k++) task(data, k);
         return;
     }
+    assert(omp_get_thread_num() == 0 && !pool->listing); // no task may
+    pool->listing = true;
     for (int first = 0; first < n; first += MOST_TASKS) {
         run_portion(pool, first, n - first < MOST_TASKS ? n - first : MOST_TASKS, task, data);
     }
+    pool->listing = false;
 }
 
 typedef struct turns {

@@ -3,6 +3,7 @@
 #include "cosim/port.h"
 
 #include <math.h>
+#include <assert.h>
 #include <string.h>
 
 static bool take(bough_coupling *c, bough_arena *arena) {
@@ -152,12 +153,24 @@ bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const d
 
 bough_status bough_coupling_not_finite(const bough_coupling *c, int member) {
     const bough_subsystem *s = c->assembly->member[member];
-    return bough_fail(BOUGH_FAILED, "%s: no finite rate of change at %.6g s", s->name, *s->time);
+    return bough_fail(BOUGH_RETRY, "%s: no finite rate of change at %.6g s", s->name, *s->time);
+}
+
+// What no method could follow comes of the signal, which a shorter macro step may spare the member.
+static void ask_for_retry(bough_status *status) {
+    if (status->code == BOUGH_FAILED) status->code = BOUGH_RETRY;
+}
+
+void bough_coupling_advance_to(bough_coupling *c, int member, double t, bool restart) {
+    const bough_subsystem *s = c->assembly->member[member];
+    assert(t >= *s->time && c->t0 < c->t1 && c->signal[member].t0 == c->t0);
+    c->status[member] = s->ops->advance(s->self, t, &c->signal[member], restart);
+    assert(!bough_is_ok(&c->status[member]) || *s->time == t);
+    ask_for_retry(&c->status[member]);
 }
 
 static void advance(bough_coupling *c, int member, bool restart) {
-    const bough_subsystem *s = c->assembly->member[member];
-    c->status[member] = s->ops->advance(s->self, c->t1, &c->signal[member], restart);
+    bough_coupling_advance_to(c, member, c->t1, restart);
 }
 
 static void advance_first_half(bough_coupling *c, int member, bool restart) {
@@ -169,6 +182,7 @@ static void advance_first_half(bough_coupling *c, int member, bool restart) {
     }
     double middle = 0.5 * (c->t0 + c->t1) - 1e-9 * (c->t1 - c->t0);
     c->status[member] = s->ops->advance_part(s->self, middle, c->t1, signal, restart);
+    ask_for_retry(&c->status[member]);
 }
 
 static void advance_second_half(bough_coupling *c, int member) {

@@ -129,6 +129,9 @@ void bough_coupling_begin(bough_coupling *c);
 bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const double *input,
                                 const double *input_rate, double *rate);
 
+// Advances a member to t under its signal; c->status[member] is BOUGH_RETRY where it cannot follow.
+void bough_coupling_advance_to(bough_coupling *c, int member, double t, bool restart);
+
 // Advances the members of a stage to t1 under their signals.
 bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart);
 
@@ -149,7 +152,7 @@ void bough_coupling_exchange(bough_coupling *c);
 // scheme's own memory is not in it.
 void bough_coupling_snapshot(bough_coupling *c, bough_snapshot *s);
 
-// A failure at t0 that names the member.
+// BOUGH_RETRY that names the member.
 bough_status bough_coupling_not_finite(const bough_coupling *c, int member);
 
 #endif

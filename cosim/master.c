@@ -166,7 +166,8 @@ static bough_status take_step(bough_master *m) {
     return status;
 }
 
-// The same under step control: taken back and repeated with shorter steps until it stands.
+// The same under step control: taken back and repeated with shorter steps until it stands. Of the
+// failures only those that ask for it are.
 static bough_status take_controlled_step(bough_master *m) {
     bough_step_control *control = m->control;
     bough_coupling *c = m->coupling;
@@ -176,7 +177,9 @@ static bough_status take_controlled_step(bough_master *m) {
         c->t1 = bough_step_control_end(control, c->t0, to);
         bough_status status = take_step(m);
         bool good = bough_is_ok(&status);
-        if (!good && bough_step_control_exhausted(control)) return status;
+        if (!good && (status.code != BOUGH_RETRY || bough_step_control_exhausted(control))) {
+            return status;
+        }
         double error = good ? bough_error_estimate_defect(m->estimate, c) : HUGE_VAL;
         bool shortest = bough_step_control_exhausted(control);
         if (bough_step_control_accept(control, error, c->t1 - c->t0)) return status;

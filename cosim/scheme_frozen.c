@@ -42,9 +42,7 @@ static bool sees_jumps(const bough_coupling *c, int member) {
 }
 
 static void advance(bough_coupling *c, int member) {
-    const bough_subsystem *s = c->assembly->member[member];
-    bool restart = c->restart || sees_jumps(c, member);
-    c->status[member] = s->ops->advance(s->self, c->t1, &c->signal[member], restart);
+    bough_coupling_advance_to(c, member, c->t1, c->restart || sees_jumps(c, member));
 }
 
 static bough_status step(bough_coupling *c) {

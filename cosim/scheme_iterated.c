@@ -206,7 +206,7 @@ static void advance(bough_coupling *c, int member) {
     }
     for (int k = 0; k < it->n_node; k++) {
         double t = node_time(c, k);
-        c->status[member] = s->ops->advance(s->self, t, &c->signal[member], k == 0);
+        bough_coupling_advance_to(c, member, t, k == 0);
         if (!bough_is_ok(&c->status[member])) return;
         bough_signal_value(&c->signal[member], t, seen);
         s->ops->output(s->self, t, s->state, seen,
@@ -317,7 +317,7 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
     const char *advice = !learns ? "try accelerator: iqn-ils"
                          : contraction < 0.9 ? "try more iterations"
                                              : "try a larger tolerance or a tighter micro rtol";
-    return bough_fail(BOUGH_FAILED,
+    return bough_fail(BOUGH_RETRY,
                       "coupling of %.24s and %.24s not converged at %.6g s: residual %.2g after %d "
                       "iterations, factor %.3g in each; %s",
                       a->member[a->source_member[it->input[worst]]]->name, a->member[to]->name,

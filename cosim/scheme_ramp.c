@@ -204,7 +204,7 @@ static bough_status predict(bough_coupling *c) {
         bough_condensed_solve(r->interface, r->change);
         return bough_ok();
     }
-    return bough_fail(BOUGH_FAILED, "the interface equations are singular at %.6g s", c->t0);
+    return bough_fail(BOUGH_RETRY, "the interface equations are singular at %.6g s", c->t0);
 }
 
 // Above this gain the leaders weigh less than what hangs on them: the trapezoidal prediction rings.
@@ -310,7 +310,7 @@ static bough_status prepare(bough_coupling *c, bough_arena *arena) {
     const ramp *r = c->scheme_data;
     bough_status status = choose_theta(c);
     c->refactor = true; // loads are sampled before the first step
-    if (status.code == BOUGH_FAILED) return bough_ok();
+    if (status.code == BOUGH_RETRY) return bough_ok();
     if (!bough_is_ok(&status) || !r->repeats) return status;
     return prepare_repetition(c, arena);
 }

@@ -96,11 +96,47 @@ static void steps_grow_again_and_meet_events(void **state) {
     bough_two_mass_destroy(&m);
 }
 
+static bough_subsystem_ops failing; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+static bough_code failure;
+static int calls;
+
+static bough_status fail_to_advance(void *self, double t1, const bough_signal *input, bool restart) {
+    (void)self, (void)input, (void)restart;
+    calls++;
+    return bough_fail(failure, "mass1 at t = %g s: gave up", t1);
+}
+
+// A numerical failure is tried again with shorter steps down to the shortest, .02 s; no other is.
+static void only_what_asks_for_it_is_repeated(void **state) {
+    (void)state;
+    static const struct {
+        bough_code code, told;
+        int calls;
+    } cases[] = {{BOUGH_FAILED, BOUGH_FAILED, 4}, // .16, .08, .04, .02 s
+                 {BOUGH_IO, BOUGH_IO, 1},
+                 {BOUGH_OUT_OF_MEMORY, BOUGH_OUT_OF_MEMORY, 1}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        bough_two_mass m = bough_two_mass_default();
+        bough_status status = bough_two_mass_build(&m, definition("gauss-seidel", .16, 1e-3));
+        assert_int_equal(status.code, BOUGH_OK);
+        failing = *m.subsystem[0].ops;
+        failing.advance = fail_to_advance;
+        m.subsystem[0].ops = &failing;
+        failure = cases[k].code;
+        calls = 0;
+        status = bough_step(m.master);
+        assert_int_equal(status.code, cases[k].told);
+        assert_int_equal(calls, cases[k].calls);
+        bough_two_mass_destroy(&m);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_taken_back_leave_nothing),
         cmocka_unit_test(error_follows_the_tolerance),
         cmocka_unit_test(steps_grow_again_and_meet_events),
+        cmocka_unit_test(only_what_asks_for_it_is_repeated),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

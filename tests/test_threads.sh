@@ -51,7 +51,9 @@ for scheme in $schemes; do
     same "$turbine" '20 ms' "$few" "simulation.coupling.scheme=$scheme" 'simulation.macro_step=1 ms' \
         'aero.rate=500 Hz'
 done
-for solver in cvode-bdf arkode-esdirk generalized-alpha rosenbrock; do
+for solver in ida cvode-bdf arkode-esdirk generalized-alpha rosenbrock; do
+    same "$turbine" '40 ms' "$few" "simulation.master.solver=$solver" \
+        'simulation.coupling.scheme=monolithic' 'simulation.macro_step=4 ms' 'aero.rate=250 Hz'
     same "$turbine" '0.1 s' "$few" "simulation.micro.solver=$solver" 'simulation.macro_step=10 ms' \
         'aero.rate=100 Hz'
 done
