@@ -82,19 +82,12 @@ static inline bough_quaternion unit_quaternion(double w, double x, double y, dou
     return (bough_quaternion){scale * w, scale * x, scale * y, scale * z};
 }
 
-static inline bough_mat3 matrix_of(bough_quaternion p) {
-    double w = p.w, x = p.x, y = p.y, z = p.z;
-    return (bough_mat3){{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-                        {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-                        {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
-}
-
 // The rotation part way from p to q. Within the few degrees between neighbouring vertices the
 // normalised chord is as good as the arc, and like it independent of the frame.
 static inline bough_mat3 rotation_between(bough_quaternion p, bough_quaternion q, double weight) {
     double side = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
     double wp = 1 - weight, wq = side < 0 ? -weight : weight;
-    return matrix_of(unit_quaternion(wp * p.w + wq * q.w, wp * p.x + wq * q.x, wp * p.y + wq * q.y,
+    return bough_rotation_matrix(unit_quaternion(wp * p.w + wq * q.w, wp * p.x + wq * q.x, wp * p.y + wq * q.y,
                                      wp * p.z + wq * q.z));
 }
 

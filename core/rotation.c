@@ -22,13 +22,6 @@ bough_vec3 bough_quaternion_logarithm(bough_quaternion p) {
     return bough_scale(factor, v);
 }
 
-bough_mat3 bough_rotation_matrix(bough_quaternion p) {
-    double w = p.w, x = p.x, y = p.y, z = p.z;
-    return (bough_mat3){{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-                        {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-                        {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
-}
-
 bough_quaternion bough_quaternion_of_matrix(bough_mat3 r) {
     // Shepperd's choice of the largest component keeps every digit.
     double t = r.c1.x + r.c2.y + r.c3.z;

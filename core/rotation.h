@@ -34,7 +34,12 @@ bough_quaternion bough_quaternion_exponential(bough_vec3 phi);
 bough_vec3 bough_quaternion_logarithm(bough_quaternion p);
 
 // (3): R(p) = (p₀² − |𝐩|²)E + 2 𝐩𝐩ᵀ + 2 p₀ ξ(𝐩), for |p| = 1.
-bough_mat3 bough_rotation_matrix(bough_quaternion p);
+static inline bough_mat3 bough_rotation_matrix(bough_quaternion p) {
+    double w = p.w, x = p.x, y = p.y, z = p.z;
+    return (bough_mat3){{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
+                        {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
+                        {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
+}
 
 // The quaternion of a rotation matrix, with w >= 0.
 bough_quaternion bough_quaternion_of_matrix(bough_mat3 r);

@@ -1,5 +1,5 @@
-// Vector operations for SUNDIALS: loops the compiler vectorises, where the library's serial ones
-// cost three quarters of a rod's run. The only place that implements an N_Vector.
+// Vectors for SUNDIALS: the library's serial one with vectorised operations, as its own cost three
+// quarters of a rod's run. The only place that knows an N_Vector from inside.
 #ifndef BOUGH_CORE_VECTOR_H
 #define BOUGH_CORE_VECTOR_H
 

@@ -68,6 +68,18 @@ static bough_status connect_all(bough_assembly *a, const bough_assembly_def *def
     return bough_ok();
 }
 
+// Up to three inputs in a row of one connection.
+static void find_vectors(bough_assembly *a) {
+    for (int i = 0; i < a->n_member; i++) {
+        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+            bool continues = j > a->input_offset[i] && a->source[j] == a->source[j - 1] + 1 &&
+                             a->source_member[j] == a->source_member[j - 1] &&
+                             a->kinematic[j] == a->kinematic[j - 1] && j - a->vector[j - 1] < 3;
+            a->vector[j] = continues ? a->vector[j - 1] : j;
+        }
+    }
+}
+
 // The connection that answers `forward` in the opposite direction: the n-th for the n-th between
 // the same two members.
 static const bough_connection *partner(const bough_assembly_def *def, int forward) {
@@ -145,6 +157,7 @@ bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *
     a->source = bough_arena_take(arena, n_input * sizeof(int));
     a->source_member = bough_arena_take(arena, n_input * sizeof(int));
     a->kinematic = bough_arena_take(arena, n_input * sizeof(bool));
+    a->vector = bough_arena_take(arena, n_input * sizeof(int));
     a->interface = bough_arena_take(arena, (size_t)def->n_connection * sizeof *a->interface);
     bool *resolved = bough_arena_take(arena, (size_t)a->n_member * sizeof(bool));
     double *input = bough_arena_doubles(arena, 2 * n_input);
@@ -153,6 +166,7 @@ bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *
 
     bough_status status = connect_all(a, def);
     if (!bough_is_ok(&status)) return status;
+    find_vectors(a);
     pair_interfaces(a, def);
     for (int i = 0; i < a->n_member; i++) {
         a->feedthrough[i] = probe_feedthrough(a->member[i], input, output);

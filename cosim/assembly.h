@@ -47,6 +47,7 @@ typedef struct bough_assembly {
     int *source;                    // (n_input) the output that feeds each input
     int *source_member;             // (n_input) the member it belongs to
     bool *kinematic;                // (n_input)
+    int *vector; // (n_input) first of the up to three inputs that form a vector with this one
     bool *feedthrough;              // (n_member) whether outputs depend on inputs directly
     int *order;                     // (n_member) outputs evaluated in this order need no iteration
     int n_interface;

@@ -13,7 +13,7 @@ static bool take(bough_coupling *c, bough_arena *arena) {
     c->output = bough_arena_doubles(arena, n_output);
     c->input = bough_arena_doubles(arena, n_input);
     c->applied = bough_arena_doubles(arena, n_input);
-    for (int p = 0; p < BOUGH_HISTORY; p++) c->past[p] = bough_arena_doubles(arena, n_input);
+    for (int p = 0; p < BOUGH_PAST; p++) c->past[p] = bough_arena_doubles(arena, n_input);
     c->start_rate = bough_arena_doubles(arena, n_output);
     c->end_output = bough_arena_doubles(arena, n_output);
     c->output_drift = bough_arena_doubles(arena, n_output);
@@ -306,8 +306,8 @@ void bough_coupling_exchange(bough_coupling *c) {
     for (int i = 0; i < a->n_member; i++) {
         bough_signal_value(&c->signal[i], c->t1, c->applied + a->input_offset[i]);
     }
-    double *oldest = c->past[BOUGH_HISTORY - 1];
-    for (int p = BOUGH_HISTORY - 1; p > 0; p--) {
+    double *oldest = c->past[BOUGH_PAST - 1];
+    for (int p = BOUGH_PAST - 1; p > 0; p--) {
         c->past[p] = c->past[p - 1];
         c->past_time[p] = c->past_time[p - 1];
     }
@@ -315,6 +315,54 @@ void bough_coupling_exchange(bough_coupling *c) {
     c->past_time[0] = c->t1;
     memcpy(oldest, c->input, (size_t)a->n_input * sizeof(double));
     if (c->n_past < BOUGH_HISTORY) c->n_past++;
+}
+
+// Its rows after the states; their number.
+static int memory_rows(const bough_coupling *c, double *row[4]) {
+    row[0] = c->past[1];
+    row[1] = c->past[2];
+    row[2] = c->applied;
+    row[3] = c->deficit;
+    return c->deficit != NULL ? 4 : 3;
+}
+
+int bough_coupling_n_memory(const bough_coupling *c) {
+    double *row[4];
+    return c->assembly->n_state + memory_rows(c, row) * c->assembly->n_input;
+}
+
+void bough_coupling_load(bough_coupling *c, double h, const double *z) {
+    const bough_assembly *a = c->assembly;
+    size_t size = (size_t)a->n_input * sizeof(double);
+    double *row[4];
+    int n = memory_rows(c, row);
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_subsystem *s = a->member[i];
+        s->ops->set_state(s->self, 0, z + a->state_offset[i]);
+    }
+    for (int p = 0; p < n; p++) memcpy(row[p], z + a->n_state + p * a->n_input, size);
+    for (int i = 0; i < a->n_member && c->deficit != NULL; i++) { // of leaders only
+        size_t own = (size_t)a->member[i]->n_input * sizeof(double);
+        if (a->stage[i] != 0) memset(c->deficit + a->input_offset[i], 0, own);
+    }
+    bough_assembly_outputs(a, 0, c->output, c->input);
+    memcpy(c->past[0], c->input, size);
+    for (int p = 0; p < BOUGH_HISTORY; p++) c->past_time[p] = -p * h;
+    c->n_past = BOUGH_HISTORY;
+    c->t1 = 0;
+}
+
+void bough_coupling_store(const bough_coupling *c, double *z) {
+    const bough_assembly *a = c->assembly;
+    double *row[4];
+    int n = memory_rows(c, row);
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_subsystem *s = a->member[i];
+        memcpy(z + a->state_offset[i], s->state, (size_t)s->n_state * sizeof(double));
+    }
+    for (int p = 0; p < n; p++) {
+        memcpy(z + a->n_state + p * a->n_input, row[p], (size_t)a->n_input * sizeof(double));
+    }
 }
 
 void bough_coupling_snapshot(bough_coupling *c, bough_snapshot *s) {
@@ -329,7 +377,7 @@ void bough_coupling_snapshot(bough_coupling *c, bough_snapshot *s) {
     bough_snapshot_doubles(s, c->input, a->n_input);
     bough_snapshot_doubles(s, c->applied, a->n_input);
     if (c->deficit) bough_snapshot_doubles(s, c->deficit, a->n_input);
-    for (int p = 0; p < BOUGH_HISTORY; p++) bough_snapshot_doubles(s, c->past[p], a->n_input);
-    bough_snapshot_doubles(s, c->past_time, BOUGH_HISTORY);
+    for (int p = 0; p < BOUGH_PAST; p++) bough_snapshot_doubles(s, c->past[p], a->n_input);
+    bough_snapshot_doubles(s, c->past_time, BOUGH_PAST);
     bough_snapshot_take(s, &c->n_past, sizeof c->n_past);
 }

@@ -36,7 +36,8 @@ typedef struct bough_scheme_options {
     int iterations;   // iterated: most per macro step
 } bough_scheme_options;
 
-enum { BOUGH_HISTORY = 3 };
+// Synchronisation points that a scheme may use, and that are kept.
+enum { BOUGH_HISTORY = 3, BOUGH_PAST = 4 };
 
 typedef struct bough_scheme bough_scheme;       // see scheme.h
 typedef struct bough_iteration bough_iteration; // see iteration.h
@@ -60,9 +61,9 @@ typedef struct bough_coupling {
     double *applied; // (n_input) what acted on the receivers on the step, at its end
     double *deficit; // (n_input) ∫ of what a port was − what its receiver saw, over all steps;
                      // of the leaders; NULL unless the scheme pays it back
-    int n_past;     // valid entries of the two below
-    double past_time[BOUGH_HISTORY]; // the last synchronisation points, newest first [s]
-    double *past[BOUGH_HISTORY];     // (n_input each) inputs there
+    int n_past;     // of the two below those that schemes may use, at most BOUGH_HISTORY
+    double past_time[BOUGH_PAST]; // the last synchronisation points, newest first [s]
+    double *past[BOUGH_PAST];     // (n_input each) inputs there
 
     // during a step, by the scheme
     bough_signal *signal;  // (n_member) what each member sees on the step
@@ -147,6 +148,14 @@ double bough_coupling_curvature(const bough_coupling *c, int j, double end);
 
 // Outputs and inputs at t1, end values of the signals; the history moves on.
 void bough_coupling_exchange(bough_coupling *c);
+
+// What the next macro step depends on as one vector z: the members' states (n_state), the inputs one
+// and two steps ago, the inputs applied last and, of schemes that pay it back, the deficit (n_input
+// each). Its length; the step that begins at time 0 after steps of length h set from it; it from the
+// coupling.
+int bough_coupling_n_memory(const bough_coupling *c);
+void bough_coupling_load(bough_coupling *c, double h, const double *z);
+void bough_coupling_store(const bough_coupling *c, double *z);
 
 // All that a step changes and the next one needs: the members' states and what was exchanged. A
 // scheme's own memory is not in it.

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BATCH = 32, SLOT = 4, SLOTS = BATCH / SLOT, PAST = 3, WITHIN = 3 };
+enum { BATCH = 32, SLOT = 4, SLOTS = BATCH / SLOT, WITHIN = 3 };
 static const double longest_batch = 0.25; // the members are linearised once in it [s]
 static const double longest_step = 0.02;  // of the α method [s]
 
@@ -36,12 +36,9 @@ struct bough_error_estimate {
     long batches;
     bool lost; // a member could not be linearised
     // reconstruction of the inputs
-    int n_point;         // valid entries of the two below
-    double time[PAST];   // synchronisation points before the step, newest first [s]
-    double *value[PAST]; // (n_input) inputs there
+    int n_point;         // synchronisation points before the step that no jump parts from it
     bough_signal curve;  // (n_input) through them and the step's end
     double *cubic;       // (n_input) its last coefficient in the step before, where known within
-    int *vector;         // (n_input) first of the up to three inputs that form a vector
     double *size;        // (n_input) of a vector's first: its largest norm so far
     // the error
     double *error, *rate; // (n_state) ε, ε̇
@@ -63,15 +60,12 @@ static bool take(bough_error_estimate *e, bough_arena *arena) {
     const bough_assembly *a = e->assembly;
     size_t n = (size_t)a->n_state, n_input = (size_t)a->n_input;
     e->defect = bough_arena_doubles(arena, BATCH * 4 * n_input);
-    for (int p = 0; p < PAST; p++)
-        e->value[p] = bough_arena_doubles(arena, n_input);
     e->curve = bough_port_signal(arena, a->n_input);
     e->cubic = bough_arena_doubles(arena, n_input);
     e->own = bough_arena_doubles(arena, SLOTS * n);
     e->error = bough_arena_doubles(arena, n);
     e->rate = bough_arena_doubles(arena, n);
     e->input_worst = bough_arena_doubles(arena, n_input);
-    e->vector = bough_arena_take(arena, n_input * sizeof *e->vector);
     e->size = bough_arena_doubles(arena, n_input);
     e->at = bough_arena_doubles(arena, n);
     e->x = bough_arena_doubles(arena, n);
@@ -81,28 +75,13 @@ static bool take(bough_error_estimate *e, bough_arena *arena) {
     return !bough_arena_exhausted(arena);
 }
 
-static void find_vectors(bough_error_estimate *e) {
-    const bough_assembly *a = e->assembly;
-    for (int i = 0; i < a->n_member; i++) {
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            bool continues = j > a->input_offset[i] && a->source[j] == a->source[j - 1] + 1 &&
-                             a->source_member[j] == a->source_member[j - 1] &&
-                             j - e->vector[j - 1] < 3;
-            e->vector[j] = continues ? e->vector[j - 1] : j;
-        }
-    }
-}
-
 bough_status bough_error_estimate_create(bough_arena *arena, const bough_coupling *c,
                                          bough_error_estimate **estimate) {
     bough_error_estimate *e = bough_arena_take(arena, sizeof *e);
     if (!e) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     e->assembly = c->assembly;
     if (!take(e, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    find_vectors(e);
     e->n_point = 1;
-    e->time[0] = c->t1;
-    memcpy(e->value[0], c->input, (size_t)c->assembly->n_input * sizeof(double));
     *estimate = e;
     return bough_coupled_create(arena, c->assembly, c->pool, &e->coupled);
 }
@@ -118,7 +97,7 @@ static void reconstruct_within(bough_error_estimate *e, const bough_coupling *c)
     const double *value[WITHIN + 1];
     for (int k = 0; k < WITHIN; k++) time[k + 1] = c->t0 + c->within_time[k] * (c->t1 - c->t0);
     for (int j = 0; j < a->n_input; j++) {
-        value[0] = e->value[0] + j;
+        value[0] = c->past[1] + j;
         for (int k = 0; k < WITHIN; k++) value[k + 1] = c->within + k * a->n_output + a->source[j];
         bough_port_polynomial(&e->curve, j, 1, WITHIN + 1, time, value);
     }
@@ -139,28 +118,11 @@ static void add_remainder(bough_error_estimate *e, int j, double *defect) {
 // of them before a jump.
 static void reconstruct(bough_error_estimate *e, const bough_coupling *c) {
     int past = c->restart ? 1 : e->n_point;
-    double time[PAST + 1] = {c->t1};
-    const double *value[PAST + 1] = {c->input};
-    for (int p = 0; p < past; p++) {
-        time[p + 1] = e->time[p];
-        value[p + 1] = e->value[p];
-    }
+    const double *value[BOUGH_PAST];
+    for (int p = 0; p <= past; p++) value[p] = c->past[p];
     e->curve.t0 = c->t0;
     e->curve.t1 = c->t1;
-    bough_port_polynomial(&e->curve, 0, e->curve.n, past + 1, time, value);
-}
-
-// The end of the step becomes the last synchronisation point.
-static void remember(bough_error_estimate *e, const bough_coupling *c) {
-    double *oldest = e->value[PAST - 1];
-    for (int p = PAST - 1; p > 0; p--) {
-        e->value[p] = e->value[p - 1];
-        e->time[p] = e->time[p - 1];
-    }
-    e->value[0] = oldest;
-    e->time[0] = c->t1;
-    memcpy(oldest, c->input, (size_t)e->assembly->n_input * sizeof(double));
-    e->n_point = c->restart ? 2 : e->n_point < PAST ? e->n_point + 1 : PAST;
+    bough_port_polynomial(&e->curve, 0, e->curve.n, past + 1, c->past_time, value);
 }
 
 static void keep_defects(bough_error_estimate *e, const bough_coupling *c) {
@@ -205,7 +167,7 @@ void bough_error_estimate_step(bough_error_estimate *e, bough_coupling *c) {
     }
     keep_own_errors(e);
     keep_defects(e, c);
-    remember(e, c);
+    e->n_point = c->restart ? 2 : e->n_point + 1 < BOUGH_PAST ? e->n_point + 1 : BOUGH_PAST - 1;
     if (e->n_step == BATCH || c->t1 - e->start[0] >= longest_batch) {
         bough_error_estimate_finish(e, c);
     }
@@ -216,8 +178,8 @@ void bough_error_estimate_step(bough_error_estimate *e, bough_coupling *c) {
 // Squares of the vectors' norms: square (n_input), in a vector's first.
 static void square_norms(const bough_error_estimate *e, const double *x, double *square) {
     for (int j = 0; j < e->assembly->n_input; j++) {
-        if (e->vector[j] == j) square[j] = 0;
-        square[e->vector[j]] += x[j] * x[j];
+        if (e->assembly->vector[j] == j) square[j] = 0;
+        square[e->assembly->vector[j]] += x[j] * x[j];
     }
 }
 
@@ -226,7 +188,7 @@ static double worst_relative(bough_error_estimate *e, const double *x) {
     double *square = e->outside, worst = 0;
     square_norms(e, x, square);
     for (int j = 0; j < e->assembly->n_input; j++) {
-        if (e->vector[j] != j || !(square[j] > 0)) continue;
+        if (e->assembly->vector[j] != j || !(square[j] > 0)) continue;
         double relative = sqrt(square[j]) / e->size[j];
         worst = relative <= worst ? worst : relative; // a NaN wins
     }
@@ -250,7 +212,7 @@ static double defect_near(bough_error_estimate *e, const bough_coupling *c, doub
 // quarter of the change stands in for it.
 static double change_over(bough_error_estimate *e, const bough_coupling *c) {
     for (int j = 0; j < e->assembly->n_input; j++) {
-        e->seen[j] = c->followed[j] ? 0 : c->input[j] - e->value[0][j];
+        e->seen[j] = c->followed[j] ? 0 : c->input[j] - c->past[1][j];
     }
     return worst_relative(e, e->seen);
 }
@@ -258,7 +220,7 @@ static double change_over(bough_error_estimate *e, const bough_coupling *c) {
 double bough_error_estimate_defect(bough_error_estimate *e, const bough_coupling *c) {
     square_norms(e, c->input, e->outside);
     for (int j = 0; j < e->assembly->n_input; j++) {
-        if (e->vector[j] == j) e->size[j] = fmax(e->size[j], sqrt(e->outside[j]));
+        if (e->assembly->vector[j] == j) e->size[j] = fmax(e->size[j], sqrt(e->outside[j]));
     }
     reconstruct(e, c);
     double end = defect_near(e, c, c->t1);
@@ -399,10 +361,7 @@ void bough_error_estimate_snapshot(bough_error_estimate *e, bough_snapshot *s) {
     bough_snapshot_take(s, &e->batches, sizeof e->batches);
     bough_snapshot_take(s, &e->lost, sizeof e->lost);
     bough_snapshot_take(s, &e->n_point, sizeof e->n_point);
-    bough_snapshot_doubles(s, e->time, PAST);
     bough_snapshot_doubles(s, e->cubic, a->n_input);
-    for (int p = 0; p < PAST; p++)
-        bough_snapshot_doubles(s, e->value[p], a->n_input);
     bough_snapshot_doubles(s, e->size, a->n_input);
     bough_snapshot_doubles(s, e->error, a->n_state);
     bough_snapshot_doubles(s, e->rate, a->n_state);

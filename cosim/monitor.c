@@ -66,7 +66,6 @@ struct bough_monitor {
     int n_group;
     group *group;
     long steps;
-    double *previous;      // (n_input) obtained at the last synchronisation point
     account *account;      // (n_interface)
     int window_steps;      // in the open window
     double window_time;    // its length so far [s]
@@ -81,22 +80,14 @@ static int receiver(const bough_assembly *a, int input) {
 }
 
 static void make_groups(bough_monitor *m, const bough_assembly *a) {
-    for (int i = 0; i < a->n_member; i++) {
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            group *last = m->n_group > 0 ? &m->group[m->n_group - 1] : NULL;
-            bool continues = last && last->to == i && last->from == a->source_member[j] &&
-                             last->kinematic == a->kinematic[j] && last->count < 3 &&
-                             a->source[j] == a->source[j - 1] + 1;
-            if (continues) {
-                last->count++;
-                continue;
-            }
+    for (int j = 0; j < a->n_input; j++) {
+        if (a->vector[j] == j) {
             m->group[m->n_group++] = (group){.first = j,
-                                             .count = 1,
-                                             .to = i,
+                                             .to = receiver(a, j),
                                              .from = a->source_member[j],
                                              .kinematic = a->kinematic[j]};
         }
+        m->group[m->n_group - 1].count++;
     }
 }
 
@@ -108,12 +99,10 @@ bough_status bough_monitor_create(bough_arena *arena, const bough_coupling *coup
     if (!m) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_scheme_advise(coupling->scheme, m->advice);
     m->group = bough_arena_take(arena, n_input * sizeof *m->group);
-    m->previous = bough_arena_doubles(arena, n_input);
     m->start = bough_arena_doubles(arena, n_input);
     m->account = bough_arena_take(arena, (size_t)a->n_interface * sizeof *m->account);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     make_groups(m, a);
-    memcpy(m->previous, coupling->input, n_input * sizeof(double));
     *monitor = m;
     return bough_ok();
 }
@@ -276,14 +265,15 @@ static double dot(const double *x, const double *y, int n) {
 // Trapezoidal work of the wrench that came out, and of its difference from the one applied.
 static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
+    const double *before = c->past[1];
     double half = (c->t1 - c->t0) / 2;
     for (int i = 0; i < a->n_member; i++) {
         bough_signal_value(&c->signal[i], c->t0, m->start + a->input_offset[i]);
     }
     for (int k = 0; k < a->n_interface; k++) {
         const bough_interface *f = &a->interface[k];
-        const double *v0 = m->previous + f->twist, *v1 = c->input + f->twist;
-        double obtained0 = dot(m->previous + f->wrench, v0, f->count);
+        const double *v0 = before + f->twist, *v1 = c->input + f->twist;
+        double obtained0 = dot(before + f->wrench, v0, f->count);
         double obtained1 = dot(c->input + f->wrench, v1, f->count);
         double applied = dot(m->start + f->wrench, v0, f->count) +
                          dot(c->applied + f->wrench, v1, f->count);
@@ -412,7 +402,6 @@ bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c) {
     if (!bough_is_ok(&status)) return status;
     m->steps++;
     keep_accounts(m, c);
-    memcpy(m->previous, c->input, (size_t)c->assembly->n_input * sizeof(double));
     for (int k = 0; k < m->n_group && bough_is_ok(&status); k++) {
         status = judge_group(m, c, &m->group[k]);
     }
@@ -423,7 +412,6 @@ void bough_monitor_snapshot(bough_monitor *m, const bough_coupling *c, bough_sna
     const bough_assembly *a = c->assembly;
     bough_snapshot_take(s, m->group, (size_t)m->n_group * sizeof *m->group);
     bough_snapshot_take(s, &m->steps, sizeof m->steps);
-    bough_snapshot_doubles(s, m->previous, a->n_input);
     bough_snapshot_take(s, m->account, (size_t)a->n_interface * sizeof *m->account);
     bough_snapshot_take(s, &m->window_steps, sizeof m->window_steps);
     bough_snapshot_take(s, &m->window_time, sizeof m->window_time);

@@ -86,10 +86,7 @@ static void find_feedback(bough_iteration *it, const bough_coupling *c) {
             int k = it->n++;
             it->is_feedback[j] = true;
             it->input[k] = j;
-            bool continues = k > 0 && j > a->input_offset[i] && it->input[k - 1] == j - 1 &&
-                             a->source[j] == a->source[j - 1] + 1 && k - it->group[k - 1] < 3 &&
-                             a->source_member[j] == a->source_member[j - 1];
-            it->group[k] = continues ? it->group[k - 1] : k;
+            it->group[k] = a->vector[j] == j ? k : it->group[k - 1];
         }
     }
 }

@@ -1,7 +1,7 @@
 #include "cosim/stability.h"
 
+#include "core/arnoldi.h"
 #include "core/base.h"
-#include "core/linalg.h"
 #include "cosim/linear_member.h"
 #include "cosim/scheme.h"
 
@@ -17,8 +17,7 @@ static const double sub_step = 5e-3;  // of the linear members at most [s]; a qu
 static const double exact = 1e-4;     // share of an eigenvalue
 static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
 
-// The map z → z after `repeat` macro steps; z = (states, inputs one and two steps ago, applied inputs,
-// deficit impulses).
+// The map z → z after `repeat` macro steps; z is what a step depends on, see bough_coupling_load.
 typedef struct map {
     bough_arena *arena;
     bough_assembly assembly; // of the linear members
@@ -27,18 +26,10 @@ typedef struct map {
     double macro_step, sub_step;
     int repeat;
     int n;          // n_state + 3 n_input
-    double *weight; // (n) makes the components comparable
-    // Arnoldi
-    int dimension;
-    bool complete;      // nothing lies outside the space
-    double *basis;      // ((DIMENSION + 1) × n)
-    double *hessenberg; // (column j from j · DIMENSION, j + 2 long)
-    double *packed;     // (dimension × dimension)
-    double *value, *vector, *work; // for its eigenvalues
-    int before;                    // dimension last time
-    double *earlier;               // (2 × before) eigenvalues then
-    double *z, *image;  // (n)
-    double *pair;       // (2 × n) real and imaginary part of a vector
+    bough_arnoldi arnoldi;
+    int before;      // vectors done last time
+    double *earlier; // (2 × before) eigenvalues then
+    double *pair;    // (2 × n) real and imaginary part of a vector
 } map;
 
 // -- building -------------------------------------------------------------------------------------
@@ -58,20 +49,10 @@ static bough_status build_linear_members(map *m, const bough_assembly *a, const 
 }
 
 static bough_status take(map *m) {
-    size_t n = (size_t)m->n, k = DIMENSION;
-    m->weight = bough_arena_doubles(m->arena, n);
-    m->basis = bough_arena_doubles(m->arena, (k + 1) * n);
-    m->hessenberg = bough_arena_doubles(m->arena, (k + 1) * k);
-    m->packed = bough_arena_doubles(m->arena, k * k);
-    m->value = bough_arena_doubles(m->arena, 2 * k);
-    m->earlier = bough_arena_doubles(m->arena, 2 * k);
-    m->vector = bough_arena_doubles(m->arena, k * k);
-    m->work = bough_arena_doubles(m->arena, 8 * k);
-    m->z = bough_arena_doubles(m->arena, n);
-    m->image = bough_arena_doubles(m->arena, n);
-    m->pair = bough_arena_doubles(m->arena, 2 * n);
-    return bough_arena_exhausted(m->arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
-                                           : bough_ok();
+    m->earlier = bough_arena_doubles(m->arena, 2 * (size_t)DIMENSION);
+    m->pair = bough_arena_doubles(m->arena, 2 * (size_t)m->n);
+    bool taken = bough_arnoldi_create(m->arena, m->n, DIMENSION + 1, &m->arnoldi);
+    return taken ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
 }
 
 // What the iterated scheme converges to is judged, however it gets there: what its tolerance leaves
@@ -96,54 +77,18 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     status = bough_scheme_couple(m->arena, &m->assembly, &judged, NULL, &c);
     if (!bough_is_ok(&status) || !c) return status;
     m->coupling = c;
-    m->n = a->n_state + (c->deficit != NULL ? 4 : 3) * a->n_input;
+    m->n = bough_coupling_n_memory(c);
     m->repeat = (int)fmin(ceil(span / m->macro_step - 1e-6), MOST_REPEATED);
     return take(m);
 }
 
 // -- the map --------------------------------------------------------------------------------------
 
-static void load(map *m, const double *z) {
-    bough_coupling *c = m->coupling;
-    const bough_assembly *a = &m->assembly;
-    for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *s = a->member[i];
-        s->ops->set_state(s->self, 0, z + a->state_offset[i]);
-    }
-    size_t size = (size_t)a->n_input * sizeof(double);
-    bough_assembly_outputs(a, 0, c->output, c->input);
-    memcpy(c->past[0], c->input, size);
-    memcpy(c->past[1], z + a->n_state, size);
-    memcpy(c->past[2], z + a->n_state + a->n_input, size);
-    memcpy(c->applied, z + a->n_state + 2 * a->n_input, size);
-    for (int j = 0; j < a->n_input && c->deficit != NULL; j++) {
-        bool paid = j < a->input_offset[1];
-        c->deficit[j] = paid ? z[a->n_state + 3 * a->n_input + j] : 0;
-    }
-    for (int p = 0; p < BOUGH_HISTORY; p++) c->past_time[p] = -p * m->macro_step;
-    c->n_past = BOUGH_HISTORY;
-    c->t1 = 0;
-}
-
-static void store(const map *m, double *z) {
-    const bough_coupling *c = m->coupling;
-    const bough_assembly *a = &m->assembly;
-    for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *s = a->member[i];
-        memcpy(z + a->state_offset[i], s->state, (size_t)s->n_state * sizeof(double));
-    }
-    size_t size = (size_t)a->n_input * sizeof(double);
-    memcpy(z + a->n_state, c->past[1], size);
-    memcpy(z + a->n_state + a->n_input, c->past[2], size);
-    memcpy(z + a->n_state + 2 * a->n_input, c->applied, size);
-    if (c->deficit != NULL) memcpy(z + a->n_state + 3 * a->n_input, c->deficit, size);
-}
-
 // image = z after `count` macro steps
 static bough_status apply(map *m, int count, const double *z, double *image) {
     bough_coupling *c = m->coupling;
     bough_status status = bough_ok();
-    load(m, z);
+    bough_coupling_load(c, m->macro_step, z);
     for (int k = 0; k < count && bough_is_ok(&status); k++) {
         c->t0 = c->t1;
         c->t1 = (k + 1) * m->macro_step;
@@ -151,42 +96,30 @@ static bough_status apply(map *m, int count, const double *z, double *image) {
         status = c->scheme->step(c);
         bough_coupling_exchange(c);
     }
-    store(m, image);
+    bough_coupling_store(c, image);
     return status;
 }
 
-// The same on weighted vectors.
-static bough_status apply_weighted(map *m, int count, const double *x, double *image) {
-    for (int k = 0; k < m->n; k++) m->z[k] = x[k] / m->weight[k];
-    bough_status status = apply(m, count, m->z, image);
-    for (int k = 0; k < m->n; k++) image[k] *= m->weight[k];
-    return status;
+static bough_status apply_repeated(void *self, const double *z, double *image) {
+    map *m = self;
+    return apply(m, m->repeat, z, image);
 }
 
-// -- vectors --------------------------------------------------------------------------------------
-
-static double dot(int n, const double *x, const double *y) {
+static double norm(int n, const double *x) {
     double sum = 0;
-    for (int k = 0; k < n; k++) sum += x[k] * y[k];
-    return sum;
+    for (int k = 0; k < n; k++) sum += x[k] * x[k];
+    return sqrt(sum);
 }
 
-static void add(int n, double factor, const double *x, double *sum) {
-    for (int k = 0; k < n; k++) sum[k] += factor * x[k];
-}
-
-static void divide(int n, double divisor, double *x) {
-    for (int k = 0; k < n; k++) x[k] /= divisor;
-}
-
-// Inputs weigh what they do to the whole against the states: each member's as its largest.
+// Squares of what makes the components comparable. Inputs weigh what they do to the whole against the
+// states: each member's as its largest.
 static void choose_weights(map *m, const double *z) {
     const bough_assembly *a = &m->assembly;
-    double sum = 0;
+    double *weight = m->arnoldi.weight, sum = 0;
     for (int i = 0, k = 0; i < a->n_member; i++) {
         for (int j = 0; j < a->member[i]->n_state; j++, k++) {
-            m->weight[k] = 1 / a->member[i]->scale[j];
-            sum += z[k] * z[k] * m->weight[k] * m->weight[k];
+            weight[k] = 1 / (a->member[i]->scale[j] * a->member[i]->scale[j]);
+            sum += z[k] * z[k] * weight[k];
         }
     }
     for (int i = 0; i < a->n_member; i++) {
@@ -195,11 +128,11 @@ static void choose_weights(map *m, const double *z) {
         for (int j = first; j < last; j++) {
             largest = fmax(largest, fabs(z[a->n_state + 2 * a->n_input + j]));
         }
-        double weight = largest > 0 ? sqrt(sum / a->n_input) / largest : 1;
+        double own = largest > 0 ? sum / a->n_input / (largest * largest) : 1;
         for (int j = first; j < last; j++) {
-            for (int p = 0; p < 3; p++) m->weight[a->n_state + p * a->n_input + j] = weight;
+            for (int p = 0; p < 3; p++) weight[a->n_state + p * a->n_input + j] = own;
             if (m->coupling->deficit == NULL) continue;
-            m->weight[a->n_state + 3 * a->n_input + j] = weight / m->macro_step;
+            weight[a->n_state + 3 * a->n_input + j] = own / (m->macro_step * m->macro_step);
         }
     }
 }
@@ -208,7 +141,7 @@ static void choose_weights(map *m, const double *z) {
 // after a few macro steps.
 static bough_status start(map *m) {
     const bough_assembly *a = &m->assembly;
-    double *x = m->basis;
+    double *x = m->pair, *image = m->pair + m->n;
     unsigned seed = 1;
     for (int i = 0, k = 0; i < a->n_member; i++) {
         for (int j = 0; j < a->member[i]->n_state; j++, k++) {
@@ -217,64 +150,16 @@ static bough_status start(map *m) {
         }
     }
     for (int k = 0; k < WARM_UP; k++) {
-        bough_status status = apply(m, m->repeat, x, m->image);
+        bough_status status = apply(m, m->repeat, x, image);
         if (!bough_is_ok(&status)) return status;
-        memcpy(x, m->image, (size_t)m->n * sizeof(double));
-        divide(m->n, sqrt(dot(a->n_state, x, x)), x);
+        double length = norm(a->n_state, image);
+        for (int i = 0; i < m->n; i++) x[i] = image[i] / length;
     }
+    m->arnoldi.apply = apply_repeated;
+    m->arnoldi.self = m;
     choose_weights(m, x);
-    for (int k = 0; k < m->n; k++) x[k] *= m->weight[k];
-    divide(m->n, sqrt(dot(m->n, x, x)), x);
+    bough_arnoldi_append(&m->arnoldi, x, NULL);
     return bough_ok();
-}
-
-// -- Arnoldi --------------------------------------------------------------------------------------
-
-// Extends the space from m->dimension vectors to `wanted`.
-static bough_status extend(map *m, int wanted) {
-    int n = m->n;
-    for (int j = m->dimension; j < wanted && !m->complete; j++) {
-        double *next = m->basis + (size_t)(j + 1) * (size_t)n;
-        double *column = m->hessenberg + (size_t)j * DIMENSION;
-        bough_status status = apply_weighted(m, m->repeat, next - n, next);
-        if (!bough_is_ok(&status)) return status;
-        double before = sqrt(dot(n, next, next));
-        for (int pass = 0; pass < 2; pass++) {
-            for (int i = 0; i <= j; i++) {
-                const double *q = m->basis + (size_t)i * (size_t)n;
-                double h = dot(n, q, next);
-                column[i] += h;
-                add(n, -h, q, next);
-            }
-        }
-        m->dimension = j + 1;
-        column[j + 1] = sqrt(dot(n, next, next));
-        m->complete = m->dimension == n || !(column[j + 1] > 1e-12 * before);
-        if (m->complete) {
-            column[j + 1] = 0;
-        } else {
-            divide(n, column[j + 1], next);
-        }
-    }
-    return bough_ok();
-}
-
-// Eigenvalues and vectors of the Hessenberg matrix of the dimension reached.
-static bough_status solve_small(map *m) {
-    int n = m->dimension;
-    for (int j = 0; j < n; j++) {
-        memcpy(m->packed + j * n, m->hessenberg + (size_t)j * DIMENSION, (size_t)n * sizeof(double));
-    }
-    if (bough_dense_eigen(n, m->packed, m->value, m->vector, m->work)) return bough_ok();
-    return bough_fail(BOUGH_FAILED, "the eigenvalues of the coupling were not found");
-}
-
-// x (n) = basis · column of the eigenvectors
-static void ritz_vector(const map *m, int column, double *x) {
-    memset(x, 0, (size_t)m->n * sizeof(double));
-    for (int j = 0; j < m->dimension; j++) {
-        add(m->n, m->vector[column * m->dimension + j], m->basis + (size_t)j * (size_t)m->n, x);
-    }
 }
 
 // -- verdict --------------------------------------------------------------------------------------
@@ -288,13 +173,14 @@ typedef struct ritz {
 
 // Distance to the nearest eigenvalue of the space that was smaller.
 static double moved(const map *m, const ritz *r) {
+    const bough_arnoldi *a = &m->arnoldi;
     double nearest = HUGE_VAL;
     for (int k = 0; k < m->before; k++) {
-        double real = m->value[r->column] - m->earlier[k];
-        double imaginary = m->value[m->dimension + r->column] - m->earlier[m->before + k];
+        double real = a->value[r->column] - m->earlier[k];
+        double imaginary = a->value[a->done + r->column] - m->earlier[m->before + k];
         nearest = fmin(nearest, hypot(real, imaginary));
     }
-    return m->complete ? 0 : nearest;
+    return a->done == a->count ? 0 : nearest;
 }
 
 // What its residual leaves open; unfinished values of the many slow modes may exceed 1 by a little.
@@ -313,13 +199,11 @@ static bool certain(const map *m, const ritz *r) {
 }
 
 static ritz ritz_value(const map *m, int column) {
-    int n = m->dimension;
-    const double *last = m->vector + column * n + n - 1;
-    ritz r = {.column = column, .pair = m->value[n + column] != 0};
-    r.modulus = hypot(m->value[column], m->value[n + column]);
-    double part = r.pair ? hypot(last[0], last[n]) : fabs(last[0]);
-    r.residual = m->hessenberg[(n - 1) * DIMENSION + n] * part;
-    return r;
+    const bough_arnoldi *a = &m->arnoldi;
+    return (ritz){.column = column,
+                  .pair = a->value[a->done + column] != 0,
+                  .modulus = bough_arnoldi_modulus(a, column),
+                  .residual = bough_arnoldi_residual(a, column)};
 }
 
 // The member of the vector's largest part, of those that hang on an interface.
@@ -329,8 +213,11 @@ static int largest_body(const map *m, const double *real, const double *imaginar
     int body = 0;
     for (int k = 0; k < a->n_interface; k++) {
         int i = a->interface[k].body, first = a->state_offset[i], count = a->member[i]->n_state;
-        double part = dot(count, real + first, real + first) +
-                      dot(count, imaginary + first, imaginary + first);
+        const double *weight = m->arnoldi.weight;
+        double part = 0;
+        for (int j = first; j < first + count; j++) {
+            part += weight[j] * (real[j] * real[j] + imaginary[j] * imaginary[j]);
+        }
         if (part <= 1.01 * largest) continue; // of equals the first
         largest = part;
         body = i;
@@ -340,19 +227,20 @@ static int largest_body(const map *m, const double *real, const double *imaginar
 
 // One macro step of the vector x: λ = xᴴ M x / xᴴ x, whose angle is not folded over.
 static bough_status refine(map *m, const ritz *r, bough_stability *result) {
-    int n = m->n;
-    double *real = m->pair, *imaginary = m->pair + n;
-    memset(imaginary, 0, (size_t)n * sizeof(double));
-    ritz_vector(m, r->column, real);
-    if (r->pair) ritz_vector(m, r->column + 1, imaginary);
-    bough_status status = apply_weighted(m, 1, real, m->image);
+    const bough_arnoldi *basis = &m->arnoldi;
+    double *real = m->pair, *imaginary = m->pair + m->n, *image = m->arnoldi.image;
+    memset(m->pair, 0, 2 * (size_t)m->n * sizeof(double));
+    bough_arnoldi_combine(basis, r->column, m->n, real);
+    if (r->pair) bough_arnoldi_combine(basis, r->column + 1, m->n, imaginary);
+    bough_status status = apply(m, 1, real, image);
     if (!bough_is_ok(&status)) return status;
-    double a = dot(n, real, m->image), b = -dot(n, imaginary, m->image);
-    if (r->pair) status = apply_weighted(m, 1, imaginary, m->image);
+    double a = bough_arnoldi_product(basis, real, image);
+    double b = -bough_arnoldi_product(basis, imaginary, image);
+    if (r->pair) status = apply(m, 1, imaginary, image);
     if (!bough_is_ok(&status)) return status;
     if (r->pair) {
-        a += dot(n, imaginary, m->image);
-        b += dot(n, real, m->image);
+        a += bough_arnoldi_product(basis, imaginary, image);
+        b += bough_arnoldi_product(basis, real, image);
     }
     double time = m->repeat * m->macro_step;
     result->growth = log(r->modulus) / time;
@@ -372,7 +260,7 @@ static int descending(const void *a, const void *b) {
 static bough_status choose(map *m, bough_stability *result) {
     ritz found[DIMENSION];
     int count = 0;
-    for (int k = 0; k < m->dimension; k++) {
+    for (int k = 0; k < m->arnoldi.done; k++) {
         ritz r = ritz_value(m, k);
         if (r.pair) k++;
         if (likely(&r)) found[count++] = r;
@@ -403,12 +291,12 @@ static bough_status choose(map *m, bough_stability *result) {
 // Whether the largest eigenvalue so far grows fast, turns and is exact: the others do not matter.
 static bool decided(const map *m) {
     ritz top = {0};
-    for (int k = 0; k < m->dimension; k++) {
+    for (int k = 0; k < m->arnoldi.done; k++) {
         ritz r = ritz_value(m, k);
         if (r.modulus > top.modulus) top = r;
         if (r.pair) k++;
     }
-    bool turns = top.pair || m->value[top.column] < 0;
+    bool turns = top.pair || m->arnoldi.value[top.column] < 0;
     return turns && top.modulus > 1.2 && top.residual < exact * top.modulus && certain(m, &top);
 }
 
@@ -417,11 +305,14 @@ static bough_status judge(map *m, const bough_assembly *a, const bough_scheme_op
     bough_status status = build(m, a, options);
     if (bough_is_ok(&status)) status = start(m);
     for (int wanted = 2; bough_is_ok(&status) && wanted <= DIMENSION; wanted += 2) {
-        m->before = m->dimension;
-        memcpy(m->earlier, m->value, 2 * (size_t)m->before * sizeof(double));
-        status = extend(m, wanted);
-        if (bough_is_ok(&status)) status = solve_small(m);
-        if (bough_is_ok(&status) && (m->complete || decided(m))) break;
+        bough_arnoldi *space = &m->arnoldi;
+        m->before = space->done;
+        memcpy(m->earlier, space->value, 2 * (size_t)m->before * sizeof(double));
+        status = bough_arnoldi_extend(space, wanted);
+        if (bough_is_ok(&status) && !bough_arnoldi_project(space)) {
+            status = bough_fail(BOUGH_FAILED, "the eigenvalues of the coupling were not found");
+        }
+        if (bough_is_ok(&status) && (space->done == space->count || decided(m))) break;
     }
     return bough_is_ok(&status) ? choose(m, result) : status;
 }

@@ -97,7 +97,7 @@ static void add_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
     }
     if (!follow) return;
     for (int i = 0; i <= m->n_segment; i++) {
-        bough_mat3 r = matrix_of(load_vertex(scratch->vertex, s, i).p);
+        bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, i).p);
         for (int part = 0; part < 6; part += 3) {
             double *load = scratch->load + part * s;
             bough_vec3 f = bough_mat3_mul(r, load3(scratch->follower + part * s, s, i));
@@ -170,7 +170,7 @@ static void vertex_accelerations(const bough_rod_model *m, const bough_rod_scrat
 #pragma omp simd
     for (int i = 1; i <= n; i++) {
         vertex_state a = load_vertex(v, s, i);
-        bough_mat3 r = matrix_of(a.p);
+        bough_mat3 r = bough_rotation_matrix(a.p);
         bough_vec3 force = bough_add(bough_sub(load3(f, s, i), load3(f, s, i - 1)),
                                      load3(load, s, i));
         bough_vec3 moment = bough_add(bough_add(load3(f + 3 * s, s, i), load3(f + 6 * s, s, i - 1)),
@@ -263,7 +263,7 @@ void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads
     bough_rod_gather(m, state, input, scratch);
     bough_rod_load(m, loads, t, scratch);
     bough_rod_forces(m, end - 1, end, scratch);
-    bough_mat3 r = matrix_of(load_vertex(scratch->vertex, s, end).p);
+    bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, end).p);
     const double *f = scratch->segment + end - 1, *load = scratch->load + end;
     bough_vec3 force = bough_sub(load3(load, s, 0), load3(f, s, 0));
     bough_vec3 moment = bough_mat3_tmul(r, load3(load + 3 * s, s, 0));

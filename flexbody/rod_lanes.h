@@ -26,13 +26,6 @@ static inline bough_mat3 load_matrix(const double *restrict a, int s, int v) {
     return (bough_mat3){load3(a, s, v), load3(a + 3 * s, s, v), load3(a + 6 * s, s, v)};
 }
 
-static inline bough_mat3 matrix_of(bough_quaternion p) {
-    double w = p.w, x = p.x, y = p.y, z = p.z;
-    return (bough_mat3){{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-                        {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-                        {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
-}
-
 // I W for the tensor entries Ixx Iyy Izz Ixy Ixz Iyz.
 static inline bough_vec3 inertia_times(const double *restrict j, int s, int i, bough_vec3 w) {
     double xx = j[i], yy = j[s + i], zz = j[2 * s + i], xy = j[3 * s + i], xz = j[4 * s + i];

@@ -62,7 +62,7 @@ void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, con
 static segment_force load_variation(const bough_rod_model *m, const bough_rod_loads *loads,
                                     const bough_rod_scratch *scratch, bough_vec3 phi) {
     int s = m->stride, end = m->n_segment;
-    bough_mat3 r = matrix_of(load_vertex(scratch->vertex, s, end).p);
+    bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, end).p);
     bough_vec3 moment = bough_mat3_tmul(r, load3(scratch->load + 3 * s, s, end));
     segment_force d = {.f = {0, 0, 0}};
     if (bough_rod_loads_follow(loads)) {

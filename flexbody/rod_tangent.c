@@ -35,10 +35,7 @@ static void keep_vertices(const bough_rod_model *m, const double *restrict state
 #pragma omp simd
     for (int v = 1; v <= n; v++) {
         vertex_state a = load_vertex(vertex, s, v);
-        double w = a.p.w, x = a.p.x, y = a.p.y, z = a.p.z;
-        bough_mat3 r = {{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
-                        {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
-                        {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)}};
+        bough_mat3 r = bough_rotation_matrix(a.p);
         kept[KEPT_P * s + v] = state[3 * n + v - 1];
         store3(kept + (KEPT_P + 1) * s, s, v, load3(state + 4 * n, n, v - 1));
         store3(kept + KEPT_W * s, s, v, a.w);

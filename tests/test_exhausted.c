@@ -21,8 +21,8 @@ void *__real_malloc(size_t size);
 void *__real_calloc(size_t count, size_t size);
 void *__real_realloc(void *block, size_t size);
 void *__real_aligned_alloc(size_t alignment, size_t size);
-N_Vector __real_N_VNewEmpty(SUNContext context);
-N_Vector __wrap_N_VNewEmpty(SUNContext context);
+N_Vector __real_N_VCloneEmpty(N_Vector model);
+N_Vector __wrap_N_VCloneEmpty(N_Vector model);
 void *__wrap_malloc(size_t size);
 void *__wrap_calloc(size_t count, size_t size);
 void *__wrap_realloc(void *block, size_t size);
@@ -50,9 +50,9 @@ void *__wrap_aligned_alloc(size_t alignment, size_t size) {
 }
 
 // SUNDIALS clones vectors and does not look whether it got one: see bough_vector_room.
-N_Vector __wrap_N_VNewEmpty(SUNContext context) {
-    spared = 2; // the content and the data
-    return __real_N_VNewEmpty(context);
+N_Vector __wrap_N_VCloneEmpty(N_Vector model) {
+    spared = 1; // the data
+    return __real_N_VCloneEmpty(model);
 }
 
 // -- what is tried --------------------------------------------------------------------------------

@@ -142,7 +142,7 @@ static void bodies_in_a_row_hang_on_each_other(void **context) {
     bough_arena *arena = bough_arena_create();
     bough_scene *s = scene_read(arena, "apps/mechanisms/chain.yaml", sets);
     static const char *const names[] = {"rod1", "link1", "rod2", "rod3"};
-    static const int parents[] = {BOUGH_SCENE_GROUND, 3, 0, 2};
+    static const int parents[] = {BOUGH_GROUND, 3, 0, 2};
     assert_int_equal(s->n_body, 4);
     for (int i = 0; i < 4; i++) {
         assert_string_equal(s->body[i].name, names[i]);

@@ -10,8 +10,8 @@ int bough_steady_rods(const bough_simulation *s) {
 
 const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_beam *beam) {
     const bough_scene_body *body = beam->body;
-    while (body->joint.kind == BOUGH_SCENE_FIXED) {
-        if (body->joint.parent == BOUGH_SCENE_GROUND) return NULL;
+    while (body->joint.kind == BOUGH_JOINT_FIXED) {
+        if (body->joint.parent == BOUGH_GROUND) return NULL;
         body = &s->scene->body[body->joint.parent];
     }
     return body;
@@ -19,7 +19,7 @@ const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_
 
 static bool carries(const bough_scene *scene, int ancestor, const bough_scene_body *body) {
     for (; body != &scene->body[ancestor]; body = &scene->body[body->joint.parent]) {
-        if (body->joint.parent == BOUGH_SCENE_GROUND) return false;
+        if (body->joint.parent == BOUGH_GROUND) return false;
     }
     return true;
 }
@@ -31,8 +31,8 @@ static const bough_scene_body *pivot_of(const bough_scene *scene, const bough_be
         bool good = carries(scene, scene->modes.about, body);
         return good ? &scene->body[scene->modes.about] : NULL;
     }
-    while (body->joint.kind != BOUGH_SCENE_REVOLUTE) {
-        if (body->joint.parent == BOUGH_SCENE_GROUND) return NULL;
+    while (body->joint.kind != BOUGH_JOINT_REVOLUTE) {
+        if (body->joint.parent == BOUGH_GROUND) return NULL;
         body = &scene->body[body->joint.parent];
     }
     return body;

@@ -7,7 +7,7 @@
 #include <string.h>
 
 static const char *body_name(const bough_scene *scene, int body) {
-    return body == BOUGH_SCENE_GROUND ? "ground" : scene->body[body].name;
+    return body == BOUGH_GROUND ? "ground" : scene->body[body].name;
 }
 
 static const char *plural(int n) { return n == 1 ? "" : "s"; }
@@ -15,52 +15,46 @@ static const char *plural(int n) { return n == 1 ? "" : "s"; }
 // -- bodies ---------------------------------------------------------------------------------------
 
 static bool is_rod(const bough_scene *scene, int body) {
-    return body != BOUGH_SCENE_GROUND && scene->body[body].fidelity == BOUGH_SCENE_ROD;
+    return body != BOUGH_GROUND && scene->body[body].fidelity == BOUGH_SCENE_ROD;
 }
 
 // What a fixed body moves with: the first body below it whose joint moves, a rod, or the ground.
 static int carrier(const bough_scene *scene, int body) {
     do {
         body = scene->body[body].joint.parent;
-    } while (body != BOUGH_SCENE_GROUND && !is_rod(scene, body) &&
-             scene->body[body].joint.kind == BOUGH_SCENE_FIXED);
+    } while (body != BOUGH_GROUND && !is_rod(scene, body) &&
+             scene->body[body].joint.kind == BOUGH_JOINT_FIXED);
     return body;
 }
 
 static void print_spring(const bough_scene_joint *joint) {
-    const char *of = joint->kind == BOUGH_SCENE_REVOLUTE ? "N m/rad" : "N/m";
-    const char *rate = joint->kind == BOUGH_SCENE_REVOLUTE ? "N m s/rad" : "N s/m";
-    if (joint->stiffness > 0) printf(", spring %.6g %s", joint->stiffness, of);
-    if (joint->damping > 0) printf(", damper %.6g %s", joint->damping, rate);
-    if (joint->stop_stiffness > 0) printf(", stops %.6g %s", joint->stop_stiffness, of);
+    const char *of = joint->kind == BOUGH_JOINT_REVOLUTE ? "N m/rad" : "N/m";
+    const char *rate = joint->kind == BOUGH_JOINT_REVOLUTE ? "N m s/rad" : "N s/m";
+    if (joint->spring.stiffness > 0) printf(", spring %.6g %s", joint->spring.stiffness, of);
+    if (joint->spring.damping > 0) printf(", damper %.6g %s", joint->spring.damping, rate);
+    if (joint->spring.stop_stiffness > 0) printf(", stops %.6g %s", joint->spring.stop_stiffness, of);
 }
 
 static void print_joint(const bough_scene *scene, int body) {
-    static const struct {
-        const char *name;
-        int freedoms;
-        const char *word; // before the axis
-    } kinds[] = {[BOUGH_SCENE_FIXED] = {"fixed", 0, NULL},
-                 [BOUGH_SCENE_REVOLUTE] = {"revolute", 1, "about"},
-                 [BOUGH_SCENE_PRISMATIC] = {"prismatic", 1, "along"},
-                 [BOUGH_SCENE_SPHERICAL] = {"spherical", 3, NULL},
-                 [BOUGH_SCENE_FREE] = {"free", 6, NULL},
-                 [BOUGH_SCENE_CYLINDRICAL] = {"cylindrical", 2, "along and about"},
-                 [BOUGH_SCENE_UNIVERSAL] = {"universal", 2, "about"},
-                 [BOUGH_SCENE_PLANAR] = {"planar", 3, "normal to"}};
+    static const char *const words[] = {[BOUGH_JOINT_REVOLUTE] = "about", // before the axis
+                                        [BOUGH_JOINT_PRISMATIC] = "along",
+                                        [BOUGH_JOINT_CYLINDRICAL] = "along and about",
+                                        [BOUGH_JOINT_UNIVERSAL] = "about",
+                                        [BOUGH_JOINT_PLANAR] = "normal to"};
     const bough_scene_joint *joint = &scene->body[body].joint;
-    if (joint->kind == BOUGH_SCENE_FIXED) {
+    if (joint->kind == BOUGH_JOINT_FIXED) {
         int on = carrier(scene, body);
         printf("; fixed to %s, welded to %s%s: no states in the tree",
                body_name(scene, joint->parent), is_rod(scene, on) ? "the end of " : "",
                body_name(scene, on));
         return;
     }
-    int n = kinds[joint->kind].freedoms;
-    const char *word = kinds[joint->kind].word;
-    printf("; %s", kinds[joint->kind].name);
+    bough_joint_kind kind = (bough_joint_kind)joint->kind;
+    int n = bough_joint_n_speeds(kind);
+    const char *word = words[kind];
+    printf("; %s", bough_joint_name(kind));
     if (word != NULL) printf(" %s %c", word, "xyz"[joint->axis]);
-    if (joint->kind == BOUGH_SCENE_UNIVERSAL) printf(" and %c", "xyz"[joint->second_axis]);
+    if (joint->kind == BOUGH_JOINT_UNIVERSAL) printf(" and %c", "xyz"[joint->second_axis]);
     printf(" on %s: %d degree%s of freedom", body_name(scene, joint->parent), n, plural(n));
     int driven = (joint->motion.node != NULL) + (joint->second_motion.node != NULL);
     if (driven > 0) printf(", %d of them prescribed", driven);
@@ -190,7 +184,7 @@ static void print_wind(const bough_scene_wind *wind) {
 
 static const char *tower_words(const bough_scene_tower *tower) {
     if (!tower->node) return "off";
-    return tower->influence == BOUGH_SCENE_BAK ? "on (Bak)" : "on";
+    return tower->influence == BOUGH_TOWER_BAK ? "on (Bak)" : "on";
 }
 
 static void print_aero(const bough_simulation *s) {
@@ -205,8 +199,8 @@ static void print_aero(const bough_simulation *s) {
            s->scene->turbine.n_blade, aero->blade.n_station, aero->polars.n_polar, aero->rate,
            every, every == 1 ? "" : "s", aero->hold == BOUGH_SCENE_LINEAR ? "linear" : "constant",
            tower_words(&aero->tower),
-           aero->tower.shadow == BOUGH_SCENE_POWLES ? ", Powles shadow" : "",
-           aero->induction.inflow == BOUGH_SCENE_OYE ? ", dynamic inflow" : "");
+           aero->tower.shadow == BOUGH_TOWER_SHADOW_POWLES ? ", Powles shadow" : "",
+           aero->induction.inflow.kind == BOUGH_INFLOW_OYE ? ", dynamic inflow" : "");
     print_wind(&aero->wind);
 }
 

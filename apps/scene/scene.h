@@ -13,16 +13,16 @@
 #define BOUGH_APPS_SCENE_SCENE_H
 
 #include "aero/controller.h"
+#include "aero/rotor.h"
 #include "aero/wind_iec.h"
 #include "apps/config/text.h"
 #include "core/arena.h"
 #include "core/status.h"
+#include "core/tree.h"
 #include "cosim/scheme.h"
 
 #include <stdbool.h>
 #include <stdio.h>
-
-enum { BOUGH_SCENE_GROUND = -1 }; // parent index of a body that hangs on the ground
 
 typedef struct bough_scene_coupling {
     const bough_node *node;
@@ -78,24 +78,10 @@ typedef struct bough_scene_step {
     double amount; // [rad] or [m]
 } bough_scene_step;
 
-typedef enum bough_scene_joint_kind {
-    BOUGH_SCENE_FIXED,
-    BOUGH_SCENE_REVOLUTE,
-    BOUGH_SCENE_PRISMATIC,
-    BOUGH_SCENE_SPHERICAL,
-    BOUGH_SCENE_FREE,
-    BOUGH_SCENE_CYLINDRICAL,
-    BOUGH_SCENE_UNIVERSAL,
-    BOUGH_SCENE_PLANAR,
-} bough_scene_joint_kind;
-
 // Of a revolute [rad, rad/s] or prismatic [m, m/s] joint.
 typedef struct bough_scene_motion {
-    const bough_node *node;  // NULL: moved by forces
-    bool speed;              // the speed is given, else the angle or displacement
-    double from, to, ramp[2]; // smoothly between the two times [s]; from == to: constant
-    int n_time;              // rows of a table in place of them, 0: none
-    double *times, *values;  // (n_time) [s]
+    const bough_node *node; // NULL: moved by forces
+    bough_motion_def def;
 } bough_scene_motion;
 
 // The joint that carries a body: placement from the parent's frame to the joint's frame, which is
@@ -103,9 +89,9 @@ typedef struct bough_scene_motion {
 // the axes of the rod's body, which turn with the last section.
 typedef struct bough_scene_joint {
     const bough_node *node;
-    int kind;                // bough_scene_joint_kind
+    int kind;                // bough_joint_kind
     const char *parent_name; // as written
-    int parent;              // index of a body, or BOUGH_SCENE_GROUND
+    int parent;              // index of a body, or BOUGH_GROUND
     int n_placement;
     bough_scene_step *placement; // (n_placement)
     int axis;                    // bough_scene_axis of all but fixed, spherical and free
@@ -119,9 +105,7 @@ typedef struct bough_scene_joint {
                                          // in the order x, y, z, x, in the joint's frame [m, m/s]
     double velocity[3];          // initial [m/s] of free, in the joint's frame
     double angular_velocity[3];  // initial [rad/s] of spherical and free, in the joint's frame
-    // Of revolute [rad, N m/rad, …] and prismatic [m, N/m, …]:
-    double stiffness, damping, rest;
-    double stop[2], stop_stiffness; // 0: no stops
+    bough_joint_spring spring; // of revolute and prismatic
     bough_scene_motion motion;        // of the first coordinate
     bough_scene_motion second_motion; // of the second of cylindrical (the angle) and universal
 } bough_scene_joint;
@@ -232,7 +216,7 @@ typedef struct bough_scene_bushing {
     const bough_node *node;
     const char *name;
     const char *body_name[2];
-    int body[2];     // indices, or BOUGH_SCENE_GROUND
+    int body[2];     // indices, or BOUGH_GROUND
     double point[3]; // in the first one's frame [m]
     double stiffness[3], damping[3];                       // [N/m], [N s/m]
     double rotational_stiffness[3], rotational_damping[3]; // [N m/rad], [N m s/rad]
@@ -242,7 +226,7 @@ typedef struct bough_scene_bushing {
 typedef struct bough_scene_marker {
     const bough_node *node;
     const char *name, *body_name;
-    int body;        // index, or BOUGH_SCENE_GROUND
+    int body;        // index, or BOUGH_GROUND
     double point[3]; // in the body's frame [m]
 } bough_scene_marker;
 
@@ -251,7 +235,7 @@ typedef struct bough_scene_spring {
     const bough_node *node;
     const char *name;
     const char *body_name[2];
-    int body[2];                       // indices, or BOUGH_SCENE_GROUND
+    int body[2];                       // indices, or BOUGH_GROUND
     double point[2][3];                // in the body's frame [m]
     double stiffness, damping, length; // [N/m], [N s/m], without force [m]
 } bough_scene_spring;
@@ -265,9 +249,9 @@ typedef struct bough_scene_placement {
 typedef struct bough_scene_closure {
     const bough_node *node;
     const char *name;
-    int kind; // bough_scene_joint_kind but free
+    int kind; // bough_joint_kind but free
     const char *body_name[2];
-    int body[2];                        // indices, or BOUGH_SCENE_GROUND
+    int body[2];                        // indices, or BOUGH_GROUND
     bough_scene_placement placement[2]; // of the joint's frame in either body's
     int axis, second_axis;              // bough_scene_axis as of a joint, universal: of `to`
 } bough_scene_closure;
@@ -321,18 +305,11 @@ typedef struct bough_scene_polars {
     bough_scene_polar *polar; // (n_polar), at least two rows each
 } bough_scene_polars;
 
-typedef enum bough_scene_high_thrust {
-    BOUGH_SCENE_SMOOTH,
-    BOUGH_SCENE_BUHL,
-} bough_scene_high_thrust;
 typedef enum bough_scene_hold { BOUGH_SCENE_LINEAR, BOUGH_SCENE_CONSTANT } bough_scene_hold;
-typedef enum bough_scene_skew { BOUGH_SCENE_SKEW_NONE, BOUGH_SCENE_PITT_PETERS } bough_scene_skew;
-typedef enum bough_scene_inflow { BOUGH_SCENE_EQUILIBRIUM, BOUGH_SCENE_OYE } bough_scene_inflow;
 typedef enum bough_scene_interpolation {
     BOUGH_SCENE_POLARS_LINEAR,
     BOUGH_SCENE_POLARS_SMOOTH,
 } bough_scene_interpolation;
-typedef enum bough_scene_stall { BOUGH_SCENE_STALL_NONE, BOUGH_SCENE_STALL_HGM } bough_scene_stall;
 typedef enum bough_scene_wind_kind {
     BOUGH_SCENE_WIND_UNIFORM,
     BOUGH_SCENE_WIND_POWER,
@@ -341,12 +318,6 @@ typedef enum bough_scene_wind_kind {
     BOUGH_SCENE_WIND_BTS,
     BOUGH_SCENE_WIND_IEC,
 } bough_scene_wind_kind;
-typedef enum bough_scene_influence {
-    BOUGH_SCENE_POTENTIAL,
-    BOUGH_SCENE_BAK,
-} bough_scene_influence;
-typedef enum bough_scene_shadow { BOUGH_SCENE_SHADOW_NONE, BOUGH_SCENE_POWLES } bough_scene_shadow;
-
 // Linear between, constant before and after.
 typedef struct bough_scene_wind_table {
     const bough_node *node; // NULL: the speed is constant
@@ -375,18 +346,17 @@ typedef struct bough_scene_wind {
 
 typedef struct bough_scene_induction {
     const bough_node *node;
-    bool tip_loss, hub_loss, tangential, drag;
-    int high_thrust;    // bough_scene_high_thrust
-    int skew;           // bough_scene_skew
-    int inflow;         // bough_scene_inflow
-    double inflow_time; // slow time constant of oye [s]; 0: from induction and wind ("auto")
+    bough_induction_options options; // but for drag
+    bool drag;                       // in the axial and the tangential induction
+    int skew;                        // 1: corrected by Pitt and Peters
+    bough_inflow_def inflow;         // time 0: from induction and wind ("auto")
 } bough_scene_induction;
 
 // Vertical along ground z from the origin.
 typedef struct bough_scene_tower {
     const bough_node *node;   // NULL: no tower influence
-    int influence;            // bough_scene_influence
-    int shadow;               // bough_scene_shadow
+    int influence;            // bough_tower_influence
+    int shadow;               // bough_tower_shadow
     int n_height, n_diameter; // equal
     int n_drag;               // 1 or n_height
     double *height;           // (n_height) strictly increasing [m]
@@ -409,7 +379,7 @@ typedef struct bough_scene_aero {
     bough_scene_tower tower;
     double hub_radius; // [m]
     double hub_drag_area; // drag coefficient times area [m²]
-    int dynamic_stall; // bough_scene_stall
+    int dynamic_stall; // bough_stall_kind
     int interpolation; // bough_scene_interpolation
     int n_node;        // blade elements whose channels are recorded, of every blade
     double *nodes;     // (n_node) numbers from 1

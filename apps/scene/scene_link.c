@@ -128,7 +128,7 @@ static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
     if (joint->parent_name == NULL) return;
     bough_link_at(r, "bodies[%d].joint", i);
     if (strcmp(joint->parent_name, "ground") == 0) {
-        joint->parent = BOUGH_SCENE_GROUND;
+        joint->parent = BOUGH_GROUND;
         return;
     }
     const bough_node *node = bough_link_value(joint->node, "parent");
@@ -208,7 +208,7 @@ static void check_moving_mass(bough_schema_reader *r, const bough_scene *s) {
         carries[i] = carries[i] || has_mass(b);
         if (carries[i] && b->joint.parent >= 0) carries[b->joint.parent] = true;
         bool driven = b->joint.motion.node != NULL;
-        if (carries[i] || driven || b->joint.kind <= BOUGH_SCENE_FIXED) continue;
+        if (carries[i] || driven || b->joint.kind <= BOUGH_JOINT_FIXED) continue;
         bough_link_at(r, "bodies[%d]", i);
         bough_schema_error(r, b->node, "",
                            "a joint that moves must carry mass: give 'mass' here or "
@@ -234,8 +234,8 @@ static void link_joint_load(bough_schema_reader *r, const bough_scene *s, bough_
     if (load->joint < 0) return;
     int kind = s->body[load->joint].joint.kind;
     if (kind < 0) return;
-    bool revolute = kind == BOUGH_SCENE_REVOLUTE;
-    if (!revolute && kind != BOUGH_SCENE_PRISMATIC) {
+    bool revolute = kind == BOUGH_JOINT_REVOLUTE;
+    if (!revolute && kind != BOUGH_JOINT_PRISMATIC) {
         bough_schema_error(r, joint, "joint",
                            "the joint of '%s' must be revolute or prismatic to take a load",
                            load->joint_name);
@@ -265,7 +265,7 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
                       const char *const name[2], int body[2]) {
     static const char *const keys[] = {"from", "to"};
     for (int end = 0; end < 2; end++) {
-        body[end] = BOUGH_SCENE_GROUND;
+        body[end] = BOUGH_GROUND;
         if (name[end] == NULL || strcmp(name[end], "ground") == 0) continue;
         const bough_node *node = bough_link_value(item, keys[end]);
         body[end] = bough_link_body(r, s, node, keys[end], name[end]);
@@ -282,11 +282,11 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
 // The kinds are a joint's but free.
 static void link_closure(bough_schema_reader *r, const bough_scene *s, bough_scene_closure *c) {
     link_ends(r, s, c->node, c->body_name, c->body);
-    if (c->kind >= BOUGH_SCENE_FREE) c->kind++;
+    if (c->kind >= BOUGH_JOINT_FREE) c->kind++;
 }
 
 static void link_marker(bough_schema_reader *r, const bough_scene *s, bough_scene_marker *marker) {
-    marker->body = BOUGH_SCENE_GROUND;
+    marker->body = BOUGH_GROUND;
     if (marker->body_name == NULL || strcmp(marker->body_name, "ground") == 0) return;
     const bough_node *node = bough_link_value(marker->node, "body");
     marker->body = bough_link_body(r, s, node, "body", marker->body_name);
@@ -311,7 +311,7 @@ static void link_modes(bough_schema_reader *r, bough_scene *s) {
         const bough_node *about = bough_link_value(m->node, "about");
         m->about = bough_link_body(r, s, about, "about", m->about_name);
         if (m->about >= 0 && s->body[m->about].joint.kind >= 0 &&
-            s->body[m->about].joint.kind != BOUGH_SCENE_REVOLUTE) {
+            s->body[m->about].joint.kind != BOUGH_JOINT_REVOLUTE) {
             bough_schema_error(r, about, "about", "the joint of '%s' must be revolute",
                                m->about_name);
         }

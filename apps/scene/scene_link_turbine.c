@@ -47,7 +47,7 @@ void bough_link_turbine(bough_schema_reader *r, bough_scene *s) {
     const bough_node *rotor = bough_link_value(t->node, "rotor");
     t->rotor = bough_link_body(r, s, rotor, "rotor", t->rotor_name);
     int kind = t->rotor < 0 ? -1 : s->body[t->rotor].joint.kind;
-    if (kind >= 0 && kind != BOUGH_SCENE_REVOLUTE) {
+    if (kind >= 0 && kind != BOUGH_JOINT_REVOLUTE) {
         bough_schema_error(r, rotor, "rotor", "the joint of '%s' must be revolute", t->rotor_name);
     }
     t->blade = bough_arena_take(r->arena, (size_t)t->n_blade * sizeof *t->blade);
@@ -156,7 +156,7 @@ void bough_link_aero(bough_schema_reader *r, bough_scene *s) {
 
 // A blade that is pitched turns about its own z by a joint that is told how.
 static bool has_pitch_joint(const bough_scene_body *b) {
-    return b->joint.kind == BOUGH_SCENE_REVOLUTE && b->joint.motion.node != NULL;
+    return b->joint.kind == BOUGH_JOINT_REVOLUTE && b->joint.motion.node != NULL;
 }
 
 static void link_event(bough_schema_reader *r, bough_scene *s, int i) {

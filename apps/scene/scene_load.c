@@ -229,7 +229,7 @@ static void check_place(bough_schema_reader *r, const bough_scene_load *load,
 static const char *mover(const bough_scene *scene, int body, const char **how) {
     *how = "joint of";
     for (int steps = 0; body >= 0 && steps <= scene->n_body; steps++) {
-        if (scene->body[body].joint.kind > BOUGH_SCENE_FIXED) return scene->body[body].name;
+        if (scene->body[body].joint.kind > BOUGH_JOINT_FIXED) return scene->body[body].name;
         body = scene->body[body].joint.parent;
         if (body >= 0 && scene->body[body].fidelity == BOUGH_SCENE_ROD) {
             *how = "rod";

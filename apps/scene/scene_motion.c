@@ -68,9 +68,9 @@ static void read_table(bough_schema_reader *r, const bough_node *node, bough_dim
         bough_schema_error(r, bough_node_find(node, "times")->value[i], "times", "must increase");
         return;
     }
-    motion->n_time = t.n_time;
-    motion->times = t.times;
-    motion->values = t.values;
+    motion->def.n = t.n_time;
+    motion->def.times = t.times;
+    motion->def.values = t.values;
 }
 
 static void read_ramp(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
@@ -83,16 +83,17 @@ static void read_ramp(bough_schema_reader *r, const bough_node *node, bough_dime
         bough_schema_error(r, bough_node_find(node, "ramp"), "ramp",
                            "must end after it starts, got [%g s, %g s]", x.ramp[0], x.ramp[1]);
     }
-    motion->from = x.from;
-    motion->to = x.to;
-    memcpy(motion->ramp, x.ramp, sizeof x.ramp);
+    motion->def.from = x.from;
+    motion->def.to = x.to;
+    motion->def.start = x.ramp[0];
+    motion->def.end = x.ramp[1];
 }
 
 // A number, a ramp or a table.
 static void read_values(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
                         bough_scene_motion *motion) {
     if (node->kind != BOUGH_MAPPING) {
-        motion->from = motion->to = bough_schema_number(r, node, unit);
+        motion->def.from = motion->def.to = bough_schema_number(r, node, unit);
     } else if (bough_node_find(node, "times") != NULL || bough_node_find(node, "values") != NULL) {
         read_table(r, node, unit, motion);
     } else {
@@ -143,8 +144,9 @@ static void check_one(bough_schema_reader *r, const bough_node *node, const char
                       const char *place, bough_scene_motion *motion) {
     bool of_speed = bough_node_find(node, speed) != NULL;
     bool of_place = bough_node_find(node, place) != NULL;
-    motion->speed = of_speed;
-    motion->node = of_speed || of_place ? node : NULL;
+    motion->def.speed = of_speed;
+    motion->def.given = of_speed || of_place;
+    motion->node = motion->def.given ? node : NULL;
     if (of_speed && of_place) {
         bough_schema_error(r, node, "", "expected either '%s' or '%s', got both", speed, place);
     }
@@ -153,7 +155,8 @@ static void check_one(bough_schema_reader *r, const bough_node *node, const char
 static void check_motion(bough_schema_reader *r, void *item) {
     bough_scene_motion *motion = item;
     if (motion->node == NULL) return;
-    motion->speed = bough_node_find(motion->node, "speed") != NULL;
+    motion->def.given = true;
+    motion->def.speed = bough_node_find(motion->node, "speed") != NULL;
     if (motion->node->n == 1) return;
     bough_schema_error(r, motion->node, "", "expected either the speed or where the joint is");
 }
@@ -190,13 +193,13 @@ void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, voi
     motion_pair pair = {0};
     universal_pair two = {0};
     switch (joint->kind) {
-    case BOUGH_SCENE_REVOLUTE:
+    case BOUGH_JOINT_REVOLUTE:
         bough_schema_read(r, &revolute_motion, node, &joint->motion);
         break;
-    case BOUGH_SCENE_PRISMATIC:
+    case BOUGH_JOINT_PRISMATIC:
         bough_schema_read(r, &prismatic_motion, node, &joint->motion);
         break;
-    case BOUGH_SCENE_CYLINDRICAL:
+    case BOUGH_JOINT_CYLINDRICAL:
         bough_schema_read(r, &cylindrical_motion, node, &pair);
         joint->motion = pair.first, joint->second_motion = pair.second;
         break;
@@ -217,13 +220,13 @@ static void refuse(bough_schema_reader *r, const bough_scene_joint *joint, const
 // The joint starts where and as fast as its motion says.
 void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint) {
     const bough_scene_motion *first = &joint->motion, *second = &joint->second_motion;
-    bool placed = first->node != NULL && !first->speed;
+    bool placed = first->node != NULL && !first->def.speed;
     refuse(r, joint, "speed", first->node != NULL);
     refuse(r, joint, "position", placed);
-    if (joint->kind != BOUGH_SCENE_CYLINDRICAL) {
+    if (joint->kind != BOUGH_JOINT_CYLINDRICAL) {
         refuse(r, joint, "angle", placed);
         return;
     }
     refuse(r, joint, "angular_speed", second->node != NULL);
-    refuse(r, joint, "angle", second->node != NULL && !second->speed);
+    refuse(r, joint, "angle", second->node != NULL && !second->def.speed);
 }

@@ -190,25 +190,26 @@ static const bough_schema wind_schema = {SCHEMA("the wind", bough_scene_wind, wi
 
 #define SWITCH(member, what)                                                                       \
     {.name = #member, .kind = BOUGH_KEY_BOOLEAN, .fallback = "true",                               \
-     .offset = offsetof(bough_scene_induction, member), .help = what}
+     .offset = offsetof(bough_scene_induction, options.member), .help = what}
 static const bough_key induction_keys[] = {
     SWITCH(tip_loss, "Prandtl's loss factor at the tip"),
     SWITCH(hub_loss, "Prandtl's loss factor at the hub"),
     SWITCH(tangential, "tangential induction"),
-    SWITCH(drag, "drag counts in the induction"),
+    {.name = "drag", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true",
+     .offset = offsetof(bough_scene_induction, drag), .help = "drag counts in the induction"},
     {.name = "high_thrust", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("smooth", "buhl"),
-     .fallback = "smooth", .offset = offsetof(bough_scene_induction, high_thrust),
+     .fallback = "smooth", .offset = offsetof(bough_scene_induction, options.high_thrust),
      .help = "how thrust grows beyond momentum theory: as AeroDyn's newer formulation or by Buhl's "
              "parabola"},
     {.name = "skew", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "pitt-peters"),
      .fallback = "pitt-peters", .offset = offsetof(bough_scene_induction, skew),
      .help = "correction for oblique inflow"},
     {.name = "inflow", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("equilibrium", "oye"),
-     .fallback = "equilibrium", .offset = offsetof(bough_scene_induction, inflow),
+     .fallback = "equilibrium", .offset = offsetof(bough_scene_induction, inflow.kind),
      .help = "how the induction follows a change of load: at once, or by Oye's dynamic inflow"},
     {.name = "inflow_time", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .word = "auto",
      .range = "> 0", .fallback = "auto", .when_key = "inflow", .when = "oye",
-     .offset = offsetof(bough_scene_induction, inflow_time),
+     .offset = offsetof(bough_scene_induction, inflow.time),
      .example = "5 s", .help = "its slow time constant; auto: 1.1/(1 - 1.3 a) R/U"},
 };
 static const bough_schema induction_schema = {

@@ -75,10 +75,10 @@ void bough_scene_check_joint(bough_schema_reader *r, void *item) {
         bough_schema_error(r, stop == NULL ? stiffness : stop,
                            stop == NULL ? "stop_stiffness" : "stop",
                            "'stop' and 'stop_stiffness' go together");
-    } else if (stop != NULL && !(joint->stop[0] < joint->stop[1])) {
+    } else if (stop != NULL && !(joint->spring.low < joint->spring.high)) {
         bough_schema_error(r, stop, "stop", "the second must be greater than the first");
     }
-    if (joint->kind != BOUGH_SCENE_UNIVERSAL || joint->second_axis != joint->axis) return;
+    if (joint->kind != BOUGH_JOINT_UNIVERSAL || joint->second_axis != joint->axis) return;
     bough_schema_error(r, bough_node_find(joint->node, "second_axis"), "second_axis",
                        "must not be the first axis");
 }

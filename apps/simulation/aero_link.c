@@ -135,14 +135,13 @@ static bool take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
 }
 
 static bough_tower_def tower_def(const bough_scene_tower *tower, const double *drag) {
-    bool bak = tower->influence == BOUGH_SCENE_BAK, powles = tower->shadow == BOUGH_SCENE_POWLES;
     return (bough_tower_def){
         .n = tower->n_height,
         .height = tower->height,
         .diameter = tower->diameter,
         .drag = drag,
-        .influence = bak ? BOUGH_TOWER_BAK : BOUGH_TOWER_POTENTIAL,
-        .shadow = powles ? BOUGH_TOWER_SHADOW_POWLES : BOUGH_TOWER_SHADOW_NONE,
+        .influence = (bough_tower_influence)tower->influence,
+        .shadow = (bough_tower_shadow)tower->shadow,
     };
 }
 
@@ -206,20 +205,13 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     def.n_blade = l->n_blade;
     def.density = aero->air_density;
     def.hub_radius = aero->hub_radius;
-    def.skew = aero->induction.skew == BOUGH_SCENE_PITT_PETERS;
-    def.induction.tip_loss = aero->induction.tip_loss;
-    def.induction.hub_loss = aero->induction.hub_loss;
-    def.induction.tangential = aero->induction.tangential;
-    if (aero->induction.high_thrust == BOUGH_SCENE_BUHL) {
-        def.induction.high_thrust = BOUGH_HIGH_THRUST_BUHL;
-    }
+    def.skew = aero->induction.skew != 0;
+    def.induction = aero->induction.options;
     def.induction.axial_drag = def.induction.tangential_drag = aero->induction.drag;
-    if (aero->induction.inflow == BOUGH_SCENE_OYE) {
-        def.inflow = (bough_inflow_def){BOUGH_INFLOW_OYE, aero->induction.inflow_time};
-    }
+    def.inflow = aero->induction.inflow;
     def.smooth_polars = aero->interpolation == BOUGH_SCENE_POLARS_SMOOTH;
     def.pitching_moment = aero->pitching_moment;
-    if (aero->dynamic_stall == BOUGH_SCENE_STALL_HGM) def.stall = BOUGH_STALL_HGM;
+    def.stall = (bough_stall_kind)aero->dynamic_stall;
     def.wind = wind_def(l->simulation->scene);
     if (aero->tower.node != NULL) def.tower = tower_def(&aero->tower, t->drag);
     def.n_polar = aero->polars.n_polar;

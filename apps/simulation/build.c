@@ -27,8 +27,9 @@ static void add_ramp(bough_builder *b, const double ramp[2]) {
 }
 
 static void add_motion(bough_builder *b, const bough_scene_motion *motion) {
-    add_ramp(b, motion->ramp);
-    for (int i = 0; i < motion->n_time; i++) b->event[b->n_event++] = motion->times[i];
+    const bough_motion_def *def = &motion->def;
+    add_ramp(b, (const double[]){def->start, def->end});
+    for (int i = 0; i < def->n; i++) b->event[b->n_event++] = def->times[i];
 }
 
 // The last of the loads; its two rows are set sample by sample.
@@ -61,7 +62,7 @@ static size_t count_corners(const bough_scene *scene) {
     for (int k = 0; k < scene->n_load; k++) n += (size_t)scene->load[k].n_time;
     for (int k = 0; k < scene->n_body; k++) {
         const bough_scene_joint *joint = &scene->body[k].joint;
-        n += 4 + (size_t)joint->motion.n_time + (size_t)joint->second_motion.n_time;
+        n += 4 + (size_t)joint->motion.def.n + (size_t)joint->second_motion.def.n;
     }
     return n;
 }

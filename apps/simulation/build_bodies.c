@@ -25,16 +25,10 @@ static bough_mat3 tensor(const double j[6]) {
     return (bough_mat3){{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
 }
 
-static void set_motion(const bough_scene_motion *from, bough_motion_def *to) {
-    if (from->node == NULL) return;
-    *to = (bough_motion_def){true, from->speed, from->from, from->to, from->ramp[0],
-                             from->ramp[1], from->n_time, from->times, from->values};
-}
-
 static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) {
     double *q = to->coordinates, *v = to->speeds;
-    set_motion(&joint->motion, &to->motion);
-    set_motion(&joint->second_motion, &to->second_motion);
+    to->motion = joint->motion.def;
+    to->second_motion = joint->second_motion.def;
     double c = cos(joint->angle), s = sin(joint->angle);
     switch (to->kind) {
     case BOUGH_JOINT_CYLINDRICAL:
@@ -52,8 +46,7 @@ static void set_coordinates(const bough_scene_joint *joint, bough_body_def *to) 
         break;
     default:
         q[0] = joint->position, v[0] = joint->speed;
-        to->spring = (bough_joint_spring){joint->stiffness, joint->damping, joint->rest,
-                                          joint->stop[0], joint->stop[1], joint->stop_stiffness};
+        to->spring = joint->spring;
         break;
     }
 }
@@ -72,7 +65,7 @@ static bough_transform beam_end(const bough_beam *beam) {
 static void set_parent(const bough_builder *b, const bough_scene_body *from, bough_body_def *to) {
     int parent = from->joint.parent;
     bough_transform start = bough_transform_identity();
-    to->parent = parent == BOUGH_SCENE_GROUND ? BOUGH_GROUND : parent;
+    to->parent = parent;
     const bough_beam *beam = parent < 0 ? NULL : bough_simulation_beam(b->s, parent);
     if (beam != NULL) {
         start = beam_end(beam);
@@ -83,7 +76,7 @@ static void set_parent(const bough_builder *b, const bough_scene_body *from, bou
 
 static void set_joint(const bough_builder *b, const bough_scene_body *from, bough_body_def *to) {
     const bough_scene_joint *joint = &from->joint;
-    to->kind = bough_placement_joint(joint->kind);
+    to->kind = (bough_joint_kind)joint->kind;
     set_parent(b, from, to);
     bool universal = to->kind == BOUGH_JOINT_UNIVERSAL;
     to->axis = bough_placement_axis(joint->axis);

@@ -57,7 +57,7 @@ static void add_closures(const bough_scene *scene, bough_force_link *link) {
         const bough_scene_closure *from = &scene->closure[k];
         bough_closure_def *to = &link->closure[k];
         to->name = from->name;
-        to->kind = bough_placement_joint(from->kind);
+        to->kind = (bough_joint_kind)from->kind;
         to->axis = bough_placement_axis(from->axis);
         to->second_axis = bough_placement_axis(from->second_axis);
         for (int end = 0; end < 2; end++) {

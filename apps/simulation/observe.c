@@ -43,12 +43,12 @@ static const struct {
         const char *name; // after the body's, before Pos and Vel
         bool angle;
     } coordinate[3];
-} joint_channels[BOUGH_SCENE_PLANAR + 1] = {
-    [BOUGH_SCENE_REVOLUTE] = {1, {{"", true}}},
-    [BOUGH_SCENE_PRISMATIC] = {1, {{"", false}}},
-    [BOUGH_SCENE_CYLINDRICAL] = {2, {{"", false}, {"Ang", true}}},
-    [BOUGH_SCENE_UNIVERSAL] = {2, {{"Ang1", true}, {"Ang2", true}}},
-    [BOUGH_SCENE_PLANAR] = {3, {{"1", false}, {"2", false}, {"Ang", true}}},
+} joint_channels[BOUGH_JOINT_PLANAR + 1] = {
+    [BOUGH_JOINT_REVOLUTE] = {1, {{"", true}}},
+    [BOUGH_JOINT_PRISMATIC] = {1, {{"", false}}},
+    [BOUGH_JOINT_CYLINDRICAL] = {2, {{"", false}, {"Ang", true}}},
+    [BOUGH_JOINT_UNIVERSAL] = {2, {{"Ang1", true}, {"Ang2", true}}},
+    [BOUGH_JOINT_PLANAR] = {3, {{"1", false}, {"2", false}, {"Ang", true}}},
 };
 
 static int n_recorded(const bough_scene *scene, int body) {
@@ -61,7 +61,7 @@ static void joint_rates(const bough_simulation *s, int body, const double *q, do
     bough_tree_joint_rows(s->tree, body, &coordinate, &speed);
     const double *v = s->leader.state + speed;
     int n = joint_channels[s->scene->body[body].joint.kind].n;
-    if (s->scene->body[body].joint.kind == BOUGH_SCENE_PLANAR) {
+    if (s->scene->body[body].joint.kind == BOUGH_JOINT_PLANAR) {
         bough_joint_rate(&s->tree->links[s->tree->bodies[body].link].joint, q, v, rate);
     } else {
         memcpy(rate, v, (size_t)n * sizeof *v);
@@ -142,8 +142,8 @@ static bool has_motion(const bough_scene *scene) {
 
 static bough_status add_drive(const bough_scene_body *body, int k, bough_channels *list) {
     int kind = body->joint.kind;
-    bool force = kind == BOUGH_SCENE_PRISMATIC || (kind == BOUGH_SCENE_CYLINDRICAL && k == 0);
-    if (kind == BOUGH_SCENE_UNIVERSAL) {
+    bool force = kind == BOUGH_JOINT_PRISMATIC || (kind == BOUGH_JOINT_CYLINDRICAL && k == 0);
+    if (kind == BOUGH_JOINT_UNIVERSAL) {
         return bough_channels_add(list, "N-m", "%sTrq%d", body->name, k + 1);
     }
     return bough_channels_add(list, force ? "N" : "N-m", force ? "%sFrc" : "%sTrq", body->name);

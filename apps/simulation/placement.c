@@ -11,19 +11,6 @@ bough_mat3 bough_placement_turn(int axis, double angle) {
     return bough_rotation_matrix(bough_quaternion_exponential(turn));
 }
 
-bough_joint_kind bough_placement_joint(int kind) {
-    static const bough_joint_kind kinds[] = {
-        [BOUGH_SCENE_FIXED] = BOUGH_JOINT_FIXED,
-        [BOUGH_SCENE_REVOLUTE] = BOUGH_JOINT_REVOLUTE,
-        [BOUGH_SCENE_PRISMATIC] = BOUGH_JOINT_PRISMATIC,
-        [BOUGH_SCENE_SPHERICAL] = BOUGH_JOINT_SPHERICAL,
-        [BOUGH_SCENE_FREE] = BOUGH_JOINT_FREE,
-        [BOUGH_SCENE_CYLINDRICAL] = BOUGH_JOINT_CYLINDRICAL,
-        [BOUGH_SCENE_UNIVERSAL] = BOUGH_JOINT_UNIVERSAL,
-        [BOUGH_SCENE_PLANAR] = BOUGH_JOINT_PLANAR};
-    return kinds[kind];
-}
-
 bough_transform bough_placement(int n, const bough_scene_step *step) {
     bough_transform x = bough_transform_identity();
     for (int k = 0; k < n; k++) {

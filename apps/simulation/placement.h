@@ -11,9 +11,6 @@ bough_vec3 bough_placement_axis(int axis);
 // The rotation by an angle [rad] about one of the axes.
 bough_mat3 bough_placement_turn(int axis, double angle);
 
-// The tree's kind of a bough_scene_joint_kind.
-bough_joint_kind bough_placement_joint(int kind);
-
 // The frame after n steps, in the frame they start from.
 bough_transform bough_placement(int n, const bough_scene_step *step);
 

@@ -13,7 +13,7 @@ void bough_simulation_update(bough_simulation *s) {
 int bough_simulation_n_joints(const bough_simulation *s) {
     int n = 0;
     for (int i = 0; i < s->scene->n_body; i++)
-        n += s->scene->body[i].joint.kind != BOUGH_SCENE_FIXED;
+        n += s->scene->body[i].joint.kind != BOUGH_JOINT_FIXED;
     return n;
 }
 
@@ -26,7 +26,7 @@ bough_beam *bough_simulation_beam(const bough_simulation *s, int body) {
 
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam) {
     const bough_scene_joint *joint = &beam->body->joint;
-    if (joint->kind != BOUGH_SCENE_REVOLUTE || joint->axis != 2) return beam->body->pitch;
+    if (joint->kind != BOUGH_JOINT_REVOLUTE || joint->axis != 2) return beam->body->pitch;
     int coordinate, speed;
     bough_tree_joint_rows(s->tree, (int)(beam->body - s->scene->body), &coordinate, &speed);
     return beam->body->pitch - s->leader.state[coordinate];

@@ -138,43 +138,19 @@ bough_status bough_two_mass_error(bough_two_mass *m, double *worst, double *told
 
 enum { STATES = 4, INPUTS = 6, MOST = STATES + 4 * INPUTS };
 
-static int parts(const bough_two_mass *m) { return m->master->coupling->deficit ? 4 : 3; }
-
-// What a macro step depends on, from z or into it: the states, inputs one and two steps ago, the
-// inputs used last, and what the ramp owes.
-static void exchange_memory(bough_two_mass *m, double *z, bool load) {
-    bough_coupling *c = m->master->coupling;
-    size_t size = (size_t)m->master->assembly->n_input * sizeof(double);
-    double *const part[4] = {c->past[1], c->past[2], c->applied, c->deficit};
-    for (int i = 0; i < 2; i++) {
-        if (load) m->subsystem[i].ops->set_state(&m->mass[i], 0, z + 2 * i);
-        if (!load) memcpy(z + 2 * i, m->mass[i].y, sizeof m->mass[i].y);
-    }
-    for (int p = 0; p < parts(m); p++) {
-        double *at = z + STATES + p * m->master->assembly->n_input;
-        memcpy(load ? part[p] : at, load ? at : part[p], size);
-    }
-}
-
 static bough_status map_step(bough_two_mass *m, double h, const double *z, double *image) {
     bough_coupling *c = m->master->coupling;
-    double from[MOST];
-    memcpy(from, z, sizeof from);
-    for (int p = 0; p < BOUGH_HISTORY; p++) c->past_time[p] = -p * h;
-    exchange_memory(m, from, true);
-    bough_assembly_outputs(m->master->assembly, 0, c->output, c->input);
-    memcpy(c->past[0], c->input, (size_t)m->master->assembly->n_input * sizeof(double));
-    c->n_past = BOUGH_HISTORY;
+    bough_coupling_load(c, h, z);
     c->t0 = 0;
     c->t1 = h;
     bough_status status = c->scheme->step(c);
     bough_coupling_exchange(c);
-    exchange_memory(m, image, false);
+    bough_coupling_store(c, image);
     return status;
 }
 
 bough_status bough_two_mass_radius(bough_two_mass *m, double macro_step, double *radius) {
-    int n = STATES + parts(m) * m->master->assembly->n_input;
+    int n = bough_coupling_n_memory(m->master->coupling);
     double matrix[MOST * MOST] = {0}, column[MOST], unit[MOST];
     double value[2 * MOST], vector[MOST * MOST], work[8 * MOST];
     for (int k = 0; k < n; k++) {
