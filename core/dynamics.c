@@ -64,8 +64,10 @@ static void subtract_at(bough_tree_data *d, const bough_frame *frame, bough_wren
 
 static bough_wrench external_at(const bough_external *e, double t) {
     double dt = t - e->start;
-    return (bough_wrench){bough_axpy(dt, e->rate.force, e->value.force),
-                          bough_axpy(dt, e->rate.moment, e->value.moment)};
+    bough_vec3 force = bough_axpy(dt, e->curve.force, e->rate.force);
+    bough_vec3 moment = bough_axpy(dt, e->curve.moment, e->rate.moment);
+    return (bough_wrench){bough_axpy(dt, force, e->value.force),
+                          bough_axpy(dt, moment, e->value.moment)};
 }
 
 static void element_wrenches(const bough_tree *tree, bough_tree_data *d, int element) {

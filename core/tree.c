@@ -47,13 +47,14 @@ bool bough_tree_joint_rows(const bough_tree *tree, int body, int *coordinate, in
 }
 
 void bough_tree_set_wrench(bough_tree *tree, int marker, double start, const double *value,
-                           const double *rate) {
+                           const double *rate, const double *curve) {
     const double zero[6] = {0};
     bough_external *e = &tree->external[marker];
     e->active = value != NULL || rate != NULL;
     e->start = start;
     e->value = bough_wrench_load(value != NULL ? value : zero);
     e->rate = bough_wrench_load(rate != NULL ? rate : zero);
+    e->curve = bough_wrench_load(curve != NULL ? curve : zero);
 }
 
 bough_transform bough_tree_frame_pose(const bough_tree_data *data, const bough_frame *frame) {

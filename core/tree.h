@@ -162,7 +162,7 @@ typedef struct bough_frame {
 typedef struct bough_external {
     bool active;
     double start;             // [s]
-    bough_wrench value, rate; // in marker axes [N, N m; per s]
+    bough_wrench value, rate, curve; // in marker axes [N, N m; per s; per s²]
 } bough_external;
 
 typedef struct bough_closure {
@@ -225,10 +225,10 @@ void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_m
 void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from,
                            double to);
 
-// The external wrench on the tree at a marker from now on: value + rate (t − start), each (6),
-// force then moment, in marker axes at the marker's origin. NULL for zero.
+// The external wrench on the tree at a marker from now on: value + τ (rate + τ curve), τ = t − start,
+// each (6), force then moment, in marker axes at the marker's origin. NULL for zero.
 void bough_tree_set_wrench(bough_tree *tree, int marker, double start, const double *value,
-                           const double *rate);
+                           const double *rate, const double *curve);
 
 // -- data of one evaluation ------------------------------------------------------------------
 

@@ -70,7 +70,9 @@ static void set_loads(const bough_modal_model *m, const bough_rod_loads *loads, 
                       double *load) {
     int count = 6 * m->rod->stride;
     double elapsed = t - loads->start;
-    for (int k = 0; k < count; k++) load[k] = loads->value[k] + elapsed * loads->rate[k];
+    for (int k = 0; k < count; k++) {
+        load[k] = loads->value[k] + elapsed * (loads->rate[k] + elapsed * loads->curve[k]);
+    }
     for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
         double factor = bough_rod_ramp_factor(l, t);
         for (int k = 0; k < count; k++) load[k] += factor * l->value[k];

@@ -139,6 +139,7 @@ bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
     loads->start = 0;
     loads->value = bough_rod_vertex_rows(arena, model, 6);
     loads->rate = bough_rod_vertex_rows(arena, model, 6);
+    loads->curve = bough_rod_vertex_rows(arena, model, 6);
     loads->rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
     loads->ramped = NULL;
     if (bough_arena_exhausted(arena)) return false;

@@ -108,11 +108,13 @@ typedef struct bough_rod_ramped_load {
     bool along;    // there is such a part
 } bough_rod_ramped_load;
 
-// Loads on the vertices: value + (t − start)·rate, resolved in BRF axes, and all ramped loads.
+// Loads on the vertices: value + τ·(rate + τ·curve), τ = t − start, resolved in BRF axes, and all
+// ramped loads.
 typedef struct bough_rod_loads {
     double start;  // [s]
     double *value; // force then moment (6 × stride), vertex 0 included [N, N m]
     double *rate;  // (6 × stride) [N/s, N m/s]
+    double *curve; // (6 × stride) [N/s², N m/s²]
     double *rest;  // strains without stress: e⁰ + D q of loads along the segments (6 × stride), set
                    // by bough_rod_loads_along; it does not change in time
     bough_rod_ramped_load *ramped; // NULL: none

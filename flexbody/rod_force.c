@@ -148,10 +148,13 @@ void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, doub
                     bough_rod_scratch *scratch) {
     double elapsed = t - loads->start; // all that bough_rod_vertex_rows took: whole registers
     const double *restrict value = loads->value, *restrict rate = loads->rate;
+    const double *restrict curve = loads->curve;
     double *restrict load = scratch->load;
     int count = 6 * m->stride;
 #pragma omp simd
-    for (int k = 1 - BOUGH_LANES; k <= count; k++) load[k] = value[k] + elapsed * rate[k];
+    for (int k = 1 - BOUGH_LANES; k <= count; k++) {
+        load[k] = value[k] + elapsed * (rate[k] + elapsed * curve[k]);
+    }
     scratch->rest = loads->rest;
     scratch->turning = false;
     if (loads->ramped == NULL) return;

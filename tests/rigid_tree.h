@@ -133,7 +133,7 @@ static inline fixture everything_with(bough_integrator_kind solver, double rtol)
                           .springs = springs};
     fixture f = build_with(&def, solver, rtol);
     double value[6] = {1, 2, 3, -1, -2, 0.5}, rate[6] = {0.5, 0, 1, 0, 1, 0};
-    bough_tree_set_wrench(f.tree, 2, 0.05, value, rate);
+    bough_tree_set_wrench(f.tree, 2, 0.05, value, rate, NULL);
     return f;
 }
 

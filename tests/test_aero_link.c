@@ -36,11 +36,11 @@ static bool sample(fixture *f, double t, double t_next) {
     return jumped;
 }
 
-// A blade's load signal: value and rate per second, LOADS of a rod or 6 of a rigid blade, in the
+// A blade's load signal: value, rate and curve by time since the start, LOADS of a rod or 6 of a rigid blade, in the
 // order that bodies keep them.
 typedef struct signal {
     int n;
-    double start, value[LOADS], rate[LOADS];
+    double start, value[LOADS], rate[LOADS], curve[LOADS];
 } signal;
 
 static signal signal_of(const fixture *f, int blade) {
@@ -50,6 +50,7 @@ static signal signal_of(const fixture *f, int blade) {
         const bough_external *e = &f->s->tree->external[beam->marker];
         bough_wrench_store(e->value, x.value);
         bough_wrench_store(e->rate, x.rate);
+        bough_wrench_store(e->curve, x.curve);
         x.start = e->start;
         return x;
     }
@@ -61,6 +62,7 @@ static signal signal_of(const fixture *f, int blade) {
         int at = k / (SEGMENTS + 1) * stride + k % (SEGMENTS + 1);
         x.value[k] = loads->value[at];
         x.rate[k] = loads->rate[at];
+        x.curve[k] = loads->curve[at];
     }
     return x;
 }
@@ -223,7 +225,8 @@ enum { SAMPLES = 30 };
 static void check_continuous(const signal *before, const signal *now) {
     double allowed = 1e-12 * largest(now->value, now->n);
     for (int i = 0; i < now->n; i++) {
-        double reached = before->value[i] + (now->start - before->start) * before->rate[i];
+        double dt = now->start - before->start;
+        double reached = before->value[i] + dt * (before->rate[i] + dt * before->curve[i]);
         check_near(now->value[i], reached, 0, allowed);
     }
 }
@@ -235,6 +238,7 @@ static void check_share(const signal *now, const signal *whole, double value, do
     for (int i = 0; i < now->n; i++) {
         check_near(now->value[i], value * whole->value[i], 0, allowed);
         check_near(now->rate[i], rate * whole->value[i], 0, allowed / period);
+        check_near(now->curve[i], 0, 0, allowed / (period * period));
     }
 }
 
@@ -279,10 +283,53 @@ static void constant_hold_takes_each_sample_at_once(void **context) {
             for (int i = 0; i < now.n; i++) {
                 check_near(now.value[i], share * full[b].value[i], 1e-12, 1e-12);
                 check_near(now.rate[i], 0, 0, 0);
+                check_near(now.curve[i], 0, 0, 0);
             }
         }
     }
     close_turbine(&f);
+}
+
+enum { ROWS = 50 };
+
+// Tips of the run-up that starts in full wind, every 20 ms for a second.
+static void start_suddenly(const char *rate, double tip[ROWS][3]) {
+    char set[32];
+    snprintf(set, sizeof set, "aero.rate=%s", rate);
+    const char *const sets[] = {set, "aero.ramp=[0 s, 0 s]", "simulation.macro_step=2.5 ms",
+                                "simulation.micro.step=2.5 ms", "simulation.threads=1", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/turbine/runup.yaml", sets);
+    for (int k = 0; k < ROWS; k++) {
+        bough_quaternion p;
+        for (int i = 0; i < 8; i++) scene_step(s);
+        bough_simulation_update(s);
+        bough_vec3 x = bough_simulation_beam_tip(s, bough_simulation_beam(s, 3), &p);
+        tip[k][0] = x.x, tip[k][1] = x.y, tip[k][2] = x.z;
+    }
+    bough_arena_destroy(arena);
+}
+
+static double furthest(double (*a)[3], double (*b)[3]) {
+    double most = 0;
+    for (int k = 0; k < ROWS; k++) {
+        bough_vec3 d = {a[k][0] - b[k][0], a[k][1] - b[k][1], a[k][2] - b[k][2]};
+        most = fmax(most, bough_norm(d));
+    }
+    return most;
+}
+
+// What samples leave out falls by the third order of their period; straight lines to extrapolated
+// values erred by 6.6 mm at 50 Hz and by the second order.
+static void sampling_errs_by_the_third_order(void **context) {
+    (void)context;
+    static double coarse[ROWS][3], fine[ROWS][3], exact[ROWS][3];
+    start_suddenly("50 Hz", coarse);
+    start_suddenly("100 Hz", fine);
+    start_suddenly("400 Hz", exact);
+    double at50 = furthest(coarse, exact), at100 = furthest(fine, exact);
+    print_message("tip: %.2e m at 50 Hz, %.2e m at 100 Hz\n", at50, at100);
+    assert_true(at50 < 1e-3 && at50 > 5.5 * at100);
 }
 
 // Samples come every fourth macro step, here, and what they leave stays until the next.
@@ -370,6 +417,7 @@ int main(void) {
         cmocka_unit_test(inflow_of_the_scene_reaches_the_rotor),
         cmocka_unit_test(linear_hold_is_continuous_and_exact_for_linear_loads),
         cmocka_unit_test(constant_hold_takes_each_sample_at_once),
+        cmocka_unit_test(sampling_errs_by_the_third_order),
         cmocka_unit_test(loads_are_sampled_at_their_rate),
         cmocka_unit_test(samples_repeat_from_saved),
         cmocka_unit_test(results_are_of_their_own_time),

@@ -100,12 +100,12 @@ static void external_wrench_acts_as_a_port_does(void **state) {
     (void)state;
     fixture f = everything(1e-6);
     double a[MOST], b[MOST], zero[12] = {0}, later[6], rate[6] = {1, 0, -1, 2, 0, 1};
-    bough_tree_set_wrench(f.tree, 2, 0, NULL, NULL);
+    bough_tree_set_wrench(f.tree, 2, 0, NULL, NULL, NULL);
     f.s.ops->derivative(f.s.self, 0.4, f.s.state, some_input, a);
     for (int m = 0; m < 2; m++) {
         for (int i = 0; i < 6; i++)
             later[i] = some_input[6 * m + i] - 0.3 * rate[i];
-        bough_tree_set_wrench(f.tree, m, 0.1, later, rate);
+        bough_tree_set_wrench(f.tree, m, 0.1, later, rate, NULL);
     }
     f.s.ops->derivative(f.s.self, 0.4, f.s.state, zero, b);
     for (int i = 0; i < f.s.n_state; i++)

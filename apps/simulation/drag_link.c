@@ -98,11 +98,12 @@ static void put(bough_drag_link *l) {
     double start = l->memory[2 * l->n];
     bough_tree *tree = l->simulation->tree;
     if (l->hub_marker >= 0) {
-        bough_tree_set_wrench(tree, l->hub_marker, start, value + l->n_tower, rate + l->n_tower);
+        bough_tree_set_wrench(tree, l->hub_marker, start, value + l->n_tower, rate + l->n_tower,
+                              NULL);
     }
     if (l->tower == NULL) return;
     if (l->tower->port < 0) {
-        bough_tree_set_wrench(tree, l->tower->marker, start, value, rate);
+        bough_tree_set_wrench(tree, l->tower->marker, start, value, rate, NULL);
         return;
     }
     bough_rod_loads *rod = bough_beam_loads(l->tower);
