@@ -134,10 +134,9 @@ static void make_group(bough_arena *arena, bough_load_set *s) {
         .node = s->node, .name = "sweep", .grid = s->grid, .factor = 1, .extremes = true};
 }
 
-bough_load_set *bough_load_set_read(bough_arena *arena, const char *path, const bough_node *root,
-                                    int threads, bough_errors *errors, bough_status *status) {
+bough_load_set *bough_load_set_parse(bough_arena *arena, const char *path, const bough_node *root,
+                                     bough_errors *errors) {
     bough_load_set *s = bough_arena_take(arena, sizeof *s);
-    *status = bough_ok();
     if (!s) return NULL;
     const bough_node *kind = bough_node_find(root, "kind");
     s->sweep = strcmp(kind->text, "sweep") == 0;
@@ -145,10 +144,17 @@ bough_load_set *bough_load_set_read(bough_arena *arena, const char *path, const 
     bough_schema_read(&reader, s->sweep ? &sweep_schema : &set_schema, root, s);
     if (errors->n > 0) return NULL;
     s->file = bough_arena_string(arena, path);
-    s->threads = threads;
     if (s->sweep) make_group(arena, s);
     if (!bough_arena_exhausted(arena)) bough_load_set_expand(arena, s, errors);
-    if (errors->n > 0 || bough_arena_exhausted(arena)) return NULL;
+    return errors->n > 0 || bough_arena_exhausted(arena) ? NULL : s;
+}
+
+bough_load_set *bough_load_set_read(bough_arena *arena, const char *path, const bough_node *root,
+                                    int threads, bough_errors *errors, bough_status *status) {
+    *status = bough_ok();
+    bough_load_set *s = bough_load_set_parse(arena, path, root, errors);
+    if (!s) return NULL;
+    s->threads = threads;
     *status = bough_load_set_check(arena, s, errors);
     return bough_is_ok(status) && errors->n == 0 ? s : NULL;
 }

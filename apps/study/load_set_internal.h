@@ -4,6 +4,10 @@
 
 #include "apps/study/load_set.h"
 
+// The set and its cases as the text says, without a look at the scenes; NULL after an error.
+bough_load_set *bough_load_set_parse(bough_arena *arena, const char *path, const bough_node *root,
+                                     bough_errors *errors);
+
 // Makes the cases of all groups.
 void bough_load_set_expand(bough_arena *arena, bough_load_set *set, bough_errors *errors);
 
