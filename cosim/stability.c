@@ -79,7 +79,9 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     m->coupling = c;
     m->n = bough_coupling_n_memory(c);
     m->repeat = (int)fmin(ceil(span / m->macro_step - 1e-6), MOST_REPEATED);
-    return take(m);
+    c->t1 = c->t0 + m->macro_step;
+    if (c->scheme->prepare) status = c->scheme->prepare(c, m->arena);
+    return bough_is_ok(&status) ? take(m) : status;
 }
 
 // -- the map --------------------------------------------------------------------------------------
