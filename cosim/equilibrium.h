@@ -35,7 +35,7 @@ typedef struct bough_equilibrium_report {
 } bough_equilibrium_report;
 
 // Brings `state` (n_state) to equilibrium. BOUGH_FAILED when it is not found: the report tells
-// where it did not settle, the state is the last one reached.
+// where it still moves, the state is the last one reached.
 bough_status bough_equilibrium_find(bough_arena *arena, bough_coupled *coupled,
                                     const bough_equilibrium_def *def, double *state,
                                     bough_equilibrium_report *report);

@@ -1,6 +1,6 @@
 // Rods that carry bodies, as scenes: statics, frequencies, conservation against theory, and every
 // coupling scheme against the monolithic one.
-#include "apps/simulation/settle.h"
+#include "apps/simulation/equilibrium.h"
 #include "core/base.h"
 #include "core/force.h"
 #include "tests/built_scene.h"
@@ -43,8 +43,8 @@ static void weight_bends_a_cantilever_as_beam_theory_says(void **context) {
     flexibility(f);
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, tip_weight, no_sets);
-    bough_settling settling;
-    bough_status status = bough_settle(s, s->master->assembly, 0, &settling);
+    bough_equilibrium_work work;
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
     assert_int_equal(status.code, BOUGH_OK);
     double expected = weight * (f[0][0] + arm * f[0][1]) + own * pow(length, 4) / (8 * bending);
     check_near(tip_of(s).x, expected, 2e-5, 0); // the body's x points down
@@ -100,8 +100,8 @@ static void spring_takes_hold_of_a_rod(void **context) {
     flexibility(f);
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "tests/scenes/wire.yaml", no_sets);
-    bough_settling settling;
-    bough_status status = bough_settle(s, s->master->assembly, 0, &settling);
+    bough_equilibrium_work work;
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
     assert_int_equal(status.code, BOUGH_OK);
     double sag = own * pow(length, 4) / (8 * bending);
     double force = (slack + sag) / (1 / wire + f[0][0]), tension;
@@ -163,8 +163,8 @@ static void weight_at_an_inner_vertex_bends_the_beam_as_theory_says(void **conte
     const double from = 0.8, weight = 9.8 * mass, own = 9.8 * 1e-4;
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "tests/scenes/mid-weight.yaml", no_sets);
-    bough_settling settling;
-    bough_status status = bough_settle(s, s->master->assembly, 0, &settling);
+    bough_equilibrium_work work;
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
     assert_int_equal(status.code, BOUGH_OK);
     double expected = weight * (pow(from, 3) / (3 * bending) + from / shear +
                                 (length - from) * from * from / (2 * bending)) +

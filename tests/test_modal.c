@@ -176,7 +176,7 @@ static bar make_bar(int pieces, bough_modal_options options) {
     return b;
 }
 
-static void settle_rod(bar *b, const double *input) {
+static void rest_rod(bar *b, const double *input) {
     bough_rod_static_options options = bough_rod_static_options_default();
     bough_rod_rest_state(b->rod, input, b->vertices);
     bough_status s = bough_rod_steady(b->rod, &b->loads, input, &options, &b->work, b->vertices);
@@ -184,7 +184,7 @@ static void settle_rod(bar *b, const double *input) {
     assert_int_equal(s.code, BOUGH_OK);
 }
 
-static void settle_modal(bar *b, const double *input) {
+static void rest_modal(bar *b, const double *input) {
     bough_modal_rest_state(b->modal, input, b->state);
     bough_status s = bough_modal_steady(b->modal, &b->loads, 0, input, &b->newton, b->state);
     if (!bough_is_ok(&s)) print_error("%s\n", s.message);
@@ -194,8 +194,8 @@ static void settle_modal(bar *b, const double *input) {
 static void frequencies(bar *b, const double *input, double *rod, double *modal) {
     bough_rod_mode_list list = {.wanted = WANTED};
     int found = 0;
-    settle_rod(b, input);
-    settle_modal(b, input);
+    rest_rod(b, input);
+    rest_modal(b, input);
     bough_status s = bough_rod_modes(b->arena, b->rod, &b->work, input, b->vertices, &list);
     assert_int_equal(s.code, BOUGH_OK);
     s = bough_modal_frequencies(b->arena, b->modal, &b->loads, 0, input, b->state, WANTED, modal,
@@ -245,8 +245,8 @@ static double deflection_error(int pieces, double load, double *rod) {
     double vertices[STATES];
     bar b = make_bar(pieces, (bough_modal_options){6, true, true});
     for (int i = 1; i <= SEGMENTS; i++) b.loads.value[i] = i < SEGMENTS ? load : load / 2;
-    settle_rod(&b, at_rest);
-    settle_modal(&b, at_rest);
+    rest_rod(&b, at_rest);
+    rest_modal(&b, at_rest);
     bough_modal_expand(b.modal, b.state, at_rest, 1, &b.newton.chain, vertices);
     *rod = b.vertices[SEGMENTS - 1];
     double error = vertices[SEGMENTS - 1] - *rod;

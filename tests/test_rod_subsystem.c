@@ -380,7 +380,7 @@ static crossing pass(const rod *r, int count) {
 
 static void cantilever_vibrates_at_its_natural_frequency(void **context) {
     (void)context;
-    rod r = cantilever(2e-3 / natural_frequency()); // as little as calms the stiff modes
+    rod r = cantilever(2e-3 / natural_frequency()); // as little as damps the stiff modes
     strike(&r, 0.01);
     crossing fifth = pass(&r, 5);
     check_near(5 * 2 * BOUGH_PI / fifth.time, natural_frequency(), 1e-4, 0);

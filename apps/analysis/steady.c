@@ -115,7 +115,7 @@ bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,
                             &steady->work, steady->state);
 }
 
-bough_status bough_steady_settled(bough_arena *arena, const bough_simulation *s,
+bough_status bough_steady_equilibrium(bough_arena *arena, const bough_simulation *s,
                                   const bough_beam *beam, double time, bough_steady *steady) {
     const bough_assembly *a = s->master->assembly;
     const bough_coupling *c = s->master->coupling;

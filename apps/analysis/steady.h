@@ -1,5 +1,5 @@
 // A scene's rods in equilibrium: one by one, root held, at rest or turning steadily, for statics and
-// eigenvalues; or as the scene settled (settle.h).
+// eigenvalues; or as the scene stands in equilibrium (equilibrium.h).
 #ifndef BOUGH_APPS_ANALYSIS_STEADY_H
 #define BOUGH_APPS_ANALYSIS_STEADY_H
 
@@ -40,8 +40,8 @@ bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,
                                const bough_beam *beam, const bough_turning *turning,
                                bough_steady *steady);
 
-// The rod of the whole scene after it settled under the loads at `time`.
-bough_status bough_steady_settled(bough_arena *arena, const bough_simulation *s,
+// The rod in the equilibrium of the whole scene under the loads at `time`.
+bough_status bough_steady_equilibrium(bough_arena *arena, const bough_simulation *s,
                                   const bough_beam *beam, double time, bough_steady *steady);
 
 // Displacement [m] and rotation vector [rad] of vertex i from the undeformed rod, in body axes.

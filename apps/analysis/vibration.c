@@ -60,10 +60,10 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, solution *x
     x->mean = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     x->held = bough_arena_take(arena, ((size_t)s->leader.n_state + 1) * sizeof *x->held);
     if (!x->state || !x->mean || !x->held) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_settle_state(a, x->state);
+    bough_equilibrium_state(a, x->state);
     bough_status status = bough_coupled_create(arena, a, NULL, &x->coupled);
     if (!bough_is_ok(&status)) return status;
-    int n_held = bough_settle_held(s->tree, false, x->held);
+    int n_held = bough_equilibrium_held(s->tree, false, x->held);
     status = bough_coupled_hold(arena, x->coupled, n_held, x->held);
     if (!bough_is_ok(&status)) return status;
     return bough_blade_group_find(arena, s, a, &x->group);
@@ -157,15 +157,15 @@ bool bough_vibration_wanted(const bough_simulation *s) {
     if (modes->of != BOUGH_SCENE_MODES_AUTO) return modes->of == BOUGH_SCENE_MODES_SCENE;
     bool axis = modes->axis[0] != 0 || modes->axis[1] != 0 || modes->axis[2] != 0;
     bool reduced = bough_steady_rods(s) < s->n_rod; // what is no rod has no modes by itself
-    return (!bough_settle_apart(s) || reduced) && modes->speed == 0 && !axis;
+    return (!bough_equilibrium_apart(s) || reduced) && modes->speed == 0 && !axis;
 }
 
 bough_status bough_vibration_find(bough_arena *arena, bough_simulation *s, int count,
                                   bough_vibration *vibration) {
-    bool settled = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
-    double time = settled ? bough_settle_loaded(s) : 0;
+    bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
+    double time = balanced ? bough_equilibrium_time(s) : 0;
     *vibration = (bough_vibration){0};
     bough_status status = bough_ok();
-    if (settled) status = bough_settle(s, s->master->assembly, time, &vibration->settling);
+    if (balanced) status = bough_simulation_equilibrium(s, s->master->assembly, time, &vibration->work);
     return bough_is_ok(&status) ? solve(arena, s, time, count, vibration) : status;
 }

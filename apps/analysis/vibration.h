@@ -8,7 +8,7 @@
 #define BOUGH_APPS_ANALYSIS_VIBRATION_H
 
 #include "apps/analysis/mode_shape.h"
-#include "apps/simulation/settle.h"
+#include "apps/simulation/equilibrium.h"
 #include "flexbody/rod_modes.h"
 
 // How the blades move against each other.
@@ -39,7 +39,7 @@ typedef struct bough_scene_mode {
 } bough_scene_mode;
 
 typedef struct bough_vibration {
-    bough_settling settling; // how the equilibrium was found; 0 steps: none was sought
+    bough_equilibrium_work work; // how the equilibrium was found; 0 steps: none was sought
     double spin;             // of the rotor [rad/s]
     bool frozen;             // it turns, but the blades allow no transform
     int n_blade;             // compared; 0: none

@@ -205,7 +205,7 @@ static bool is_due(const bough_job *job) {
 bough_status bough_checkpoint_update(void *self) {
     bough_job *job = self;
     if (!(job->checkpoint.interval > 0) || !is_due(job)) return bough_ok();
-    bough_run_settle_clock(&job->run);
+    bough_run_update_clock(&job->run);
     bough_status status = bough_recorder_keep(job->recorder, &job->rows);
     if (bough_is_ok(&status) && job->frames) {
         status = bough_frames_keep(job->frames, &job->frames_kept);

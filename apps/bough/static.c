@@ -4,7 +4,7 @@
 #include "apps/bough/open.h"
 #include "apps/bough/verb.h"
 #include "apps/output/folder.h"
-#include "apps/simulation/settle.h"
+#include "apps/simulation/equilibrium.h"
 
 enum { MOTION = 6 }; // displacement and rotation, or force and moment
 
@@ -175,24 +175,24 @@ static bough_status find_apart(bough_arena *arena, const bough_simulation *s,
 
 // All together.
 static bough_status find_whole(bough_arena *arena, bough_simulation *s, bough_steady *steady) {
-    bough_settling settling;
-    double time = bough_settle_loaded(s);
-    bough_status status = bough_settle(s, s->master->assembly, time, &settling);
+    bough_equilibrium_work work;
+    double time = bough_equilibrium_time(s);
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, time, &work);
     if (!bough_is_ok(&status)) return status;
-    printf("whole scene: %d steps", settling.steps);
-    if (settling.samples > 0) printf(", %d samples of the air", settling.samples);
+    printf("whole scene: %d steps", work.steps);
+    if (work.samples > 0) printf(", %d samples of the air", work.samples);
     if (time > 0) printf(", loads at %.6g s", time);
     putchar('\n');
     print_joints(s);
     int n = 0;
     for (int k = 0; k < s->n_beam && bough_is_ok(&status); k++) {
         if (s->beam[k].rod == NULL) continue;
-        status = bough_steady_settled(arena, s, &s->beam[k], time, &steady[n++]);
+        status = bough_steady_equilibrium(arena, s, &s->beam[k], time, &steady[n++]);
     }
     return status;
 }
 
-// Where the tips of modal bodies settled.
+// Where the tips of modal bodies are.
 static void print_modal(bough_simulation *s) {
     bough_simulation_update(s);
     for (int k = 0; k < s->n_beam; k++) {
@@ -220,14 +220,14 @@ bough_status bough_verb_static(bough_arena *arena, const bough_options *options)
     bough_steady *steady = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *steady);
     if (!steady || !folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     int n = bough_steady_rods(s);
-    bool apart = bough_settle_apart(s) && n == s->n_rod; // a modal body settles with the whole
+    bool apart = bough_equilibrium_apart(s) && n == s->n_rod; // a modal body only with the whole
     status = apart ? find_apart(arena, s, steady) : find_whole(arena, s, steady);
     if (!bough_is_ok(&status)) return status;
     for (int k = 0; k < n; k++) print_rod(&steady[k]);
     print_modal(s);
     status = write_file(folder, steady, n);
     if (bough_is_ok(&status) && !apart) {
-        status = write_channels(arena, s, folder, bough_settle_loaded(s));
+        status = write_channels(arena, s, folder, bough_equilibrium_time(s));
     }
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;

@@ -5,7 +5,7 @@
 #include "apps/simulation/control_link.h"
 #include "apps/simulation/drag_link.h"
 #include "apps/simulation/load_link.h"
-#include "apps/simulation/settle.h"
+#include "apps/simulation/equilibrium.h"
 #include "apps/simulation/validity.h"
 #include "core/dynamics.h"
 #include "core/linalg.h"
@@ -187,13 +187,13 @@ static void connect(bough_builder *b) {
 }
 
 // The run starts from equilibrium: the members move there before their master is built.
-static bough_status settle(const bough_assembly_def *def, bough_simulation *s) {
+static bough_status find_equilibrium(const bough_assembly_def *def, bough_simulation *s) {
     bough_arena *arena = bough_arena_create();
     bough_assembly *assembly;
-    bough_settling settling;
+    bough_equilibrium_work work;
     if (arena == NULL) return out_of_memory();
     bough_status status = bough_assembly_build(arena, def, &assembly);
-    if (bough_is_ok(&status)) status = bough_settle(s, assembly, 0, &settling);
+    if (bough_is_ok(&status)) status = bough_simulation_equilibrium(s, assembly, 0, &work);
     bough_arena_destroy(arena);
     return status;
 }
@@ -219,7 +219,7 @@ static bough_status build_master(bough_builder *b) {
     if (s->control != NULL) load[def.n_load++] = bough_control_link_load(s->control);
     def.load = load;
     if (sim->initial == BOUGH_SCENE_IN_EQUILIBRIUM) {
-        bough_status status = settle(&def.assembly, s);
+        bough_status status = find_equilibrium(&def.assembly, s);
         if (!bough_is_ok(&status)) return status;
     }
     return bough_master_build(b->arena, &def, &s->master);

@@ -105,7 +105,7 @@ static double cpu_clock(const bough_run *run) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-void bough_run_settle_clock(bough_run *run) {
+void bough_run_update_clock(bough_run *run) {
     double wall = bough_wall_clock(), cpu = cpu_clock(run);
     run->wall_s += wall - run->wall_from;
     run->cpu_s += cpu - run->cpu_from;
@@ -133,7 +133,7 @@ static void step_all(void *self) {
         if (run->progress) bough_progress_show(run->progress, run->simulation->master->time);
     }
     run->outcome = record_end(run, status);
-    bough_run_settle_clock(run);
+    bough_run_update_clock(run);
 }
 
 void bough_run_all(bough_run *run) { bough_pool_region(run->simulation->pool, step_all, run); }

@@ -67,7 +67,7 @@ void bough_run_all(bough_run *run);
 const double *bough_run_values(bough_run *run);
 
 // Brings wall_s and cpu_s to the present, within bough_run_all.
-void bough_run_settle_clock(bough_run *run);
+void bough_run_update_clock(bough_run *run);
 
 // Work of a member over the whole run.
 bough_statistics bough_run_statistics(const bough_run *run, int member);

@@ -4,7 +4,7 @@
 #include "apps/analysis/steady.h"
 #include "apps/analysis/vibration.h"
 #include "apps/simulation/run.h"
-#include "apps/simulation/settle.h"
+#include "apps/simulation/equilibrium.h"
 #include "flexbody/rod_modes.h"
 
 #include <assert.h>
@@ -51,16 +51,16 @@ static double tip_component(const bough_steady *x, int component) {
     return values[component];
 }
 
-// Of the first rod, with the scene settled as a whole where its modes are those of the whole.
+// Of the first rod, with the scene in equilibrium as a whole where its modes are those of the whole.
 static bough_status steady(bough_arena *arena, bough_simulation *s, bough_steady *found) {
     const bough_beam *rod = first_rod(s);
     bough_turning turning;
-    bough_settling settling;
-    double time = bough_settle_loaded(s);
+    bough_equilibrium_work work;
+    double time = bough_equilibrium_time(s);
     if (!rod) return bough_fail(BOUGH_INVALID, "the scene has no rod");
     if (bough_vibration_wanted(s)) {
-        bough_status status = bough_settle(s, s->master->assembly, time, &settling);
-        return bough_is_ok(&status) ? bough_steady_settled(arena, s, rod, time, found) : status;
+        bough_status status = bough_simulation_equilibrium(s, s->master->assembly, time, &work);
+        return bough_is_ok(&status) ? bough_steady_equilibrium(arena, s, rod, time, found) : status;
     }
     bough_status status = bough_steady_turning(s, rod, &turning);
     if (!bough_is_ok(&status)) return status;

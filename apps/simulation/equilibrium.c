@@ -1,4 +1,4 @@
-#include "apps/simulation/settle.h"
+#include "apps/simulation/equilibrium.h"
 
 #include "apps/simulation/aero_link.h"
 #include "apps/simulation/drag_link.h"
@@ -13,17 +13,17 @@ enum { SAMPLES = 60 }; // of the air, most
 // Changes between samples of the air below it are none, in units of the states' scales.
 static const double still = 1e-8;
 
-bool bough_settle_apart(const bough_simulation *s) {
+bool bough_equilibrium_apart(const bough_simulation *s) {
     return s->tree->n_v == 0 && s->aero == NULL;
 }
 
-double bough_settle_loaded(const bough_simulation *s) {
+double bough_equilibrium_time(const bough_simulation *s) {
     double last = 0;
     for (int i = 0; i < s->master->n_event; i++) last = fmax(last, s->master->event[i]);
     return last;
 }
 
-void bough_settle_state(const bough_assembly *assembly, double *state) {
+void bough_equilibrium_state(const bough_assembly *assembly, double *state) {
     for (int i = 0; i < assembly->n_member; i++) {
         const bough_subsystem *m = assembly->member[i];
         memcpy(state + assembly->state_offset[i], m->state, (size_t)m->n_state * sizeof *state);
@@ -39,7 +39,7 @@ static void set_state(bough_simulation *s, const bough_assembly *assembly, const
 }
 
 // The tree's states are the first of all.
-int bough_settle_held(const bough_tree *tree, bool turning, int *row) {
+int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row) {
     int n = 0;
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
@@ -92,28 +92,28 @@ static double change_of(const bough_assembly *assembly, const double *a, const d
 }
 
 // The states in equilibrium under the air's forces as sampled last.
-static bough_status settle(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
-                           bough_equilibrium_def *def, double *state, bough_settling *settling) {
+static bough_status balance(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
+                           bough_equilibrium_def *def, double *state, bough_equilibrium_work *work) {
     bough_equilibrium_report report;
     bough_status status = bough_equilibrium_find(arena, coupled, def, state, &report);
-    settling->steps += report.steps;
+    work->steps += report.steps;
     if (status.code == BOUGH_FAILED) return explain(s, coupled->assembly, &report);
     if (bough_is_ok(&status)) set_state(s, coupled->assembly, state);
     def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now
     return status;
 }
 
-static bough_status settle_in_air(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
+static bough_status balance_in_air(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
                                   bough_equilibrium_def *def, double *state,
-                                  bough_settling *settling) {
+                                  bough_equilibrium_work *work) {
     double *before = bough_arena_doubles(arena, (size_t)coupled->assembly->n_state), change = 0;
     if (!before) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    while (settling->samples < SAMPLES) {
+    while (work->samples < SAMPLES) {
         memcpy(before, state, (size_t)coupled->assembly->n_state * sizeof *state);
         bough_aero_link_hold(s->aero, def->time);
         if (s->drag != NULL) bough_drag_link_hold(s->drag, def->time);
-        settling->samples++;
-        bough_status status = settle(arena, s, coupled, def, state, settling);
+        work->samples++;
+        bough_status status = balance(arena, s, coupled, def, state, work);
         if (!bough_is_ok(&status)) return status;
         change = change_of(coupled->assembly, state, before);
         if (change < still) return status;
@@ -122,20 +122,20 @@ static bough_status settle_in_air(bough_arena *arena, bough_simulation *s, bough
                       "no equilibrium in the air: the bodies still move by %.3g of their scales"
                       " after %d samples of its forces; they may flutter or stall: try another wind"
                       " speed or pitch",
-                      change, settling->samples);
+                      change, work->samples);
 }
 
-// What settles.
-typedef struct settler {
+// What is brought to equilibrium.
+typedef struct search {
     bough_simulation *simulation;
     bough_coupled *coupled;
     double time;
     double *change; // of one rod's vertices, see rod_move.h
-} settler;
+} search;
 
 // Rods turn without stretching, and what hangs on their ends goes with them.
 static double move(void *self, const double *state, const double *change, double *moved) {
-    const settler *x = self;
+    const search *x = self;
     const bough_simulation *s = x->simulation;
     const bough_assembly *a = x->coupled->assembly;
     double turn = 0;
@@ -164,7 +164,7 @@ static double move(void *self, const double *state, const double *change, double
 // downhill and makes no vibration. A closed loop is not brought to rest unless something turns: it
 // may have to close, which takes velocities.
 static void bring_to_rest(void *self, double *state) {
-    const settler *x = self;
+    const search *x = self;
     const bough_simulation *s = x->simulation;
     const bough_assembly *a = x->coupled->assembly;
     const bough_tree *tree = s->tree;
@@ -201,9 +201,9 @@ static double *rod_changes(bough_arena *arena, const bough_simulation *s) {
     return bough_arena_doubles(arena, BOUGH_ROD_CHANGE * (size_t)most);
 }
 
-static bough_status settle_members(bough_arena *arena, bough_simulation *s,
+static bough_status balance_members(bough_arena *arena, bough_simulation *s,
                                    const bough_assembly *assembly, double time,
-                                   bough_settling *settling) {
+                                   bough_equilibrium_work *work) {
     bough_coupled *coupled;
     bough_equilibrium_def def = bough_equilibrium_def_default();
     double *state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
@@ -212,26 +212,26 @@ static bough_status settle_members(bough_arena *arena, bough_simulation *s,
     bough_status status = bough_coupled_create(arena, assembly, NULL, &coupled);
     if (!bough_is_ok(&status)) return status;
     def.time = time;
-    status = bough_coupled_hold(arena, coupled, bough_settle_held(s->tree, true, row), row);
+    status = bough_coupled_hold(arena, coupled, bough_equilibrium_held(s->tree, true, row), row);
     if (!bough_is_ok(&status)) return status;
-    bough_settle_state(assembly, state);
+    bough_equilibrium_state(assembly, state);
     bough_tree_prescribe(s->tree, time, state);
-    settler self = {s, coupled, time, rod_changes(arena, s)};
+    search self = {s, coupled, time, rod_changes(arena, s)};
     if (!self.change) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     def.self = &self;
     def.move = move;
     bring_to_rest(&self, state);
     if (turns(coupled, s->tree, state) || s->tree->n_closures == 0) def.rest = bring_to_rest;
-    return s->aero ? settle_in_air(arena, s, coupled, &def, state, settling)
-                   : settle(arena, s, coupled, &def, state, settling);
+    return s->aero ? balance_in_air(arena, s, coupled, &def, state, work)
+                   : balance(arena, s, coupled, &def, state, work);
 }
 
-bough_status bough_settle(bough_simulation *s, const bough_assembly *assembly, double time,
-                          bough_settling *settling) {
+bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
+                          bough_equilibrium_work *work) {
     bough_arena *arena = bough_arena_create();
-    *settling = (bough_settling){0};
+    *work = (bough_equilibrium_work){0};
     if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_status status = settle_members(arena, s, assembly, time, settling);
+    bough_status status = balance_members(arena, s, assembly, time, work);
     bough_arena_destroy(arena);
     return status;
 }

@@ -1,17 +1,17 @@
 // Equilibrium of whole scenes.
 #include "apps/analysis/steady.h"
-#include "apps/simulation/settle.h"
+#include "apps/simulation/equilibrium.h"
 #include "tests/built_scene.h"
 
 #include <string.h>
 
 static const char runup[] = "apps/turbine/runup.yaml";
 
-static bough_settling settled(bough_simulation *s) {
-    bough_settling settling;
-    bough_status status = bough_settle(s, s->master->assembly, bough_settle_loaded(s), &settling);
+static bough_equilibrium_work equilibrium_of(bough_simulation *s) {
+    bough_equilibrium_work work;
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, bough_equilibrium_time(s), &work);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-    return settling;
+    return work;
 }
 
 static double joint_angle(const bough_simulation *s, int body) {
@@ -26,7 +26,7 @@ static void spring_holds_the_pendulum(void **context) {
     const char *sets[] = {"bodies[0].joint.stiffness=20", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
-    settled(s);
+    equilibrium_of(s);
     double angle = joint_angle(s, 0);
     assert_true(angle < -0.1);
     check_near(20 * angle, -9.81 * cos(angle), 0, 1e-9);
@@ -39,7 +39,7 @@ static void chain_hangs(void **context) {
     const char *sets[] = {"bodies[0].joint.angle=-45 deg", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/mechanisms/chain.yaml", sets);
-    settled(s);
+    equilibrium_of(s);
     check_near(sin(joint_angle(s, 0)), 1, 0, 1e-9);
     for (int body = 1; body < 5; body++) {
         check_near(sin(joint_angle(s, body)), 0, 0, 1e-9);
@@ -61,8 +61,8 @@ static void massless_tip_bends_the_elastica(void **context) {
         const char *sets[] = {cases[k].force, NULL};
         bough_arena *arena = bough_arena_create();
         bough_simulation *s = scene_build(arena, "tests/scenes/elastica-tip.yaml", sets);
-        bough_settling settling = settled(s);
-        assert_in_range(settling.steps, 1, 30);
+        bough_equilibrium_work work = equilibrium_of(s);
+        assert_in_range(work.steps, 1, 30);
         bough_quaternion p;
         check_near(bough_simulation_beam_tip(s, &s->beam[0], &p).x, cases[k].deflection, 2e-4, 0);
         bough_arena_destroy(arena);
@@ -75,7 +75,7 @@ static void turning_bar_stretches(void **context) {
     const char *sets[] = {"bodies[1].joint.motion={speed: 20 rad/s}", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/beams/spin-up.yaml", sets);
-    settled(s);
+    equilibrium_of(s);
     double k = sqrt(1.2 * 20 * 20 / 2.8e7), z = tan(10 * k) / k - 10;
     int n = s->beam[0].def.n_segment;
     const double *y = bough_rod_body_state(s->beam[0].rod);
@@ -86,7 +86,7 @@ static void turning_bar_stretches(void **context) {
 }
 
 // The rod's own solution, by Newton's method with increments of load.
-static void rod_alone_settles_where_its_own_statics_says(void **context) {
+static void rod_alone_stands_where_its_own_statics_says(void **context) {
     (void)context;
     const char *sets[] = {"loads=[{body: blade, at: tip, force: [100 kN, 0, 0]}]", NULL};
     bough_arena *arena = bough_arena_create();
@@ -95,7 +95,7 @@ static void rod_alone_settles_where_its_own_statics_says(void **context) {
     bough_steady steady;
     bough_status status = bough_steady_find(arena, s, &s->beam[0], &rest, &steady);
     assert_true(bough_is_ok(&status));
-    settled(s);
+    equilibrium_of(s);
     int n = s->beam[0].def.n_segment;
     const double *y = bough_rod_body_state(s->beam[0].rod);
     for (int k = 0; k < 7 * n; k++) check_near(y[k], steady.state[k], 0, 1e-8);
@@ -142,9 +142,9 @@ static void turbine_on_its_tower_stays_at_rest(void **context) {
     bough_simulation *s = scene_build(arena, "apps/turbine/parked.yaml", sets);
     size_t n = (size_t)s->master->assembly->n_state;
     double *before = bough_arena_doubles(arena, 2 * n), *after = before + n;
-    bough_settle_state(s->master->assembly, before);
+    bough_equilibrium_state(s->master->assembly, before);
     for (int step = 0; step < 30; step++) scene_step(s);
-    bough_settle_state(s->master->assembly, after);
+    bough_equilibrium_state(s->master->assembly, after);
     for (size_t k = 0; k < n; k++) check_near(after[k], before[k], 0, 1e-6);
     bough_arena_destroy(arena);
 }
@@ -183,8 +183,8 @@ static void driven_free_rotor_has_none(void **context) {
     const char *sets[] = {"bodies[2].joint.speed=0", "aero.ramp=[0, 0]", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, runup, sets);
-    bough_settling settling;
-    bough_status status = bough_settle(s, s->master->assembly, 0, &settling);
+    bough_equilibrium_work work;
+    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, 0, &work);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "no equilibrium"));
     assert_non_null(strstr(status.message, "a spring, a speed or a motion"));
@@ -197,7 +197,7 @@ int main(void) {
         cmocka_unit_test(chain_hangs),
         cmocka_unit_test(massless_tip_bends_the_elastica),
         cmocka_unit_test(turning_bar_stretches),
-        cmocka_unit_test(rod_alone_settles_where_its_own_statics_says),
+        cmocka_unit_test(rod_alone_stands_where_its_own_statics_says),
         cmocka_unit_test(parked_turbine_stays_at_rest),
         cmocka_unit_test(turbine_on_its_tower_stays_at_rest),
         cmocka_unit_test(turning_rotor_starts_smoothly),
