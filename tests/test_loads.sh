@@ -137,6 +137,13 @@ ran=$(sed -n 's/^ran \([0-9]*\) cases.*/\1/p' log)
 [ "$ran" -le 8 ] || fail "a killed worker's cases were run again: $ran"
 same whole killed
 
+# A damaged result is told, not taken for a missing one.
+cp -r whole damaged && head -n 5 whole/cases/000003.case >damaged/cases/000003.case
+expect 1 'cases/000003.case.*is damaged: remove it' set.yaml --out damaged
+rm damaged/cases/000003.case
+expect 0 'ran 1 cases' set.yaml --out damaged
+same whole damaged
+
 # A case that fails is told, the others go on, and the result says what it lacks.
 sed 's/speed: \[8, 16\]/speed: [8, 300]/' set.yaml >failing.yaml
 expect 3 'case 8 failed (DLC1.3, speed=300)' failing.yaml --out failing

@@ -131,10 +131,10 @@ static bool take_head(FILE *f, const bough_load_set *set, int number, bough_stat
     return found == number + 1 && fingerprint == set->cases[number].fingerprint;
 }
 
-static bool take_result(FILE *f, const bough_load_set *set, int number, bough_case_result *r) {
+// What follows the head.
+static bool take_result(FILE *f, const bough_load_set *set, bough_case_result *r) {
     double run[5];
-    if (!take_head(f, set, number, &r->outcome) || !take_word(f, "run") || !take(f, 5, run))
-        return false;
+    if (!take_word(f, "run") || !take(f, 5, run)) return false;
     r->time = run[0];
     r->counted = run[1];
     r->cpu = run[2];
@@ -161,9 +161,13 @@ bough_status bough_case_read(const char *folder, const bough_load_set *set, int 
                           folder, strerror(errno));
     }
     if (!file) return bough_ok();
-    result->done = take_result(file, set, number, result);
+    bool known = take_head(file, set, number, &result->outcome);
+    result->done = known && take_result(file, set, result);
     fclose(file);
-    return bough_ok();
+    if (result->done || !known) return bough_ok();
+    return bough_fail(BOUGH_IO, "the result of case %d, '%.200s/cases/%06d.case', is damaged: remove it, "
+                                "and the same command runs the case again", number + 1, folder,
+                      number + 1);
 }
 
 bool bough_case_exists(const char *folder, const bough_load_set *set, int number,

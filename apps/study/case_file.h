@@ -9,7 +9,7 @@ bough_status bough_case_write(const char *folder, const bough_load_set *set, int
                               const bough_case_result *result);
 
 // Reads a result into memory of bough_case_take. result->done is false when there is none, or one of
-// other input.
+// other input; BOUGH_IO when it is damaged.
 bough_status bough_case_read(const char *folder, const bough_load_set *set, int number,
                              bough_case_result *result);
 
