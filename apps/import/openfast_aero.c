@@ -178,6 +178,7 @@ static void put_induction(bough_openfast *o) {
     bool oye = wake == 2 || (wake == 1 && bough_deck_line(a, "Wake_Mod") >= 0 && dynamic > 0);
     bool pitt =
         new_skew ? skew == 1 && bough_deck_whole_or(a, "SkewRedistr_Mod", 1) != 0 : skew == 2;
+    int balance = bough_deck_whole_or(a, "BEM_Mod", 0);
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     fprintf(file,
             "  induction: {tip_loss: %s, hub_loss: %s, tangential: %s, drag: %s, skew: %s, "
@@ -185,7 +186,8 @@ static void put_induction(bough_openfast *o) {
             truth(bough_deck_flag_or(a, "TipLoss", true)),
             truth(bough_deck_flag_or(a, "HubLoss", true)),
             truth(bough_deck_flag_or(a, "TanInd", true)),
-            truth(bough_deck_flag_or(a, "AIDrag", true)), pitt ? "pitt-peters" : "none", "smooth");
+            truth(bough_deck_flag_or(a, "AIDrag", true)), pitt ? "pitt-peters" : "none",
+            balance == 1 ? "buhl" : "smooth");
     if (oye) fputs(", inflow: oye", file);
     if (oye && dynamic != 2) {
         fprintf(file, ", inflow_time: %.10g s", bough_deck_number(a, "tau1_const"));
@@ -195,6 +197,15 @@ static void put_induction(bough_openfast *o) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
                          "TIDrag: drag in the tangential induction as "
                          "AIDrag has it in the axial one");
+    }
+    if (balance == 1) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "BEM_Mod 1: Buhl's high thrust as there, the momentum balance else that of "
+                         "BEM_Mod 2");
+    } else if (balance == 0) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "no BEM_Mod: high thrust by a smooth parabola, where AeroDyn before "
+                         "version 4 has Buhl's");
     }
     if (wake == 0)
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "WakeMod 0: induction is computed");

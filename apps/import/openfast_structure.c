@@ -173,7 +173,9 @@ void bough_openfast_tower(bough_openfast *o, double top_mass) {
                  .length = o->tower_top - o->tower_base,
                  .end_mass = top_mass};
     double side = bough_deck_number_or(deck, "AdjSSSt", 1);
-    double time = damping(deck, b, "TwrFADmp(1)|TwrFADmp1", "TwFAM1Sh");
+    slender bare = b; // to which the deck's ratio refers: ElastoDyn's is of the tower alone
+    bare.end_mass = 0;
+    double time = damping(deck, bare, "TwrFADmp(1)|TwrFADmp1", "TwFAM1Sh");
     if (!bough_is_ok(o->draft.status)) return;
     check_rows(deck, &b, "NTwInpSt");
     const double times[] = {time, time, time, time, time, time};
@@ -191,5 +193,6 @@ void bough_openfast_tower(bough_openfast *o, double top_mass) {
                      total_mass(&b));
     bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
                      "tower: axial, shear and torsional stiffness of a thin "
-                     "steel tube; damping grows with the frequency from the first mode's ratio");
+                     "steel tube; damping grows with the frequency from the first mode's ratio, "
+                     "which is that of the tower without its top");
 }
