@@ -77,9 +77,6 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     status = bough_scheme_couple(m->arena, &m->assembly, &judged, NULL, &c);
     if (!bough_is_ok(&status) || !c) return status;
     m->coupling = c;
-    c->t1 = c->t0 + m->macro_step;
-    if (c->scheme->prepare) status = c->scheme->prepare(c, m->arena);
-    if (!bough_is_ok(&status)) return status;
     m->n = bough_coupling_n_memory(c);
     m->repeat = (int)fmin(ceil(span / m->macro_step - 1e-6), MOST_REPEATED);
     c->t1 = c->t0 + m->macro_step;
