@@ -11,7 +11,9 @@
 #include <string.h>
 
 enum { STAGES = 4, MOST_STEPS = 20000 };
-enum { MOST_AGE = 32 }; // steps with the same tangents; on a blade, up to 64 cost no accuracy
+enum { YOUNG = 8 };     // tangents that a failed step does not blame
+enum { MOST_DRIFTED = 4 }; // the same of ∂f/∂t, and anew in every macro step
+enum { MOST_AGE = 24 }; // steps with the same tangents; on a blade, up to 64 cost no accuracy
 
 // The published coefficients α, Γ, b, b̂ in the form that needs no product with J: a = A Γ⁻¹,
 // c = E − γ Γ⁻¹, m = bᵀ Γ⁻¹, e = (b − b̂)ᵀ Γ⁻¹. The last row of a is m without its last entry, 1.
@@ -44,6 +46,9 @@ typedef struct rosenbrock {
     int age;         // steps since the tangents were found
     bool started;
     double *drift;              // ∂f/∂t (n)
+    int drifted;                // steps since it was found
+    double end;                 // of the macro step in progress [s]
+    double *error;              // (n)
     double *stage[STAGES];      // u_i (n)
     double *at;                 // argument of f, then y₁ (n)
     double *own_error;          // (n)
@@ -61,6 +66,7 @@ static bough_status create(bough_arena *arena, const bough_ode *ode,
     m->step = options->step > 0 ? options->step : (double)INFINITY;
     m->weight = bough_arena_doubles(arena, n);
     m->drift = bough_arena_doubles(arena, n);
+    m->error = bough_arena_doubles(arena, n);
     m->at = bough_arena_doubles(arena, n);
     m->own_error = bough_arena_doubles(arena, n);
     for (int i = 0; i < STAGES; i++) m->stage[i] = bough_arena_doubles(arena, n);
@@ -93,19 +99,28 @@ static bool evaluate(rosenbrock *m, double t, const double *y, double *rate) {
     return m->ode.derivative(m->ode.self, t, y, rate);
 }
 
-// ∂f/∂t as its mean over the step, since the inputs move, and the first right side
-// γh [f + γ₁h ∂f/∂t].
-static bool find_rates(rosenbrock *m, double t, double h, const double *y) {
-    double *restrict drift = m->drift, *restrict u = m->stage[0];
-    if (!evaluate(m, t, y, u)) return false;
+// ∂f/∂t as its mean over the step, since the inputs move; like the tangents it serves some steps, over
+// which the inputs go on alike.
+static bool renew_drift(rosenbrock *m, double t, double h, const double *y) {
+    double *restrict drift = m->drift;
+    const double *restrict now = m->stage[0];
+    if (m->drifted < MOST_DRIFTED) return true;
     m->sum.derivatives++;
     if (!m->ode.derivative_again(m->ode.self, t + h, y, drift)) return false;
+#pragma omp simd
+    for (int k = 0; k < m->ode.n; k++) drift[k] = (drift[k] - now[k]) / h;
+    m->drifted = 0;
+    return true;
+}
+
+// The first right side γh [f + γ₁h ∂f/∂t].
+static bool find_rates(rosenbrock *m, double t, double h, const double *y) {
+    double *restrict u = m->stage[0];
+    const double *restrict drift = m->drift;
+    if (!evaluate(m, t, y, u) || !renew_drift(m, t, h, y)) return false;
     double f = gamma_h * h, first = slope[0] * h;
 #pragma omp simd
-    for (int k = 0; k < m->ode.n; k++) {
-        drift[k] = (drift[k] - u[k]) / h;
-        u[k] = f * (u[k] + first * drift[k]);
-    }
+    for (int k = 0; k < m->ode.n; k++) u[k] = f * (u[k] + first * drift[k]);
     return true;
 }
 
@@ -167,11 +182,28 @@ static double finish(rosenbrock *m) {
     return sqrt(sum / m->ode.n);
 }
 
+// The same of (I − γhJ)⁻¹ error: without what is stiff, which the method damps and the estimate, having
+// no such bound, tells too large where an input jumps (Hairer and Wanner, section IV.8).
+static double filter(rosenbrock *m) {
+    double *restrict error = m->error;
+    const double *restrict u0 = m->stage[0], *restrict u1 = m->stage[1], *restrict u2 = m->stage[2];
+    const double *restrict u3 = m->stage[3], *restrict weight = m->weight;
+    double sum = 0;
+#pragma omp simd
+    for (int k = 0; k < m->ode.n; k++)
+        error[k] = e[0] * u0[k] + e[1] * u1[k] + e[2] * u2[k] + e[3] * u3[k];
+    m->ode.solve(m->ode.self, error);
+#pragma omp simd reduction(+ : sum)
+    for (int k = 0; k < m->ode.n; k++) sum += (weight[k] * error[k]) * (weight[k] * error[k]);
+    return sqrt(sum / m->ode.n);
+}
+
 // The error of a step against the tolerance; infinite where f has no value.
 static double try_step(rosenbrock *m, double t, double h, const double *y) {
     if (!find_rates(m, t, h, y) || !renew_factors(m, t, y, h)) return (double)INFINITY;
     if (!find_stages(m, t, h, y)) return (double)INFINITY;
     double error = finish(m);
+    if (error > 1 && isfinite(error)) error = filter(m);
     return isfinite(error) ? error : (double)INFINITY;
 }
 
@@ -202,14 +234,14 @@ static bool cross(rosenbrock *m, double *t, double pause, double t1, double *y) 
         if (n == MOST_STEPS || (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3))) return false;
         if (error > 1) {
             m->sum.failed_steps++;
-            bool tangents_blamed = m->age > 0 && isfinite(error);
-            if (!tangents_blamed) m->longest = h * fmax(0.1, 0.9 * cbrt(1 / error));
-            m->age = MOST_AGE;
+            m->longest = h * fmax(0.1, 0.9 * cbrt(1 / error));
+            if (m->age > YOUNG || !isfinite(error)) m->age = MOST_AGE;
             continue;
         }
         accept(m, y);
         m->sum.steps++;
         m->age++;
+        m->drifted++;
         double grown = 0.9 * h * fmin(5, cbrt(1 / fmax(error, 1e-6)));
         m->longest = fmin(m->step, fmax(h, grown));
         *t = parts <= 1 ? t1 : *t + h;
@@ -224,8 +256,11 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
         if (m->started) m->sum.restarts++;
         m->started = true;
         m->age = MOST_AGE;
+        m->drifted = MOST_DRIFTED;
         m->longest = m->step;
     }
+    if (t1 != m->end) m->drifted = MOST_DRIFTED; // not paused on the way
+    m->end = t1;
     if (cross(m, t, pause, t1, y)) return bough_ok();
     m->started = false;
     return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: the Rosenbrock method cannot go on: the error"

@@ -70,6 +70,11 @@ typedef struct bough_subsystem_ops {
     bool (*derivative)(void *self, double t, const double *state, const double *input,
                        double *rate);
 
+    // f at another time and input, the state being that of the last call of derivative, between which
+    // and this one only outputs were asked for: may be cheaper. NULL: it is not.
+    bool (*derivative_again)(void *self, double t, const double *state, const double *input,
+                             double *rate);
+
     // h: output (n_output).
     void (*output)(void *self, double t, const double *state, const double *input, double *output);
 

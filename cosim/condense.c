@@ -95,8 +95,10 @@ bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *as
     k->square = bough_arena_doubles(arena, n * n);
     k->pivot = bough_arena_take(arena, n * sizeof(int));
     k->coordinate = bough_arena_doubles(arena, n);
+    k->moved = bough_arena_doubles(arena, (size_t)assembly->n_output);
     k->right = bough_arena_doubles(arena, (size_t)k->n_lead);
     k->unit = bough_arena_doubles(arena, (size_t)assembly->n_input);
+    k->share = bough_arena_doubles(arena, (size_t)assembly->n_input);
     k->work = bough_arena_doubles(arena, (size_t)assembly->n_state);
     *condensed = k;
     return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
@@ -114,7 +116,12 @@ static void output_change(const bough_subsystem *s, const bough_operating_point 
 
 static bool factor(const bough_condensed *k, int member, const bough_operating_point *at) {
     const bough_subsystem *s = subsystem(k, member);
-    if (!s->ops->newton_setup(s->self, at->time, at->state, at->input, at->gamma)) return false;
+    if (at->kept && s->ops->newton_refactor) {
+        if (!s->ops->newton_refactor(s->self, at->gamma)) return false;
+        if (!k->of[member].leads) return true; // its columns have no γ in them
+    } else if (!s->ops->newton_setup(s->self, at->time, at->state, at->input, at->gamma)) {
+        return false;
+    }
     s->ops->input_columns(s->self, at->time, at->state, at->input, k->of[member].column);
     return true;
 }
@@ -133,25 +140,31 @@ static void add_some(int n, const double share[AT_ONCE], const double *const col
     }
 }
 
+// sum (n) += factor Σ_j weight_j column_j, the columns (count × n) one after the other
+static void add_columns(int n, int count, const double *column, double factor,
+                        const double *weight, double *sum) {
+    const double *some[AT_ONCE];
+    double share[AT_ONCE];
+    int k = 0;
+    for (int j = 0; j < count; j++, column += n) {
+        if (weight[j] == 0) continue;
+        share[k] = factor * weight[j];
+        some[k++] = column;
+        if (k == AT_ONCE) add_some(n, share, some, sum);
+        k %= AT_ONCE;
+    }
+    if (k == 0) return;
+    for (; k < AT_ONCE; k++) {
+        share[k] = 0;
+        some[k] = some[0];
+    }
+    add_some(n, share, some, sum);
+}
+
 void bough_condensed_add_columns(const bough_condensed *k, int member, double factor,
                                  const double *weight, double *sum) {
     const bough_subsystem *s = subsystem(k, member);
-    const double *column = k->of[member].column, *some[AT_ONCE];
-    double share[AT_ONCE];
-    int n = 0;
-    for (int j = 0; j < s->n_input; j++, column += s->n_state) {
-        if (weight[j] == 0) continue;
-        share[n] = factor * weight[j];
-        some[n++] = column;
-        if (n == AT_ONCE) add_some(s->n_state, share, some, sum);
-        n %= AT_ONCE;
-    }
-    if (n == 0) return;
-    for (; n < AT_ONCE; n++) {
-        share[n] = 0;
-        some[n] = some[0];
-    }
-    add_some(s->n_state, share, some, sum);
+    add_columns(s->n_state, s->n_input, k->of[member].column, factor, weight, sum);
 }
 
 // columns ← (I − γJ)⁻¹ γ columns, by the inverse: there are fewer states than inputs
@@ -338,16 +351,16 @@ bool bough_condensed_close(bough_condensed *k) {
     return n == 0 || bough_dense_factor(n, k->matrix, k->pivot);
 }
 
-// Change of input j, which a leader feeds, with the coordinates.
-static double moved(const bough_condensed *k, int j) {
-    int p;
-    const bough_answer *w = feeder(k, j, &p);
-    int n_output = subsystem(k, k->assembly->source_member[j])->n_output;
-    double sum = 0;
-    for (int c = 0; c < w->n; c++) {
-        sum += w->response[c * n_output + p] * k->coordinate[w->first + c];
+// The leaders' outputs' change with the coordinates.
+static void move_outputs(bough_condensed *k) {
+    for (int i = 0; i < k->assembly->n_member; i++) {
+        const bough_answer *w = &k->of[i];
+        if (!w->leads) continue;
+        int n_output = subsystem(k, i)->n_output;
+        double *moved = k->moved + k->assembly->output_offset[i];
+        memset(moved, 0, (size_t)n_output * sizeof *moved);
+        add_columns(n_output, w->n, w->response, 1, k->coordinate + w->first, moved);
     }
-    return sum;
 }
 
 void bough_condensed_solve(bough_condensed *k, double *change) {
@@ -362,28 +375,29 @@ void bough_condensed_solve(bough_condensed *k, double *change) {
         for (int c = 0; c < n; c++)
             change[k->lead[l]] += row[c] * k->coordinate[c];
     }
+    move_outputs(k);
     for (int i = 0; i < a->n_member; i++) {
         if (k->of[i].leads) continue;
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++)
-            change[j] += moved(k, j);
+            change[j] += k->moved[a->source[j]];
     }
 }
 
 void bough_condensed_add_answer(const bough_condensed *k, int member, double *x) {
+    const bough_assembly *a = k->assembly;
     const bough_answer *w = &k->of[member];
-    int n_state = subsystem(k, member)->n_state, input = k->assembly->input_offset[member];
-    const double *along = w->leads ? w->column : w->along;
-    for (int d = 0; d < w->n; d++, along += n_state) {
-        double share = w->leads         ? k->coordinate[w->first + d]
-                       : w->leader >= 0 ? k->coordinate[k->of[w->leader].first + d]
-                                        : moved(k, input + d);
-        if (share == 0) continue;
-        if (w->by_state) {
-            x[d] += share;
-            continue;
-        }
-#pragma omp simd
-        for (int i = 0; i < n_state; i++) x[i] += share * along[i];
+    int n = subsystem(k, member)->n_state;
+    if (w->by_state) {
+        for (int i = 0; i < n; i++) x[i] += k->coordinate[w->first + i];
+    } else if (w->leads) {
+        add_columns(n, w->n, w->column, 1, k->coordinate + w->first, x);
+    } else if (w->leader >= 0) {
+        add_columns(n, w->n, w->along, 1, k->coordinate + k->of[w->leader].first, x);
+    } else {
+        double *share = k->share + a->input_offset[member];
+        for (int d = 0; d < w->n; d++)
+            share[d] = k->moved[a->source[a->input_offset[member] + d]];
+        add_columns(n, w->n, w->along, 1, share, x);
     }
 }
 

@@ -39,8 +39,9 @@ typedef struct bough_condensed {
     double *square;     // (n × n) scratch
     int *pivot;         // (n)
     double *coordinate; // (n) w
+    double *moved;      // (n_output) the leaders' outputs' change with it
     double *right;      // (n_lead) scratch
-    double *unit;       // (n_input) scratch of each member
+    double *unit, *share; // (n_input) scratch of each member
     double *work;       // (n_state) scratch of each member
 } bough_condensed;
 
@@ -54,6 +55,7 @@ typedef struct bough_operating_point {
     double time;
     const double *state, *input; // (n_state), (n_input) of the member
     double gamma;
+    bool kept; // members that can do so keep their tangents, and change γ
 } bough_operating_point;
 
 // Linearises and factors a leader, and finds its columns and responses. False when singular.

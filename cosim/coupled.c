@@ -46,23 +46,44 @@ void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state)
         bough_assembly_gather(a, i, coupled->output, coupled->input);
 }
 
-static void evaluate(bough_coupled *coupled, int i) {
+static void evaluate_by(bough_coupled *coupled, int i,
+                        bool (*f)(void *self, double t, const double *state, const double *input,
+                                  double *rate)) {
     const bough_assembly *a = coupled->assembly;
     const bough_subsystem *s = a->member[i];
-    if (!s->ops->derivative(s->self, coupled->time, coupled->at + a->state_offset[i],
-                            coupled->input + a->input_offset[i], coupled->x + a->state_offset[i])) {
+    if (!f(s->self, coupled->time, coupled->at + a->state_offset[i],
+           coupled->input + a->input_offset[i], coupled->x + a->state_offset[i])) {
         coupled->status[i] =
             bough_fail(BOUGH_FAILED, "%s: no finite rate of change at %.6g s", s->name, *s->time);
     }
 }
 
-bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state,
-                                double *rate) {
+static void evaluate(bough_coupled *coupled, int i) {
+    evaluate_by(coupled, i, coupled->assembly->member[i]->ops->derivative);
+}
+
+static void evaluate_again(bough_coupled *coupled, int i) {
+    const bough_subsystem_ops *ops = coupled->assembly->member[i]->ops;
+    evaluate_by(coupled, i, ops->derivative_again ? ops->derivative_again : ops->derivative);
+}
+
+static bough_status rate_by(bough_coupled *coupled, double t, const double *state, double *rate,
+                            void (*work)(bough_coupled *a, int member)) {
     bough_coupled_inputs(coupled, t, state);
     coupled->time = t;
     coupled->at = state;
     coupled->x = rate;
-    return each(coupled, ALL, evaluate);
+    return each(coupled, ALL, work);
+}
+
+bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state,
+                                double *rate) {
+    return rate_by(coupled, t, state, rate, evaluate);
+}
+
+bough_status bough_coupled_rate_again(bough_coupled *coupled, double t, const double *state,
+                                      double *rate) {
+    return rate_by(coupled, t, state, rate, evaluate_again);
 }
 
 // -- factors --------------------------------------------------------------------------------------
@@ -70,7 +91,8 @@ bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *
 static bough_operating_point operating_point(const bough_coupled *coupled, int i) {
     const bough_assembly *a = coupled->assembly;
     return (bough_operating_point){coupled->setup_time, coupled->setup_state + a->state_offset[i],
-                                   coupled->setup_input + a->input_offset[i], coupled->gamma};
+                                   coupled->setup_input + a->input_offset[i], coupled->gamma,
+                                   coupled->kept};
 }
 
 static void factored(bough_coupled *coupled, int i, bool good) {
@@ -101,15 +123,26 @@ void bough_coupled_adopt(bough_coupled *coupled, bough_condensed *interface, dou
     coupled->interface = interface;
 }
 
-bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state,
-                                 const double *input, double gamma) {
-    bough_coupled_adopt(coupled, coupled->own, t, state, input, gamma);
+static bough_status factor_all(bough_coupled *coupled) {
     bough_status status = each(coupled, LEADERS, factor_leader);
     if (!bough_is_ok(&status)) return status;
     status = each(coupled, FOLLOWERS, factor_follower);
     if (!bough_is_ok(&status)) return status;
     if (bough_condensed_close(coupled->interface) && factor_border(coupled)) return status;
     return bough_fail(BOUGH_RETRY, "the interface's Newton matrix is singular");
+}
+
+bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state,
+                                 const double *input, double gamma) {
+    bough_coupled_adopt(coupled, coupled->own, t, state, input, gamma);
+    coupled->kept = false;
+    return factor_all(coupled);
+}
+
+bough_status bough_coupled_refactor(bough_coupled *coupled, double gamma) {
+    coupled->gamma = gamma;
+    coupled->kept = true;
+    return factor_all(coupled);
 }
 
 // -- solution -------------------------------------------------------------------------------------

@@ -31,6 +31,7 @@ typedef struct bough_coupled {
     double *x;
 
     // factors
+    bool kept; // the members' tangents are those of the last setup
     double setup_time;
     double *setup_state;              // (n_state) where the matrix was taken
     double *setup_input;              // (n_input)
@@ -63,10 +64,18 @@ void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state)
 bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state,
                                 double *rate);
 
+// The same where the state is that of the last call, at another time: cheaper.
+bough_status bough_coupled_rate_again(bough_coupled *coupled, double t, const double *state,
+                                      double *rate);
+
 // Linearises about (t, state, input) and factors I − γJ; input (n_input), usually coupled->input.
 // BOUGH_RETRY when it is singular.
 bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state,
                                  const double *input, double gamma);
+
+// The same with another γ where the last setup linearised, for members that can keep their tangents;
+// nobody else may have asked for factors since.
+bough_status bough_coupled_refactor(bough_coupled *coupled, double gamma);
 
 // The same with the factors that members hold and the interface that belongs to them, for the next
 // solutions without held states; outputs are linearised about (t, state, input).

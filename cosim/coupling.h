@@ -95,6 +95,9 @@ typedef struct bough_coupling {
     double interface_ratio; // spectral radius of the interface's answer to itself about the initial state;
                             // NaN: not known
 
+    // by a scheme that integrates all members as one system; NULL
+    const bough_integrator *whole;
+
     long sweeps; // by the iterated scheme: runs of all members over a macro step so far
 } bough_coupling;
 

@@ -15,7 +15,7 @@ typedef struct monolith {
     double *scale, *state; // (n_state)
     double setup_time;     // where it is linearised [s]
     double *setup_state;   // (n_state)
-    double *setup_input;   // (n_input)
+    bool fresh;            // the members are to linearise there
     bool started;
 } monolith;
 
@@ -25,21 +25,33 @@ static bool derivative(void *self, double t, const double *y, double *rate) {
     return bough_is_ok(&status);
 }
 
+static bool derivative_again(void *self, double t, const double *y, double *rate) {
+    monolith *m = self;
+    bough_status status = bough_coupled_rate_again(m->coupled, t, y, rate);
+    return bough_is_ok(&status);
+}
+
 static bool linearise(void *self, double t, const double *y) {
     monolith *m = self;
     const bough_assembly *a = m->coupled->assembly;
-    bough_coupled_inputs(m->coupled, t, y);
     m->setup_time = t;
     memcpy(m->setup_state, y, (size_t)a->n_state * sizeof *y);
-    memcpy(m->setup_input, m->coupled->input, (size_t)a->n_input * sizeof *y);
+    m->fresh = true;
     return true;
 }
 
 static bool factor(void *self, double gamma) {
     monolith *m = self;
-    bough_status status =
-        bough_coupled_setup(m->coupled, m->setup_time, m->setup_state, m->setup_input, gamma);
-    return bough_is_ok(&status);
+    bough_coupled *coupled = m->coupled;
+    bough_status status;
+    if (m->fresh) {
+        bough_coupled_inputs(coupled, m->setup_time, m->setup_state);
+        status = bough_coupled_setup(coupled, m->setup_time, m->setup_state, coupled->input, gamma);
+    } else {
+        status = bough_coupled_refactor(coupled, gamma);
+    }
+    m->fresh = !bough_is_ok(&status);
+    return !m->fresh;
 }
 
 static void solve(void *self, double *x) {
@@ -52,7 +64,6 @@ static bool take(monolith *m, bough_arena *arena, const bough_assembly *a) {
     m->scale = bough_arena_doubles(arena, n);
     m->state = bough_arena_doubles(arena, n);
     m->setup_state = bough_arena_doubles(arena, n);
-    m->setup_input = bough_arena_doubles(arena, (size_t)a->n_input);
     return !bough_arena_exhausted(arena);
 }
 
@@ -72,9 +83,11 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
                      .scale = m->scale,
                      .self = m,
                      .derivative = derivative,
+                     .derivative_again = derivative_again,
                      .linearise = linearise,
                      .factor = factor,
                      .solve = solve};
+    c->whole = &m->integrator;
     return bough_integrator_create(arena, &ode, &c->options.integrator, &m->integrator);
 }
 

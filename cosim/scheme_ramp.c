@@ -139,7 +139,7 @@ static void solve(bough_coupling *c, int member, const double *change) {
 static bough_operating_point operating_point(const bough_coupling *c, int member) {
     const ramp *r = c->scheme_data;
     return (bough_operating_point){r->middle, c->assembly->member[member]->state,
-                                   r->input + c->assembly->input_offset[member], r->gamma};
+                                   r->input + c->assembly->input_offset[member], r->gamma, false};
 }
 
 static void predict_leader(bough_coupling *c, int member) {

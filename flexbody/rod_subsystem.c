@@ -72,6 +72,12 @@ static bool derivative(void *self, double t, const double *state, const double *
     return bough_rod_derivative(b->model, &b->loads, t, state, input, &b->scratch, rate);
 }
 
+static bool derivative_again(void *self, double t, const double *state, const double *input,
+                             double *rate) {
+    bough_rod_body *b = self;
+    return bough_rod_derivative_again(b->model, &b->loads, t, state, input, &b->scratch, rate);
+}
+
 static void output(void *self, double t, const double *state, const double *input,
                    double *wrench) {
     bough_rod_body *b = self;
@@ -240,6 +246,7 @@ bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *mo
 bough_subsystem bough_rod_body_subsystem(bough_rod_body *body) {
     static const bough_subsystem_ops ops = {
         .derivative = derivative,
+        .derivative_again = derivative_again,
         .output = output,
         .output_tangent = output_tangent,
         .input_columns = input_columns,

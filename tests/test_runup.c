@@ -218,7 +218,7 @@ static void means_are_those_of_the_reference(void **context) {
 static void default_scheme_is_near_the_monolithic_solution(void **context) {
     (void)context;
     const char *sets[] = {"simulation.threads=1", "simulation.coupling.scheme=monolithic",
-                          "simulation.master.rtol=1e-7"};
+                          "simulation.master={solver: ida, rtol: 1e-7}"};
     history *reference = run(sets, 3);
     double speed = 0, tip = 0;
     assert_int_equal(reference->n, default_run->n);

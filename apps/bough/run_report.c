@@ -177,6 +177,28 @@ static void write_statistics(bough_summary *s, const bough_job *job) {
     bough_summary_end(s);
 }
 
+static void write_work(bough_summary *s, const bough_statistics *done) {
+    bough_summary_integer(s, "steps", done->steps);
+    bough_summary_integer(s, "failed_steps", done->failed_steps);
+    bough_summary_integer(s, "derivatives", done->derivatives);
+    bough_summary_integer(s, "jacobians", done->jacobians);
+    bough_summary_integer(s, "factorisations", done->factorisations);
+    bough_summary_integer(s, "iterations", done->iterations);
+    bough_summary_integer(s, "restarts", done->restarts);
+}
+
+// The integrator of all bodies together, where the scheme has one.
+static void write_whole(bough_summary *s, const bough_run *run) {
+    const bough_integrator *whole = run->simulation->master->coupling->whole;
+    if (whole == NULL) return;
+    bough_statistics done = {0};
+    whole->ops->statistics(whole->self, &done);
+    bough_summary_object(s, "whole");
+    bough_summary_text(s, "solver", whole->ops->title);
+    write_work(s, &done);
+    bough_summary_end(s);
+}
+
 static void write_subsystem(bough_summary *s, const bough_run *run, int member) {
     const bough_subsystem *subsystem = run->simulation->master->assembly->member[member];
     bough_statistics done = bough_run_statistics(run, member);
@@ -185,13 +207,7 @@ static void write_subsystem(bough_summary *s, const bough_run *run, int member) 
     bough_summary_text(s, "kind", subsystem->kind);
     bough_summary_text(s, "solver", subsystem->solver);
     bough_summary_integer(s, "states", subsystem->n_state);
-    bough_summary_integer(s, "steps", done.steps);
-    bough_summary_integer(s, "failed_steps", done.failed_steps);
-    bough_summary_integer(s, "derivatives", done.derivatives);
-    bough_summary_integer(s, "jacobians", done.jacobians);
-    bough_summary_integer(s, "factorisations", done.factorisations);
-    bough_summary_integer(s, "iterations", done.iterations);
-    bough_summary_integer(s, "restarts", done.restarts);
+    write_work(s, &done);
     bough_summary_end(s);
 }
 
@@ -210,6 +226,7 @@ bough_status bough_run_summarise(const bough_job *job) {
     write_interfaces(&s, run);
     write_estimates(&s, run);
     write_statistics(&s, job);
+    write_whole(&s, run);
     const bough_assembly *assembly = run->simulation->master->assembly;
     bough_summary_array(&s, "subsystems");
     for (int i = 0; i < assembly->n_member; i++)

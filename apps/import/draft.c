@@ -67,9 +67,9 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
     bough_import_quoted(file, title);
     fprintf(file,
             "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
-            "  macro_step: %g s\n  coupling: {scheme: ramp, theta: auto}\n"
-            "  master: {solver: ida, rtol: 1e-6}\n"
-            "  micro: {solver: rosenbrock, step: 10 ms, rtol: 1e-3}\n  threads: 2\n",
+            "  macro_step: %g s\n"
+            "  coupling: {scheme: monolithic} # all bodies coupled at the stages of the steps\n"
+            "  master: {solver: rosenbrock, step: 10 ms, rtol: 4.5e-4}\n  threads: 2\n",
             -gravity, steps * macro_step, macro_step);
 }
 
