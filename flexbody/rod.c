@@ -27,6 +27,8 @@ static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
     m->stiffness = bough_arena_doubles(arena, 21 * s);
     m->damping = bough_arena_doubles(arena, 21 * s);
     m->line = bough_arena_doubles(arena, 36 * s);
+    m->weight = bough_arena_doubles(arena, 18 * s);
+    m->middle = bough_arena_doubles(arena, 3 * s);
     m->mass = bough_arena_doubles(arena, s);
     m->moment = bough_arena_doubles(arena, 3 * s);
     m->inertia = bough_arena_doubles(arena, 6 * s);
@@ -51,6 +53,13 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
         m->damping[k * s + n] = def->damping[21 * n + k];
     }
     for (int k = 0; k < 36 && def->line != NULL; k++) m->line[k * s + n] = def->line[36 * n + k];
+    for (int k = 0; k < 18 && def->weight != NULL; k++) {
+        m->weight[k * s + n] = def->weight[18 * n + k];
+        m->weighs = m->weighs || def->weight[18 * n + k] != 0;
+    }
+    bough_vec3 middle = bough_scale(0.5, bough_add(def->position[n], def->position[n + 1]));
+    const double at[3] = {middle.x, middle.y, middle.z};
+    for (int k = 0; k < 3; k++) m->middle[k * s + n] = at[k];
     vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
     vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
     segment_geometry shape = segment_shape(left, right, 1 / h);
@@ -127,6 +136,7 @@ bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
     scratch->segment = bough_arena_doubles(arena, 9 * (size_t)model->stride);
     scratch->load = bough_rod_vertex_rows(arena, model, 6);
     scratch->follower = bough_rod_vertex_rows(arena, model, 6);
+    scratch->time = 0;
     scratch->rest = model->strain0;
     scratch->turning = false;
     scratch->along = bough_arena_doubles(arena, 6 * (size_t)model->stride);
@@ -141,6 +151,8 @@ bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
     loads->rate = bough_rod_vertex_rows(arena, model, 6);
     loads->curve = bough_rod_vertex_rows(arena, model, 6);
     loads->rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    loads->rest_rate = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    loads->moving = false;
     loads->ramped = NULL;
     if (bough_arena_exhausted(arena)) return false;
     memcpy(loads->rest, model->strain0, 6 * (size_t)model->stride * sizeof *loads->rest);
@@ -180,8 +192,11 @@ void bough_rod_line_strain(const bough_rod_model *m, const double *line, double 
     }
 }
 
-void bough_rod_loads_along(const bough_rod_model *m, const double *line, bough_rod_loads *loads) {
+void bough_rod_loads_along(const bough_rod_model *m, const double *line, const double *rate,
+                           bough_rod_loads *loads) {
     bough_rod_line_strain(m, line, loads->rest);
+    bough_rod_line_strain(m, rate, loads->rest_rate);
+    loads->moving = true;
     for (int k = 0; k < 6 * m->stride; k++) loads->rest[k] += m->strain0[k];
 }
 

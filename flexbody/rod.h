@@ -55,6 +55,7 @@ typedef struct bough_rod_def {
     const bough_vertex_inertia *inertia;  // (N + 1)
     const double *line;                   // D per segment, 6×6 by rows (N × 36) [1/N, 1/N m …]:
                                           // mean strain per load along it; NULL: none
+    const double *weight;                 // likewise by an acceleration, 6×3 (N × 18); NULL: none
     bool carries; // bodies at its end: the last vertex belongs to them as the root to the carrier
 } bough_rod_def;
 
@@ -73,6 +74,9 @@ typedef struct bough_rod_model {
     double *stiffness;          // C (21 × stride)
     double *damping;            // (21 × stride)
     double *line;               // D (36 × stride), by rows
+    double *weight;             // of an acceleration (18 × stride), by rows
+    double *middle;             // of segments, undeformed, in the BRF (3 × stride) [m]
+    bool weighs;                // any `weight` is not zero
     double *mass;               // of moving vertices (stride) [kg]
     double *moment;             // first moment s = mζ of moving vertices (3 × stride) [kg m]
     double *inertia;            // of moving vertices (6 × stride) [kg m²]
@@ -93,7 +97,9 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
 // A load along the rod acts twice (THEORY 6): lumped to the vertices by hat functions, which is all
 // that the balances see, and as the strain D q of each segment under a load q per length, by which
 // its elastic law, stress = C (e − e⁰ − D q), is that of the loaded segment. Linear statics is then
-// exact at the vertices for loads that are uniform over each segment.
+// exact at the vertices for loads that are uniform over each segment. The same strain is made by
+// weight and by the centrifugal force of the BRF's steady motion: a 6×3 per segment times the
+// acceleration that is felt at its undeformed middle, in the axes of the present one.
 
 // Loads that grow: value × factor, the factor rising linearly from 0 at `start` to 1 at `end`
 // (end <= start: always 1). Dead ones are resolved in BRF axes, followers in the section axes of each
@@ -115,8 +121,9 @@ typedef struct bough_rod_loads {
     double *value; // force then moment (6 × stride), vertex 0 included [N, N m]
     double *rate;  // (6 × stride) [N/s, N m/s]
     double *curve; // (6 × stride) [N/s², N m/s²]
-    double *rest;  // strains without stress: e⁰ + D q of loads along the segments (6 × stride), set
-                   // by bough_rod_loads_along; it does not change in time
+    double *rest;  // strains without stress: e⁰ + D q of loads along the segments (6 × stride) …
+    double *rest_rate; // … and its rate [1/s, 1/(m s)], both set by bough_rod_loads_along
+    bool moving;       // the rate is not zero
     bough_rod_ramped_load *ramped; // NULL: none
 } bough_rod_loads;
 
@@ -128,10 +135,13 @@ typedef struct bough_rod_scratch {
     double *load;    // loads at the time of evaluation (6 × stride), in BRF axes
     double *follower; // the followers among them in section axes (6 × stride); set if there are any
     // set with the loads:
+    double time;        // of the loads [s]
     const double *rest; // strains without stress (6 × stride); before any loads e⁰
     bool turning;       // part of it is made by dead loads along the segments and turns with them:
     double *along;      // these in the axes of the segments' middles (6 × stride) [N/m, N]
     double *own_rest;   // (6 × stride)
+    bough_vec3 felt, spin; // gravity less the acceleration of the BRF's origin in steady motion, and
+                           // its angular velocity: set by a gathering, BRF axes
 } bough_rod_scratch;
 
 // Builds the constant model. BOUGH_INVALID names the segment or vertex that is not usable.
@@ -156,10 +166,12 @@ bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_aren
 // Share of a ramped load at time t.
 double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t);
 
-// Sets loads->rest for the loads along the segments, given per length (6 × n_segment: force, then
-// moment [N/m, N]) in the axes of a segment's middle (bough_rod_line_axes); their vertex loads are
-// the caller's.
-void bough_rod_loads_along(const bough_rod_model *m, const double *line, bough_rod_loads *loads);
+// Sets the strains for loads along the segments, given per length (6 × n_segment: force, then moment
+// [N/m, N]) in the axes of a segment's middle (bough_rod_line_axes), and at which rate they change;
+// their vertex loads and loads->start are the caller's. They should be continuous from one call to
+// the next: a jump is a jump of stress, which every integrator then resolves.
+void bough_rod_loads_along(const bough_rod_model *m, const double *line, const double *rate,
+                           bough_rod_loads *loads);
 
 // D q of such loads, to along (6 × stride).
 void bough_rod_line_strain(const bough_rod_model *m, const double *line, double *along);
@@ -187,7 +199,9 @@ bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads
                           double *rate);
 
 // The same at another time and input, `state` being that of the last bough_rod_derivative with this
-// scratch: only segments that touch the input, or whose loads change in time, are evaluated anew.
+// scratch: only segments that touch the input, or have ramped loads, are evaluated anew. In the others
+// the forces change by what loads and weight along them do to an unbent segment, for the derivative
+// by time: it errs by a share of the segment's own turn.
 bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                                 const double *state, const double *input,
                                 bough_rod_scratch *scratch, double *rate);

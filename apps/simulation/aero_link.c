@@ -14,7 +14,7 @@ typedef struct blade_loads {
     double *sampled, *reached; // (n)
     double *value, *rate, *curve; // (n) of the signal that the body has, since the last sample
     double *fresh;             // (n)
-    double *along;             // per length, between the samples (6 × segments) of a rod
+    double *along;             // per length (6 × segments): its rate, of a modal body itself
     double *strain, *lumped;   // of a modal body, D q and the loads of it (6 × the mesh's stride)
     int n;
 } blade_loads;
@@ -327,11 +327,11 @@ static void put(bough_aero_link *l, int b) {
     }
     rod->start = l->start;
     if (blade->beam->rod == NULL) return;
-    int first = 6 * l->n_vertex; // along the segments: the middle of the straight line, held
-    for (int k = first; k < blade->n; k++) {
-        blade->along[k - first] = 0.5 * (blade->value[k] + blade->reached[k]);
+    size_t first = 6 * n; // along the segments: on the straight line
+    for (size_t k = first; k < (size_t)blade->n; k++) {
+        blade->along[k - first] = (blade->reached[k] - blade->value[k]) / l->span;
     }
-    bough_rod_loads_along(bough_beam_mesh(blade->beam), blade->along, rod);
+    bough_rod_loads_along(bough_beam_mesh(blade->beam), blade->value + first, blade->along, rod);
 }
 
 // The resultant of the loads on a rigid blade's vertices.
