@@ -155,8 +155,8 @@ static void bad_keys_are_told_all_at_once(void **state) {
                  "grid: {a.b: 1, c: [{e: [1]}, 2]}\ncommon: {d: {e: {f: 1}}}\nrepeat: 0\n"
                  "measures:\n  - {name: x}\n  - {name: y, channels: [], norm: max}\n"
                  "  - {name: z, channel: c, scale: 2}\n",
-                 "1:1 \n2:7 kind\n3:8 scene\n4:12 reference\n5:13 grid.a.b\n5:20 grid.c\n"
-                 "6:13 common.d\n7:9 repeat\n9:5 measures[0]\n10:25 measures[1].channels\n"
+                 "1:1 \n2:7 kind\n3:8 scene\n4:12 reference\n5:13 grid.a.b\n"
+                 "7:9 repeat\n9:5 measures[0]\n10:25 measures[1].channels\n"
                  "10:35 measures[1].norm\n11:5 measures[2].scale\n");
 }
 

@@ -191,8 +191,8 @@ static void write_work(bough_summary *s, const bough_statistics *done) {
 static void write_whole(bough_summary *s, const bough_run *run) {
     const bough_integrator *whole = run->simulation->master->coupling->whole;
     if (whole == NULL) return;
-    bough_statistics done = {0};
-    whole->ops->statistics(whole->self, &done);
+    bough_statistics done =
+        bough_run_statistics(run, run->simulation->master->assembly->n_member);
     bough_summary_object(s, "whole");
     bough_summary_text(s, "solver", whole->ops->title);
     write_work(s, &done);

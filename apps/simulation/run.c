@@ -17,7 +17,7 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
     if (!bough_is_ok(&status)) return status;
     size_t n = (size_t)run->simulation->master->assembly->n_member;
     run->value = bough_arena_doubles(arena, (size_t)run->channels.count + 1);
-    run->earlier = bough_arena_take(arena, n * sizeof *run->earlier);
+    run->earlier = bough_arena_take(arena, (n + 1) * sizeof *run->earlier);
     return run->value && run->earlier ? status : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
 }
 
@@ -141,9 +141,15 @@ void bough_run_all(bough_run *run) { bough_pool_region(run->simulation->pool, st
 // -- copies ---------------------------------------------------------------------------------------
 
 bough_statistics bough_run_statistics(const bough_run *run, int member) {
-    const bough_subsystem *subsystem = run->simulation->master->assembly->member[member];
+    const bough_master *m = run->simulation->master;
+    const bough_integrator *whole = m->coupling->whole;
     bough_statistics done = {0};
-    subsystem->ops->statistics(subsystem->self, &done);
+    if (member < m->assembly->n_member) {
+        const bough_subsystem *subsystem = m->assembly->member[member];
+        subsystem->ops->statistics(subsystem->self, &done);
+    } else if (whole) {
+        whole->ops->statistics(whole->self, &done);
+    }
     bough_statistics_add(&done, &run->earlier[member]);
     return done;
 }
@@ -151,7 +157,7 @@ bough_statistics bough_run_statistics(const bough_run *run, int member) {
 // Work is counted by the solvers of this process; `earlier` adds that of the ones before it.
 static void take_statistics(bough_run *run, bough_snapshot *s) {
     const bough_assembly *a = run->simulation->master->assembly;
-    for (int i = 0; i < a->n_member; i++) {
+    for (int i = 0; i <= a->n_member; i++) {
         bough_statistics *earlier = &run->earlier[i];
         bough_statistics total = bough_run_statistics(run, i), now = total;
         bough_statistics_subtract(&now, earlier);

@@ -27,7 +27,8 @@ typedef struct bough_run {
     bough_error_probe probe; // by bough_run_estimate
     int n_record;
     bough_run_record record[BOUGH_RUN_RECORDS];
-    bough_statistics *earlier; // (n_member) work of the processes that this one continues
+    bough_statistics *earlier; // (n_member + 1) work of the processes that this one continues, last
+                               // that of the integrator of all members together
     double wall_from, cpu_from; // of the clocks, counted below so far [s]
     double wall_s, cpu_s; // of the stepping: wall time, CPU time of all threads [s]
     bough_status outcome; // how the last step ended
@@ -69,7 +70,7 @@ const double *bough_run_values(bough_run *run);
 // Brings wall_s and cpu_s to the present, within bough_run_all.
 void bough_run_update_clock(bough_run *run);
 
-// Work of a member over the whole run.
+// Work of a member over the whole run; of member n_member, that of the integrator of all together.
 bough_statistics bough_run_statistics(const bough_run *run, int member);
 
 // All that the run goes on from, at a time when its loads are sampled: the simulation, the
