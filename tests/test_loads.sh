@@ -117,6 +117,13 @@ for part in 2 3 1; do expect 0 "part $part of 3: " set.yaml --out parts --part $
 expect 0 '10 cases' set.yaml --out parts
 grep -q 'ran ' log && fail "cases of parts were run again"
 same whole parts
+if parallel --version 2>/dev/null | grep -q 'GNU parallel'; then
+    seq 3 | parallel -j 2 "$bough" study set.yaml --out jobs --threads 1 --quiet --part {}/3 >log 2>&1 ||
+        fail "GNU parallel: $(cat log)"
+    expect 0 '10 cases' set.yaml --out jobs
+    grep -q 'ran ' log && fail "cases of GNU parallel's jobs were run again"
+    same whole jobs
+fi
 
 # Two workers at once do each case once; one is killed, and the next goes on where it was.
 "$bough" study set.yaml --out shared --threads 1 --quiet >first 2>&1 &
