@@ -8,6 +8,7 @@
 #ifndef BOUGH_CORE_SUBSYSTEM_H
 #define BOUGH_CORE_SUBSYSTEM_H
 
+#include "core/arena.h"
 #include "core/status.h"
 
 #include <stdbool.h>
@@ -91,13 +92,19 @@ typedef struct bough_subsystem_ops {
     void (*input_columns)(void *self, double t, const double *state, const double *input,
                           double *column);
 
-    // Linearises f about (t, state, input) and factors I − γ ∂f/∂y. False when singular.
-    // Its workspace is its own: the sub-solver of `advance` is not disturbed.
-    bool (*newton_setup)(void *self, double t, const double *state, const double *input,
-                         double gamma);
+    // Memory of one linearisation and its factors in the arena; NULL when that is exhausted. They
+    // belong to who asks: others' steps, evaluations and factors leave them alone.
+    void *(*factors)(void *self, bough_arena *arena);
 
-    // Solves with the last factorisation, in place: x (n_state).
-    void (*newton_solve)(void *self, double *x);
+    // Linearises f about (t, state, input). False when the tangents are not finite.
+    bool (*linearise)(void *self, double t, const double *state, const double *input,
+                      void *factors);
+
+    // Factors I − γ ∂f/∂y of the last linearisation. False when singular.
+    bool (*factor)(void *self, void *factors, double gamma);
+
+    // Solves with the last factors, in place: x (n_state).
+    void (*solve)(void *self, void *factors, double *x);
 
     // -- co-simulation ------------------------------------------------------------------------
 
@@ -126,9 +133,6 @@ typedef struct bough_subsystem_ops {
     // the bits of an advance in one go. NULL: cannot.
     bough_status (*advance_part)(void *self, double pause, double t1, const bough_signal *input,
                                  bool restart);
-
-    // Factors with another γ where the last newton_setup linearised. NULL: ask newton_setup.
-    bool (*newton_refactor)(void *self, double gamma);
 } bough_subsystem_ops;
 
 typedef struct bough_subsystem {

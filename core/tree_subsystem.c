@@ -30,15 +30,20 @@ typedef struct tree_subsystem {
     bool prescribed;                     // some joints' motions are given
     bough_integrator integrator;         // none without states
     double *own_state;                   // (n) of the integrator: quaternions not normalised
-    bough_tree_newton *micro_newton, *newton; // of own steps, of newton_setup; NULL with closures:
-    double *micro_matrix, *newton_matrix;     // (n × n, column-major)
-    int *micro_pivot, *newton_pivot;          // (n)
-    double micro_gamma, gamma;                // of their factors
-    double micro_time, *micro_state, *micro_input; // where own steps linearised
+    void *micro;                         // factors of own steps
     double *placed;                      // (n) a state with the given motions in place
     double *r, *plus, *minus, *y;        // (n) scratch
-    long newton_setups, derivatives;
+    long derivatives;
 } tree_subsystem;
+
+// One linearisation and its factors
+typedef struct tree_factors {
+    double time, gamma;
+    double *state, *input, *rate; // (n), (n_input), (n): where it is linearised, and f there
+    bough_tree_newton *newton;    // NULL with closures:
+    double *jacobian, *matrix;    // (n × n, column-major) ∂f/∂y; I − γ ∂f/∂y, factored
+    int *pivot;                   // (n)
+} tree_factors;
 
 // -- model exchange --------------------------------------------------------------------------
 
@@ -199,51 +204,82 @@ static void input_columns(void *self, double t, const double *state, const doubl
 // The increment of a state that keeps y + δ − y exact to its last digit
 static double increment_at(double y, double relative) { return relative * fmax(1, fabs(y)); }
 
-// I − γ ∂f/∂y, factored. f is defined for quaternions of any length, so its derivative by components
+// ∂f/∂y by differences. f is defined for quaternions of any length, so its derivative by components
 // is consistent.
-static bool dense_setup(tree_subsystem *s, double t, const double *state, const double *input,
-                        double gamma, double *matrix, int *pivot) {
+static bool find_jacobian(tree_subsystem *s, tree_factors *k) {
     int n = s->n;
-    memcpy(s->y, state, (size_t)n * sizeof(double));
+    memcpy(s->y, k->state, (size_t)n * sizeof(double));
     for (int j = 0; j < n; j++) {
         // Coordinates enter by sines and cosines: their increment does not grow with them.
-        double d = j < s->tree->n_q ? central_increment : increment_at(state[j], central_increment);
-        double high = state[j] + d, low = state[j] - d;
+        double y = k->state[j];
+        double d = j < s->tree->n_q ? central_increment : increment_at(y, central_increment);
+        double high = y + d, low = y - d;
         s->y[j] = high;
-        bool ok = derivative(s, t, s->y, input, s->plus);
+        bool ok = derivative(s, k->time, s->y, k->input, s->plus);
         s->y[j] = low;
-        ok = ok && derivative(s, t, s->y, input, s->minus);
-        s->y[j] = state[j];
+        ok = ok && derivative(s, k->time, s->y, k->input, s->minus);
+        s->y[j] = y;
         if (!ok) return false;
-        double *column = matrix + (size_t)n * (size_t)j, factor = gamma / (high - low);
+        double *column = k->jacobian + (size_t)n * (size_t)j;
         for (int i = 0; i < n; i++)
-            column[i] = -factor * (s->plus[i] - s->minus[i]);
-        column[j] += 1;
+            column[i] = (s->plus[i] - s->minus[i]) / (high - low);
     }
-    return bough_dense_factor(n, matrix, pivot);
+    return true;
 }
 
-static bool setup(tree_subsystem *s, double t, const double *state, const double *input,
-                  double gamma, bough_tree_newton *newton) {
-    return derivative(s, t, state, input, s->plus) &&
-           bough_tree_newton_setup(newton, s->data, t, input, place(s, t, state),
-                                   s->plus + s->tree->n_q, 1 / gamma);
+static void *factors(void *self, bough_arena *arena) {
+    const tree_subsystem *s = self;
+    size_t n = (size_t)s->n;
+    tree_factors *k = bough_arena_take(arena, sizeof *k);
+    if (k == NULL) return NULL;
+    k->state = bough_arena_doubles(arena, n);
+    k->input = bough_arena_doubles(arena, (size_t)bough_tree_n_inputs(s->tree));
+    k->rate = bough_arena_doubles(arena, n);
+    if (s->tree->n_closures == 0) {
+        bough_status status = bough_tree_newton_create(arena, s->tree, &k->newton);
+        return bough_is_ok(&status) ? k : NULL;
+    }
+    k->jacobian = bough_arena_doubles(arena, n * n);
+    k->matrix = bough_arena_doubles(arena, n * n);
+    k->pivot = bough_arena_take(arena, n * sizeof(int));
+    return bough_arena_exhausted(arena) ? NULL : k;
 }
 
-static bool newton_setup(void *self, double t, const double *state, const double *input,
-                         double gamma) {
+static bool linearise(void *self, double t, const double *state, const double *input,
+                      void *factors) {
     tree_subsystem *s = self;
-    s->newton_setups++;
-    s->gamma = gamma;
-    if (s->newton != NULL) return setup(s, t, state, input, gamma, s->newton);
-    return dense_setup(s, t, state, input, gamma, s->newton_matrix, s->newton_pivot);
+    tree_factors *k = factors;
+    k->time = t;
+    memcpy(k->state, state, (size_t)s->n * sizeof(double));
+    if (input != NULL) {
+        memcpy(k->input, input, (size_t)bough_tree_n_inputs(s->tree) * sizeof(double));
+    }
+    if (k->newton == NULL) return find_jacobian(s, k);
+    return derivative(s, t, state, k->input, k->rate);
+}
+
+static bool factor(void *self, void *factors, double gamma) {
+    tree_subsystem *s = self;
+    tree_factors *k = factors;
+    int n = s->n;
+    k->gamma = gamma;
+    if (k->newton != NULL) {
+        return bough_tree_newton_setup(k->newton, s->data, k->time, k->input,
+                                       place(s, k->time, k->state), k->rate + s->tree->n_q,
+                                       1 / gamma);
+    }
+    for (int i = 0; i < n * n; i++)
+        k->matrix[i] = -gamma * k->jacobian[i];
+    for (int i = 0; i < n; i++)
+        k->matrix[(size_t)n * (size_t)i + (size_t)i] += 1;
+    return bough_dense_factor(n, k->matrix, k->pivot);
 }
 
 // x = b + γ δf, in the form of tree_newton.h: c δq − δ(N v) = c b_q and c δv − c b_v = δv̇. Nothing
 // depends on the states of prescribed joints: their x is b.
-static void solve(tree_subsystem *s, bough_tree_newton *newton, double gamma, double *x) {
+static void solve_tree(tree_subsystem *s, const tree_factors *k, double *x) {
     const bough_tree *tree = s->tree;
-    double c = 1 / gamma;
+    double c = 1 / k->gamma;
     if (s->prescribed) {
         memcpy(s->y, x, (size_t)s->n * sizeof(double));
         select_states(s, false, x);
@@ -254,19 +290,20 @@ static void solve(tree_subsystem *s, bough_tree_newton *newton, double gamma, do
     }
     for (int i = 0; i < tree->n_q; i++)
         x[i] *= c;
-    bough_tree_newton_solve(newton, s->r, x);
+    bough_tree_newton_solve(k->newton, s->r, x);
     if (!s->prescribed) return;
     select_states(s, true, s->y);
     for (int i = 0; i < s->n; i++)
         x[i] += s->y[i];
 }
 
-static void newton_solve(void *self, double *x) {
+static void solve(void *self, void *factors, double *x) {
     tree_subsystem *s = self;
-    if (s->newton != NULL) {
-        solve(s, s->newton, s->gamma, x);
+    const tree_factors *k = factors;
+    if (k->newton != NULL) {
+        solve_tree(s, k, x);
     } else {
-        bough_dense_solve(s->n, 1, s->newton_matrix, s->newton_pivot, x);
+        bough_dense_solve(s->n, 1, k->matrix, k->pivot, x);
     }
 }
 
@@ -286,28 +323,17 @@ static bool own_derivative(void *self, double t, const double *y, double *rate) 
 static bool own_linearise(void *self, double t, const double *y) {
     tree_subsystem *s = self;
     evaluate_input(s, t);
-    s->micro_time = t;
-    memcpy(s->micro_state, y, (size_t)s->n * sizeof(double));
-    memcpy(s->micro_input, s->input, (size_t)bough_tree_n_inputs(s->tree) * sizeof(double));
-    return true;
+    return linearise(s, t, y, s->input, s->micro);
 }
 
 static bool own_factor(void *self, double gamma) {
     tree_subsystem *s = self;
-    double t = s->micro_time;
-    const double *state = s->micro_state, *input = s->micro_input;
-    s->micro_gamma = gamma;
-    if (s->micro_newton != NULL) return setup(s, t, state, input, gamma, s->micro_newton);
-    return dense_setup(s, t, state, input, gamma, s->micro_matrix, s->micro_pivot);
+    return factor(s, s->micro, gamma);
 }
 
 static void own_solve(void *self, double *x) {
     tree_subsystem *s = self;
-    if (s->micro_newton != NULL) {
-        solve(s, s->micro_newton, s->micro_gamma, x);
-    } else {
-        bough_dense_solve(s->n, 1, s->micro_matrix, s->micro_pivot, x);
-    }
+    solve(s, s->micro, x);
 }
 
 static void normalise(tree_subsystem *s) {
@@ -388,7 +414,6 @@ static void statistics(void *self, bough_statistics *sum) {
     *sum = (bough_statistics){0};
     if (s->integrator.ops != NULL) s->integrator.ops->statistics(s->integrator.self, sum);
     sum->derivatives = s->derivatives;
-    sum->factorisations += s->newton_setups;
 }
 
 // δq ← N N⁺ δq
@@ -409,8 +434,10 @@ static const bough_subsystem_ops operations = {
     .output_tangent = output_tangent,
     .output_drift = output_drift,
     .input_columns = input_columns,
-    .newton_setup = newton_setup,
-    .newton_solve = newton_solve,
+    .factors = factors,
+    .linearise = linearise,
+    .factor = factor,
+    .solve = solve,
     .advance = advance,
     .save_size = save_size,
     .save = save,
@@ -424,35 +451,20 @@ static const bough_subsystem_ops operations = {
 
 static bool take(bough_arena *arena, tree_subsystem *s) {
     size_t n = (size_t)s->n, n_input = (size_t)bough_tree_n_inputs(s->tree);
-    double **vectors[] = {&s->state,  &s->scale, &s->own_state, &s->micro_state, &s->placed,
+    double **vectors[] = {&s->state,  &s->scale, &s->own_state, &s->placed,
                           &s->y,      &s->r,     &s->plus,      &s->minus};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         *vectors[i] = bough_arena_doubles(arena, n);
     }
     s->input = bough_arena_doubles(arena, n_input);
-    s->micro_input = bough_arena_doubles(arena, n_input);
     return !bough_arena_exhausted(arena);
-}
-
-static bough_status take_newton(bough_arena *arena, tree_subsystem *s) {
-    size_t n = (size_t)s->n;
-    bough_status status = bough_ok();
-    if (s->tree->n_closures == 0) {
-        status = bough_tree_newton_create(arena, s->tree, &s->newton);
-        if (!bough_is_ok(&status)) return status;
-        return bough_tree_newton_create(arena, s->tree, &s->micro_newton);
-    }
-    s->newton_matrix = bough_arena_doubles(arena, n * n);
-    s->newton_pivot = bough_arena_take(arena, n * sizeof(int));
-    s->micro_matrix = bough_arena_doubles(arena, n * n);
-    s->micro_pivot = bough_arena_take(arena, n * sizeof(int));
-    if (!bough_arena_exhausted(arena)) return status;
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's Newton matrices");
 }
 
 static bough_status create_integrator(bough_arena *arena, tree_subsystem *s,
                                       const bough_integrator_options *options) {
     if (s->n == 0) return bough_ok();
+    s->micro = factors(s, arena);
+    if (s->micro == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's integrator");
     bough_ode ode = {.name = s->name,
                      .n = s->n,
                      .scale = s->scale,
@@ -501,8 +513,7 @@ bough_status bough_tree_subsystem_create(bough_arena *arena, bough_tree *tree, c
     for (int i = 0; i < s->n; i++)
         s->scale[i] = 1;
     set_state(s, start_time, tree->initial);
-    status = take_newton(arena, s);
-    if (bough_is_ok(&status)) status = create_integrator(arena, s, options);
+    status = create_integrator(arena, s, options);
     if (bough_is_ok(&status)) describe(s, options, subsystem);
     return status;
 }

@@ -37,7 +37,6 @@ static bough_stability_advice judge_again(bough_breakdown *b, bough_coupling *c)
     const bough_assembly *a = b->assembly;
     bough_scheme_options options = bough_scheme_options_in_use(c);
     bough_stability_advice advice;
-    c->refactor = true;
     for (int i = 0; i < a->n_member; i++) {
         const bough_subsystem *s = a->member[i];
         s->ops->set_state(s->self, c->t0, b->state + a->state_offset[i]);

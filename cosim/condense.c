@@ -10,10 +10,10 @@ static const bough_subsystem *subsystem(const bough_condensed *k, int member) {
 }
 
 // The member that feeds input j, numbered over all inputs, and by which of its outputs.
-static const bough_answer *feeder(const bough_condensed *k, int j, int *output) {
+static const bough_condensed_member *feeder(const bough_condensed *k, int j, int *output) {
     const bough_assembly *a = k->assembly;
     *output = a->source[j] - a->output_offset[a->source_member[j]];
-    return &k->of[a->source_member[j]];
+    return &k->part[a->source_member[j]];
 }
 
 // -- shape ----------------------------------------------------------------------------------------
@@ -21,55 +21,57 @@ static const bough_answer *feeder(const bough_condensed *k, int j, int *output) 
 static void choose_leaders(bough_condensed *k) {
     const bough_assembly *a = k->assembly;
     for (int i = 0; i < a->n_member; i++)
-        k->of[i].leads = a->stage[i] == 0;
+        k->part[i].is_leader = a->stage[i] == 0;
     for (int i = 0; i < a->n_member; i++) {
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
             int from = a->source_member[j];
             if (a->stage[i] == 0 || a->stage[from] == 0) continue;
-            k->of[i].leads = k->of[from].leads = true;
+            k->part[i].is_leader = k->part[from].is_leader = true;
         }
     }
 }
 
 static void choose_coordinates(bough_condensed *k, int member) {
     const bough_subsystem *s = subsystem(k, member);
-    bough_answer *w = &k->of[member];
+    bough_condensed_member *w = &k->part[member];
     w->leader = -1;
-    w->by_state = w->leads && !k->assembly->feedthrough[member] && s->n_state < s->n_input;
+    w->by_state = w->is_leader && !k->assembly->feedthrough[member] && s->n_state < s->n_input;
     w->n = w->by_state ? s->n_state : s->n_input;
-    if (!w->leads) return;
+    if (!w->is_leader) return;
     w->first = k->n;
     k->n += w->n;
     for (int j = 0; j < s->n_input; j++) {
-        k->lead[k->n_lead++] = k->assembly->input_offset[member] + j;
+        k->leader_input[k->n_leader_input++] = k->assembly->input_offset[member] + j;
     }
 }
 
-// A follower that hangs on one leader with few states is asked along these.
+// The directions of a follower that hangs on one leader with few states are these.
 static void choose_directions(bough_condensed *k, int member) {
     const bough_assembly *a = k->assembly;
-    bough_answer *w = &k->of[member];
+    bough_condensed_member *w = &k->part[member];
     int begin = a->input_offset[member], end = a->input_offset[member + 1];
-    if (w->leads || begin == end) return;
+    if (w->is_leader || begin == end) return;
     for (int j = begin; j < end; j++) {
         if (a->source_member[j] != a->source_member[begin]) return;
     }
-    const bough_answer *leader = &k->of[a->source_member[begin]];
+    const bough_condensed_member *leader = &k->part[a->source_member[begin]];
     if (!leader->by_state || leader->n >= w->n) return;
     w->leader = a->source_member[begin];
     w->n = leader->n;
 }
 
-static void take_answer(bough_condensed *k, bough_arena *arena, int member) {
+static bool take_part(bough_condensed *k, bough_arena *arena, int member) {
     const bough_subsystem *s = subsystem(k, member);
-    bough_answer *w = &k->of[member];
+    bough_condensed_member *w = &k->part[member];
     size_t n = (size_t)w->n, n_state = (size_t)s->n_state, n_input = (size_t)s->n_input;
     w->column = bough_arena_doubles(arena, n_input * n_state);
-    w->response = bough_arena_doubles(arena, n * (size_t)s->n_output);
+    w->output_change = bough_arena_doubles(arena, n * (size_t)s->n_output);
     if (w->by_state) w->inverse = bough_arena_doubles(arena, n_state * n_state);
-    if (w->leads) return;
+    w->factors = s->ops->factors(s->self, arena);
+    if (w->is_leader) return w->factors != NULL;
     w->direction = bough_arena_doubles(arena, n * n_input);
-    w->along = bough_arena_doubles(arena, n * n_state);
+    w->state_change = bough_arena_doubles(arena, n * n_state);
+    return w->factors != NULL;
 }
 
 bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *assembly,
@@ -78,31 +80,32 @@ bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *as
     bough_condensed *k = bough_arena_take(arena, sizeof *k);
     if (!k) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     k->assembly = assembly;
-    k->of = bough_arena_take(arena, n_member * sizeof *k->of);
-    k->lead = bough_arena_take(arena, (size_t)assembly->n_input * sizeof(int));
+    k->part = bough_arena_take(arena, n_member * sizeof *k->part);
+    k->leader_input = bough_arena_take(arena, (size_t)assembly->n_input * sizeof(int));
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     choose_leaders(k);
     for (int i = 0; i < assembly->n_member; i++)
         choose_coordinates(k, i);
     for (int i = 0; i < assembly->n_member; i++)
         choose_directions(k, i);
+    bool taken = true;
     for (int i = 0; i < assembly->n_member; i++)
-        take_answer(k, arena, i);
+        taken = take_part(k, arena, i) && taken;
     size_t n = (size_t)k->n;
-    k->gain = bough_arena_doubles(arena, (size_t)k->n_lead * n);
+    k->gain = bough_arena_doubles(arena, (size_t)k->n_leader_input * n);
     k->loop = bough_arena_doubles(arena, n * n);
     k->matrix = bough_arena_doubles(arena, n * n);
     k->square = bough_arena_doubles(arena, n * n);
     k->pivot = bough_arena_take(arena, n * sizeof(int));
     k->coordinate = bough_arena_doubles(arena, n);
     k->moved = bough_arena_doubles(arena, (size_t)assembly->n_output);
-    k->right = bough_arena_doubles(arena, (size_t)k->n_lead);
+    k->right = bough_arena_doubles(arena, (size_t)k->n_leader_input);
     k->unit = bough_arena_doubles(arena, (size_t)assembly->n_input);
     k->share = bough_arena_doubles(arena, (size_t)assembly->n_input);
     k->work = bough_arena_doubles(arena, (size_t)assembly->n_state);
     *condensed = k;
-    return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
-                                        : bough_ok();
+    taken = taken && !bough_arena_exhausted(arena);
+    return taken ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
 }
 
 // -- members --------------------------------------------------------------------------------------
@@ -114,16 +117,28 @@ static void output_change(const bough_subsystem *s, const bough_operating_point 
                            change);
 }
 
-static bool factor(const bough_condensed *k, int member, const bough_operating_point *at) {
+static void find_columns(const bough_condensed *k, int member, const bough_operating_point *at) {
     const bough_subsystem *s = subsystem(k, member);
-    if (at->kept && s->ops->newton_refactor) {
-        if (!s->ops->newton_refactor(s->self, at->gamma)) return false;
-        if (!k->of[member].leads) return true; // its columns have no γ in them
-    } else if (!s->ops->newton_setup(s->self, at->time, at->state, at->input, at->gamma)) {
-        return false;
-    }
-    s->ops->input_columns(s->self, at->time, at->state, at->input, k->of[member].column);
+    s->ops->input_columns(s->self, at->time, at->state, at->input, k->part[member].column);
+}
+
+// The columns of a follower have no γ in them.
+bool bough_condensed_linearise(bough_condensed *k, int member, const bough_operating_point *at) {
+    const bough_subsystem *s = subsystem(k, member);
+    const bough_condensed_member *w = &k->part[member];
+    if (!s->ops->linearise(s->self, at->time, at->state, at->input, w->factors)) return false;
+    if (!w->is_leader) find_columns(k, member, at);
     return true;
+}
+
+static bool factor(const bough_condensed *k, int member, double gamma) {
+    const bough_subsystem *s = subsystem(k, member);
+    return s->ops->factor(s->self, k->part[member].factors, gamma);
+}
+
+void bough_condensed_solve_member(const bough_condensed *k, int member, double *x) {
+    const bough_subsystem *s = subsystem(k, member);
+    s->ops->solve(s->self, k->part[member].factors, x);
 }
 
 enum { AT_ONCE = 4 };
@@ -164,19 +179,19 @@ static void add_columns(int n, int count, const double *column, double factor,
 void bough_condensed_add_columns(const bough_condensed *k, int member, double factor,
                                  const double *weight, double *sum) {
     const bough_subsystem *s = subsystem(k, member);
-    add_columns(s->n_state, s->n_input, k->of[member].column, factor, weight, sum);
+    add_columns(s->n_state, s->n_input, k->part[member].column, factor, weight, sum);
 }
 
 // columns ← (I − γJ)⁻¹ γ columns, by the inverse: there are fewer states than inputs
 static void solve_columns(const bough_condensed *k, int member, double gamma) {
     const bough_subsystem *s = subsystem(k, member);
-    const bough_answer *w = &k->of[member];
+    const bough_condensed_member *w = &k->part[member];
     double *right = k->work + k->assembly->state_offset[member], *column = w->column;
     int n = s->n_state;
     memset(w->inverse, 0, (size_t)n * (size_t)n * sizeof(double));
     for (int i = 0; i < n; i++) {
         w->inverse[i * n + i] = gamma;
-        s->ops->newton_solve(s->self, w->inverse + (size_t)i * (size_t)n);
+        bough_condensed_solve_member(k, member, w->inverse + (size_t)i * (size_t)n);
     }
     for (int j = 0; j < s->n_input; j++, column += n) {
         memcpy(right, column, (size_t)n * sizeof(double));
@@ -192,13 +207,13 @@ static void solve_columns(const bough_condensed *k, int member, double gamma) {
 static void find_input_responses(const bough_condensed *k, int member,
                                  const bough_operating_point *at) {
     const bough_subsystem *s = subsystem(k, member);
-    const bough_answer *w = &k->of[member];
+    const bough_condensed_member *w = &k->part[member];
     double *unit = k->unit + k->assembly->input_offset[member];
-    double *column = w->column, *response = w->response;
+    double *column = w->column, *response = w->output_change;
     for (int j = 0; j < s->n_input; j++, column += s->n_state, response += s->n_output) {
         for (int i = 0; i < s->n_state; i++)
             column[i] *= at->gamma;
-        s->ops->newton_solve(s->self, column);
+        bough_condensed_solve_member(k, member, column);
         unit[j] = 1;
         output_change(s, at, column, unit, response);
         unit[j] = 0;
@@ -209,7 +224,7 @@ static void find_state_responses(const bough_condensed *k, int member,
                                  const bough_operating_point *at) {
     const bough_subsystem *s = subsystem(k, member);
     double *state = k->work + k->assembly->state_offset[member];
-    double *response = k->of[member].response;
+    double *response = k->part[member].output_change;
     memset(state, 0, (size_t)s->n_state * sizeof(double));
     for (int i = 0; i < s->n_state; i++, response += s->n_output) {
         state[i] = 1;
@@ -220,8 +235,9 @@ static void find_state_responses(const bough_condensed *k, int member,
 
 bool bough_condensed_factor_leader(bough_condensed *k, int member,
                                    const bough_operating_point *at) {
-    const bough_answer *w = &k->of[member];
-    if (!factor(k, member, at)) return false;
+    const bough_condensed_member *w = &k->part[member];
+    if (!factor(k, member, at->gamma)) return false;
+    find_columns(k, member, at);
     if (!w->by_state) {
         find_input_responses(k, member, at);
         return true;
@@ -232,9 +248,9 @@ bool bough_condensed_factor_leader(bough_condensed *k, int member,
 }
 
 // Whether a leader's output p changes with none of its coordinates.
-static bool is_constant(const bough_answer *w, int p, int n_output) {
+static bool is_constant(const bough_condensed_member *w, int p, int n_output) {
     for (int c = 0; c < w->n; c++) {
-        if (w->response[c * n_output + p] != 0) return false;
+        if (w->output_change[c * n_output + p] != 0) return false;
     }
     return true;
 }
@@ -242,19 +258,19 @@ static bool is_constant(const bough_answer *w, int p, int n_output) {
 // The input changes of a follower along each of its directions.
 static void find_directions(bough_condensed *k, int member) {
     const bough_assembly *a = k->assembly;
-    const bough_answer *w = &k->of[member];
+    const bough_condensed_member *w = &k->part[member];
     int n_input = a->member[member]->n_input;
     memset(w->direction, 0, (size_t)w->n * (size_t)n_input * sizeof(double));
     for (int j = 0; j < n_input; j++) {
         int p, input = a->input_offset[member] + j;
-        const bough_answer *from = feeder(k, input, &p);
+        const bough_condensed_member *from = feeder(k, input, &p);
         int n_output = a->member[a->source_member[input]]->n_output;
         if (w->leader < 0) {
             w->direction[j * n_input + j] = is_constant(from, p, n_output) ? 0 : 1;
             continue;
         }
         for (int d = 0; d < w->n; d++) {
-            w->direction[d * n_input + j] = from->response[d * n_output + p];
+            w->direction[d * n_input + j] = from->output_change[d * n_output + p];
         }
     }
 }
@@ -269,19 +285,19 @@ static bool any(const double *x, int n) {
 bool bough_condensed_factor_follower(bough_condensed *k, int member,
                                      const bough_operating_point *at) {
     const bough_subsystem *s = subsystem(k, member);
-    const bough_answer *w = &k->of[member];
-    if (!factor(k, member, at)) return false;
+    const bough_condensed_member *w = &k->part[member];
+    if (!factor(k, member, at->gamma)) return false;
     find_directions(k, member);
     for (int d = 0; d < w->n; d++) {
         const double *direction = w->direction + (size_t)d * (size_t)s->n_input;
-        double *along = w->along + (size_t)d * (size_t)s->n_state;
-        double *response = w->response + (size_t)d * (size_t)s->n_output;
-        memset(along, 0, (size_t)s->n_state * sizeof(double));
+        double *state = w->state_change + (size_t)d * (size_t)s->n_state;
+        double *response = w->output_change + (size_t)d * (size_t)s->n_output;
+        memset(state, 0, (size_t)s->n_state * sizeof(double));
         memset(response, 0, (size_t)s->n_output * sizeof(double));
         if (!any(direction, s->n_input)) continue;
-        bough_condensed_add_columns(k, member, at->gamma, direction, along);
-        s->ops->newton_solve(s->self, along);
-        output_change(s, at, along, direction, response);
+        bough_condensed_add_columns(k, member, at->gamma, direction, state);
+        bough_condensed_solve_member(k, member, state);
+        output_change(s, at, state, direction, response);
     }
     return true;
 }
@@ -291,27 +307,27 @@ bool bough_condensed_factor_follower(bough_condensed *k, int member,
 // Adds to K's row what the leaders' coordinates do to input j through the member that leads.
 static void add_leading(const bough_condensed *k, double factor, int j, double *row) {
     int p;
-    const bough_answer *w = feeder(k, j, &p);
+    const bough_condensed_member *w = feeder(k, j, &p);
     int n_output = subsystem(k, k->assembly->source_member[j])->n_output;
     for (int c = 0; c < w->n; c++)
-        row[w->first + c] += factor * w->response[c * n_output + p];
+        row[w->first + c] += factor * w->output_change[c * n_output + p];
 }
 
 static void find_gain_row(const bough_condensed *k, int l) {
     const bough_assembly *a = k->assembly;
-    int p, from = a->source_member[k->lead[l]];
-    const bough_answer *w = feeder(k, k->lead[l], &p);
+    int p, from = a->source_member[k->leader_input[l]];
+    const bough_condensed_member *w = feeder(k, k->leader_input[l], &p);
     double *row = k->gain + (size_t)l * (size_t)k->n;
     memset(row, 0, (size_t)k->n * sizeof(double));
-    if (w->leads) {
-        add_leading(k, 1, k->lead[l], row);
+    if (w->is_leader) {
+        add_leading(k, 1, k->leader_input[l], row);
         return;
     }
     for (int d = 0; d < w->n; d++) {
-        double response = w->response[d * a->member[from]->n_output + p];
+        double response = w->output_change[d * a->member[from]->n_output + p];
         if (response == 0) continue;
         if (w->leader >= 0) {
-            row[k->of[w->leader].first + d] = response;
+            row[k->part[w->leader].first + d] = response;
         } else {
             add_leading(k, response, a->input_offset[from] + d, row);
         }
@@ -321,8 +337,8 @@ static void find_gain_row(const bough_condensed *k, int l) {
 // z += Z u; the leaders' input l is u[l·stride]
 static void add_coordinates(const bough_condensed *k, const double *u, int stride, double *z) {
     for (int i = 0, l = 0; i < k->assembly->n_member; i++) {
-        const bough_answer *w = &k->of[i];
-        if (!w->leads) continue;
+        const bough_condensed_member *w = &k->part[i];
+        if (!w->is_leader) continue;
         const double *column = w->column;
         for (int j = 0; j < subsystem(k, i)->n_input; j++, l++, column += w->n) {
             double input = u[(size_t)l * (size_t)stride];
@@ -339,7 +355,7 @@ static void add_coordinates(const bough_condensed *k, const double *u, int strid
 bool bough_condensed_close(bough_condensed *k) {
     int n = k->n;
     size_t size = (size_t)n * (size_t)n;
-    for (int l = 0; l < k->n_lead; l++)
+    for (int l = 0; l < k->n_leader_input; l++)
         find_gain_row(k, l);
     memset(k->loop, 0, size * sizeof(double));
     for (int c = 0; c < n; c++)
@@ -354,54 +370,54 @@ bool bough_condensed_close(bough_condensed *k) {
 // The leaders' outputs' change with the coordinates.
 static void move_outputs(bough_condensed *k) {
     for (int i = 0; i < k->assembly->n_member; i++) {
-        const bough_answer *w = &k->of[i];
-        if (!w->leads) continue;
+        const bough_condensed_member *w = &k->part[i];
+        if (!w->is_leader) continue;
         int n_output = subsystem(k, i)->n_output;
         double *moved = k->moved + k->assembly->output_offset[i];
         memset(moved, 0, (size_t)n_output * sizeof *moved);
-        add_columns(n_output, w->n, w->response, 1, k->coordinate + w->first, moved);
+        add_columns(n_output, w->n, w->output_change, 1, k->coordinate + w->first, moved);
     }
 }
 
 void bough_condensed_solve(bough_condensed *k, double *change) {
     const bough_assembly *a = k->assembly;
     int n = k->n;
-    for (int l = 0; l < k->n_lead; l++)
-        k->right[l] = change[k->lead[l]];
+    for (int l = 0; l < k->n_leader_input; l++)
+        k->right[l] = change[k->leader_input[l]];
     add_coordinates(k, k->right, 1, k->coordinate);
     if (n > 0) bough_dense_solve(n, 1, k->matrix, k->pivot, k->coordinate);
-    for (int l = 0; l < k->n_lead; l++) {
+    for (int l = 0; l < k->n_leader_input; l++) {
         const double *row = k->gain + (size_t)l * (size_t)n;
         for (int c = 0; c < n; c++)
-            change[k->lead[l]] += row[c] * k->coordinate[c];
+            change[k->leader_input[l]] += row[c] * k->coordinate[c];
     }
     move_outputs(k);
     for (int i = 0; i < a->n_member; i++) {
-        if (k->of[i].leads) continue;
+        if (k->part[i].is_leader) continue;
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++)
             change[j] += k->moved[a->source[j]];
     }
 }
 
-void bough_condensed_add_answer(const bough_condensed *k, int member, double *x) {
+void bough_condensed_add_response(const bough_condensed *k, int member, double *x) {
     const bough_assembly *a = k->assembly;
-    const bough_answer *w = &k->of[member];
+    const bough_condensed_member *w = &k->part[member];
     int n = subsystem(k, member)->n_state;
     if (w->by_state) {
         for (int i = 0; i < n; i++) x[i] += k->coordinate[w->first + i];
-    } else if (w->leads) {
+    } else if (w->is_leader) {
         add_columns(n, w->n, w->column, 1, k->coordinate + w->first, x);
     } else if (w->leader >= 0) {
-        add_columns(n, w->n, w->along, 1, k->coordinate + k->of[w->leader].first, x);
+        add_columns(n, w->n, w->state_change, 1, k->coordinate + k->part[w->leader].first, x);
     } else {
         double *share = k->share + a->input_offset[member];
         for (int d = 0; d < w->n; d++)
             share[d] = k->moved[a->source[a->input_offset[member] + d]];
-        add_columns(n, w->n, w->along, 1, share, x);
+        add_columns(n, w->n, w->state_change, 1, share, x);
     }
 }
 
-// -- how much the interface answers to itself -----------------------------------------------------
+// -- gain of the interface ------------------------------------------------------------------------
 
 // result = a a (n × n, column-major)
 static void square(int n, const double *a, double *result) {

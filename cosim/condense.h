@@ -1,52 +1,52 @@
 // The interface of linearised members, condensed to the coordinates in which the leading members
 // move all others.
 //
-// A leader's outputs change by Σ w_c response_c. Its coordinates w are its states where those are
-// fewer than its inputs and it answers by them alone, else its inputs. A follower hangs on leaders
+// A leader's outputs change by Σ w_c ∂o/∂w_c. Its coordinates w are its states where those are
+// fewer than its inputs and its outputs depend on them alone, else its inputs. A follower hangs on leaders
 // only, so that eliminating it leaves, over all leaders,
 //     w = Z u,   u = b + K w,   hence   (I − Z K) w = Z b:
-// u the leaders' inputs, Z their coordinates' answer to them (of inputs 1), K the inputs' answer to
-// the coordinates through leaders and followers. Many bodies on one leader with two states so cost
+// u the leaders' inputs, Z their coordinates' response to them (of inputs 1), K the inputs' response
+// to the coordinates through leaders and followers. Many bodies on one leader with two states so cost
 // two unknowns, and work in proportion to their number.
 #ifndef BOUGH_COSIM_CONDENSE_H
 #define BOUGH_COSIM_CONDENSE_H
 
 #include "cosim/assembly.h"
 
-// What one member answers to the interface. The factors are its own newton_setup.
-typedef struct bough_answer {
-    bool leads;
+// One member's linearisation, its factors and its response to the interface.
+typedef struct bough_condensed_member {
+    bool is_leader;
     bool by_state; // leader: its coordinates are its states, else its inputs
-    int leader; // follower asked along the coordinates of that member; −1: along its own inputs
+    void *factors; // of its I − γJ
+    int leader; // follower: its directions are the coordinates of that member; −1: its own inputs
     int first;  // leader: its coordinates begin there among all
     int n;      // coordinates of a leader, directions of a follower
     double *column; // (n_input × n_state) of a leader (I − γJ)⁻¹ γ ∂f/∂u, of a follower ∂f/∂u
     double *inverse; // leader by states: (n_state × n_state) (I − γJ)⁻¹ by columns
     double *direction; // follower: (n × n_input) change of its inputs along each direction
-    double *along;     // follower: (n × n_state) its answer to that
-    double *response;  // (n × n_output) change of its outputs along each coordinate or direction
-} bough_answer;
+    double *state_change;  // follower: (n × n_state) response of its states to that
+    double *output_change; // (n × n_output) of its outputs to each coordinate or direction
+} bough_condensed_member;
 
 typedef struct bough_condensed {
     const bough_assembly *assembly;
-    bough_answer *of;   // (n_member)
-    int n_lead;         // inputs of all leaders
-    int *lead;          // (n_lead) numbered over all inputs
+    bough_condensed_member *part; // (n_member)
+    int n_leader_input; // of all leaders
+    int *leader_input;  // (n_leader_input) numbered over all inputs
     int n;              // coordinates of all leaders
-    double *gain;       // (n_lead × n, row-major) K
+    double *gain;       // (n_leader_input × n, row-major) K
     double *loop;       // (n × n, column-major) Z K
     double *matrix;     // (n × n, column-major) I − Z K, factored
     double *square;     // (n × n) scratch
     int *pivot;         // (n)
     double *coordinate; // (n) w
     double *moved;      // (n_output) the leaders' outputs' change with it
-    double *right;      // (n_lead) scratch
+    double *right;      // (n_leader_input) scratch
     double *unit, *share; // (n_input) scratch of each member
     double *work;       // (n_state) scratch of each member
 } bough_condensed;
 
-// Members of stage 0 lead, and those that are connected with one that is not. The memory of `along`
-// is taken in any case.
+// Members of stage 0 lead, and those that are connected with one that is not.
 bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *assembly,
                                     bough_condensed **condensed);
 
@@ -55,31 +55,37 @@ typedef struct bough_operating_point {
     double time;
     const double *state, *input; // (n_state), (n_input) of the member
     double gamma;
-    bool kept; // members that can do so keep their tangents, and change γ
 } bough_operating_point;
 
-// Linearises and factors a leader, and finds its columns and responses. False when singular.
+// Linearises a member. False when its tangents are not finite.
+bool bough_condensed_linearise(bough_condensed *k, int member, const bough_operating_point *at);
+
+// Factors a leader where it was last linearised, and finds its columns and responses. False when
+// singular.
 bool bough_condensed_factor_leader(bough_condensed *k, int member, const bough_operating_point *at);
 
 // The same of a follower, whose leaders have been factored.
 bool bough_condensed_factor_follower(bough_condensed *k, int member,
                                      const bough_operating_point *at);
 
+// Solves (I − γJ) x = b of the member by itself, in place.
+void bough_condensed_solve_member(const bough_condensed *k, int member, double *x);
+
 // K and the factors of I − Z K. False when that is singular.
 bool bough_condensed_close(bough_condensed *k);
 
 // Solves the interface. `coordinate` holds w and change (n_input) all inputs' changes as far as
-// they come from elsewhere than the leaders' answer to their inputs; on return both are complete.
+// they come from elsewhere than the leaders' response to their inputs; on return both are complete.
 void bough_condensed_solve(bough_condensed *k, double *change);
 
-// Adds to x (n_state of the member) its answer to the coordinates.
-void bough_condensed_add_answer(const bough_condensed *k, int member, double *x);
+// Adds to x (n_state of the member) its response to the coordinates.
+void bough_condensed_add_response(const bough_condensed *k, int member, double *x);
 
 // sum (n_state of the member) += factor Σ_j weight_j column_j
 void bough_condensed_add_columns(const bough_condensed *k, int member, double factor,
                                  const double *weight, double *sum);
 
-// The spectral radius of Z K, which is overwritten: how much the interface answers to itself.
+// The spectral radius of Z K, which is overwritten, the gain of the interface.
 double bough_condensed_radius(bough_condensed *k);
 
 #endif

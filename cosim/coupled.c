@@ -91,30 +91,34 @@ bough_status bough_coupled_rate_again(bough_coupled *coupled, double t, const do
 static bough_operating_point operating_point(const bough_coupled *coupled, int i) {
     const bough_assembly *a = coupled->assembly;
     return (bough_operating_point){coupled->setup_time, coupled->setup_state + a->state_offset[i],
-                                   coupled->setup_input + a->input_offset[i], coupled->gamma,
-                                   coupled->kept};
+                                   coupled->setup_input + a->input_offset[i], coupled->gamma};
 }
 
-static void factored(bough_coupled *coupled, int i, bool good) {
+static void check(bough_coupled *coupled, int i, bool good) {
     if (good) return;
     coupled->status[i] =
         bough_fail(BOUGH_RETRY, "%s: singular Newton matrix", coupled->assembly->member[i]->name);
 }
 
+static void linearise(bough_coupled *coupled, int i) {
+    bough_operating_point at = operating_point(coupled, i);
+    check(coupled, i, bough_condensed_linearise(coupled->interface, i, &at));
+}
+
 static void factor_leader(bough_coupled *coupled, int i) {
     bough_operating_point at = operating_point(coupled, i);
-    factored(coupled, i, bough_condensed_factor_leader(coupled->interface, i, &at));
+    check(coupled, i, bough_condensed_factor_leader(coupled->interface, i, &at));
 }
 
 static void factor_follower(bough_coupled *coupled, int i) {
     bough_operating_point at = operating_point(coupled, i);
-    factored(coupled, i, bough_condensed_factor_follower(coupled->interface, i, &at));
+    check(coupled, i, bough_condensed_factor_follower(coupled->interface, i, &at));
 }
 
 static bool factor_border(bough_coupled *coupled);
 
-void bough_coupled_adopt(bough_coupled *coupled, bough_condensed *interface, double t,
-                         const double *state, const double *input, double gamma) {
+void bough_coupled_borrow(bough_coupled *coupled, bough_condensed *interface, double t,
+                          const double *state, const double *input, double gamma) {
     const bough_assembly *a = coupled->assembly;
     memcpy(coupled->setup_state, state, (size_t)a->n_state * sizeof(double));
     memcpy(coupled->setup_input, input, (size_t)a->n_input * sizeof(double));
@@ -123,7 +127,14 @@ void bough_coupled_adopt(bough_coupled *coupled, bough_condensed *interface, dou
     coupled->interface = interface;
 }
 
-static bough_status factor_all(bough_coupled *coupled) {
+bough_status bough_coupled_linearise(bough_coupled *coupled, double t, const double *state,
+                                     const double *input) {
+    bough_coupled_borrow(coupled, coupled->own, t, state, input, coupled->gamma);
+    return each(coupled, ALL, linearise);
+}
+
+bough_status bough_coupled_factor(bough_coupled *coupled, double gamma) {
+    coupled->gamma = gamma;
     bough_status status = each(coupled, LEADERS, factor_leader);
     if (!bough_is_ok(&status)) return status;
     status = each(coupled, FOLLOWERS, factor_follower);
@@ -134,15 +145,8 @@ static bough_status factor_all(bough_coupled *coupled) {
 
 bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state,
                                  const double *input, double gamma) {
-    bough_coupled_adopt(coupled, coupled->own, t, state, input, gamma);
-    coupled->kept = false;
-    return factor_all(coupled);
-}
-
-bough_status bough_coupled_refactor(bough_coupled *coupled, double gamma) {
-    coupled->gamma = gamma;
-    coupled->kept = true;
-    return factor_all(coupled);
+    bough_status status = bough_coupled_linearise(coupled, t, state, input);
+    return bough_is_ok(&status) ? bough_coupled_factor(coupled, gamma) : status;
 }
 
 // -- solution -------------------------------------------------------------------------------------
@@ -162,11 +166,11 @@ static void find_output_change(bough_coupled *coupled, int i, const double *x,
 static void solve_leader(bough_coupled *coupled, int i) {
     const bough_assembly *a = coupled->assembly;
     const bough_subsystem *s = a->member[i];
-    const bough_answer *w = &coupled->interface->of[i];
+    const bough_condensed_member *w = &coupled->interface->part[i];
     double *x = coupled->x + a->state_offset[i];
     double *coordinate = coupled->interface->coordinate + w->first;
     if (coupled->user.before) coupled->user.before(coupled->user.self, i);
-    s->ops->newton_solve(s->self, x);
+    bough_condensed_solve_member(coupled->interface, i, x);
     memset(coordinate, 0, (size_t)w->n * sizeof(double));
     if (!w->by_state) {
         find_output_change(coupled, i, x, NULL);
@@ -188,17 +192,16 @@ static void gather_changes(bough_coupled *coupled, int i) {
 // The same of a follower, under what the leaders do by themselves.
 static void solve_follower(bough_coupled *coupled, int i) {
     const bough_assembly *a = coupled->assembly;
-    const bough_subsystem *s = a->member[i];
     double *x = coupled->x + a->state_offset[i], *change = coupled->change + a->input_offset[i];
     if (coupled->user.before) coupled->user.before(coupled->user.self, i);
     gather_changes(coupled, i);
     bough_condensed_add_columns(coupled->interface, i, coupled->gamma, change, x);
-    s->ops->newton_solve(s->self, x);
+    bough_condensed_solve_member(coupled->interface, i, x);
     find_output_change(coupled, i, x, change);
 }
 
 static void finish(bough_coupled *coupled, int i) {
-    bough_condensed_add_answer(coupled->interface, i,
+    bough_condensed_add_response(coupled->interface, i,
                                coupled->x + coupled->assembly->state_offset[i]);
     if (coupled->user.after) coupled->user.after(coupled->user.self, i);
 }
@@ -215,7 +218,7 @@ void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, d
     each(coupled, LEADERS, solve_leader);
     each(coupled, FOLLOWERS, solve_follower);
     for (int i = 0; i < coupled->assembly->n_member; i++) {
-        if (coupled->interface->of[i].leads) gather_changes(coupled, i);
+        if (coupled->interface->part[i].is_leader) gather_changes(coupled, i);
     }
     bough_condensed_solve(coupled->interface, coupled->change);
     each(coupled, ALL, finish);
@@ -277,7 +280,7 @@ static void order_members(bough_coupled *coupled) {
     int n = 0;
     for (int pass = 0; pass < 2; pass++) {
         for (int i = 0; i < coupled->assembly->n_member; i++) {
-            if (coupled->own->of[i].leads == (pass > 0)) coupled->order[n++] = i;
+            if (coupled->own->part[i].is_leader == (pass > 0)) coupled->order[n++] = i;
         }
         if (pass == 0) coupled->n_follower = n;
     }

@@ -31,7 +31,6 @@ typedef struct bough_coupled {
     double *x;
 
     // factors
-    bool kept; // the members' tangents are those of the last setup
     double setup_time;
     double *setup_state;              // (n_state) where the matrix was taken
     double *setup_input;              // (n_input)
@@ -68,19 +67,22 @@ bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *
 bough_status bough_coupled_rate_again(bough_coupled *coupled, double t, const double *state,
                                       double *rate);
 
-// Linearises about (t, state, input) and factors I − γJ; input (n_input), usually coupled->input.
-// BOUGH_RETRY when it is singular.
+// Linearises about (t, state, input); input (n_input), usually coupled->input. BOUGH_RETRY when a
+// tangent is not finite.
+bough_status bough_coupled_linearise(bough_coupled *coupled, double t, const double *state,
+                                     const double *input);
+
+// Factors I − γJ of the last linearisation. BOUGH_RETRY when it is singular.
+bough_status bough_coupled_factor(bough_coupled *coupled, double gamma);
+
+// Both.
 bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state,
                                  const double *input, double gamma);
 
-// The same with another γ where the last setup linearised, for members that can keep their tangents;
-// nobody else may have asked for factors since.
-bough_status bough_coupled_refactor(bough_coupled *coupled, double gamma);
-
-// The same with the factors that members hold and the interface that belongs to them, for the next
-// solutions without held states; outputs are linearised about (t, state, input).
-void bough_coupled_adopt(bough_coupled *coupled, bough_condensed *interface, double t,
-                         const double *state, const double *input, double gamma);
+// The next solutions, without held states, are those by another's factors of I − γJ; outputs are
+// linearised about (t, state, input).
+void bough_coupled_borrow(bough_coupled *coupled, bough_condensed *interface, double t,
+                          const double *state, const double *input, double gamma);
 
 // x ← (I − γJ)⁻¹ x, x (n_state); coupled->change is then the change of the inputs with it.
 void bough_coupled_solve(bough_coupled *coupled, double *x);
@@ -89,8 +91,7 @@ void bough_coupled_solve(bough_coupled *coupled, double *x);
 void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
                                 bough_coupled_user user);
 
-// δu for x = 0 and `outside` (n_input) at the leaders' inputs, in place. Asks no member: their
-// Newton factors may be others by now.
+// δu for x = 0 and `outside` (n_input) at the leaders' inputs, in place.
 void bough_coupled_close(bough_coupled *coupled, double *outside);
 
 #endif

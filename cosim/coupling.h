@@ -53,7 +53,6 @@ typedef struct bough_coupling {
     // the step to take, set by the master
     double t0, t1; // [s]
     bool restart;  // a load jumped at t0: integrators start anew
-    bool refactor; // the members' Newton factors are not the scheme's any more
 
     // by bough_coupling_exchange: at the end of the last step
     double *output; // (n_output) of all members at their current states
@@ -85,14 +84,13 @@ typedef struct bough_coupling {
     double *output_drift;     // (n_output)
     double *seen, *seen_rate; // (n_input)
 
-    // by the ramp scheme: the members' answers to its last step, whose factors they hold unless
-    // `refactor`, and the γ of these; NULL
+    // by the ramp scheme: the linearised members of its last step and their γ; NULL
     bough_condensed *interface;
     double interface_gamma; // [s]
 
     // by the ramp scheme, for the summary
     double theta;           // in use
-    double interface_ratio; // spectral radius of the interface's answer to itself about the initial state;
+    double interface_ratio; // spectral radius of the interface's gain about the initial state;
                             // NaN: not known
 
     // by a scheme that integrates all members as one system; NULL

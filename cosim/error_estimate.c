@@ -242,14 +242,14 @@ static bough_signal defect_of(const bough_error_estimate *e, int step) {
 
 // Takes the scheme's factors where they serve a step of nearly the length h, and that length: ε
 // goes by a clock that errs by 1 % then.
-static bool adopt(bough_error_estimate *e, const bough_coupling *c, double h) {
-    if (!c->interface || c->refactor) return false;
+static bool borrow(bough_error_estimate *e, const bough_coupling *c, double h) {
+    if (!c->interface) return false;
     e->method = method_of(h, shared_radius);
     double ratio = c->interface_gamma / e->method.factor;
     if (fabs(ratio - 1) > 0.011) return false;
     e->method.h *= ratio;
     e->method.factor *= ratio;
-    bough_coupled_adopt(e->coupled, c->interface, c->t1, e->at, c->input, e->method.factor);
+    bough_coupled_borrow(e->coupled, c->interface, c->t1, e->at, c->input, e->method.factor);
     return true;
 }
 
@@ -260,9 +260,8 @@ static bool linearise(bough_error_estimate *e, bough_coupling *c, double h) {
         const bough_subsystem *s = a->member[i];
         memcpy(e->at + a->state_offset[i], s->state, (size_t)s->n_state * sizeof(double));
     }
-    if (adopt(e, c, h)) return true;
+    if (borrow(e, c, h)) return true;
     e->method = method_of(h, own_radius);
-    c->refactor = true;
     bough_status status = bough_coupled_setup(e->coupled, c->t1, e->at, c->input, e->method.factor);
     return bough_is_ok(&status);
 }

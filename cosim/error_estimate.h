@@ -33,8 +33,7 @@ double bough_error_estimate_defect(bough_error_estimate *e, const bough_coupling
 // Takes the defects of the step just exchanged; ends the batch when it is full.
 void bough_error_estimate_step(bough_error_estimate *e, bough_coupling *c);
 
-// Ends the batch: ε is then that at the current synchronisation point. It uses the members' Newton
-// factors.
+// Ends the batch: ε is then that at the current synchronisation point.
 void bough_error_estimate_finish(bough_error_estimate *e, bough_coupling *c);
 
 // The open batch, the error and what the inputs have been.

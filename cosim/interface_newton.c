@@ -34,12 +34,11 @@ bough_status bough_interface_newton_create(bough_arena *arena, const bough_coupl
 bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coupling *c,
                                            const double *span) {
     double length = c->t1 - c->t0;
-    bool same = !c->restart && !c->refactor && fabs(length - n->length) <= 1e-9 * length;
+    bool same = !c->restart && fabs(length - n->length) <= 1e-9 * length;
     n->age++;
     if (same && n->age <= MOST_AGE) return bough_ok();
     n->length = length;
     n->age = 0;
-    c->refactor = false;
     const bough_assembly *a = c->assembly;
     for (int i = 0; i < a->n_member; i++) {
         const bough_subsystem *s = a->member[i];
@@ -51,6 +50,8 @@ bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coup
     }
     return status;
 }
+
+void bough_interface_newton_forget(bough_interface_newton *n) { n->length = 0; }
 
 void bough_interface_newton_solve(const bough_interface_newton *n, int span, double *change) {
     bough_coupled_close(n->coupled[span], change);

@@ -12,10 +12,13 @@ typedef struct bough_interface_newton bough_interface_newton;
 bough_status bough_interface_newton_create(bough_arena *arena, const bough_coupling *c, int n_span,
                                            bough_interface_newton **newton);
 
-// Makes the Jacobians for a step: anew when the macro step, a jump or others' use of the members'
-// factors asks for it, and every few steps. Members must be at t0.
+// Makes the Jacobians for a step: anew when the macro step changes, loads jump, and every few steps.
+// Members must be at t0.
 bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coupling *c,
                                            const double *span);
+
+// The next update makes them anew.
+void bough_interface_newton_forget(bough_interface_newton *n);
 
 // What closes the interface over a change (n_input) of the leaders' inputs, in place: (I − ∂u/∂u)⁻¹
 // by the Jacobian of that span.

@@ -5,13 +5,18 @@
 
 static const double sdirk_gamma = 0.29289321881345248; // 1 − 1/√2
 
+typedef struct linear_factors {
+    void *real;      // of the subsystem
+    bool linearised; // there, once and for all
+    double gamma;    // of the factors; 0: none
+} linear_factors;
+
 typedef struct linear_member {
     const bough_subsystem *real;
     double sub_step;
     double *at, *input_at; // (n_state), (n_input) where the subsystem is linearised
     double *column;        // (n_input × n_state) B
-    bool linearised;       // the subsystem is, here
-    double gamma;          // of the factors in place; 0: none
+    linear_factors *own;   // of its own steps
     double time, *state;   // (n_state) the perturbation
     double *plus, *minus;  // (n_state) scratch
     double *seen;          // (n_input) scratch
@@ -79,23 +84,37 @@ static void input_columns(void *self, double t, const double *state, const doubl
     memcpy(column, s->column, count * sizeof(double));
 }
 
-static bool newton_setup(void *self, double t, const double *state, const double *input,
-                         double gamma) {
+static void *factors(void *self, bough_arena *arena) {
+    const linear_member *s = self;
+    linear_factors *k = bough_arena_take(arena, sizeof *k);
+    if (k != NULL) k->real = s->real->ops->factors(s->real->self, arena);
+    return k != NULL && k->real != NULL ? k : NULL;
+}
+
+static bool linearise(void *self, double t, const double *state, const double *input,
+                      void *factors) {
     (void)t, (void)state, (void)input;
-    linear_member *s = self;
+    const linear_member *s = self;
     const bough_subsystem *r = s->real;
-    if (gamma == s->gamma) return true;
-    bool again = s->linearised && r->ops->newton_refactor != NULL;
-    bool ok = again ? r->ops->newton_refactor(r->self, gamma)
-                    : r->ops->newton_setup(r->self, *r->time, s->at, s->input_at, gamma);
-    s->linearised = true;
-    s->gamma = ok ? gamma : 0;
+    linear_factors *k = factors;
+    if (k->linearised) return true;
+    k->linearised = r->ops->linearise(r->self, *r->time, s->at, s->input_at, k->real);
+    return k->linearised;
+}
+
+static bool factor(void *self, void *factors, double gamma) {
+    const linear_member *s = self;
+    linear_factors *k = factors;
+    if (gamma == k->gamma) return true;
+    bool ok = s->real->ops->factor(s->real->self, k->real, gamma);
+    k->gamma = ok ? gamma : 0;
     return ok;
 }
 
-static void newton_solve(void *self, double *x) {
+static void solve(void *self, void *factors, double *x) {
     const linear_member *s = self;
-    s->real->ops->newton_solve(s->real->self, x);
+    const linear_factors *k = factors;
+    s->real->ops->solve(s->real->self, k->real, x);
 }
 
 // -- own steps ------------------------------------------------------------------------------------
@@ -106,13 +125,13 @@ static void step(linear_member *s, const bough_signal *input, double t, double h
     double part = (1 - sdirk_gamma) / sdirk_gamma;
     memcpy(s->plus, s->state, (size_t)n * sizeof(double));
     bough_signal_value(input, t + sdirk_gamma * h, s->seen);
-    add_inputs(s, s->gamma, s->seen, s->plus);
-    newton_solve(s, s->plus);
+    add_inputs(s, s->own->gamma, s->seen, s->plus);
+    solve(s, s->own, s->plus);
     for (int k = 0; k < n; k++)
         s->state[k] += part * (s->plus[k] - s->state[k]);
     bough_signal_value(input, t + h, s->seen);
-    add_inputs(s, s->gamma, s->seen, s->state);
-    newton_solve(s, s->state);
+    add_inputs(s, s->own->gamma, s->seen, s->state);
+    solve(s, s->own, s->state);
 }
 
 static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
@@ -122,7 +141,8 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
     int n_step = (int)ceil((t1 - t0) / s->sub_step - 1e-6);
     double h = (t1 - t0) / n_step;
     // rounded, so that factors serve all macro steps of nearly the same length
-    if (!newton_setup(s, t0, NULL, NULL, (double)(float)(sdirk_gamma * h))) {
+    double gamma = (double)(float)(sdirk_gamma * h);
+    if (!linearise(s, t0, NULL, NULL, s->own) || !factor(s, s->own, gamma)) {
         return bough_fail(BOUGH_FAILED, "%s: singular Newton matrix", s->real->name);
     }
     for (int k = 0; k < n_step; k++)
@@ -163,8 +183,10 @@ static const bough_subsystem_ops operations = {
     .output = output,
     .output_tangent = output_tangent,
     .input_columns = input_columns,
-    .newton_setup = newton_setup,
-    .newton_solve = newton_solve,
+    .factors = factors,
+    .linearise = linearise,
+    .factor = factor,
+    .solve = solve,
     .advance = advance,
     .save_size = save_size,
     .save = save,
@@ -187,7 +209,8 @@ bough_status bough_linear_member_create(bough_arena *arena, const bough_subsyste
     s->plus = bough_arena_doubles(arena, n);
     s->minus = bough_arena_doubles(arena, n);
     s->seen = bough_arena_doubles(arena, n_input);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    s->own = factors(s, arena);
+    if (s->own == NULL || bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     memcpy(s->at, real->state, n * sizeof(double));
     memcpy(s->input_at, input, n_input * sizeof(double));
     real->ops->input_columns(real->self, *real->time, s->at, s->input_at, s->column);

@@ -12,8 +12,7 @@
 #include "core/subsystem.h"
 
 // Builds the linear member in the arena: at the subsystem's current time and state and the input
-// given (n_input), copied. It uses the subsystem's Newton factors, and no other part of it; the
-// perturbation starts at 0. `sub_step` is the longest step [s].
+// given (n_input), copied. The perturbation starts at 0. `sub_step` is the longest step [s].
 bough_status bough_linear_member_create(bough_arena *arena, const bough_subsystem *real,
                                         const double *input, double sub_step,
                                         bough_subsystem *linear);

@@ -247,5 +247,4 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
     m->next_event = 0;
     pass_events(m);
-    c->refactor = true;
 }

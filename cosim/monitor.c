@@ -212,7 +212,6 @@ static bough_status look_into(const bough_monitor *m, bough_coupling *c, const g
     bough_scheme_options options = bough_scheme_options_in_use(c);
     double h = c->t1 - c->t0, growth = fastest_growth(c, &options, h), own = growth / 2;
     double needed = log(suspicious_growth) / (c->t1 - g->small_time); // for what was seen
-    c->refactor = true;
     for (int k = 0; k < 2 && growth > needed / 2 && own >= growth / 2; k++) {
         own = fastest_growth(c, &options, h / shorter[k]);
     }
@@ -317,7 +316,6 @@ static bough_status lost(const bough_monitor *m, const bough_coupling *c, int in
 
 // The eigenvalues about the current state tell a coupling that is unstable from one that is coarse.
 static bough_status confirm(const bough_monitor *m, bough_coupling *c, int interface) {
-    c->refactor = true;
     bough_scheme_options options = bough_scheme_options_in_use(c);
     bough_stability_advice advice = {0};
     double h = c->t1 - c->t0;

@@ -350,6 +350,7 @@ bough_status bough_iteration_step(bough_coupling *c) {
 void bough_iteration_snapshot(bough_coupling *c, bough_snapshot *s) {
     const bough_iteration *it = c->iteration;
     bough_snapshot_doubles(s, it->size, it->n);
+    if (it->newton && s->move == BOUGH_SNAPSHOT_RESTORE) bough_interface_newton_forget(it->newton);
 }
 
 static int defect_order(const bough_scheme_options *options) {

@@ -13,9 +13,6 @@ typedef struct monolith {
     bough_coupled *coupled;
     bough_integrator integrator;
     double *scale, *state; // (n_state)
-    double setup_time;     // where it is linearised [s]
-    double *setup_state;   // (n_state)
-    bool fresh;            // the members are to linearise there
     bool started;
 } monolith;
 
@@ -33,25 +30,15 @@ static bool derivative_again(void *self, double t, const double *y, double *rate
 
 static bool linearise(void *self, double t, const double *y) {
     monolith *m = self;
-    const bough_assembly *a = m->coupled->assembly;
-    m->setup_time = t;
-    memcpy(m->setup_state, y, (size_t)a->n_state * sizeof *y);
-    m->fresh = true;
-    return true;
+    bough_coupled_inputs(m->coupled, t, y);
+    bough_status status = bough_coupled_linearise(m->coupled, t, y, m->coupled->input);
+    return bough_is_ok(&status);
 }
 
 static bool factor(void *self, double gamma) {
     monolith *m = self;
-    bough_coupled *coupled = m->coupled;
-    bough_status status;
-    if (m->fresh) {
-        bough_coupled_inputs(coupled, m->setup_time, m->setup_state);
-        status = bough_coupled_setup(coupled, m->setup_time, m->setup_state, coupled->input, gamma);
-    } else {
-        status = bough_coupled_refactor(coupled, gamma);
-    }
-    m->fresh = !bough_is_ok(&status);
-    return !m->fresh;
+    bough_status status = bough_coupled_factor(m->coupled, gamma);
+    return bough_is_ok(&status);
 }
 
 static void solve(void *self, double *x) {
@@ -63,7 +50,6 @@ static bool take(monolith *m, bough_arena *arena, const bough_assembly *a) {
     size_t n = (size_t)a->n_state;
     m->scale = bough_arena_doubles(arena, n);
     m->state = bough_arena_doubles(arena, n);
-    m->setup_state = bough_arena_doubles(arena, n);
     return !bough_arena_exhausted(arena);
 }
 

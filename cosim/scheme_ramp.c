@@ -131,7 +131,7 @@ static void solve(bough_coupling *c, int member, const double *change) {
     const ramp *r = c->scheme_data;
     double *increment = r->increment + a->state_offset[member];
     if (change) bough_condensed_add_columns(r->interface, member, r->gamma, change, increment);
-    s->ops->newton_solve(s->self, increment);
+    bough_condensed_solve_member(r->interface, member, increment);
     s->ops->output_tangent(s->self, c->t1, s->state, r->input + a->input_offset[member], increment,
                            change, r->output + a->output_offset[member]);
 }
@@ -139,7 +139,7 @@ static void solve(bough_coupling *c, int member, const double *change) {
 static bough_operating_point operating_point(const bough_coupling *c, int member) {
     const ramp *r = c->scheme_data;
     return (bough_operating_point){r->middle, c->assembly->member[member]->state,
-                                   r->input + c->assembly->input_offset[member], r->gamma, false};
+                                   r->input + c->assembly->input_offset[member], r->gamma};
 }
 
 static void predict_leader(bough_coupling *c, int member) {
@@ -147,7 +147,8 @@ static void predict_leader(bough_coupling *c, int member) {
     const ramp *r = c->scheme_data;
     bough_operating_point at = operating_point(c, member);
     if (s->n_input == 0 && s->n_output == 0) return; // nobody asks
-    if (!evaluate(c, member) || !bough_condensed_factor_leader(r->interface, member, &at)) {
+    if (!evaluate(c, member) || !bough_condensed_linearise(r->interface, member, &at) ||
+        !bough_condensed_factor_leader(r->interface, member, &at)) {
         c->status[member] = bough_coupling_not_finite(c, member);
         return;
     }
@@ -161,7 +162,8 @@ static void prepare_follower(bough_coupling *c, int member) {
 static void predict_follower(bough_coupling *c, int member) {
     const ramp *r = c->scheme_data;
     bough_operating_point at = operating_point(c, member);
-    if (r->fresh && !bough_condensed_factor_follower(r->interface, member, &at)) {
+    if (r->fresh && !(bough_condensed_linearise(r->interface, member, &at) &&
+                      bough_condensed_factor_follower(r->interface, member, &at))) {
         c->status[member] = bough_coupling_not_finite(c, member);
         return;
     }
@@ -176,11 +178,10 @@ enum { MOST_AGE = 12 };
 static void choose_tangents(bough_coupling *c) {
     ramp *r = c->scheme_data;
     double span = r->theta * (c->t1 - c->t0);
-    bool same = r->repays && !c->restart && !c->refactor && fabs(span - r->span) <= 1e-9 * span;
+    bool same = r->repays && !c->restart && fabs(span - r->span) <= 1e-9 * span;
     r->age = same && r->age < MOST_AGE ? r->age + 1 : 0;
     r->fresh = r->age == 0;
     r->span = span;
-    c->refactor = false;
 }
 
 // The increments of the leaders' inputs into `change`.
@@ -307,9 +308,10 @@ static bough_status prepare_repetition(bough_coupling *c, bough_arena *arena) {
 
 // Members that have no finite rate of change are left to the first step, which names them.
 static bough_status prepare(bough_coupling *c, bough_arena *arena) {
-    const ramp *r = c->scheme_data;
+    ramp *r = c->scheme_data;
     bough_status status = choose_theta(c);
-    c->refactor = true; // loads are sampled before the first step
+    r->span = 0; // loads are sampled before the first step
+    c->interface = NULL;
     if (status.code == BOUGH_RETRY) return bough_ok();
     if (!bough_is_ok(&status) || !r->repeats) return status;
     return prepare_repetition(c, arena);
@@ -377,7 +379,7 @@ static bough_status step(bough_coupling *c) {
     return bough_ok();
 }
 
-// The answers' age is not in it: `refactor` makes them anew.
+// Restored, it linearises anew.
 static void snapshot(bough_coupling *c, bough_snapshot *s) {
     ramp *r = c->scheme_data;
     bough_snapshot_take(s, &r->theta, sizeof r->theta);
@@ -385,6 +387,7 @@ static void snapshot(bough_coupling *c, bough_snapshot *s) {
     bough_snapshot_take(s, &r->damped, sizeof r->damped);
     bough_snapshot_take(s, &r->chosen, sizeof r->chosen);
     bough_snapshot_take(s, &r->repays, sizeof r->repays);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) r->span = 0;
     if (c->iteration) bough_iteration_snapshot(c, s);
 }
 

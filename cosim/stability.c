@@ -94,7 +94,6 @@ static bough_status apply(map *m, int count, const double *z, double *image) {
     for (int k = 0; k < count && bough_is_ok(&status); k++) {
         c->t0 = c->t1;
         c->t1 = (k + 1) * m->macro_step;
-        c->refactor = true; // a linear member advances by the same factors
         status = c->scheme->step(c);
         bough_coupling_exchange(c);
     }

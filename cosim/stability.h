@@ -23,7 +23,7 @@ typedef struct bough_stability {
 } bough_stability;
 
 // Judges a scheme at a macro step about the members' current states. Takes memory of its own and
-// releases it; uses the members' Newton factors: a coupling that goes on sets `refactor`.
+// releases it.
 // BOUGH_INVALID for a scheme of one system, which has no coupling to judge.
 bough_status bough_stability_judge(const bough_assembly *a, const bough_scheme_options *options,
                                    double macro_step, bough_stability *result);

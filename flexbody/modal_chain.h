@@ -91,6 +91,7 @@ typedef struct bough_modal_newton_piece {
     double *tip_x, *tip_d;            // of the tip's frame (12 × 2m), (12 × 12)
     // computed by bough_modal_factor, by_q and so on with the outer pieces' answer
     double *closed_q, *closed_eta; // (m × stride each)
+    double *turn;                  // of q̇ by q at the linearisation (m × stride)
     double *matrix;                // of q alone, factored (m × m)
     int *pivot;                    // (m)
     double *answer;                // q and η by d (2m × 12)
@@ -99,10 +100,8 @@ typedef struct bough_modal_newton_piece {
 } bough_modal_newton_piece;
 
 typedef struct bough_modal_newton {
-    bough_modal_chain chain;
     bough_modal_newton_piece *piece; // (n_piece)
     double gamma;
-    double *step; // (n_state) of bough_modal_steady
 } bough_modal_newton;
 
 bool bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena,
@@ -110,7 +109,8 @@ bool bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena,
 
 // Tangents there; false when they are not finite.
 bool bough_modal_linearise(const bough_modal_model *m, const bough_rod_loads *loads, double t,
-                           const double *state, const double *input, bough_modal_newton *newton);
+                           const double *state, const double *input, bough_modal_chain *chain,
+                           bough_modal_newton *newton);
 
 // Factors I − γ ∂f/∂y of the last tangents; false when singular.
 bool bough_modal_factor(const bough_modal_model *m, bough_modal_newton *newton, double gamma);

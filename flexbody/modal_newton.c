@@ -16,6 +16,7 @@ static bool init_piece(bough_modal_newton_piece *p, bough_arena *arena,
     p->by_eta = bough_arena_doubles(arena, matrix);
     p->closed_q = bough_arena_doubles(arena, matrix);
     p->closed_eta = bough_arena_doubles(arena, matrix);
+    p->turn = bough_arena_doubles(arena, matrix);
     p->matrix = bough_arena_doubles(arena, m * m);
     p->pivot = bough_arena_take(arena, m * sizeof *p->pivot);
     p->root_x = bough_arena_doubles(arena, W * 2 * m);
@@ -39,12 +40,11 @@ static bool init_piece(bough_modal_newton_piece *p, bough_arena *arena,
 bool bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena,
                              const bough_modal_model *m) {
     newton->piece = bough_arena_take(arena, (size_t)m->n_piece * sizeof *newton->piece);
-    newton->step = bough_arena_doubles(arena, (size_t)m->n_state);
-    bool ok = newton->piece != NULL && bough_modal_chain_init(&newton->chain, arena, m);
+    bool ok = newton->piece != NULL;
     for (int k = 0; k < m->n_piece && ok; k++) {
         ok = init_piece(&newton->piece[k], arena, &m->piece[k], k == 0);
     }
-    return ok && newton->step != NULL;
+    return ok;
 }
 
 // c += s · a b by columns; a (rows × inner), b (inner × columns)
@@ -88,12 +88,14 @@ static void set_wrench_columns(const bough_modal_point *at, bough_modal_newton_p
 }
 
 bool bough_modal_linearise(const bough_modal_model *m, const bough_rod_loads *loads, double t,
-                           const double *state, const double *input, bough_modal_newton *newton) {
+                           const double *state, const double *input, bough_modal_chain *chain,
+                           bough_modal_newton *newton) {
     double sum = 0;
-    bough_modal_chain_slopes(m, loads, t, state, input, &newton->chain);
+    bough_modal_chain_slopes(m, loads, t, state, input, chain);
     for (int k = 0; k < m->n_piece; k++) {
-        const bough_modal_point *at = &newton->chain.point[k];
+        const bough_modal_point *at = &chain->point[k];
         bough_modal_newton_piece *p = &newton->piece[k];
+        memcpy(p->turn, at->turn, (size_t)m->piece[k].m * m->piece[k].stride * sizeof *p->turn);
         bough_modal_state_tangents(at, p->by_q, p->by_eta, p->root_x, p->tip_x);
         if (k > 0) set_frame_columns(at, p);
         if (m->piece[k].inner) set_wrench_columns(at, p);
@@ -120,10 +122,10 @@ static void close_tip(const bough_modal_piece *of, bough_modal_newton_piece *p,
 
 // (I − γE)(I + γG) − γ²Q
 static void set_matrix(const bough_modal_piece *of, const bough_modal_newton_piece *p,
-                       const double *turn, double gamma, double *matrix) {
+                       double gamma, double *matrix) {
     int m = of->m;
     for (int j = 0; j < m; j++) {
-        const double *g = turn + (size_t)j * of->stride;
+        const double *g = p->turn + (size_t)j * of->stride;
         double *to = matrix + (size_t)j * m;
         memset(to, 0, (size_t)m * sizeof *to);
         to[j] = 1;
@@ -136,20 +138,20 @@ static void set_matrix(const bough_modal_piece *of, const bough_modal_newton_pie
 
 // q and η of one right-hand side b (2m), in place.
 static void solve_piece(const bough_modal_piece *of, const bough_modal_newton_piece *p,
-                        const double *turn, double gamma, double *b) {
+                        double gamma, double *b) {
     int m = of->m;
     double *q = p->work, *b_q = b, *eta = b + m;
     for (int k = 0; k < m; k++) q[k] = b_q[k] + gamma * eta[k];
     add_product(of, -gamma, p->closed_eta, b_q, q);
     bough_dense_solve(m, 1, p->matrix, p->pivot, q);
     for (int k = 0; k < m; k++) eta[k] = (q[k] - b_q[k]) / gamma;
-    add_product(of, 1, turn, q, eta);
+    add_product(of, 1, p->turn, q, eta);
     memcpy(b_q, q, (size_t)m * sizeof *q);
 }
 
 // The piece's answer to its frame's change, with that of the pieces beyond.
 static void set_answer(const bough_modal_piece *of, bough_modal_newton_piece *p,
-                       const bough_modal_newton_piece *outer, const double *turn, double gamma) {
+                       const bough_modal_newton_piece *outer, double gamma) {
     int m = of->m;
     memcpy(p->wrench, p->root_d, (size_t)W * D * sizeof *p->wrench);
     for (int j = 0; j < D; j++) {
@@ -162,7 +164,7 @@ static void set_answer(const bough_modal_piece *of, bough_modal_newton_piece *p,
             add_matrices(W, W, 1, 1, p->root_w, w, to);
         }
         for (int k = 0; k < 2 * m; k++) x[k] *= gamma;
-        solve_piece(of, p, turn, gamma, x);
+        solve_piece(of, p, gamma, x);
         add_matrices(W, 2 * m, 1, 1, p->wrench_x, x, to);
     }
 }
@@ -173,15 +175,14 @@ bool bough_modal_factor(const bough_modal_model *m, bough_modal_newton *newton, 
         const bough_modal_piece *of = &m->piece[k];
         bough_modal_newton_piece *p = &newton->piece[k];
         const bough_modal_newton_piece *outer = of->inner ? p + 1 : NULL;
-        const double *turn = newton->chain.point[k].turn;
         size_t matrix = (size_t)of->m * of->stride * sizeof(double);
         memcpy(p->closed_q, p->by_q, matrix);
         memcpy(p->closed_eta, p->by_eta, matrix);
         memcpy(p->wrench_x, p->root_x, 2 * W * (size_t)of->m * sizeof(double));
         if (outer != NULL) close_tip(of, p, outer);
-        set_matrix(of, p, turn, gamma, p->matrix);
+        set_matrix(of, p, gamma, p->matrix);
         if (!bough_dense_factor(of->m, p->matrix, p->pivot)) return false;
-        if (k > 0) set_answer(of, p, outer, turn, gamma);
+        if (k > 0) set_answer(of, p, outer, gamma);
     }
     return true;
 }
@@ -193,7 +194,7 @@ void bough_modal_solve(const bough_modal_model *m, bough_modal_newton *newton, d
         bough_modal_newton_piece *p = &newton->piece[k];
         double *at = b + m->offset[k], next[W] = {0};
         if (of->inner) add_matrices(of->m, W, 1, gamma, p->rate_w, zeta, at + of->m);
-        solve_piece(of, p, newton->chain.point[k].turn, gamma, at);
+        solve_piece(of, p, gamma, at);
         if (k == 0) break;
         add_matrices(W, 2 * of->m, 1, 1, p->wrench_x, at, next);
         if (of->inner) add_matrices(W, W, 1, 1, p->root_w, zeta, next);

@@ -12,8 +12,8 @@ struct bough_modal_body {
     double *vertices;    // (13 n) computed on request
     double *work;        // rates of a tangent (n_state)
     bough_modal_chain chain;
+    bough_modal_chain slopes;        // of tangents
     bough_modal_newton micro_newton; // of the sub-solver
-    bough_modal_newton newton;       // of newton_setup
     bough_integrator micro;
 };
 
@@ -30,7 +30,7 @@ static bool micro_linearise(void *self, double t, const double *y) {
     bough_modal_body *b = self;
     double input[BOUGH_ROD_INPUTS];
     bough_signal_value(b->input, t, input);
-    return bough_modal_linearise(b->model, &b->loads, t, y, input, &b->micro_newton);
+    return bough_modal_linearise(b->model, &b->loads, t, y, input, &b->slopes, &b->micro_newton);
 }
 
 static bool micro_factor(void *self, double gamma) {
@@ -60,32 +60,42 @@ static void output(void *self, double t, const double *state, const double *inpu
 static void output_tangent(void *self, double t, const double *state, const double *input,
                            const double *state_rate, const double *input_rate, double *rate) {
     bough_modal_body *b = self;
-    bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->newton.chain);
-    bough_modal_tangent(b->model, &b->newton.chain, state_rate, input_rate, b->work, rate);
+    bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->slopes);
+    bough_modal_tangent(b->model, &b->slopes, state_rate, input_rate, b->work, rate);
 }
 
 static void input_columns(void *self, double t, const double *state, const double *input,
                           double *column) {
     bough_modal_body *b = self;
-    bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->newton.chain);
+    bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->slopes);
     for (int j = 0; j < BOUGH_ROD_INPUTS; j++) {
         double unit[BOUGH_ROD_INPUTS] = {0}, wrench[BOUGH_ROD_OUTPUTS];
         unit[j] = 1;
-        bough_modal_tangent(b->model, &b->newton.chain, NULL, unit,
+        bough_modal_tangent(b->model, &b->slopes, NULL, unit,
                             column + (size_t)j * b->model->n_state, wrench);
     }
 }
 
-static bool newton_setup(void *self, double t, const double *state, const double *input,
-                         double gamma) {
-    bough_modal_body *b = self;
-    return bough_modal_linearise(b->model, &b->loads, t, state, input, &b->newton) &&
-           bough_modal_factor(b->model, &b->newton, gamma);
+static void *factors(void *self, bough_arena *arena) {
+    const bough_modal_body *b = self;
+    bough_modal_newton *newton = bough_arena_take(arena, sizeof *newton);
+    return newton != NULL && bough_modal_newton_init(newton, arena, b->model) ? newton : NULL;
 }
 
-static void newton_solve(void *self, double *x) {
+static bool linearise(void *self, double t, const double *state, const double *input,
+                      void *factors) {
     bough_modal_body *b = self;
-    bough_modal_solve(b->model, &b->newton, x);
+    return bough_modal_linearise(b->model, &b->loads, t, state, input, &b->slopes, factors);
+}
+
+static bool factor(void *self, void *factors, double gamma) {
+    const bough_modal_body *b = self;
+    return bough_modal_factor(b->model, factors, gamma);
+}
+
+static void solve(void *self, void *factors, double *x) {
+    const bough_modal_body *b = self;
+    bough_modal_solve(b->model, factors, x);
 }
 
 static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
@@ -151,7 +161,7 @@ static bool take_memory(bough_modal_body *b, bough_arena *arena) {
     bool ok = bough_rod_loads_init(&b->loads, arena, b->model->rod);
     ok = bough_modal_chain_init(&b->chain, arena, b->model) && ok;
     ok = bough_modal_newton_init(&b->micro_newton, arena, b->model) && ok;
-    ok = bough_modal_newton_init(&b->newton, arena, b->model) && ok;
+    ok = bough_modal_chain_init(&b->slopes, arena, b->model) && ok;
     return ok && !bough_arena_exhausted(arena);
 }
 
@@ -196,8 +206,10 @@ bough_subsystem bough_modal_body_subsystem(bough_modal_body *body) {
         .output = output,
         .output_tangent = output_tangent,
         .input_columns = input_columns,
-        .newton_setup = newton_setup,
-        .newton_solve = newton_solve,
+        .factors = factors,
+        .linearise = linearise,
+        .factor = factor,
+        .solve = solve,
         .advance = advance,
         .save_size = save_size,
         .save = save,

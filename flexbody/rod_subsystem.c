@@ -13,7 +13,6 @@ struct bough_rod_body {
     const bough_signal *input; // of the step in progress
     bough_rod_scratch scratch;
     bough_rod_tangent micro_tangent; // of the sub-solver
-    bough_rod_tangent newton;        // of newton_setup
     bough_integrator micro;
 };
 
@@ -103,21 +102,26 @@ static void input_columns(void *self, double t, const double *state, const doubl
     bough_rod_input_columns(b->model, state, input, &b->scratch, column);
 }
 
-static bool newton_setup(void *self, double t, const double *state, const double *input,
-                         double gamma) {
-    bough_rod_body *b = self;
-    return bough_rod_linearise(b->model, &b->loads, t, state, input, &b->scratch, &b->newton) &&
-           bough_rod_factor(b->model, &b->newton, gamma);
+static void *factors(void *self, bough_arena *arena) {
+    const bough_rod_body *b = self;
+    bough_rod_tangent *k = bough_arena_take(arena, sizeof *k);
+    return k != NULL && bough_rod_tangent_init(k, arena, b->model) ? k : NULL;
 }
 
-static bool newton_refactor(void *self, double gamma) {
+static bool linearise(void *self, double t, const double *state, const double *input,
+                      void *factors) {
     bough_rod_body *b = self;
-    return bough_rod_factor(b->model, &b->newton, gamma);
+    return bough_rod_linearise(b->model, &b->loads, t, state, input, &b->scratch, factors);
 }
 
-static void newton_solve(void *self, double *x) {
-    bough_rod_body *b = self;
-    bough_rod_solve(b->model, &b->newton, x);
+static bool factor(void *self, void *factors, double gamma) {
+    const bough_rod_body *b = self;
+    return bough_rod_factor(b->model, factors, gamma);
+}
+
+static void solve(void *self, void *factors, double *x) {
+    const bough_rod_body *b = self;
+    bough_rod_solve(b->model, factors, x);
 }
 
 static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
@@ -208,7 +212,6 @@ static bool take_memory(bough_rod_body *b, bough_arena *arena) {
     bool ok = bough_rod_loads_init(&b->loads, arena, b->model);
     ok = bough_rod_scratch_init(&b->scratch, arena, b->model) && ok;
     ok = bough_rod_tangent_init(&b->micro_tangent, arena, b->model) && ok;
-    ok = bough_rod_tangent_init(&b->newton, arena, b->model) && ok;
     return ok && !bough_arena_exhausted(arena);
 }
 
@@ -250,8 +253,10 @@ bough_subsystem bough_rod_body_subsystem(bough_rod_body *body) {
         .output = output,
         .output_tangent = output_tangent,
         .input_columns = input_columns,
-        .newton_setup = newton_setup,
-        .newton_solve = newton_solve,
+        .factors = factors,
+        .linearise = linearise,
+        .factor = factor,
+        .solve = solve,
         .advance = advance,
         .save_size = save_size,
         .save = save,
@@ -260,7 +265,6 @@ bough_subsystem bough_rod_body_subsystem(bough_rod_body *body) {
         .statistics = statistics,
         .project = project,
         .advance_part = advance_part,
-        .newton_refactor = newton_refactor,
     };
     return (bough_subsystem){.name = body->model->name,
                              .kind = "rod",

@@ -109,19 +109,35 @@ static inline void contract_input_columns(const bough_subsystem *s, contract_poi
     free(column), free(du), free(slope);
 }
 
-// newton_solve undoes x − γ ∂f/∂y x, the product by differences.
+// Factors at the point with that γ, in the arena.
+static inline void *contract_factors(const bough_subsystem *s, contract_point at, double gamma,
+                                     bough_arena *arena) {
+    void *factors = s->ops->factors(s->self, arena);
+    assert_non_null(factors);
+    assert_true(s->ops->linearise(s->self, at.t, at.state, at.input, factors));
+    assert_true(s->ops->factor(s->self, factors, gamma));
+    return factors;
+}
+
+// solve undoes x − γ ∂f/∂y x, the product by differences; with another γ of the same linearisation
+// too, and while others hold factors of their own.
 static inline void contract_newton(const bough_subsystem *s, contract_point at, double gamma) {
     int n = s->n_state;
     double *x = contract_doubles(n), *slope = contract_doubles(n), *solved = contract_doubles(n);
-    assert_true(s->ops->newton_setup(s->self, at.t, at.state, at.input, gamma));
+    bough_arena *arena = bough_arena_create();
+    void *factors = contract_factors(s, at, 3 * gamma, arena);
+    contract_factors(s, at, 7 * gamma, arena); // another's
     for (int seed = 1; seed < 4; seed++) {
+        double own = seed == 1 ? 3 * gamma : gamma;
+        if (seed == 2) assert_true(s->ops->factor(s->self, factors, gamma));
         contract_direction(s->scale, n, seed, x);
         contract_difference(s, at, CONTRACT_RATE, x, NULL, slope);
-        for (int i = 0; i < n; i++) solved[i] = x[i] - gamma * slope[i];
-        s->ops->newton_solve(s->self, solved);
-        contract_near(solved, x, n, at.tolerance, "newton_solve");
+        for (int i = 0; i < n; i++) solved[i] = x[i] - own * slope[i];
+        s->ops->solve(s->self, factors, solved);
+        contract_near(solved, x, n, at.tolerance, "solve");
     }
     free(x), free(slope), free(solved);
+    bough_arena_destroy(arena);
 }
 
 // Two constant pieces of input; `restart` is what the first is told, the second keeps the history.
@@ -158,9 +174,11 @@ static inline void contract_save_restore(const bough_subsystem *s, contract_poin
     contract_run(s, at, length, restart);
     memcpy(first, s->state, n);
     s->ops->restore(s->self, copy);
-    assert_true(s->ops->newton_setup(s->self, at.t, at.state, at.input, length));
+    bough_arena *arena = bough_arena_create();
+    void *factors = contract_factors(s, at, length, arena);
     contract_evaluate(s, CONTRACT_RATE, at.t, at.state, at.input, work);
-    s->ops->newton_solve(s->self, work);
+    s->ops->solve(s->self, factors, work);
+    bough_arena_destroy(arena);
     contract_run(s, at, length, restart);
     assert_memory_equal(first, s->state, n);
     free(copy), free(first), free(work);

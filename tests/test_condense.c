@@ -56,8 +56,18 @@ static void input_columns(void *self, double t, const double *y, const double *u
     }
 }
 
-static bool newton_setup(void *self, double t, const double *y, const double *u, double gamma) {
-    (void)t, (void)y, (void)u;
+static void *factors(void *self, bough_arena *arena) {
+    (void)arena;
+    return self;
+}
+
+static bool linearise(void *self, double t, const double *y, const double *u, void *factors) {
+    (void)self, (void)t, (void)y, (void)u, (void)factors;
+    return true;
+}
+
+static bool factor(void *self, void *factors, double gamma) {
+    (void)factors;
     member *m = self;
     int n = m->s.n_state;
     for (int j = 0; j < n; j++) {
@@ -67,7 +77,8 @@ static bool newton_setup(void *self, double t, const double *y, const double *u,
     return n == 0 || bough_dense_factor(n, m->matrix, m->pivot);
 }
 
-static void newton_solve(void *self, double *x) {
+static void solve(void *self, void *factors, double *x) {
+    (void)factors;
     const member *m = self;
     if (m->s.n_state > 0) bough_dense_solve(m->s.n_state, 1, m->matrix, m->pivot, x);
 }
@@ -83,8 +94,10 @@ static void make(member *m, int n_state, int n_input, int n_output, bool feedthr
                                             .output = output,
                                             .output_tangent = output_tangent,
                                             .input_columns = input_columns,
-                                            .newton_setup = newton_setup,
-                                            .newton_solve = newton_solve};
+                                            .factors = factors,
+                                            .linearise = linearise,
+                                            .factor = factor,
+                                            .solve = solve};
     *m = (member){.s = {.name = "member",
                         .n_state = n_state,
                         .n_input = n_input,

@@ -155,7 +155,7 @@ typedef struct bar {
     bough_rod_def def;
     bough_rod_model *rod;
     bough_modal_model *modal;
-    bough_modal_newton newton;
+    bough_modal_chain chain;
     bough_rod_static work;
     bough_rod_loads loads;
     double *state, *vertices; // of the modal body, of the rod
@@ -168,7 +168,7 @@ static bar make_bar(int pieces, bough_modal_options options) {
     if (bough_is_ok(&s)) s = bough_modal_create(b.arena, &b.def, pieces, options, &b.modal);
     if (!bough_is_ok(&s)) print_error("%s\n", s.message);
     assert_int_equal(s.code, BOUGH_OK);
-    assert_true(bough_modal_newton_init(&b.newton, b.arena, b.modal));
+    assert_true(bough_modal_chain_init(&b.chain, b.arena, b.modal));
     assert_true(bough_rod_static_init(&b.work, b.arena, b.rod));
     assert_true(bough_rod_loads_init(&b.loads, b.arena, b.rod));
     b.state = bough_arena_doubles(b.arena, (size_t)b.modal->n_state);
@@ -186,7 +186,7 @@ static void rest_rod(bar *b, const double *input) {
 
 static void rest_modal(bar *b, const double *input) {
     bough_modal_rest_state(b->modal, input, b->state);
-    bough_status s = bough_modal_steady(b->modal, &b->loads, 0, input, &b->newton, b->state);
+    bough_status s = bough_modal_steady(b->modal, &b->loads, 0, input, b->arena, b->state);
     if (!bough_is_ok(&s)) print_error("%s\n", s.message);
     assert_int_equal(s.code, BOUGH_OK);
 }
@@ -247,7 +247,7 @@ static double deflection_error(int pieces, double load, double *rod) {
     for (int i = 1; i <= SEGMENTS; i++) b.loads.value[i] = i < SEGMENTS ? load : load / 2;
     rest_rod(&b, at_rest);
     rest_modal(&b, at_rest);
-    bough_modal_expand(b.modal, b.state, at_rest, 1, &b.newton.chain, vertices);
+    bough_modal_expand(b.modal, b.state, at_rest, 1, &b.chain, vertices);
     *rod = b.vertices[SEGMENTS - 1];
     double error = vertices[SEGMENTS - 1] - *rod;
     bough_arena_destroy(b.arena);

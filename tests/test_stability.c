@@ -139,7 +139,6 @@ static void judging_changes_nothing(void **state) {
     build(&n, "ramp", .02);
     for (int k = 0; k < 100; k++) {
         if (k % 10 == 0) judge(&m, &options, .05);
-        m.master->coupling->refactor = n.master->coupling->refactor = k % 10 == 0;
         bough_step(m.master);
         bough_step(n.master);
     }

@@ -55,14 +55,25 @@ static void input_columns(void *self, double t, const double *y, const double *u
     CLOCKED(model, m->real->ops->input_columns(m->real->self, t, y, u, column));
 }
 
-static bool newton_setup(void *self, double t, const double *y, const double *u, double gamma) {
+static void *factors(void *self, bough_arena *arena) {
+    const clocked_member *m = self;
+    return m->real->ops->factors(m->real->self, arena);
+}
+
+static bool linearise(void *self, double t, const double *y, const double *u, void *factors) {
     bool ok;
-    CLOCKED(model, ok = m->real->ops->newton_setup(m->real->self, t, y, u, gamma));
+    CLOCKED(model, ok = m->real->ops->linearise(m->real->self, t, y, u, factors));
     return ok;
 }
 
-static void newton_solve(void *self, double *x) {
-    CLOCKED(model, m->real->ops->newton_solve(m->real->self, x));
+static bool factor(void *self, void *factors, double gamma) {
+    bool ok;
+    CLOCKED(model, ok = m->real->ops->factor(m->real->self, factors, gamma));
+    return ok;
+}
+
+static void solve(void *self, void *factors, double *x) {
+    CLOCKED(model, m->real->ops->solve(m->real->self, factors, x));
 }
 
 static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
@@ -107,8 +118,10 @@ static const bough_subsystem_ops clocked_ops = {
     .output = output,
     .output_tangent = output_tangent,
     .input_columns = input_columns,
-    .newton_setup = newton_setup,
-    .newton_solve = newton_solve,
+    .factors = factors,
+    .linearise = linearise,
+    .factor = factor,
+    .solve = solve,
     .advance = advance,
     .advance_part = advance_part,
     .save_size = save_size,

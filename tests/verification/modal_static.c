@@ -24,15 +24,21 @@ static double size_of(const bough_modal_model *m, const double *change) {
 }
 
 bough_status bough_modal_steady(const bough_modal_model *m, const bough_rod_loads *loads, double t,
-                                const double *input, bough_modal_newton *newton, double *state) {
-    double *step = newton->step, before = HUGE_VAL;
+                                const double *input, bough_arena *arena, double *state) {
+    bough_modal_chain chain;
+    bough_modal_newton newton;
+    double *step = bough_arena_doubles(arena, (size_t)m->n_state), before = HUGE_VAL;
+    if (step == NULL || !bough_modal_chain_init(&chain, arena, m) ||
+        !bough_modal_newton_init(&newton, arena, m)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    }
     for (int iteration = 0; iteration < ITERATIONS; iteration++) {
-        bool ok = bough_modal_linearise(m, loads, t, state, input, newton) &&
-                  bough_modal_factor(m, newton, long_time) &&
-                  bough_modal_derivative(m, loads, t, state, input, &newton->chain, step);
+        bool ok = bough_modal_linearise(m, loads, t, state, input, &chain, &newton) &&
+                  bough_modal_factor(m, &newton, long_time) &&
+                  bough_modal_derivative(m, loads, t, state, input, &chain, step);
         if (!ok) break;
         for (int k = 0; k < m->n_state; k++) step[k] *= long_time;
-        bough_modal_solve(m, newton, step);
+        bough_modal_solve(m, &newton, step);
         double size = size_of(m, step);
         if (!isfinite(size)) break;
         double share = size > longest ? longest / size : 1;

@@ -9,7 +9,7 @@
 // `input` (9), under the loads at time t, by Newton's method with steps shortened so that no shape
 // turns a vertex by more than half a radian. BOUGH_FAILED when it does not converge.
 bough_status bough_modal_steady(const bough_modal_model *m, const bough_rod_loads *loads, double t,
-                                const double *input, bough_modal_newton *newton, double *state);
+                                const double *input, bough_arena *arena, double *state);
 
 // Natural frequencies |λ|/2π [Hz] of the body about that state, of pairs with Im λ > 0 and
 // ascending, into frequency (wanted); *found may be less. BOUGH_FAILED when the eigenvalues cannot

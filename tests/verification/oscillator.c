@@ -39,26 +39,41 @@ static void input_columns(void *self, double t, const double *y, const double *u
     }
 }
 
-static bool newton_setup(void *self, double t, const double *y, const double *u,
-                                           double gamma) {
-    bough_oscillator *o = self;
-    (void)t, (void)y, (void)u;
+// (I − γA)⁻¹
+typedef struct inverse {
+    double of[2][2];
+} inverse;
+
+static void *factors(void *self, bough_arena *arena) {
+    (void)self;
+    return bough_arena_take(arena, sizeof(inverse));
+}
+
+static bool linearise(void *self, double t, const double *y, const double *u, void *factors) {
+    (void)self, (void)t, (void)y, (void)u, (void)factors;
+    return true;
+}
+
+static bool factor(void *self, void *factors, double gamma) {
+    const bough_oscillator *o = self;
+    inverse *k = factors;
     double m00 = 1 - gamma * o->a[0][0], m01 = -gamma * o->a[0][1];
     double m10 = -gamma * o->a[1][0], m11 = 1 - gamma * o->a[1][1];
     double determinant = m00 * m11 - m01 * m10;
-    o->inverse[0][0] = m11 / determinant;
-    o->inverse[0][1] = -m01 / determinant;
-    o->inverse[1][0] = -m10 / determinant;
-    o->inverse[1][1] = m00 / determinant;
+    k->of[0][0] = m11 / determinant;
+    k->of[0][1] = -m01 / determinant;
+    k->of[1][0] = -m10 / determinant;
+    k->of[1][1] = m00 / determinant;
     return determinant != 0;
 }
 
-static void newton_solve(void *self, double *x) {
+static void solve(void *self, void *factors, double *x) {
     const bough_oscillator *o = self;
+    const inverse *k = factors;
     if (o->n_state == 0) return;
     double x0 = x[0];
-    x[0] = o->inverse[0][0] * x0 + o->inverse[0][1] * x[1];
-    x[1] = o->inverse[1][0] * x0 + o->inverse[1][1] * x[1];
+    x[0] = k->of[0][0] * x0 + k->of[0][1] * x[1];
+    x[1] = k->of[1][0] * x0 + k->of[1][1] * x[1];
 }
 
 // Taylor coefficients of the input about t, in (time)ᵏ.
@@ -137,8 +152,10 @@ static const bough_subsystem_ops operations = {
     .output = output,
     .output_tangent = output_tangent,
     .input_columns = input_columns,
-    .newton_setup = newton_setup,
-    .newton_solve = newton_solve,
+    .factors = factors,
+    .linearise = linearise,
+    .factor = factor,
+    .solve = solve,
     .advance = advance,
     .save_size = save_size,
     .save = save,

@@ -15,7 +15,6 @@ typedef struct bough_oscillator {
     int n_state; // 2, or 0: only D counts
     int n_input, n_output;
     double time, y[2], scale[2];
-    double inverse[2][2]; // (I − γA)⁻¹
     long advances, restarts;
 } bough_oscillator;
 

@@ -66,13 +66,10 @@ static bough_status find_modal(bough_arena *arena, bough_simulation *s, const bo
     bough_vec3 g = bough_mat3_tmul(pose.rotation, s->tree->gravity);
     const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, g.x, g.y, g.z};
     double time = s->scene->simulation.duration; // loads have grown
-    bough_modal_newton newton;
     int found = 0;
     double *state = bough_arena_doubles(arena, (size_t)m->n_state);
-    if (!bough_modal_newton_init(&newton, arena, m) || !state) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
-    bough_status status = bough_modal_steady(m, loads, time, input, &newton, state);
+    if (!state) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_status status = bough_modal_steady(m, loads, time, input, arena, state);
     if (bough_is_ok(&status)) {
         status = bough_modal_frequencies(arena, m, loads, time, input, state,
                                          BOUGH_RIVALS_FREQUENCIES, frequency, &found);
