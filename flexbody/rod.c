@@ -1,6 +1,7 @@
 // Builds the constant rod model from its discretised definition.
 #include "flexbody/rod.h"
 
+#include "core/force.h"
 #include "core/symmetric6.h"
 #include "flexbody/rod_segment.h"
 
@@ -159,22 +160,36 @@ bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
     return true;
 }
 
-bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
-                                              const bough_rod_model *model, bool follower,
-                                              const double ramp[2]) {
-    for (bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
-        if (l->follower == follower && l->start == ramp[0] && l->end == ramp[1]) return l;
-    }
+static bough_rod_ramped_load *add_load(bough_rod_loads *loads, bough_arena *arena,
+                                       const bough_rod_model *model, bool follower) {
     bough_rod_ramped_load *fresh = bough_arena_take(arena, sizeof *fresh);
     if (fresh == NULL) return NULL;
     *fresh = (bough_rod_ramped_load){.next = loads->ramped,
-                                     .start = ramp[0],
-                                     .end = ramp[1],
                                      .follower = follower,
                                      .value = bough_rod_vertex_rows(arena, model, 6),
                                      .line = bough_arena_doubles(arena, 6 * (size_t)model->stride)};
     if (fresh->value == NULL || fresh->line == NULL) return NULL;
     loads->ramped = fresh;
+    return fresh;
+}
+
+bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
+                                              const bough_rod_model *model, bool follower,
+                                              const double ramp[2]) {
+    for (bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        bool same = l->n == 0 && l->start == ramp[0] && l->end == ramp[1];
+        if (same && l->follower == follower) return l;
+    }
+    bough_rod_ramped_load *fresh = add_load(loads, arena, model, follower);
+    if (fresh != NULL) fresh->start = ramp[0], fresh->end = ramp[1];
+    return fresh;
+}
+
+bough_rod_ramped_load *bough_rod_loads_tabled(bough_rod_loads *loads, bough_arena *arena,
+                                              const bough_rod_model *model, bool follower, int n,
+                                              const double *times, const double *factors) {
+    bough_rod_ramped_load *fresh = add_load(loads, arena, model, follower);
+    if (fresh != NULL) fresh->n = n, fresh->times = times, fresh->factors = factors;
     return fresh;
 }
 
@@ -201,8 +216,8 @@ void bough_rod_loads_along(const bough_rod_model *m, const double *line, const d
 }
 
 double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t) {
-    if (load->end <= load->start) return 1;
-    return bough_clamp((t - load->start) / (load->end - load->start), 0, 1);
+    if (load->n > 0) return bough_table_value(load->n, load->times, load->factors, t);
+    return bough_ramp_factor(load->start, load->end, t);
 }
 
 bool bough_rod_loads_follow(const bough_rod_loads *loads) {

@@ -101,12 +101,14 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
 // weight and by the centrifugal force of the BRF's steady motion: a 6×3 per segment times the
 // acceleration that is felt at its undeformed middle, in the axes of the present one.
 
-// Loads that grow: value × factor, the factor rising linearly from 0 at `start` to 1 at `end`
-// (end <= start: always 1). Dead ones are resolved in BRF axes, followers in the section axes of each
+// Loads that change over time: value × factor, the factor that of a table or of a ramp as in
+// core/force.h. Dead ones are resolved in BRF axes, followers in the section axes of each
 // vertex and segment, with which they turn.
 typedef struct bough_rod_ramped_load {
     struct bough_rod_ramped_load *next;
-    double start, end; // [s]
+    double start, end; // of the ramp [s]
+    int n;             // rows of a table in place of the ramp, 0: none
+    const double *times, *factors; // (n) times increasing [s]; borrowed
     bool follower;
     double *value; // on vertices: force then moment (6 × stride), vertex 0 included [N, N m]
     double *line;  // the part of `value` that is spread along whole segments, per length: force then
@@ -162,6 +164,11 @@ bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
 bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
                                               const bough_rod_model *model, bool follower,
                                               const double ramp[2]);
+
+// A new load of zeros whose factor is a table (n rows). NULL when memory is exhausted.
+bough_rod_ramped_load *bough_rod_loads_tabled(bough_rod_loads *loads, bough_arena *arena,
+                                              const bough_rod_model *model, bool follower, int n,
+                                              const double *times, const double *factors);
 
 // Share of a ramped load at time t.
 double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t);

@@ -302,7 +302,15 @@ static void follower_load_turns_with_its_section(void **context) {
 static void ramped_load_grows_between_its_times(void **context) {
     (void)context;
     const bough_rod_ramped_load step = {.start = 2, .end = 2}, ramp = {.start = 1, .end = 3};
-    check_near(bough_rod_ramp_factor(&step, 0), 1, 0, 0);
+    const bough_rod_ramped_load always = {.start = 0, .end = 0};
+    const double times[2] = {1, 2}, factors[2] = {-1, 3};
+    const bough_rod_ramped_load table = {.n = 2, .times = times, .factors = factors};
+    check_near(bough_rod_ramp_factor(&always, -1), 1, 0, 0);
+    check_near(bough_rod_ramp_factor(&step, 1.999), 0, 0, 0);
+    check_near(bough_rod_ramp_factor(&step, 2), 1, 0, 0);
+    check_near(bough_rod_ramp_factor(&table, 0), -1, 0, 0);
+    check_near(bough_rod_ramp_factor(&table, 1.25), 0, 0, 1e-15);
+    check_near(bough_rod_ramp_factor(&table, 4), 3, 0, 0);
     check_near(bough_rod_ramp_factor(&ramp, 0.5), 0, 0, 0);
     check_near(bough_rod_ramp_factor(&ramp, 1.5), 0.25, 0, 1e-15);
     check_near(bough_rod_ramp_factor(&ramp, 4), 1, 0, 0);

@@ -190,14 +190,15 @@ typedef enum bough_scene_load_place {
 } bough_scene_load_place;
 
 // On a joint, a rod or a rigid body. Factor in time: 0 before ramp[0], 1 after ramp[1], linear
-// between; {0, 0}: always 1.
+// between, a jump where they are equal; {0, 0}: always 1.
 typedef struct bough_scene_load {
     const bough_node *node;
     const char *joint_name; // NULL: the load acts on a body
     int joint;              // index of the body that the joint carries
     double amount;          // torque [N m] of a revolute joint, force [N] of a prismatic one
     int n_time;             // rows of a table in place of the amount, 0: none
-    double *times, *values; // (n_time) [s], [N m] or [N]; linear between, held before and after
+    double *times, *values; // (n_time) [s], [N m] or [N], on a body factors; linear between, held
+                            // before and after
     const char *body_name;  // NULL: the load acts on a joint
     int body;               // index of a body
     int place;              // bough_scene_load_place
@@ -205,9 +206,10 @@ typedef struct bough_scene_load {
     double span[2];         // AT_SPAN: the first; ALONG: from, to [m]
     double force[3];        // [N]; ALONG: [N/m]
     double moment[3];       // [N m]; ALONG: [N m/m]
+    double end_force[3], end_moment[3]; // ALONG: at span[1], linear between; those above when not given
     int frame;              // bough_scene_load_frame
     double ramp[2];         // [s]
-    double point[3];        // on a rigid body: in its frame [m]; the values are then factors
+    double point[3];        // on a rigid body: in its frame [m]
 } bough_scene_load;
 
 // Springs and dampers along and about the axes of one body or the ground at a point of it, against

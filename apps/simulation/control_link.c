@@ -154,7 +154,7 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
 }
 
 bough_sampled_load bough_control_link_load(bough_control_link *link) {
-    return (bough_sampled_load){1 / link->control->rate, link, sample, NULL};
+    return (bough_sampled_load){1 / link->control->rate, link, sample, NULL, NULL};
 }
 
 void bough_control_link_generator(const bough_control_link *l, double *speed, double *torque,
