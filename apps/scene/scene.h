@@ -426,6 +426,7 @@ typedef struct bough_scene_control {
     double rate;            // samples per second [Hz]
     double gear_ratio;      // generator speed over rotor speed
     double efficiency;      // electrical over mechanical power
+    bool pitch;             // of the blades too
     const char *library, *input; // BLADED: paths; no input: ""
     int n_event;
     bough_scene_event *event; // (n_event)
@@ -482,6 +483,9 @@ typedef struct bough_scene {
 // found is added to `errors`; then the status is BOUGH_INVALID and *scene is NULL.
 bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets,
                               int n_set, bough_errors *errors, bough_scene **scene);
+
+// Writes a line for everything that is valid but seldom meant: an inertia that no mass has.
+void bough_scene_warn(const bough_scene *scene, FILE *stream);
 
 // The sub-solver of a flexible body: its own or the simulation's.
 const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const bough_scene_body *body);
