@@ -28,8 +28,6 @@ static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
     m->stiffness = bough_arena_doubles(arena, 21 * s);
     m->damping = bough_arena_doubles(arena, 21 * s);
     m->line = bough_arena_doubles(arena, 36 * s);
-    m->weight = bough_arena_doubles(arena, 18 * s);
-    m->middle = bough_arena_doubles(arena, 3 * s);
     m->mass = bough_arena_doubles(arena, s);
     m->moment = bough_arena_doubles(arena, 3 * s);
     m->inertia = bough_arena_doubles(arena, 6 * s);
@@ -54,13 +52,6 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
         m->damping[k * s + n] = def->damping[21 * n + k];
     }
     for (int k = 0; k < 36 && def->line != NULL; k++) m->line[k * s + n] = def->line[36 * n + k];
-    for (int k = 0; k < 18 && def->weight != NULL; k++) {
-        m->weight[k * s + n] = def->weight[18 * n + k];
-        m->weighs = m->weighs || def->weight[18 * n + k] != 0;
-    }
-    bough_vec3 middle = bough_scale(0.5, bough_add(def->position[n], def->position[n + 1]));
-    const double at[3] = {middle.x, middle.y, middle.z};
-    for (int k = 0; k < 3; k++) m->middle[k * s + n] = at[k];
     vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
     vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
     segment_geometry shape = segment_shape(left, right, 1 / h);

@@ -245,18 +245,6 @@ static void newton_solution_knows_loads_along_segments(void **context) {
     check_newton(f);
 }
 
-// So does the strain that gravity and the BRF's turning make.
-static void newton_solution_knows_weight_along_segments(void **context) {
-    fixture *f = *context;
-    unsigned seed = 29;
-    f->model->weighs = true;
-    for (int k = 0; k < 18 * f->model->stride; k++) {
-        f->model->weight[k] = 0.02 * sample_random(&seed);
-    }
-    lay_along(f);
-    check_newton(f);
-}
-
 static void second_evaluation_knows_loads_along_segments(void **context) {
     fixture *f = *context;
     double first[STATES], again[STATES];
@@ -398,8 +386,6 @@ int main(void) {
         cmocka_unit_test(second_evaluation_at_a_state_is_the_same),
         cmocka_unit_test_setup_teardown(newton_solution_knows_follower_loads, setup, teardown),
         cmocka_unit_test_setup_teardown(newton_solution_knows_loads_along_segments, setup, teardown),
-        cmocka_unit_test_setup_teardown(newton_solution_knows_weight_along_segments, setup,
-                                        teardown),
         cmocka_unit_test_setup_teardown(second_evaluation_knows_loads_along_segments, setup,
                                         teardown),
         cmocka_unit_test_setup_teardown(wrench_tangent_knows_loads_along_segments, setup, teardown),
