@@ -46,6 +46,10 @@ long bough_error_estimate_batches(const bough_error_estimate *e);
 // linearised.
 const double *bough_error_estimate_states(const bough_error_estimate *e);
 
+// What the members' own steps erred by, summed up, relative to ε: of the state that is the worst for
+// its scale [1].
+double bough_error_estimate_own_share(const bough_error_estimate *e);
+
 // Largest error so far of input j, as reported, in the port's unit: by ε, not by δ.
 double bough_error_estimate_input(const bough_error_estimate *e, int j);
 

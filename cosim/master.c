@@ -68,13 +68,6 @@ static bool is_due(const bough_master *m, int load) {
     return on_grid(m) && m->grid_index % m->load_every[load] == 0;
 }
 
-static void begin_loads(bough_master *m, double t) {
-    m->begun = t;
-    for (int i = 0; i < m->n_load; i++) {
-        if (m->load[i].begin) m->load[i].begin(m->load[i].self, t);
-    }
-}
-
 static void evaluate_loads(bough_master *m) {
     for (int i = 0; i < m->n_load; i++) {
         if (m->load[i].evaluate && is_due(m, i)) m->load[i].evaluate(m->load[i].self, m->time);
@@ -99,16 +92,17 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     const bough_scheme *scheme = m->coupling->scheme;
     status = bough_monitor_create(arena, m->coupling, &m->monitor);
     if (bough_is_ok(&status)) status = bough_breakdown_create(arena, m->assembly, &m->breakdown);
-    if (bough_is_ok(&status) && !scheme->one_system) {
+    m->error = def->error;
+    bool controlled = def->control.tolerance > 0 && !scheme->one_system;
+    if (bough_is_ok(&status) && controlled) {
         status = bough_error_estimate_create(arena, m->coupling, &m->estimate);
     }
-    if (bough_is_ok(&status) && m->estimate && def->control.tolerance > 0) {
+    if (bough_is_ok(&status) && controlled) {
         int order = bough_scheme_defect_order(scheme, &def->scheme);
         status = bough_step_control_create(arena, m->coupling, &def->control, m->macro_step, order,
                                            &m->control);
     }
     if (!bough_is_ok(&status)) return status;
-    begin_loads(m, 0);
     if (!m->control) judge(m);
     evaluate_loads(m);
     m->coupling->t1 = m->coupling->t0 + m->macro_step;
@@ -134,7 +128,7 @@ static double next_time(const bough_master *m) {
 
 static bough_status sample_loads(bough_master *m, bool *jumped) {
     for (int i = 0; i < m->n_load; i++) {
-        if (!m->load[i].sample || !is_due(m, i)) continue;
+        if (!is_due(m, i)) continue;
         double next = (double)(m->grid_index + m->load_every[i]) * m->macro_step;
         bool jump = false;
         bough_status status = m->load[i].sample(m->load[i].self, m->time, next, &jump);
@@ -146,7 +140,7 @@ static bough_status sample_loads(bough_master *m, bool *jumped) {
 
 bool bough_master_sampled(const bough_master *m) {
     for (int i = 0; i < m->n_load; i++) {
-        if (m->load[i].sample && !is_due(m, i)) return false;
+        if (!is_due(m, i)) return false;
     }
     return true;
 }
@@ -201,7 +195,6 @@ static bough_status macro_step(bough_master *m) {
     c->t0 = m->time;
     c->t1 = next_time(m);
     c->restart = m->at_event;
-    begin_loads(m, c->t0 + resolution(m));
     bough_status status = sample_loads(m, &c->restart);
     if (!bough_is_ok(&status)) return status;
 
@@ -211,11 +204,13 @@ static bough_status macro_step(bough_master *m) {
         return bough_breakdown_explain(m->breakdown, c, &m->advice, status);
     }
 
+    bough_monitor_judge(m->monitor, !bough_master_measures(m));
     status = bough_monitor_step(m->monitor, c);
     if (!bough_is_ok(&status)) return status;
     set_time(m, c->t1);
     m->steps++;
     evaluate_loads(m);
+    if (m->by_second) bough_second_solution_step(m->second, c);
     if (m->estimate) bough_error_estimate_step(m->estimate, c);
     if (m->estimate && bough_master_done(m)) bough_error_estimate_finish(m->estimate, c);
     return bough_ok();
@@ -243,7 +238,6 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_snapshot_take(s, &m->steps, sizeof m->steps);
     bough_snapshot_take(s, &m->grid_index, sizeof m->grid_index);
     bough_snapshot_take(s, &m->at_event, sizeof m->at_event);
-    bough_snapshot_take(s, &m->begun, sizeof m->begun);
     bough_coupling_snapshot(c, s);
     bough_snapshot_take(s, &c->t0, sizeof c->t0);
     bough_snapshot_take(s, &c->t1, sizeof c->t1);
@@ -253,9 +247,10 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     if (c->scheme->snapshot) c->scheme->snapshot(c, s);
     bough_monitor_snapshot(m->monitor, c, s);
     if (m->estimate) bough_error_estimate_snapshot(m->estimate, s);
+    if (m->second) bough_second_solution_snapshot(m->second, s);
+    bough_snapshot_take(s, &m->by_second, sizeof m->by_second);
     if (m->control) bough_step_control_snapshot(m->control, s);
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
     m->next_event = 0;
     pass_events(m);
-    begin_loads(m, m->begun);
 }

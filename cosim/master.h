@@ -6,12 +6,13 @@
 #include "cosim/breakdown.h"
 #include "cosim/error_estimate.h"
 #include "cosim/monitor.h"
+#include "cosim/second_solution.h"
 #include "cosim/scheme.h"
 #include "cosim/stability.h"
 #include "cosim/step_control.h"
 
 // Loads that arrive at their own rate: sample() is called at multiples of the period, between
-// steps, and sets the loads inside the subsystems for [t, t_next]. Where it is NULL there is only begin().
+// steps, and sets the loads inside the subsystems for [t, t_next].
 typedef struct bough_sampled_load {
     double period; // [s] an integer multiple of the macro step
     void *self;
@@ -20,16 +21,22 @@ typedef struct bough_sampled_load {
     // Called as soon as t, the time of the next sample, is reached: evaluates what sample() will hand
     // out, so that results of that time can tell it. Sets no loads. NULL: nothing to tell.
     void (*evaluate)(void *self, double t);
-    // Called before every macro step, from t on; NULL: nothing to do. Loads that jump at an event take
-    // the value of the step's side here.
-    void (*begin)(void *self, double t);
 } bough_sampled_load;
+
+// How a run knows what it errs by.
+typedef enum bough_error_source {
+    BOUGH_ERROR_BY_BEST, // the linearised members where they are known to serve, else a second solution
+    BOUGH_ERROR_BY_SECOND_SOLUTION,
+    BOUGH_ERROR_BY_LINEARISED_MEMBERS,
+    BOUGH_ERROR_NOT_TOLD,
+} bough_error_source;
 
 typedef struct bough_master_def {
     bough_assembly_def assembly;
     bough_scheme_options scheme;
     double macro_step; // H, the longest [s]
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
+    bough_error_source error;
     double duration;   // [s]; the run starts at time 0
     int n_load;
     const bough_sampled_load *load; // (n_load), copied
@@ -49,6 +56,9 @@ typedef struct bough_master {
     bough_coupling *coupling;
     bough_monitor *monitor;
     bough_error_estimate *estimate; // NULL: the scheme makes no coupling error
+    bough_second_solution *second;  // NULL: there is none
+    bool by_second;                 // the error is told by it
+    bough_error_source error;       // asked for
     bough_step_control *control;    // NULL: fixed steps
     bough_breakdown *breakdown;
     int n_load;
@@ -59,7 +69,6 @@ typedef struct bough_master {
     int next_event;  // first event after `time`
     long grid_index; // k of the last grid point at or before `time`
     bool at_event;   // `time` is an event
-    double begun;    // where the last macro step began [s]
     bough_stability_advice advice; // about the initial state; empty when not judged
     char verdict[BOUGH_VERDICT]; // a warning that the coupling is unstable; may be empty
 } bough_master;
@@ -84,6 +93,33 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s);
 
 // Whether all loads are sampled at `time`: only then a snapshot is whole.
 bool bough_master_sampled(const bough_master *m);
+
+// Whether the error is measured by a second solution: whatever goes wrong then shows in it.
+bool bough_master_measures(const bough_master *m);
+
+// How often the error of the states has been found so far: it is new when this has changed.
+long bough_master_errors(const bough_master *m);
+
+// What the states err by now (n_state), in their units; NULL where it cannot be told.
+const double *bough_master_state_error(const bough_master *m);
+
+// What is told to people is the error times this.
+double bough_master_error_safety(const bough_master *m);
+
+// Largest error so far of what input j should be given, told, in the port's unit; NaN: unknown.
+double bough_master_input_error(const bough_master *m, int j);
+
+// In a few words how the error is found, and what made it.
+const char *bough_master_error_source(const bough_master *m);
+const char *bough_master_error_cause(const bough_master *m);
+
+enum { BOUGH_MASTER_ADVICE = 120 };
+
+// What would err less, by that factor: words to follow "try".
+void bough_master_advise(const bough_master *m, double factor, char text[BOUGH_MASTER_ADVICE]);
+
+// From now on, at time 0, the error is known: builds what that takes in the arena.
+bough_status bough_master_watch(bough_master *m, bough_arena *arena);
 
 // Whether the duration is reached.
 bool bough_master_done(const bough_master *m);

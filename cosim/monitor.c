@@ -63,6 +63,7 @@ typedef struct account {
 
 struct bough_monitor {
     char advice[BOUGH_SCHEME_ADVICE]; // another scheme to try, or ""
+    bool resting; // growth is not judged
     int n_group;
     group *group;
     long steps;
@@ -249,6 +250,7 @@ static bough_status judge_group(const bough_monitor *m, bough_coupling *c, group
     g->defect_max = fmax(g->defect_max, defect);
     g->defect_sum += defect * defect;
     g->window_sum += defect * defect;
+    if (m->resting) return bough_ok();
     bough_status status = watch(m, c, g, defect);
     return bough_is_ok(&status) ? watch_size(m, c, g, size) : status;
 }
@@ -403,8 +405,10 @@ bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c) {
     for (int k = 0; k < m->n_group && bough_is_ok(&status); k++) {
         status = judge_group(m, c, &m->group[k]);
     }
-    return bough_is_ok(&status) ? judge_error(m, c) : status;
+    return bough_is_ok(&status) && !m->resting ? judge_error(m, c) : status;
 }
+
+void bough_monitor_judge(bough_monitor *m, bool judges) { m->resting = !judges; }
 
 void bough_monitor_snapshot(bough_monitor *m, const bough_coupling *c, bough_snapshot *s) {
     const bough_assembly *a = c->assembly;

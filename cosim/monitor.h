@@ -19,6 +19,9 @@ typedef struct bough_coupling_report {
 bough_status bough_monitor_create(bough_arena *arena, const bough_coupling *coupling,
                                   bough_monitor **monitor);
 
+// Whether growth is judged, as from the start: not where the run's error is known otherwise.
+void bough_monitor_judge(bough_monitor *m, bool judges);
+
 // Judges the step just taken: BOUGH_FAILED with a diagnosis when the run has become meaningless.
 bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c);
 

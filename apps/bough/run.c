@@ -14,6 +14,7 @@
 static bough_status sample_row(void *self, double t) {
     bough_job *job = self;
     bough_status status = bough_recorder_sample(job->recorder, t);
+    bough_error_probe_widen(&job->run.probe, bough_recorder_values(job->recorder));
     const bough_simulation *s = job->run.simulation;
     if (t < s->scene->simulation.output.from - 1e-6 * s->master->macro_step) return status;
     const double *value = bough_recorder_values(job->recorder);
@@ -102,7 +103,7 @@ static bough_status open_results(bough_job *job) {
                               .kept = job->rows};
     status = bough_recorder_open(job->arena, &def, &job->recorder);
     if (bough_is_ok(&status)) status = open_frames(job);
-    return bough_is_ok(&status) ? bough_run_forecast(job, stdout) : status;
+    return bough_is_ok(&status) ? bough_run_forecast(job) : status;
 }
 
 bough_status bough_job_build(bough_job *job) {
@@ -110,7 +111,6 @@ bough_status bough_job_build(bough_job *job) {
     bough_scene *scene;
     bough_status status = bough_open_scene(job->arena, job->options, &scene);
     if (bough_is_ok(&status)) status = bough_run_create(job->arena, scene, &job->run);
-    if (bough_is_ok(&status)) status = bough_run_estimate(job->arena, &job->run);
     if (!bough_is_ok(&status)) return status;
     record(job);
     size_t n = (size_t)job->run.channels.count;
@@ -142,10 +142,7 @@ static bough_status close_results(bough_job *job) {
     bool whole = bough_is_ok(&status) && bough_is_ok(&job->run.outcome);
     if (whole && job->vertices) status = bough_vertices_finish(job->vertices);
     if (bough_is_ok(&status)) status = bough_folder_remove(job->folder, "channels.outb");
-    if (bough_is_ok(&status)) status = bough_folder_remove(job->folder, "report.html");
-    if (bough_is_ok(&status)) {
-        status = job->frames ? bough_frames_finish(job->frames) : bough_frames_remove(job->folder);
-    }
+    if (bough_is_ok(&status) && job->frames) status = bough_frames_finish(job->frames);
     if (bough_is_ok(&status)) status = write_binary(job);
     if (bough_is_ok(&job->run.outcome)) job->run.outcome = status;
     status = bough_run_summarise(job);
@@ -155,6 +152,16 @@ static bough_status close_results(bough_job *job) {
     return bough_is_ok(&job->run.outcome) ? status : job->run.outcome;
 }
 
+// After each step. The error is judged at the end, or as soon as going on makes no sense.
+static bough_status after_step(void *self) {
+    bough_job *job = self;
+    const bough_run *run = &job->run;
+    double bound = run->simulation->scene->simulation.error_bound;
+    bool now = bough_run_done(run) || bough_error_probe_hopeless(&run->probe);
+    bough_status status = now ? bough_error_probe_judge(&run->probe, bound) : bough_ok();
+    return bough_is_ok(&status) ? bough_checkpoint_update(job) : status;
+}
+
 static void step_all(bough_job *job) {
     bough_run *run = &job->run;
     const bough_master *m = run->simulation->master;
@@ -162,7 +169,7 @@ static void step_all(bough_job *job) {
     bough_progress progress = bough_progress_start(m->time, m->duration, job->options->quiet);
     run->progress = &progress;
     run->stop = bough_stop_requested;
-    run->after = bough_checkpoint_update;
+    run->after = after_step;
     run->self = job;
     bough_run_all(run);
     bough_progress_clear(&progress);

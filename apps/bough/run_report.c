@@ -134,9 +134,9 @@ static void write_interfaces(bough_summary *s, const bough_run *run) {
         bough_summary_number(s, "energy_residual", energy.residual);
         bough_summary_number(s, "energy_exchanged", energy.exchanged);
         bough_summary_array(s, "wrench_error_estimate");
-        for (int j = 0; m->estimate && j < a->interface[k].count; j++) {
+        for (int j = 0; j < a->interface[k].count; j++) {
             int input = a->interface[k].wrench + j;
-            bough_summary_number(s, NULL, bough_error_estimate_input(m->estimate, input));
+            bough_summary_number(s, NULL, bough_master_input_error(m, input));
         }
         bough_summary_end(s);
         bough_summary_end(s);
@@ -147,15 +147,34 @@ static void write_interfaces(bough_summary *s, const bough_run *run) {
 // Per channel that follows from the states: the largest estimated coupling error, in its unit and
 // relative to its range.
 static void write_estimates(bough_summary *s, const bough_run *run) {
+    const double unknown = (double)NAN;
     bough_summary_object(s, "coupling_error_estimate");
-    for (int k = 0; k < run->channels.count; k++) {
-        if (!bough_error_probe_knows(&run->probe, k)) continue;
+    for (int k = 0; k < run->simulation->n_motion_channel; k++) {
+        bool known = bough_error_probe_knows(&run->probe, k);
         bough_summary_object(s, run->channels.channel[k].name);
         bough_summary_text(s, "unit", run->channels.channel[k].unit);
-        bough_summary_number(s, "largest", run->probe.largest[k]);
-        bough_summary_number(s, "relative", bough_error_probe_relative(&run->probe, k));
+        bough_summary_number(s, "largest", known ? run->probe.largest[k] : unknown);
+        bough_summary_number(s, "relative", !known ? unknown : bough_error_probe_relative(&run->probe, k));
         bough_summary_end(s);
     }
+    bough_summary_end(s);
+}
+
+// What the errors mean: the worst channel of motion, and a warning below the bound.
+static void write_verdict(bough_summary *s, const bough_run *run) {
+    char warning[320];
+    double bound = run->simulation->scene->simulation.error_bound;
+    bough_error_verdict v = bough_error_probe_verdict(&run->probe);
+    bough_error_probe_warn(&run->probe, bound, warning, sizeof warning);
+    bough_summary_object(s, "error");
+    bough_summary_text(s, "source", bough_master_error_source(run->simulation->master));
+    bough_summary_text(s, "against", "the same mesh, converged in time");
+    bough_summary_number(s, "bound", bound);
+    bough_summary_text(s, "channel", v.channel < 0 ? NULL : run->channels.channel[v.channel].name);
+    bough_summary_number(s, "relative", v.channel < 0 ? (double)NAN : v.relative);
+    bough_summary_number(s, "from", v.channel < 0 || v.time < 0 ? (double)NAN : v.time);
+    bough_summary_integer(s, "not_estimated", v.unknown);
+    bough_summary_text(s, "warning", warning[0] ? warning : NULL);
     bough_summary_end(s);
 }
 
@@ -224,6 +243,7 @@ bough_status bough_run_summarise(const bough_job *job) {
     write_control(&s, run);
     write_accuracy(&s, run);
     write_interfaces(&s, run);
+    write_verdict(&s, run);
     write_estimates(&s, run);
     write_statistics(&s, job);
     write_whole(&s, run);
@@ -256,6 +276,21 @@ static void tell_channels(bough_run *run, FILE *stream) {
     }
 }
 
+static void tell_error(const bough_run *run, FILE *stream) {
+    char warning[320];
+    bough_error_verdict v = bough_error_probe_verdict(&run->probe);
+    const char *source = bough_master_error_source(run->simulation->master);
+    if (v.channel < 0) {
+        fprintf(stream, "error: not estimated\n");
+    } else {
+        fprintf(stream, "error: %.2g of the range of %s, by %s, same mesh\n", v.relative,
+                run->channels.channel[v.channel].name, source);
+    }
+    bough_error_probe_warn(&run->probe, run->simulation->scene->simulation.error_bound, warning,
+                           sizeof warning);
+    if (warning[0]) fprintf(stream, "warning: %s\n", warning);
+}
+
 static void tell_energy(const bough_run *run, FILE *stream) {
     const bough_master *m = run->simulation->master;
     const bough_assembly *a = m->assembly;
@@ -284,6 +319,7 @@ void bough_run_tell(bough_job *job, FILE *stream) {
     fprintf(stream, "wall_s: %.3g\n", run->wall_s);
     fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);
     tell_channels(run, stream);
+    tell_error(run, stream);
     tell_energy(run, stream);
     tell_warnings(run, stream);
     fprintf(stream, "out: %s\n", job->folder);

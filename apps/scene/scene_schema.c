@@ -136,6 +136,14 @@ static const bough_key simulation_keys[] = {
      .help = "integrator of the tree of bodies"},
     {.name = "micro", .kind = BOUGH_KEY_MAPPING, .of = &bough_scene_micro_schema, AT(micro),
      .help = "integrator of each rod"},
+    {.name = "error_bound", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.05",
+     AT(error_bound), .example = "0.02",
+     .help = "largest error, as the run tells it, of a channel of motion relative to its range: a run "
+             "beyond it ends with exit code 3; 0: none"},
+    {.name = "error_estimate", .kind = BOUGH_KEY_CHOICE, .fallback = "auto", AT(error_estimate),
+     .choices = CHOICES("auto", "second-solution", "linearised", "none"),
+     .help = "how the run knows its error: from a second solution beside it, or from its own defects "
+             "taken through the linearised members; auto: linearised where that is known to serve"},
     {.name = "threads", .kind = BOUGH_KEY_INTEGER, .range = "[0, 1024]", .fallback = "0",
      AT(threads), .example = "2",
      .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not "

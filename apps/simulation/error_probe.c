@@ -12,14 +12,22 @@ bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s,
     probe->low = bough_arena_doubles(arena, n);
     probe->high = bough_arena_doubles(arena, n);
     probe->value = bough_arena_doubles(arena, n);
+    probe->true_low = bough_arena_doubles(arena, n);
+    probe->true_high = bough_arena_doubles(arena, n);
+    probe->passed = bough_arena_doubles(arena, n);
+    probe->vector = bough_arena_take(arena, (n + 1) * sizeof *probe->vector);
     probe->own = bough_arena_take(arena, (size_t)s->master->assembly->n_member * sizeof *probe->own);
     probe->state = bough_arena_doubles(arena, (size_t)s->master->assembly->n_state);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (size_t i = 0; i < n; i++) {
         probe->low[i] = HUGE_VAL;
         probe->high[i] = -HUGE_VAL;
+        probe->true_low[i] = HUGE_VAL;
+        probe->true_high[i] = -HUGE_VAL;
+        probe->passed[i] = -1;
     }
-    return bough_ok();
+    bough_error_probe_find_vectors(channels, probe->vector);
+    return bough_master_watch(s->master, arena);
 }
 
 static bough_subsystem *member(bough_simulation *s, int i) {
@@ -53,30 +61,29 @@ static double unturned(const char *unit, double difference) {
 }
 
 bool bough_error_probe_update(bough_error_probe *p) {
-    const bough_error_estimate *estimate = p->simulation->master->estimate;
-    if (!estimate || bough_error_estimate_batches(estimate) == p->batches) return false;
-    p->batches = bough_error_estimate_batches(estimate);
-    const double *error = bough_error_estimate_states(estimate);
+    const bough_master *m = p->simulation->master;
+    if (bough_master_errors(m) == p->batches) return false;
+    p->batches = bough_master_errors(m);
+    const double *error = bough_master_state_error(m);
+    const double safety = bough_master_error_safety(m);
     if (error) sample_corrected(p, error);
     sample(p, p->value);
     for (int i = 0; i < p->simulation->n_motion_channel; i++) {
         double corrected = error ? p->difference[i] : (double)NAN;
         const char *unit = p->channels->channel[i].unit;
-        p->difference[i] = BOUGH_ERROR_SAFETY * unturned(unit, p->value[i] - corrected);
+        p->true_low[i] = fmin(p->true_low[i], corrected);
+        p->true_high[i] = fmax(p->true_high[i], corrected);
+        p->difference[i] = safety * unturned(unit, p->value[i] - corrected);
         bool grows = !(fabs(p->difference[i]) <= p->largest[i]); // a NaN wins and stays
         if (grows && !isnan(p->largest[i])) p->largest[i] = fabs(p->difference[i]);
-        p->low[i] = fmin(p->low[i], p->value[i]);
-        p->high[i] = fmax(p->high[i], p->value[i]);
     }
+    bough_error_probe_widen(p, p->value);
+    bough_error_probe_mark(p, m->time);
+    bough_error_probe_watch(p);
     return true;
 }
 
 bool bough_error_probe_knows(const bough_error_probe *p, int channel) {
     return p->batches > 0 && channel < p->simulation->n_motion_channel &&
            isfinite(p->largest[channel]);
-}
-
-double bough_error_probe_relative(const bough_error_probe *p, int channel) {
-    double range = p->high[channel] - p->low[channel];
-    return range > 0 ? p->largest[channel] / range : (double)NAN;
 }

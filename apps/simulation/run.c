@@ -18,14 +18,13 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
     size_t n = (size_t)run->simulation->master->assembly->n_member;
     run->value = bough_arena_doubles(arena, (size_t)run->channels.count + 1);
     run->earlier = bough_arena_take(arena, (n + 1) * sizeof *run->earlier);
-    return run->value && run->earlier ? status : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!run->value || !run->earlier) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    // the run may be copied by its caller: the probe keeps a list of its own
+    bough_channels *channels = bough_arena_take(arena, sizeof *channels);
+    if (!channels) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    *channels = run->channels;
+    return bough_error_probe_create(arena, run->simulation, channels, &run->probe);
 }
-
-bough_status bough_run_estimate(bough_arena *arena, bough_run *run) {
-    return bough_error_probe_create(arena, run->simulation, &run->channels, &run->probe);
-}
-
-static bool estimates(const bough_run *run) { return run->probe.simulation != NULL; }
 
 // -- recording ------------------------------------------------------------------------------------
 
@@ -91,7 +90,7 @@ const double *bough_run_values(bough_run *run) {
 bough_status bough_run_step(bough_run *run) {
     run->sampled = false;
     run->outcome = bough_step(run->simulation->master);
-    if (estimates(run)) bough_error_probe_update(&run->probe);
+    if (bough_is_ok(&run->outcome)) bough_error_probe_update(&run->probe);
     bough_validity_check(run->simulation);
     if (bough_is_ok(&run->outcome)) run->outcome = record_due(run);
     return run->outcome;
@@ -172,12 +171,16 @@ static void take_probe(bough_error_probe *probe, int n, bough_snapshot *s) {
     bough_snapshot_doubles(s, probe->largest, n);
     bough_snapshot_doubles(s, probe->low, n);
     bough_snapshot_doubles(s, probe->high, n);
+    bough_snapshot_doubles(s, probe->true_low, n);
+    bough_snapshot_doubles(s, probe->true_high, n);
+    bough_snapshot_doubles(s, probe->passed, n);
+    bough_snapshot_take(s, &probe->lost_for, sizeof probe->lost_for);
 }
 
 void bough_run_snapshot(bough_run *run, bough_snapshot *s) {
     bough_simulation_snapshot(run->simulation, s);
     take_statistics(run, s);
-    if (estimates(run)) take_probe(&run->probe, run->channels.count, s);
+    take_probe(&run->probe, run->channels.count, s);
     for (int i = 0; i < run->n_record; i++) {
         bough_snapshot_take(s, &run->record[i].next, sizeof run->record[i].next);
         bough_snapshot_take(s, &run->record[i].last, sizeof run->record[i].last);

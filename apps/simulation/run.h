@@ -24,7 +24,7 @@ typedef struct bough_run {
     bough_channels channels;
     double *value; // (channels.count) see bough_run_values
     bool sampled;  // `value` belongs to the present time
-    bough_error_probe probe; // by bough_run_estimate
+    bough_error_probe probe; // what the channels err by
     int n_record;
     bough_run_record record[BOUGH_RUN_RECORDS];
     bough_statistics *earlier; // (n_member + 1) work of the processes that this one continues, last
@@ -43,9 +43,6 @@ typedef struct bough_run {
 
 // Builds the scene's model and its channels in the arena; the run is then at time 0.
 bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, bough_run *run);
-
-// From now on the errors of the channels are estimated, in `probe`.
-bough_status bough_run_estimate(bough_arena *arena, bough_run *run);
 
 // From now on `sample` is called at the multiples of the interval that are not past.
 void bough_run_record_at(bough_run *run, bough_run_record record);

@@ -98,7 +98,7 @@ static bough_status find_channels(bough_arena *arena, cell_run *r) {
             return bough_fail(BOUGH_INVALID, "this run has no channel '%.80s'", s->channel[i]);
         }
     }
-    return bough_run_estimate(arena, &r->run);
+    return bough_ok();
 }
 
 // Every cell was read when the study began: an error now is none of the cell, nor may a changed scene
@@ -120,12 +120,21 @@ static bough_status read_scene(bough_arena *arena, const bough_study *study,
                       errors.n > 0 ? ": " : "", errors.n > 0 ? errors.item[0].text : "");
 }
 
+void bough_study_tell_cheaply(bough_scene *scene) {
+    int *estimate = &scene->simulation.error_estimate;
+    if (*estimate != BOUGH_ERROR_BY_BEST) return;
+    int scheme = scene->simulation.coupling.scheme;
+    bool one_system = bough_scheme_find(bough_scheme_name(scheme))->one_system;
+    *estimate = one_system ? BOUGH_ERROR_NOT_TOLD : BOUGH_ERROR_BY_LINEARISED_MEMBERS;
+}
+
 static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell_run *r) {
     bough_scene *scene;
     bough_status status = read_scene(arena, r->study, cell, &scene);
     if (!bough_is_ok(&status)) return status;
     if (r->study->kind == BOUGH_STUDY_STABILITY) scene->simulation.threads = 1;
     else if (r->study->threads > 0) scene->simulation.threads = r->study->threads;
+    bough_study_tell_cheaply(scene);
     status = bough_run_create(arena, scene, &r->run);
     if (bough_is_ok(&status)) status = find_channels(arena, r);
     return status;

@@ -3,6 +3,7 @@
 #define BOUGH_APPS_STUDY_STUDY_RUN_H
 
 #include "apps/output/progress.h"
+#include "apps/scene/scene.h"
 #include "apps/study/study.h"
 #include "cosim/monitor.h"
 
@@ -29,6 +30,10 @@ typedef struct bough_study_drive {
     bool (*stop)(void);      // asked before each step; NULL: never stops
     bough_progress progress; // of the terminal's line, labelled by what runs
 } bough_study_drive;
+
+// What a cell tells of its error stands beside the true error, against the reference: the estimate by the
+// linearised members will do where the scene does not ask for another, and none beside one system.
+void bough_study_tell_cheaply(bough_scene *scene);
 
 bough_study_series bough_study_series_take(bough_arena *arena, const bough_study *study);
 

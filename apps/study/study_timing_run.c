@@ -3,6 +3,7 @@
 
 #include "apps/output/progress.h"
 #include "apps/output/recorder.h"
+#include "apps/study/study_run.h"
 #include "apps/simulation/run.h"
 
 typedef struct timed {
@@ -27,12 +28,13 @@ static bough_status build(bough_arena *arena, const bough_study_cell *cell, time
     bough_scene *scene;
     bough_status status =
         bough_scene_read(arena, t->study->scene, cell->set, cell->n_set, &errors, &scene);
+    if (bough_is_ok(&status)) bough_study_tell_cheaply(scene);
     if (bough_is_ok(&status)) status = bough_run_create(arena, scene, &t->run);
     if (!bough_is_ok(&status)) return status;
     bough_run_record rows = {t->study->interval, true, .sample = record, .self = t};
     bough_run_record_at(&t->run, rows);
     t->run.stop = t->options->stop;
-    return bough_run_estimate(arena, &t->run);
+    return bough_ok();
 }
 
 static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, timed *t, bool parts,

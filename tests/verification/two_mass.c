@@ -81,7 +81,9 @@ bough_status bough_two_mass_build(bough_two_mass *m, bough_master_def def) {
                                         .connection = connection[m->cut]};
     m->arena = bough_arena_create();
     if (!m->arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    return bough_master_build(m->arena, &def, &m->master);
+    def.error = BOUGH_ERROR_BY_LINEARISED_MEMBERS;
+    bough_status status = bough_master_build(m->arena, &def, &m->master);
+    return bough_is_ok(&status) ? bough_master_watch(m->master, m->arena) : status;
 }
 
 void bough_two_mass_destroy(bough_two_mass *m) {

@@ -1,0 +1,162 @@
+// What the errors that a run tells mean for it.
+#include "apps/simulation/error_probe.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double noticeable = 0.01; // of a channel's range: the run warns from there on
+static const double rounding = 1e-5; // of the largest range of all motion or value up to 1, in SI units
+static const double least_share = 1e-3; // of the largest range with that unit: moves less, says nothing
+
+// -- vectors --------------------------------------------------------------------------------------
+
+// "TipX" and "TipY", "TipDxb1" and "TipDyb1": of one length, and x, y, z in one place.
+static bool are_components(const bough_channel *a, const bough_channel *b) {
+    const char *x = a->name, *y = b->name;
+    int differ = 0;
+    if (strcmp(a->unit, b->unit) != 0) return false;
+    for (; *x && *y; x++, y++) {
+        if (*x == *y) continue;
+        bool letters = (strchr("xyz", *x) && strchr("xyz", *y)) || (strchr("XYZ", *x) && strchr("XYZ", *y));
+        if (!letters || ++differ > 1) return false;
+    }
+    return *x == *y && differ == 1;
+}
+
+void bough_error_probe_find_vectors(const bough_channels *channels, int *vector) {
+    for (int i = 0; i < channels->count; i++) {
+        vector[i] = i;
+        if (i > 0 && are_components(&channels->channel[vector[i - 1]], &channels->channel[i])) {
+            vector[i] = vector[i - 1];
+        }
+    }
+}
+
+// Of what is recorded or, when that is less, of what it would be without the error: where one of the
+// two has run away, the other still has a size.
+static double own_range(const bough_error_probe *p, int i) {
+    double range = p->high[i] - p->low[i], corrected = p->true_high[i] - p->true_low[i];
+    return fmax(p->batches > 1 && corrected < range ? corrected : range, 0);
+}
+
+// Of the vector that the channel is one of.
+static double range_of(const bough_error_probe *p, int channel) {
+    double range = 0;
+    for (int i = p->vector[channel]; i < p->channels->count && p->vector[i] == p->vector[channel]; i++) {
+        range = fmax(range, own_range(p, i));
+    }
+    return range;
+}
+
+double bough_error_probe_relative(const bough_error_probe *p, int channel) {
+    double range = range_of(p, channel);
+    return range > 0 ? p->largest[channel] / range : (double)NAN;
+}
+
+void bough_error_probe_widen(bough_error_probe *p, const double *value) {
+    for (int i = 0; i < p->channels->count; i++) {
+        p->low[i] = fmin(p->low[i], value[i]);
+        p->high[i] = fmax(p->high[i], value[i]);
+    }
+}
+
+void bough_error_probe_mark(bough_error_probe *p, double t) {
+    for (int i = 0; i < p->simulation->n_motion_channel; i++) {
+        if (p->passed[i] < 0 && !(p->largest[i] <= noticeable * range_of(p, i))) p->passed[i] = t;
+    }
+}
+
+// -- the verdict ----------------------------------------------------------------------------------
+
+// Forces and moments answer errors of the highest frequencies; what they mean shows in the motion.
+static bool is_motion(const bough_channel *channel) {
+    return strchr(channel->unit, 'N') == NULL;
+}
+
+// What a value is in SI units, in which lengths, angles and speeds of one motion are alike.
+static double in_si(const bough_channel *channel, double value) {
+    static const double degree = 0.017453292519943295, rpm = 0.10471975511965977;
+    if (strstr(channel->unit, "deg")) return degree * value;
+    return strcmp(channel->unit, "rpm") == 0 ? rpm * value : value;
+}
+
+static double largest_range(const bough_error_probe *p, const char *unit) {
+    double largest = 0;
+    for (int i = 0; i < p->simulation->n_motion_channel; i++) {
+        const bough_channel *channel = &p->channels->channel[i];
+        if (!is_motion(channel) || strcmp(channel->unit, unit) != 0) continue;
+        largest = fmax(largest, own_range(p, i));
+    }
+    return largest;
+}
+
+// Of all motion, whatever its unit: where nothing moves, the ranges are those of rounding.
+static double largest_value(const bough_error_probe *p) {
+    double largest = 0;
+    for (int i = 0; i < p->simulation->n_motion_channel; i++) {
+        const bough_channel *channel = &p->channels->channel[i];
+        if (!is_motion(channel)) continue;
+        double size = in_si(channel, fmax(fabs(p->high[i]), fabs(p->low[i])));
+        largest = fmax(largest, fmax(fmin(size, 1), in_si(channel, own_range(p, i))));
+    }
+    return largest;
+}
+
+// What moves, or errs, by next to nothing has none: a range that is rounding is no range.
+static bool has_say(const bough_error_probe *p, int i) {
+    const bough_channel *channel = &p->channels->channel[i];
+    double moves = fmax(range_of(p, i), p->largest[i]);
+    return is_motion(channel) && in_si(channel, moves) > rounding * largest_value(p) &&
+           moves >= least_share * largest_range(p, channel->unit);
+}
+
+bough_error_verdict bough_error_probe_verdict(const bough_error_probe *p) {
+    bough_error_verdict v = {.channel = -1};
+    for (int i = 0; i < p->simulation->n_motion_channel; i++) {
+        if (!is_motion(&p->channels->channel[i])) continue;
+        bool known = bough_error_probe_knows(p, i);
+        v.unknown += !known;
+        if (!known || !has_say(p, i)) continue;
+        double range = range_of(p, i);
+        double relative = range > 0 ? p->largest[i] / range : p->largest[i] > 0 ? HUGE_VAL : 0;
+        if (v.channel >= 0 && relative <= v.relative) continue;
+        v = (bough_error_verdict){i, relative, p->passed[i], v.unknown};
+    }
+    return v;
+}
+
+static const double hopeless = 3; // times the range
+enum { HOPELESS_FOR = 8 };
+
+bool bough_error_probe_hopeless(const bough_error_probe *p) { return p->lost_for >= HOPELESS_FOR; }
+
+void bough_error_probe_watch(bough_error_probe *p) {
+    bough_error_verdict v = bough_error_probe_verdict(p);
+    bool lost = v.channel >= 0 && v.relative > hopeless &&
+                fabs(p->difference[v.channel]) > 0.5 * p->largest[v.channel];
+    p->lost_for = lost ? p->lost_for + 1 : 0;
+}
+
+static void describe(const bough_error_probe *p, const bough_error_verdict *v, char *text, size_t size) {
+    const bough_channel *channel = &p->channels->channel[v->channel];
+    const bough_master *m = p->simulation->master;
+    snprintf(text, size, "%s errs by %.2g %s, %.2g of its range, noticeably from %.6g s on; cause: %s",
+             channel->name, p->largest[v->channel], channel->unit, v->relative, v->time,
+             bough_master_error_cause(m));
+}
+
+void bough_error_probe_warn(const bough_error_probe *p, double bound, char *text, size_t size) {
+    bough_error_verdict v = bough_error_probe_verdict(p);
+    text[0] = '\0';
+    if (v.channel < 0 || v.relative <= noticeable || (bound > 0 && v.relative > bound)) return;
+    describe(p, &v, text, size);
+}
+
+bough_status bough_error_probe_judge(const bough_error_probe *p, double bound) {
+    char what[200], hold[BOUGH_MASTER_ADVICE];
+    bough_error_verdict v = bough_error_probe_verdict(p);
+    if (!(bound > 0) || v.channel < 0 || v.relative <= bound) return bough_ok();
+    describe(p, &v, what, sizeof what);
+    bough_master_advise(p->simulation->master, v.relative / bound, hold);
+    return bough_fail(BOUGH_FAILED, "the error bound %.3g is exceeded: %s; try %s", bound, what, hold);
+}

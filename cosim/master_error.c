@@ -1,0 +1,127 @@
+// How a run knows what it errs by: which estimate it carries, and what that says.
+#include "cosim/master.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double second_rtol = 1e-5;     // of a second solution far finer than the run
+static const double fine_share = 1.25;      // of the difference to it: its own error is the rest
+static const double halved_share = 8.0 / 6; // of that to steps of half the length: 8/7 at order 3
+static const double tight = 1e-7; // tolerance of other monolithic methods from which on it is a reference
+
+// Above so many states a second solution costs what people notice, and ramp on a heavy interface under
+// sub-solvers that tell their errors is told well by the linearised members (0.5 to 3 of the error).
+static const int many_states = 600;
+static const double heavy_interface = 0.25;
+
+// Beside one system under the Rosenbrock method, its own kind with other steps; beside another method,
+// or a coupling, one that is far finer.
+static bough_second_solution_def choose(const bough_master *m) {
+    const bough_integrator_options *own = &m->coupling->options.integrator;
+    double most = m->macro_step, step = own->step > 0 ? fmin(own->step, most) : most;
+    if (!m->coupling->scheme->one_system) {
+        return (bough_second_solution_def){BOUGH_ROSENBROCK, second_rtol, most, fine_share};
+    }
+    if (own->kind != BOUGH_ROSENBROCK) {
+        return (bough_second_solution_def){BOUGH_ROSENBROCK, fmin(second_rtol, own->rtol), most, fine_share};
+    }
+    return (bough_second_solution_def){BOUGH_ROSENBROCK, own->rtol / 8, step / 2, halved_share};
+}
+
+static bool members_tell(const bough_assembly *a) {
+    for (int i = 1; i < a->n_member; i++) {
+        if (!a->member[i]->own_error) return false;
+    }
+    return true;
+}
+
+// One system has no defects: what is told are the errors of its method, if that tells them.
+static bool can_linearise(const bough_master *m) {
+    const bough_coupling *c = m->coupling;
+    if (!c->scheme->one_system) return true;
+    return c->whole->own_error;
+}
+
+// Only ramp has a weight.
+static bool linearised_serves(const bough_master *m) {
+    const bough_coupling *c = m->coupling;
+    return c->theta > 0 && c->theta < 0.501 && c->interface_ratio < heavy_interface &&
+           m->assembly->n_state >= many_states && members_tell(m->assembly);
+}
+
+static bool wants_second(const bough_master *m) {
+    if (m->error == BOUGH_ERROR_BY_SECOND_SOLUTION) return true;
+    if (m->error != BOUGH_ERROR_BY_BEST) return false;
+    const bough_integrator_options *own = &m->coupling->options.integrator;
+    if (!m->coupling->scheme->one_system) return !linearised_serves(m);
+    return own->kind == BOUGH_ROSENBROCK || own->rtol > tight;
+}
+
+bough_status bough_master_watch(bough_master *m, bough_arena *arena) {
+    bough_status status = bough_ok();
+    if (wants_second(m)) {
+        bough_second_solution_def chosen = choose(m);
+        status = bough_second_solution_create(arena, m->coupling, &chosen, &m->second);
+        m->by_second = true;
+    }
+    bool one_system = m->coupling->scheme->one_system;
+    bool linearised = one_system ? m->error == BOUGH_ERROR_BY_LINEARISED_MEMBERS && can_linearise(m)
+                                 : m->error != BOUGH_ERROR_NOT_TOLD;
+    if (bough_is_ok(&status) && linearised && !m->estimate) {
+        status = bough_error_estimate_create(arena, m->coupling, &m->estimate);
+    }
+    return status;
+}
+
+// -- answers --------------------------------------------------------------------------------------
+
+bool bough_master_measures(const bough_master *m) {
+    return m->by_second && bough_second_solution_error(m->second);
+}
+
+long bough_master_errors(const bough_master *m) {
+    if (m->by_second) return m->steps;
+    return m->estimate ? bough_error_estimate_batches(m->estimate) : 0;
+}
+
+const double *bough_master_state_error(const bough_master *m) {
+    if (m->by_second) return bough_second_solution_error(m->second);
+    return m->estimate ? bough_error_estimate_states(m->estimate) : NULL;
+}
+
+double bough_master_error_safety(const bough_master *m) {
+    return m->by_second ? 1 : BOUGH_ERROR_SAFETY;
+}
+
+double bough_master_input_error(const bough_master *m, int j) {
+    if (m->by_second) return bough_second_solution_input(m->second, j);
+    return m->estimate ? bough_error_estimate_input(m->estimate, j) : (double)NAN;
+}
+
+const char *bough_master_error_source(const bough_master *m) {
+    if (m->by_second) return "second solution";
+    return m->estimate ? "linearised members" : "not estimated";
+}
+
+// The sub-solvers are named when their own figures make up half of the error.
+const char *bough_master_error_cause(const bough_master *m) {
+    if (m->coupling->scheme->one_system) return "the integrator's steps";
+    bool own = m->estimate && bough_error_estimate_own_share(m->estimate) > 0.5;
+    return own ? "the sub-solvers' steps" : "the coupling";
+}
+
+void bough_master_advise(const bough_master *m, double factor, char text[BOUGH_MASTER_ADVICE]) {
+    const bough_coupling *c = m->coupling;
+    const bough_integrator_options *own = &c->options.integrator;
+    if (!c->scheme->one_system) {
+        double order = bough_scheme_defect_order(c->scheme, &c->options);
+        double step = m->macro_step * pow(0.5, ceil(log2(2 * factor) / order));
+        snprintf(text, BOUGH_MASTER_ADVICE, "macro_step: %.2g s or, coupled at the stages, "
+                 "scheme: monolithic with master.solver: rosenbrock", step);
+    } else if (own->kind == BOUGH_ROSENBROCK) {
+        snprintf(text, BOUGH_MASTER_ADVICE, "master.rtol: %.1g", 0.1 * own->rtol / fmin(factor, 1e3));
+    } else {
+        snprintf(text, BOUGH_MASTER_ADVICE, "master.rtol: %.1g", 0.1 * own->rtol);
+    }
+}
