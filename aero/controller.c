@@ -31,11 +31,11 @@ static double slope(const bough_controller_def *d) {
     return d->rated_power / d->rated_speed / (d->rated_speed - synchronous(d));
 }
 
-// Where that line meets the parabola of best tip-speed ratio: gain ω² = slope (ω − ω₀).
+// Where that line meets the parabola of best tip-speed ratio: gain ω² = slope (ω − ω₀), solved without
+// a difference of large numbers when the slip is next to nothing.
 static double transition(const bough_controller_def *d) {
-    double s = slope(d), k = d->optimal_gain;
-    if (k == 0) return synchronous(d);
-    return (s - sqrt(s * (s - 4 * k * synchronous(d)))) / (2 * k);
+    double first = synchronous(d);
+    return 2 * first / (1 + sqrt(1 - 4 * d->optimal_gain * first / slope(d)));
 }
 
 bough_status bough_controller_check(const bough_controller_def *d) {

@@ -3,7 +3,7 @@
 #include "aero/induction_balance.h"
 
 bough_induction_options bough_induction_options_default(void) {
-    return (bough_induction_options){BOUGH_HIGH_THRUST_SMOOTH, true, true, true, true, true};
+    return (bough_induction_options){BOUGH_HIGH_THRUST_SMOOTH, true, true, true, true, true, false};
 }
 
 // One element while its balance is sought.
@@ -26,8 +26,8 @@ static point point_at(quest *q, double phi) {
     bough_coefficients k = bough_polar_at(q->polar, w.alpha);
     q->evaluations++;
     return (point){phi, w,
-                   balance_of(q->options->high_thrust, q->brake, weights_of(q->options),
-                              q->problem, w, k.lift, k.drag)};
+                   balance_of(q->options->high_thrust, q->brake, q->options->skewed_momentum,
+                              weights_of(q->options), q->problem, w, k.lift, k.drag)};
 }
 
 static bool changes_sign(point a, point b) {
@@ -103,6 +103,7 @@ bough_induction bough_induction_solve(const bough_induction_options *options,
         return (bough_induction){.axial = 1};
     }
     problem posed = problem_of(weights_of(options), *e);
+    posed.wake = wake_of(options, e->skew);
     if (!is_balanced(posed, e->inflow_x, e->inflow_y)) return (bough_induction){0};
     quest q = {options, e->polar, posed, false, 0};
     point p;

@@ -18,8 +18,8 @@
 
 // How thrust goes on growing with a where momentum theory would have it fall.
 typedef enum bough_high_thrust {
-    // From a = 0.35 a parabola, smooth there, to CT = 2 at a = 1 and beyond; the swirl fades with
-    // the momentum share of the thrust. AeroDyn's newer (polar) formulation does this.
+    // From a = 0.35/cos χ, at most 0.5, a parabola, smooth there, to CT = 2 at a = 1 and beyond; the
+    // swirl fades with the momentum share of the thrust. AeroDyn's newer (polar) formulation does this.
     BOUGH_HIGH_THRUST_SMOOTH,
     // From a = 0.4 the parabola of M. L. Buhl, NREL/TP-500-36834 (2005); for a > 1 the propeller
     // brake state of momentum theory. AeroDyn's older formulation does this.
@@ -32,6 +32,11 @@ typedef struct bough_induction_options {
     bool tangential;         // a' at all
     bool axial_drag;         // drag in the axial induction
     bool tangential_drag;    // drag in the tangential induction
+    // Momentum theory of a disk at an angle to the wind, smooth high thrust only: the mass flow is that
+    // through a disk of the same radius across the resultant (H. Glauert, ARC R&M 1111, 1926),
+    // CT = 4 F a sqrt((1 − a)² + tan²χ), and the parabola beyond ends at CT = 2 + 2.113 tan χ^1.527.
+    // AeroDyn's SkewMomCorr.
+    bool skewed_momentum;
 } bough_induction_options;
 
 // Everything on, smooth high thrust.
@@ -48,6 +53,7 @@ typedef struct bough_element {
     // The section, its twist taken out, stands askew to y: its normal's part along y, and what its
     // chord's is short of 1. 0 unless the blade leans from the rotor plane and y from its chord.
     double skew_normal, skew_chord;
+    double skew; // χ, of the wind and the shaft, of the whole rotor, below 90 degrees [rad]
 } bough_element;
 
 typedef struct bough_induction {
@@ -72,6 +78,7 @@ typedef struct bough_elements {
     const bough_polar *const *polar; // (n), and so all that follow; each as in bough_element
     const double *solidity, *tip_factor, *hub_factor, *cone, *twist, *inflow_x, *inflow_y;
     const double *skew_normal, *skew_chord;
+    double skew;                     // of all
 } bough_elements;
 
 // The same for all elements, side by side in vector lanes: `axial`, `tangential`, `loss` (n each).

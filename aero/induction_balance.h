@@ -18,8 +18,20 @@ static const double slow = 1e-3;
 static const double no_loss = 40;
 // Least loss factor.
 static const double least_loss = 1e-4;
-// a beyond which the smooth parabola replaces momentum theory.
-static const double critical = 0.35;
+// a beyond which the smooth parabola replaces momentum theory: without skew, and the most [Spera].
+static const double critical = 0.35, most_critical = 0.5;
+// Of a wake's angle, beyond which there is no disk across the wind [rad].
+static const double most_skew_angle = 80 * BOUGH_PI / 180;
+
+// The thrust that momentum theory has at a = 1 − x, and the parabola from x_c on, by the skew; of the
+// whole rotor.
+typedef struct wake {
+    double critical;     // a_c = 1 − x_c
+    double tangent2;     // tan²χ, 0 without the skew's momentum
+    double value, slope; // CT/F and its slope in a at a_c
+    double limit;        // k up to there, CT = 4 F k x²
+    double most;         // CT at a = 1, but for small slopes
+} wake;
 
 typedef struct problem {
     double sign_x, sign_y;         // of the inflow
@@ -27,6 +39,7 @@ typedef struct problem {
     double density, cone;          // σ/4, cos² of the cone
     double tip_factor, hub_factor; // 1e3, which loses nothing, when the loss is off
     double twist, skew_normal, skew_chord;
+    wake wake;
 } problem;
 
 // Where the polar is asked.
@@ -56,6 +69,19 @@ static inline weights weights_of(const bough_induction_options *o) {
     return (weights){o->tip_loss, o->hub_loss, o->axial_drag, o->tangential_drag, o->tangential};
 }
 
+static inline wake wake_of(const bough_induction_options *o, double skew) {
+    double angle = fmin(fabs(skew), most_skew_angle);
+    double a = fmin(critical / cos(angle), most_critical), x = 1 - a;
+    double t = o->skewed_momentum ? tan(angle) : 0, root = sqrt(x * x + t * t);
+    return (wake){.critical = a,
+                  .tangent2 = t * t,
+                  .value = 4 * a * root,
+                  .slope = 4 * (1 - 3 * a + 2 * a * a + t * t) / root,
+                  .limit = a * root / (x * x),
+                  .most = 2 + 2.113 * pow(t * t, 0.7635)};
+}
+
+// Its wake is the caller's.
 static inline problem problem_of(weights o, bough_element e) {
     return (problem){.sign_x = copysign(1, e.inflow_x),
                      .sign_y = copysign(1, e.inflow_y),
@@ -115,27 +141,56 @@ static inline double axial_buhl(double c, double s, double f, bool brake) {
     return 3 * c <= 2 * s2 ? s2 + c : beyond;
 }
 
-// The same by the parabola CT = d₀ + d₁ x + d₂ x² of x = 1 − a that leaves 4 F a (1 − a) smoothly
-// at a = 0.35. Its other root, a > 1, belongs to φ < 0.
-static inline double axial_smooth(double c, double s, double f) {
-    const double xc = 1 - critical, d0 = 2;
-    double s2 = s * s;
-    double value = 4 * f * critical * xc, slope = 4 * f * (1 - 2 * critical);
+// The same by the parabola CT = d₀ + d₁ x + d₂ x² of x = 1 − a that leaves momentum theory smoothly
+// at a_c. Its other root, a > 1, belongs to φ < 0.
+static inline double axial_parabola(const wake w, double c, double s, double f) {
+    double xc = 1 - w.critical, s2 = s * s, value = f * w.value, slope = f * w.slope;
+    double least = value + slope * xc + 0.001, d0 = w.most > least ? w.most : least;
     double d2 = (d0 - slope * xc - value) * (1 / (xc * xc)), d1 = -slope - 2 * d2 * xc;
     double square = d1 * d1 * s2 + 4 * d0 * (4 * f * c - d2 * s2);
     double root = sqrt(square > 0 ? square : 0);
-    return xc * c <= critical * s2 ? s2 + c : (s * root - d1 * s2) / (2 * d0);
+    return (s * root - d1 * s2) / (2 * d0);
 }
 
-// The momentum share of the thrust, a/(k |1 − a|), with which the swirl fades beyond a = 0.35.
-static inline double swirl_share(double c, double s, double axial) {
+// Below: k x² = (1 − x) sqrt(x² + tan²χ) by Newton's method, which gains all digits from where there
+// is no skew; of negative loads the slope at a = 0.
+static inline double axial_skewed(const wake w, double c, double s) {
+    enum { STEPS = 5 };
+    double s2 = s * s, t2 = w.tangent2, k = c / s2;
+    k = k > 0 ? k : 0;
+    k = k < w.limit ? k : w.limit;
+    double x = 1 / (1 + k);
+    for (int i = 0; i < STEPS; i++) {
+        double root = sqrt(x * x + t2), defect = (1 - x) * root - k * x * x;
+        double slope = (1 - x) * x / root - root - 2 * k * x;
+        x -= defect / slope;
+    }
+    return c > 0 ? s2 / x : s2 + c / sqrt(1 + t2);
+}
+
+static inline double axial_smooth(bool skewed, const wake w, double c, double s, double f) {
+    double low = skewed ? axial_skewed(w, c, s) : s * s + c;
+    return c <= w.limit * s * s ? low : axial_parabola(w, c, s, f);
+}
+
+// The momentum share of the thrust, a/(k |1 − a|), with which the swirl fades beyond a_c.
+static inline double swirl_share(const wake w, double c, double s, double axial) {
     double s2 = s * s, share = fabs(axial - s2) / c; // a = 1 − sin²φ/axial
-    return (1 - critical) * c <= critical * s2 ? 1 : share;
+    return c <= w.limit * s2 ? 1 : share;
 }
 
-// `high_thrust`, `brake`: known where this is inlined into a loop.
-static inline balance balance_of(bough_high_thrust high_thrust, bool brake, weights o, problem p,
-                                 flow w, double lift, double drag) {
+// The same in a skewed wake, and of the mass flow that it adds.
+static inline double swirl_skewed(const wake w, double c, double s, double axial, double f) {
+    double s2 = s * s, t2 = w.tangent2, x = s2 / axial, a = 1 - x, x2 = x * x;
+    double inverse = 1 / sqrt(x2 + t2), thrust = 4 * f * c / s2 * x2;
+    double high = 4 * fabs(a) * f * fabs(x) * sqrt(x2 + t2 * f * f) /
+                  sqrt(thrust * thrust + 16 * a * a * t2);
+    return (c <= w.limit * s2 ? fabs(x) : high) * inverse;
+}
+
+// `high_thrust`, `brake`, `skewed`: known where this is inlined into a loop.
+static inline balance balance_of(bough_high_thrust high_thrust, bool brake, bool skewed, weights o,
+                                 problem p, flow w, double lift, double drag) {
     section_flow f = seen_by_section(p, p.sign_x * w.s, p.sign_y * w.c);
     double normal = lift * f.c + o.axial_drag * drag * f.s;
     double chordwise = lift * f.s - o.tangential_drag * drag * f.c;
@@ -145,8 +200,9 @@ static inline balance balance_of(bough_high_thrust high_thrust, bool brake, weig
     if (high_thrust == BOUGH_HIGH_THRUST_BUHL) {
         axial = axial_buhl(loading, w.s, w.loss, brake);
     } else {
-        axial = axial_smooth(loading, w.s, w.loss);
-        swirl *= swirl_share(loading, w.s, axial);
+        axial = axial_smooth(skewed, p.wake, loading, w.s, w.loss);
+        swirl *= skewed ? swirl_skewed(p.wake, loading, w.s, axial, w.loss)
+                        : swirl_share(p.wake, loading, w.s, axial);
     }
     double left = w.s * w.c - swirl;
     return (balance){axial - p.slope * left, axial, left};

@@ -18,6 +18,7 @@ typedef struct lanes {
     lane a, fa, b, fb, step;
     const bough_induction_options *options;
     const bough_polar *const *polar;
+    wake wake;
     int n;
     int n_live, live[MOST_LANES / BOUGH_LANES]; // groups of lanes, by their first, still to do
 } lanes;
@@ -25,7 +26,7 @@ typedef struct lanes {
 static inline problem load_problem(const lanes *x, int i) {
     return (problem){x->sign_x[i],     x->sign_y[i],     x->slope[i], x->density[i],
                      x->cone[i],       x->tip_factor[i], x->hub_factor[i], x->twist[i],
-                     x->skew_normal[i], x->skew_chord[i]};
+                     x->skew_normal[i], x->skew_chord[i], x->wake};
 }
 
 static inline flow load_flow(const lanes *x, int i) {
@@ -46,7 +47,8 @@ static inline bough_element element_of(const bough_elements *e, int i) {
                            .inflow_x = e->inflow_x[i],
                            .inflow_y = e->inflow_y[i],
                            .skew_normal = e->skew_normal[i],
-                           .skew_chord = e->skew_chord[i]};
+                           .skew_chord = e->skew_chord[i],
+                           .skew = e->skew};
 }
 
 // The stages of an evaluation, each for a group of lanes.
@@ -69,10 +71,11 @@ static inline void ask_polars(int first, lanes *restrict x) {
     }
 }
 
-static inline void weigh(bough_high_thrust high_thrust, weights o, int first, lanes *restrict x) {
+static inline void weigh(bough_high_thrust high_thrust, bool skewed, weights o, int first,
+                         lanes *restrict x) {
 #pragma omp simd
     for (int i = first; i < first + BOUGH_LANES; i++) {
-        balance b = balance_of(high_thrust, false, o, load_problem(x, i), load_flow(x, i),
+        balance b = balance_of(high_thrust, false, skewed, o, load_problem(x, i), load_flow(x, i),
                                x->lift[i], x->drag[i]);
         x->residual[i] = b.residual;
         x->axial[i] = b.axial;
@@ -86,9 +89,11 @@ static void evaluate(lanes *restrict x) {
     for (int g = 0; g < x->n_live; g++) enter_flow(x->live[g], x);
     for (int g = 0; g < x->n_live; g++) ask_polars(x->live[g], x);
     if (x->options->high_thrust == BOUGH_HIGH_THRUST_BUHL) {
-        for (int g = 0; g < x->n_live; g++) weigh(BOUGH_HIGH_THRUST_BUHL, o, x->live[g], x);
+        for (int g = 0; g < x->n_live; g++) weigh(BOUGH_HIGH_THRUST_BUHL, false, o, x->live[g], x);
+    } else if (x->options->skewed_momentum) {
+        for (int g = 0; g < x->n_live; g++) weigh(BOUGH_HIGH_THRUST_SMOOTH, true, o, x->live[g], x);
     } else {
-        for (int g = 0; g < x->n_live; g++) weigh(BOUGH_HIGH_THRUST_SMOOTH, o, x->live[g], x);
+        for (int g = 0; g < x->n_live; g++) weigh(BOUGH_HIGH_THRUST_SMOOTH, false, o, x->live[g], x);
     }
 }
 
@@ -260,6 +265,7 @@ void bough_induction_solve_all(const bough_induction_options *options,
         lanes x; // only what is used of it
         x.options = options;
         x.polar = elements->polar + first;
+        x.wake = wake_of(options, elements->skew);
         x.n = left < MOST_LANES ? left : MOST_LANES;
         solve_some(elements, first, &x, axial + first, tangential + first, loss + first);
     }

@@ -150,13 +150,20 @@ void bough_rotor_approach(const bough_rotor *rotor, const bough_rotor_motion *mo
     meet_wind(rotor, motion, blade, r);
 }
 
+// The angle of the undisturbed wind at the hub and the shaft.
+static double skew_of(const bough_rotor *rotor, const bough_rotor_motion *motion) {
+    bough_vec3 wind = bough_wind_at(&rotor->wind, motion->hub, motion->time);
+    double axial = bough_dot(wind, motion->shaft);
+    return atan2(bough_norm(bough_axpy(-axial, motion->shaft, wind)), fabs(axial));
+}
+
 void bough_rotor_induce(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
                         bough_rotor_data *data) {
     const blade_rows *r = data->scratch->blade + blade;
     const station_rows *m = &rotor->station;
     bough_elements elements = {rotor->stride, m->polar, r->solidity, m->tip_factor, m->hub_factor,
                                r->cone,       r->twist, r->inflow_x, r->inflow_y,
-                               r->skew_normal, r->skew_chord};
+                               r->skew_normal, r->skew_chord, skew_of(rotor, motion)};
     bough_induction_solve_all(&rotor->induction, &elements, r->axial, r->tangential, r->loss);
     if (data->memory.station) delay(rotor, motion->time, blade, data);
 }

@@ -223,7 +223,8 @@ bough_force_pair bough_element_change(const bough_tree *tree, const bough_tree_d
 // -- applied wrenches ----------------------------------------------------------------------------
 
 double bough_ramp_factor(double start, double end, double t) {
-    return end <= start ? 1 : bough_clamp((t - start) / (end - start), 0, 1);
+    if (end <= start) return t >= start || start == 0;
+    return bough_clamp((t - start) / (end - start), 0, 1);
 }
 
 double bough_table_value(int n, const double *times, const double *values, double t) {

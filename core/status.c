@@ -2,6 +2,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 bough_status bough_ok(void) {
     bough_status status;
@@ -10,12 +11,21 @@ bough_status bough_ok(void) {
     return status;
 }
 
+// Of a full message.
+static void end_after_word(char *message) {
+    static const char more[] = " ...";
+    char *end = message + BOUGH_MESSAGE - sizeof more;
+    while (end > message + BOUGH_MESSAGE / 2 && *end != ' ') end--;
+    memcpy(end, more, sizeof more);
+}
+
 bough_status bough_fail(bough_code code, const char *format, ...) {
     bough_status status = {.code = code};
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(status.message, sizeof status.message, format, arguments);
+    int length = vsnprintf(status.message, sizeof status.message, format, arguments);
     va_end(arguments);
+    if (length >= (int)sizeof status.message) end_after_word(status.message);
     return status;
 }
 

@@ -15,15 +15,18 @@ typedef enum bough_code {
     BOUGH_INTERRUPTED,   // the user asked to stop: exit code 130
 } bough_code;
 
+// Room for the longest that any of our sentences makes of names and paths.
+enum { BOUGH_MESSAGE = 1000 };
+
 typedef struct bough_status {
     bough_code code;
-    char message[380]; // one sentence or two: what, where, when, what to try
+    char message[BOUGH_MESSAGE]; // one sentence or two: what, where, when, what to try
 } bough_status;
 
 // The status of success; its message is not written, so it costs nothing to return.
 bough_status bough_ok(void);
 
-// A failure with a printf-style message.
+// A failure with a printf-style message. One that is too long ends after a whole word, with " ...".
 bough_status bough_fail(bough_code code, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 

@@ -11,7 +11,7 @@ struct bough_breakdown {
     double *state; // (n_state)
 };
 
-enum { ADVICE = 150 };
+enum { ADVICE = 240 };
 
 bough_status bough_breakdown_create(bough_arena *arena, const bough_assembly *assembly,
                                     bough_breakdown **breakdown) {
@@ -72,7 +72,6 @@ bough_status bough_breakdown_explain(bough_breakdown *b, bough_coupling *c,
     bough_stability_advice advice = *before;
     if (!advice.unstable && !c->scheme->one_system) advice = judge_again(b, c);
     advise(c, &advice, text);
-    int room = (int)(sizeof cause.message - ADVICE - 70);
-    return bough_fail(BOUGH_FAILED, "%.*s (scheme %s, macro step %.6g s from %.6g s)%s", room,
+    return bough_fail(BOUGH_FAILED, "%s (scheme %s, macro step %.6g s from %.6g s)%s",
                       cause.message, c->scheme->name, c->t1 - c->t0, c->t0, text);
 }

@@ -68,6 +68,13 @@ static bool is_due(const bough_master *m, int load) {
     return on_grid(m) && m->grid_index % m->load_every[load] == 0;
 }
 
+static void begin_loads(bough_master *m, double t) {
+    m->begun = t;
+    for (int i = 0; i < m->n_load; i++) {
+        if (m->load[i].begin) m->load[i].begin(m->load[i].self, t);
+    }
+}
+
 static void evaluate_loads(bough_master *m) {
     for (int i = 0; i < m->n_load; i++) {
         if (m->load[i].evaluate && is_due(m, i)) m->load[i].evaluate(m->load[i].self, m->time);
@@ -103,6 +110,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
                                            &m->control);
     }
     if (!bough_is_ok(&status)) return status;
+    begin_loads(m, 0);
     if (!m->control) judge(m);
     evaluate_loads(m);
     m->coupling->t1 = m->coupling->t0 + m->macro_step;
@@ -128,7 +136,7 @@ static double next_time(const bough_master *m) {
 
 static bough_status sample_loads(bough_master *m, bool *jumped) {
     for (int i = 0; i < m->n_load; i++) {
-        if (!is_due(m, i)) continue;
+        if (!m->load[i].sample || !is_due(m, i)) continue;
         double next = (double)(m->grid_index + m->load_every[i]) * m->macro_step;
         bool jump = false;
         bough_status status = m->load[i].sample(m->load[i].self, m->time, next, &jump);
@@ -140,7 +148,7 @@ static bough_status sample_loads(bough_master *m, bool *jumped) {
 
 bool bough_master_sampled(const bough_master *m) {
     for (int i = 0; i < m->n_load; i++) {
-        if (!is_due(m, i)) return false;
+        if (m->load[i].sample && !is_due(m, i)) return false;
     }
     return true;
 }
@@ -195,6 +203,7 @@ static bough_status macro_step(bough_master *m) {
     c->t0 = m->time;
     c->t1 = next_time(m);
     c->restart = m->at_event;
+    begin_loads(m, c->t0 + resolution(m));
     bough_status status = sample_loads(m, &c->restart);
     if (!bough_is_ok(&status)) return status;
 
@@ -238,6 +247,7 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_snapshot_take(s, &m->steps, sizeof m->steps);
     bough_snapshot_take(s, &m->grid_index, sizeof m->grid_index);
     bough_snapshot_take(s, &m->at_event, sizeof m->at_event);
+    bough_snapshot_take(s, &m->begun, sizeof m->begun);
     bough_coupling_snapshot(c, s);
     bough_snapshot_take(s, &c->t0, sizeof c->t0);
     bough_snapshot_take(s, &c->t1, sizeof c->t1);
@@ -253,4 +263,5 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
     m->next_event = 0;
     pass_events(m);
+    begin_loads(m, m->begun);
 }

@@ -12,7 +12,7 @@
 #include "cosim/step_control.h"
 
 // Loads that arrive at their own rate: sample() is called at multiples of the period, between
-// steps, and sets the loads inside the subsystems for [t, t_next].
+// steps, and sets the loads inside the subsystems for [t, t_next]. Where it is NULL there is only begin().
 typedef struct bough_sampled_load {
     double period; // [s] an integer multiple of the macro step
     void *self;
@@ -21,6 +21,9 @@ typedef struct bough_sampled_load {
     // Called as soon as t, the time of the next sample, is reached: evaluates what sample() will hand
     // out, so that results of that time can tell it. Sets no loads. NULL: nothing to tell.
     void (*evaluate)(void *self, double t);
+    // Called before every macro step, from t on; NULL: nothing to do. Loads that jump at an event take
+    // the value of the step's side here.
+    void (*begin)(void *self, double t);
 } bough_sampled_load;
 
 // How a run knows what it errs by.
@@ -69,6 +72,7 @@ typedef struct bough_master {
     int next_event;  // first event after `time`
     long grid_index; // k of the last grid point at or before `time`
     bool at_event;   // `time` is an event
+    double begun;    // where the last macro step began [s]
     bough_stability_advice advice; // about the initial state; empty when not judged
     char verdict[BOUGH_VERDICT]; // a warning that the coupling is unstable; may be empty
 } bough_master;

@@ -275,7 +275,7 @@ bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *d
     part.stiffness += 21 * first;
     part.damping += 21 * first;
     part.inertia += first;
-    part.line = part.weight = NULL; // the whole body's loads are lumped
+    part.line = NULL; // the whole body's loads are lumped
     bough_status status = bough_rod_create(arena, &part, &rod);
     *piece = (bough_modal_piece){
         .rod = rod, .first = first, .n = last - first, .inner = last < def->n_segment};

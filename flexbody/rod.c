@@ -1,6 +1,7 @@
 // Builds the constant rod model from its discretised definition.
 #include "flexbody/rod.h"
 
+#include "core/force.h"
 #include "core/symmetric6.h"
 #include "flexbody/rod_segment.h"
 
@@ -27,8 +28,6 @@ static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
     m->stiffness = bough_arena_doubles(arena, 21 * s);
     m->damping = bough_arena_doubles(arena, 21 * s);
     m->line = bough_arena_doubles(arena, 36 * s);
-    m->weight = bough_arena_doubles(arena, 18 * s);
-    m->middle = bough_arena_doubles(arena, 3 * s);
     m->mass = bough_arena_doubles(arena, s);
     m->moment = bough_arena_doubles(arena, 3 * s);
     m->inertia = bough_arena_doubles(arena, 6 * s);
@@ -53,13 +52,6 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
         m->damping[k * s + n] = def->damping[21 * n + k];
     }
     for (int k = 0; k < 36 && def->line != NULL; k++) m->line[k * s + n] = def->line[36 * n + k];
-    for (int k = 0; k < 18 && def->weight != NULL; k++) {
-        m->weight[k * s + n] = def->weight[18 * n + k];
-        m->weighs = m->weighs || def->weight[18 * n + k] != 0;
-    }
-    bough_vec3 middle = bough_scale(0.5, bough_add(def->position[n], def->position[n + 1]));
-    const double at[3] = {middle.x, middle.y, middle.z};
-    for (int k = 0; k < 3; k++) m->middle[k * s + n] = at[k];
     vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
     vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
     segment_geometry shape = segment_shape(left, right, 1 / h);
@@ -159,22 +151,36 @@ bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
     return true;
 }
 
-bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
-                                              const bough_rod_model *model, bool follower,
-                                              const double ramp[2]) {
-    for (bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
-        if (l->follower == follower && l->start == ramp[0] && l->end == ramp[1]) return l;
-    }
+static bough_rod_ramped_load *add_load(bough_rod_loads *loads, bough_arena *arena,
+                                       const bough_rod_model *model, bool follower) {
     bough_rod_ramped_load *fresh = bough_arena_take(arena, sizeof *fresh);
     if (fresh == NULL) return NULL;
     *fresh = (bough_rod_ramped_load){.next = loads->ramped,
-                                     .start = ramp[0],
-                                     .end = ramp[1],
                                      .follower = follower,
                                      .value = bough_rod_vertex_rows(arena, model, 6),
                                      .line = bough_arena_doubles(arena, 6 * (size_t)model->stride)};
     if (fresh->value == NULL || fresh->line == NULL) return NULL;
     loads->ramped = fresh;
+    return fresh;
+}
+
+bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
+                                              const bough_rod_model *model, bool follower,
+                                              const double ramp[2]) {
+    for (bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
+        bool same = l->n == 0 && l->start == ramp[0] && l->end == ramp[1];
+        if (same && l->follower == follower) return l;
+    }
+    bough_rod_ramped_load *fresh = add_load(loads, arena, model, follower);
+    if (fresh != NULL) fresh->start = ramp[0], fresh->end = ramp[1];
+    return fresh;
+}
+
+bough_rod_ramped_load *bough_rod_loads_tabled(bough_rod_loads *loads, bough_arena *arena,
+                                              const bough_rod_model *model, bool follower, int n,
+                                              const double *times, const double *factors) {
+    bough_rod_ramped_load *fresh = add_load(loads, arena, model, follower);
+    if (fresh != NULL) fresh->n = n, fresh->times = times, fresh->factors = factors;
     return fresh;
 }
 
@@ -201,8 +207,8 @@ void bough_rod_loads_along(const bough_rod_model *m, const double *line, const d
 }
 
 double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t) {
-    if (load->end <= load->start) return 1;
-    return bough_clamp((t - load->start) / (load->end - load->start), 0, 1);
+    if (load->n > 0) return bough_table_value(load->n, load->times, load->factors, t);
+    return bough_ramp_factor(load->start, load->end, t);
 }
 
 bool bough_rod_loads_follow(const bough_rod_loads *loads) {

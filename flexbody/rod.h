@@ -55,7 +55,6 @@ typedef struct bough_rod_def {
     const bough_vertex_inertia *inertia;  // (N + 1)
     const double *line;                   // D per segment, 6×6 by rows (N × 36) [1/N, 1/N m …]:
                                           // mean strain per load along it; NULL: none
-    const double *weight;                 // likewise by an acceleration, 6×3 (N × 18); NULL: none
     bool carries; // bodies at its end: the last vertex belongs to them as the root to the carrier
 } bough_rod_def;
 
@@ -74,9 +73,6 @@ typedef struct bough_rod_model {
     double *stiffness;          // C (21 × stride)
     double *damping;            // (21 × stride)
     double *line;               // D (36 × stride), by rows
-    double *weight;             // of an acceleration (18 × stride), by rows
-    double *middle;             // of segments, undeformed, in the BRF (3 × stride) [m]
-    bool weighs;                // any `weight` is not zero
     double *mass;               // of moving vertices (stride) [kg]
     double *moment;             // first moment s = mζ of moving vertices (3 × stride) [kg m]
     double *inertia;            // of moving vertices (6 × stride) [kg m²]
@@ -97,16 +93,17 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
 // A load along the rod acts twice (THEORY 6): lumped to the vertices by hat functions, which is all
 // that the balances see, and as the strain D q of each segment under a load q per length, by which
 // its elastic law, stress = C (e − e⁰ − D q), is that of the loaded segment. Linear statics is then
-// exact at the vertices for loads that are uniform over each segment. The same strain is made by
-// weight and by the centrifugal force of the BRF's steady motion: a 6×3 per segment times the
-// acceleration that is felt at its undeformed middle, in the axes of the present one.
+// exact at the vertices for loads that are uniform over each segment. Weight and slow inertia forces
+// need no such strain: the vertices' shares of mass and first moment account for them (section.c).
 
-// Loads that grow: value × factor, the factor rising linearly from 0 at `start` to 1 at `end`
-// (end <= start: always 1). Dead ones are resolved in BRF axes, followers in the section axes of each
+// Loads that change over time: value × factor, the factor that of a table or of a ramp as in
+// core/force.h. Dead ones are resolved in BRF axes, followers in the section axes of each
 // vertex and segment, with which they turn.
 typedef struct bough_rod_ramped_load {
     struct bough_rod_ramped_load *next;
-    double start, end; // [s]
+    double start, end; // of the ramp [s]
+    int n;             // rows of a table in place of the ramp, 0: none
+    const double *times, *factors; // (n) times increasing [s]; borrowed
     bool follower;
     double *value; // on vertices: force then moment (6 × stride), vertex 0 included [N, N m]
     double *line;  // the part of `value` that is spread along whole segments, per length: force then
@@ -140,8 +137,6 @@ typedef struct bough_rod_scratch {
     bool turning;       // part of it is made by dead loads along the segments and turns with them:
     double *along;      // these in the axes of the segments' middles (6 × stride) [N/m, N]
     double *own_rest;   // (6 × stride)
-    bough_vec3 felt, spin; // gravity less the acceleration of the BRF's origin in steady motion, and
-                           // its angular velocity: set by a gathering, BRF axes
 } bough_rod_scratch;
 
 // Builds the constant model. BOUGH_INVALID names the segment or vertex that is not usable.
@@ -162,6 +157,11 @@ bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
 bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
                                               const bough_rod_model *model, bool follower,
                                               const double ramp[2]);
+
+// A new load of zeros whose factor is a table (n rows). NULL when memory is exhausted.
+bough_rod_ramped_load *bough_rod_loads_tabled(bough_rod_loads *loads, bough_arena *arena,
+                                              const bough_rod_model *model, bool follower, int n,
+                                              const double *times, const double *factors);
 
 // Share of a ramped load at time t.
 double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t);
@@ -200,7 +200,7 @@ bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads
 
 // The same at another time and input, `state` being that of the last bough_rod_derivative with this
 // scratch: only segments that touch the input, or have ramped loads, are evaluated anew. In the others
-// the forces change by what loads and weight along them do to an unbent segment, for the derivative
+// the forces change by what loads along them do to an unbent segment, for the derivative
 // by time: it errs by a share of the segment's own turn.
 bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                                 const double *state, const double *input,

@@ -11,10 +11,8 @@ static void gather_input(const bough_rod_model *m, const double *input,
     int s = m->stride;
     double *vertex = scratch->vertex;
     bough_quaternion p0 = m->rotation0[0];
-    bough_vec3 omega = {input[3], input[4], input[5]}, u0 = {input[0], input[1], input[2]};
+    bough_vec3 omega = {input[3], input[4], input[5]};
     bough_vec3 w0 = bough_mat3_tmul(m->root, omega);
-    scratch->felt = bough_sub(bough_v3(input[6], input[7], input[8]), bough_cross(omega, u0));
-    scratch->spin = omega;
     const double root[BOUGH_ROD_STATES] = {0,        0,        0,        p0.w, p0.x, p0.y, p0.z,
                                            input[0], input[1], input[2], w0.x, w0.y, w0.z};
     for (int c = 0; c < BOUGH_ROD_STATES; c++) vertex[c * s] = root[c];
@@ -57,8 +55,8 @@ void bough_rod_gather_root(const bough_rod_model *m, const double *state, const 
     gather_state(m, state, 1, scratch->vertex);
 }
 
-// The least cos θ/2 of the segments.
-static double light_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
+// The forces, and the least cos θ/2 of the segments.
+static double least_cosine(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
     int s = m->stride;
     const double *restrict vertex = scratch->vertex, *restrict rest = scratch->rest;
     const double *restrict c = m->stiffness, *restrict d = m->damping;
@@ -82,39 +80,8 @@ static double light_forces(const bough_rod_model *m, int first, int last, bough_
     return least;
 }
 
-// The same with the strain by gravity and the BRF's turning.
-static double heavy_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
-    int s = m->stride;
-    const double *restrict vertex = scratch->vertex, *restrict rest = scratch->rest;
-    const double *restrict c = m->stiffness, *restrict d = m->damping;
-    const double *restrict length = m->length, *restrict inverse = m->inverse_length;
-    double *restrict out = scratch->segment;
-    const double *restrict weight = m->weight, *restrict middle = m->middle;
-    bough_vec3 felt = scratch->felt, spin = scratch->spin;
-    double least = 1;
-#pragma omp simd reduction(min : least)
-    for (int n = first; n < last; n++) {
-        vertex_state l = load_vertex(vertex, s, n), r = load_vertex(vertex, s, n + 1);
-        segment_geometry shape = segment_shape(l, r, inverse[n]);
-        strain e = elastic_strain(shape, inverse[n], rest, s, n);
-        bough_vec3 g = bough_mat3_tmul(shape.r, felt_at(middle, s, n, felt, spin));
-        strain pure = subtract_strain(e, weight_strain(weight, s, n, g));
-        strain rate = strain_rate(shape, segment_motion(shape, l, r), inverse[n]);
-        strain elastic = symmetric_times(c, s, n, pure), viscous = symmetric_times(d, s, n, rate);
-        segment_force f = stress_force(shape, add_strain(elastic, viscous), length[n]);
-        store3(out, s, n, f.f);
-        store3(out + 3 * s, s, n, f.ll);
-        store3(out + 6 * s, s, n, f.lr);
-        double w = length[n] > 0 ? shape.w : 1; // beyond the last: no segment
-        least = w < least ? w : least;
-    }
-    return least;
-}
-
 bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
-    double least = m->weighs ? heavy_forces(m, first, last, scratch)
-                             : light_forces(m, first, last, scratch);
-    return least >= 0.5;
+    return least_cosine(m, first, last, scratch) >= 0.5;
 }
 
 static bough_mat3 middle_of(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
@@ -285,28 +252,22 @@ bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads
     return balance_vertices(m, state, input, scratch, rate);
 }
 
-// Adds to the forces of the inner segments what the change of D q, and of gravity and the BRF's
-// turning, does to them where they are: f = −R C Δ, moments ∓h/2 f×V + C Δ, Δ the strain, in
-// segments whose own turn is neglected.
+// Adds to the forces of the inner segments what the change Δ of D q does to them where they are:
+// f = −R C Δ, moments ∓h/2 f×V + C Δ, in segments whose own turn is neglected.
 static void add_drift(const bough_rod_model *m, const bough_rod_loads *loads, double elapsed,
-                      bough_vec3 felt, bough_vec3 spin, bough_rod_scratch *scratch) {
+                      bough_rod_scratch *scratch) {
     int s = m->stride, last = m->n_segment;
     const double *restrict vertex = scratch->vertex, *restrict rate = loads->rest_rate;
-    const double *restrict c = m->stiffness, *restrict weight = m->weight;
-    const double *restrict middle = m->middle, *restrict e0 = m->strain0;
+    const double *restrict c = m->stiffness, *restrict e0 = m->strain0;
     const double *restrict length = m->length;
     double *restrict out = scratch->segment;
-    bough_vec3 now = scratch->spin, zero = {0, 0, 0};
 #pragma omp simd
     for (int n = 1; n < last; n++) {
         bough_quaternion p = load_vertex(vertex, s, n).p, q = load_vertex(vertex, s, n + 1).p;
         double w = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
         bough_mat3 r = mid_frame(p, q, copysign(1.0, w), 1 / (1 + fabs(w)));
-        bough_vec3 change = bough_sub(felt_at(middle, s, n, felt, now),
-                                      felt_at(middle, s, n, zero, spin));
-        strain e = weight_strain(weight, s, n, bough_mat3_tmul(r, change));
-        e.v = bough_axpy(elapsed, load3(rate, s, n), e.v);
-        e.u = bough_axpy(elapsed, load3(rate + 3 * s, s, n), e.u);
+        strain e = {bough_scale(elapsed, load3(rate, s, n)),
+                    bough_scale(elapsed, load3(rate + 3 * s, s, n))};
         strain stress = symmetric_times(c, s, n, e);
         bough_vec3 tau = bough_scale(0.5 * length[n], bough_cross(stress.v, load3(e0, s, n)));
         store3(out, s, n, bough_sub(load3(out, s, n), bough_mat3_mul(r, stress.v)));
@@ -319,14 +280,11 @@ bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads 
                                 const double *state, const double *input,
                                 bough_rod_scratch *scratch, double *rate) {
     int n = m->n_segment;
-    bough_vec3 felt = scratch->felt, spin = scratch->spin;
     double before = scratch->time;
     gather_input(m, input, scratch);
     bough_rod_load(m, loads, t, scratch);
     bool all = loads_lie_along(loads);
-    if (!all && (loads->moving || m->weighs)) {
-        add_drift(m, loads, t - before, bough_sub(scratch->felt, felt), spin, scratch);
-    }
+    if (!all && loads->moving) add_drift(m, loads, t - before, scratch);
     bool ok = bough_rod_forces(m, 0, all ? bough_padded(n) : 1, scratch);
     if (bough_rod_carries(m) && !all) ok = bough_rod_forces(m, n - 1, n, scratch) && ok;
     return ok && balance_vertices(m, state, input, scratch, rate);
@@ -367,9 +325,7 @@ static strain strain_of(const bough_rod_model *m, const bough_rod_scratch *scrat
     vertex_state l = load_vertex(scratch->vertex, s, n);
     vertex_state r = load_vertex(scratch->vertex, s, n + 1);
     segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
-    strain e = elastic_strain(shape, m->inverse_length[n], scratch->rest, s, n);
-    bough_vec3 a = felt_at(m->middle, s, n, scratch->felt, scratch->spin);
-    return subtract_strain(e, weight_strain(m->weight, s, n, bough_mat3_tmul(shape.r, a)));
+    return elastic_strain(shape, m->inverse_length[n], scratch->rest, s, n);
 }
 
 double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratch *scratch) {

@@ -62,34 +62,13 @@ static inline strain line_strain(const double *restrict line, int s, int n, boug
 #undef D
 }
 
-// The acceleration felt in the middle of segment n of a rod at rest in its BRF, in BRF axes.
-static inline bough_vec3 felt_at(const double *restrict middle, int s, int n, bough_vec3 felt,
-                                 bough_vec3 spin) {
-    bough_vec3 x = load3(middle, s, n);
-    return bough_sub(bough_axpy(bough_dot(spin, spin), x, felt),
-                     bough_scale(bough_dot(spin, x), spin));
-}
-
-// The strain that an acceleration makes, given in the axes of the segment's middle.
-static inline strain weight_strain(const double *restrict weight, int s, int n, bough_vec3 a) {
-#define ROW(i)                                                                                     \
-    (weight[3 * (i) * s + n] * a.x + weight[(3 * (i) + 1) * s + n] * a.y +                         \
-     weight[(3 * (i) + 2) * s + n] * a.z)
-    return (strain){{ROW(0), ROW(1), ROW(2)}, {ROW(3), ROW(4), ROW(5)}};
-#undef ROW
-}
-
-static inline strain subtract_strain(strain a, strain b) {
-    return (strain){bough_sub(a.v, b.v), bough_sub(a.u, b.u)};
-}
-
 // Change of the elastic strain where dead loads `along` the segment turn against its middle.
 static inline strain add_turned(strain change, const double *restrict line,
                                 const double *restrict along, int s, int n, bough_vec3 middle) {
     bough_vec3 force = bough_cross(load3(along, s, n), middle);
     bough_vec3 moment = bough_cross(load3(along + 3 * s, s, n), middle);
     strain e = line_strain(line, s, n, force, moment);
-    return subtract_strain(change, e);
+    return (strain){bough_sub(change.v, e.v), bough_sub(change.u, e.u)};
 }
 
 // Derivative of the forces of segment n along variations of its vertices.
@@ -103,16 +82,12 @@ static inline segment_force segment_tangent(const bough_rod_model *m,
     segment_geometry shape = segment_shape(l, r, inverse);
     segment_rate motion = segment_motion(shape, l, r);
     strain e = elastic_strain(shape, inverse, scratch->rest, s, n);
-    bough_vec3 a = felt_at(m->middle, s, n, scratch->felt, scratch->spin);
-    a = bough_mat3_tmul(shape.r, a);
-    e = subtract_strain(e, weight_strain(m->weight, s, n, a));
     strain rate = strain_rate(shape, motion, inverse);
     strain stress = add_strain(symmetric_times(m->stiffness, s, n, e),
                                symmetric_times(m->damping, s, n, rate));
     segment_variation d = shape_variation(shape, *dl, *dr, inverse);
     strain de = {d.stretch, bough_scale(inverse, d.phi)};
     if (scratch->turning) de = add_turned(de, m->line, scratch->along, s, n, d.middle);
-    de = subtract_strain(de, weight_strain(m->weight, s, n, bough_cross(a, d.middle)));
     strain drate = rate_variation(shape, motion, d, dl, dr, inverse);
     strain dstress = add_strain(symmetric_times(m->stiffness, s, n, de),
                                 symmetric_times(m->damping, s, n, drate));

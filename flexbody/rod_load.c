@@ -58,16 +58,24 @@ static void lump_point(const bough_rod_model *m, double at, const double *wrench
     add_to_segment(m, n, point_shares(h, xi), wrench, load);
 }
 
-// Shares of a line from `from` to `to` in the segment; the whole of it has no couples.
-static shares covered_shares(double h, double from, double to) {
-    shares high = line_shares(h, to), low = line_shares(h, from);
-    shares s = {high.left - low.left, high.right - low.right, high.couple - low.couple};
-    if (from == 0 && to == 1) s.couple = 0;
-    return s;
+// The same weighted by ξ − ½.
+static shares slope_shares(double h, double xi) {
+    double square = xi * xi, cube = square * xi;
+    double first = 0.5 * h * square, second = h * cube / 3;
+    double couple = 0.5 * h * h * (cube / 3 - 0.25 * square * square);
+    shares even = line_shares(h, xi);
+    return (shares){first - second - 0.5 * even.left, second - 0.5 * even.right,
+                    couple - 0.5 * even.couple};
+}
+
+// What a line from `from` to `to` in the segment has; the whole of it has no couples.
+static shares between(shares high, shares low, bool whole) {
+    return (shares){high.left - low.left, high.right - low.right,
+                    whole ? 0 : high.couple - low.couple};
 }
 
 void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const double *wrench,
-                    bough_rod_ramped_load *load) {
+                    const double *end, bough_rod_ramped_load *load) {
     if (reach.to == reach.from) {
         lump_point(m, reach.from, wrench, load);
         return;
@@ -77,10 +85,21 @@ void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const doubl
         double from = bough_clamp((reach.from - m->span[n]) / h, 0, 1);
         double to = bough_clamp((reach.to - m->span[n]) / h, 0, 1);
         if (to <= from) continue;
-        add_to_segment(m, n, covered_shares(h, from, to), wrench, load);
-        if (from > 0 || to < 1) continue;
+        bool whole = from == 0 && to == 1;
+        double middle[6], slope[6]; // at ξ = ½, and over the segment
+        for (int c = 0; c < 6; c++) {
+            double change = end ? (end[c] - wrench[c]) / (reach.to - reach.from) : 0;
+            middle[c] = wrench[c] + change * (m->span[n] + 0.5 * h - reach.from);
+            slope[c] = change * h;
+        }
+        add_to_segment(m, n, between(line_shares(h, to), line_shares(h, from), whole), middle, load);
+        if (end) {
+            shares s = between(slope_shares(h, to), slope_shares(h, from), whole);
+            add_to_segment(m, n, s, slope, load);
+        }
+        if (!whole) continue;
         load->along = true;
-        for (int c = 0; c < 6; c++) load->line[c * m->stride + n] += wrench[c];
+        for (int c = 0; c < 6; c++) load->line[c * m->stride + n] += middle[c];
     }
 }
 

@@ -132,7 +132,7 @@ static bool converge(const bough_rod_model *m, const double *input,
     return false;
 }
 
-// Adds the whole of the ramped loads of one kind. Whether there are any.
+// Adds what the ramped loads of one kind end with. Whether there are any.
 static bool sum_ramped(const bough_rod_model *m, const bough_rod_loads *loads, double share,
                        bough_rod_ramped_load *sum) {
     size_t count = 6 * (size_t)m->stride;
@@ -144,8 +144,9 @@ static bool sum_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
         if (l->follower != sum->follower) continue;
         any = true;
         sum->along = sum->along || l->along;
-        for (size_t k = 0; k < count; k++) sum->value[k] += share * l->value[k];
-        for (size_t k = 0; k < count; k++) sum->line[k] += share * l->line[k];
+        double factor = share * (l->n > 0 ? l->factors[l->n - 1] : 1);
+        for (size_t k = 0; k < count; k++) sum->value[k] += factor * l->value[k];
+        for (size_t k = 0; k < count; k++) sum->line[k] += factor * l->line[k];
     }
     return any;
 }

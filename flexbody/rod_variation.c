@@ -15,7 +15,6 @@ enum {
     BASE_DU = 24,
     BASE_STRESS = 27,
     BASE_W = 33, // then c, g, 1/(1 + w), dg/dw
-    BASE_FELT = 38,
 };
 
 static inline void store_shape(double *restrict base, int l, segment_geometry s) {
@@ -51,8 +50,6 @@ void bough_rod_base(const bough_rod_model *m, const bough_rod_scratch *scratch, 
     const double *restrict at = scratch->vertex + first, *restrict c = m->stiffness + first;
     const double *restrict d = m->damping + first, *restrict rest = scratch->rest + first;
     const double *restrict inverse = m->inverse_length + first;
-    const double *restrict weight = m->weight + first, *restrict middle = m->middle + first;
-    bough_vec3 felt = scratch->felt, spin = scratch->spin;
     double *restrict out = base;
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
@@ -60,9 +57,6 @@ void bough_rod_base(const bough_rod_model *m, const bough_rod_scratch *scratch, 
         segment_geometry shape = segment_shape(left, right, inverse[l]);
         segment_rate motion = segment_motion(shape, left, right);
         strain e = elastic_strain(shape, inverse[l], rest, s, l);
-        bough_vec3 a = bough_mat3_tmul(shape.r, felt_at(middle, s, l, felt, spin));
-        e = subtract_strain(e, weight_strain(weight, s, l, a));
-        store3(out + LANES * BASE_FELT, LANES, l, a);
         strain rate = strain_rate(shape, motion, inverse[l]);
         strain stress = add_strain(symmetric_times(c, s, l, e), symmetric_times(d, s, l, rate));
         store_shape(out, l, shape);
@@ -97,7 +91,7 @@ static inline void position_direction(const bough_rod_model *m, const bough_rod_
                                       double *restrict column) {
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict along = scratch->along + first;
-    const double *restrict line = m->line + first, *restrict weight = m->weight + first;
+    const double *restrict line = m->line + first;
     const double *restrict c = m->stiffness + first, *restrict damping = m->damping + first;
     const double *restrict inverse = m->inverse_length + first, *restrict h = m->length + first;
 #pragma omp simd
@@ -112,8 +106,6 @@ static inline void position_direction(const bough_rod_model *m, const bough_rod_
                          load3(base + LANES * (BASE_STRESS + 3), LANES, l)};
         segment_variation d = shape_variation(shape, dl, dr, inverse[l]);
         strain de = {d.stretch, bough_scale(inverse[l], d.phi)};
-        bough_vec3 a = bough_cross(load3(base + LANES * BASE_FELT, LANES, l), d.middle);
-        de = subtract_strain(de, weight_strain(weight, s, l, a));
         if (turning) de = add_turned(de, line, along, s, l, d.middle);
         strain drate = rate_variation(shape, motion, d, &dl, &dr, inverse[l]);
         strain dstress = add_strain(symmetric_times(c, s, l, de),

@@ -1,5 +1,6 @@
 #include "flexbody/section.h"
 
+#include "core/linalg.h"
 #include "core/symmetric6.h"
 #include "flexbody/rod_segment.h"
 #include "flexbody/section_axis.h"
@@ -87,8 +88,8 @@ static void add_mass(void *context, double s, double weight) {
 // The same with the left vertex' hat function.
 typedef struct share_sum {
     mass_sum *whole;
-    double length, mass;
-    bough_vec3 offset;
+    double length, mass, curvature; // curvature: ∫ρ (s − a)(b − s)
+    bough_vec3 moment;
 } share_sum;
 
 static void add_share(void *context, double s, double weight) {
@@ -97,14 +98,26 @@ static void add_share(void *context, double s, double weight) {
     double hat = (c->whole->to - s) / c->length;
     add_mass(&here, s, weight);
     c->mass += hat * here.mass;
-    c->offset = bough_axpy(hat, here.offset, c->offset);
+    c->moment = bough_axpy(hat, here.offset, c->moment);
+    c->curvature += here.mass * (1 - hat) * hat * c->length * c->length;
+}
+
+// The stress n = m g, m = s×g of an acceleration g on a mass and first moment, three columns.
+static void share_stress(bough_section_share x, matrix6 stress) {
+    memset(stress, 0, sizeof(matrix6));
+    for (int i = 0; i < 3; i++) stress[i][i] = x.mass;
+    stress[3][1] = -x.moment.z;
+    stress[3][2] = x.moment.y;
+    stress[4][0] = x.moment.z;
+    stress[4][2] = -x.moment.x;
+    stress[5][0] = -x.moment.y;
+    stress[5][1] = x.moment.x;
 }
 
 typedef struct segment_sum {
     const bough_section_axis *axis;
     double from, length;  // [m]
-    double left_mass;     // ∫ρ (b − s)/h, the left vertex' share
-    bough_vec3 left_moment; // of which the first moment: ∫ρ c (b − s)/h, and along the axis
+    bough_section_share left; // of the left vertex by hat functions
     double middle, twist; // of the segment's mid frame [m, rad]
     double compliance[21]; // ∫ Tᵀ F T
     double loss[21];       // ∫ Tᵀ F D F T
@@ -113,33 +126,26 @@ typedef struct segment_sum {
     bool definite;
 } segment_sum;
 
-// The stress by a uniform acceleration g, three columns, beyond the one carried from the middle; the
-// vertices take their shares of mass and first moment:
+// The stress by a uniform acceleration g, three columns, beyond the one carried from the middle, if the
+// left vertex takes the given share of mass and first moment:
 //     n = (m_left − ∫ρ) g,   m = (s_left − ∫ρ c)×g − d₃×g (m_left (s − a) − ∫ρ (s − s′)).
 static void weight_stress(const segment_sum *c, double s, matrix6 stress) {
     mass_sum below = {.axis = c->axis, .to = s, .twist = c->twist};
     bough_section_integrate(c->axis, c->from, s, add_mass, &below);
-    bough_vec3 arm = bough_sub(c->left_moment, below.offset);
-    arm.z -= c->left_mass * (s - c->from) - below.arm;
-    memset(stress, 0, sizeof(matrix6));
-    for (int i = 0; i < 3; i++) stress[i][i] = c->left_mass - below.mass;
-    stress[3][1] = -arm.z;
-    stress[3][2] = arm.y;
-    stress[4][0] = arm.z;
-    stress[4][2] = -arm.x;
-    stress[5][0] = -arm.y;
-    stress[5][1] = arm.x;
+    bough_vec3 arm = bough_sub(c->left.moment, below.offset);
+    arm.z -= c->left.mass * (s - c->from) - below.arm;
+    share_stress((bough_section_share){c->left.mass - below.mass, arm}, stress);
 }
 
-// Mass and first moment of the left vertex' share.
-static void share_left(segment_sum *c, double bend) {
+// Shares by hat functions, with the first moment along the axis by which a bending wave errs least in
+// a uniform segment: ½∫ρ (s − a)(b − s)/h.
+static void share_left(segment_sum *c) {
     double to = c->from + c->length;
     mass_sum whole = {.axis = c->axis, .to = to, .twist = c->twist};
     share_sum left = {.whole = &whole, .length = c->length};
     bough_section_integrate(c->axis, c->from, to, add_share, &left);
-    c->left_mass = left.mass;
-    c->left_moment = left.offset;
-    c->left_moment.z += bend;
+    c->left = (bough_section_share){left.mass, left.moment};
+    c->left.moment.z += 0.5 * left.curvature / c->length;
 }
 
 // sum += weight·aᵀ b
@@ -149,6 +155,13 @@ static void add_product(double weight, matrix6 a, matrix6 b, matrix6 sum) {
             for (int k = 0; k < 6; k++) sum[i][j] += weight * a[k][i] * b[k][j];
         }
     }
+}
+
+// Σ aᵢⱼ bᵢⱼ
+static double trace(matrix6 a, matrix6 b) {
+    double sum = 0;
+    for (int i = 0; i < 36; i++) sum += a[i / 6][i % 6] * b[i / 6][i % 6];
+    return sum;
 }
 
 static void add_compliance(void *context, double s, double weight) {
@@ -180,6 +193,31 @@ static void add_compliance(void *context, double s, double weight) {
     add_product(weight, ft, line, c->weight);
 }
 
+// What the left vertex' share has to gain (the right one's to lose) for the weight to be met with the
+// least strain energy beyond the one of the vertices' shares: normal equations in the shares' stress
+// in the middle, by the compliance there. Linear statics under weight is then exact at the vertices
+// wherever four numbers can make it so, and so are slow waves.
+static bough_section_share best_gain(segment_sum *c) {
+    enum { UNKNOWNS = 4 };
+    matrix6 compliance, stress[UNKNOWNS];
+    double normal[UNKNOWNS * UNKNOWNS], gain[UNKNOWNS];
+    const bough_section_share unit[UNKNOWNS] = {{1, {0, 0, -0.5 * c->length}},
+                                                {0, {1, 0, 0}}, {0, {0, 1, 0}}, {0, {0, 0, 1}}};
+    unpack(c->compliance, compliance);
+    for (int k = 0; k < UNKNOWNS; k++) share_stress(unit[k], stress[k]);
+    for (int k = 0; k < UNKNOWNS; k++) {
+        matrix6 product = {{0}}, whole = {{0}};
+        add_product(1, compliance, stress[k], product);
+        for (int l = 0; l < UNKNOWNS; l++) normal[UNKNOWNS * k + l] = trace(product, stress[l]);
+        add_product(1, stress[k], c->weight, whole);
+        gain[k] = 0;
+        for (int j = 0; j < 3; j++) gain[k] -= whole[j][j];
+    }
+    if (!bough_cholesky_factor(UNKNOWNS, normal)) return (bough_section_share){0};
+    bough_cholesky_solve(UNKNOWNS, normal, gain);
+    return (bough_section_share){gain[0], bough_v3(gain[1], gain[2], gain[3])};
+}
+
 // The rod's strains by the mean strains of a straight, untwisted segment, e = Q (γ, κ), linearised at
 // the undeformed one: with a and b the rotations of the ends in the middle's axes,
 //     κ = (b − a)/h,  U = H κ,  γ = Δx/h + V×(a + b)/2,  V = γ + (h/2) V×(κ×t)    (rod_segment.h).
@@ -198,7 +236,7 @@ static void strain_map(segment_geometry shape, double h, matrix6 q) {
 
 // Sums over a segment divided by its length, in the rod's strains.
 static void change_strains(segment_sum *c, matrix6 q) {
-    matrix6 turned, compliance, line = {{0}}, weight = {{0}};
+    matrix6 turned, compliance, line = {{0}};
     double f[21] = {0};
     for (int i = 0; i < 36; i++) turned[i / 6][i % 6] = q[i % 6][i / 6];
     unpack(c->compliance, compliance);
@@ -210,24 +248,22 @@ static void change_strains(segment_sum *c, matrix6 q) {
     memcpy(c->loss, f, sizeof f);
     add_product(1 / c->length, turned, c->line, line);
     memcpy(c->line, line, sizeof line);
-    add_product(1 / c->length, turned, c->weight, weight);
-    memcpy(c->weight, weight, sizeof weight);
 }
 
 // What a segment is discretised to.
 typedef struct segment_law {
     double *stiffness, *damping; // (21)
     double *line;                // (36) by rows
-    double *weight;              // (18) by rows
+    bough_section_share *gain;
 } segment_law;
 
 // Stiffness and damping of a segment whose end forces are met exactly in linear statics: the
 // inverse of the compliance that the stress, constant force and linear moment, meets on its way
 // through the section tables. Bending within the segment appears as compliance in shear
 // (MacNeal's residual bending flexibility). Damping dissipates what the sections would. `line` is the
-// mean strain that a load along the segment makes, `weight` that of an acceleration (THEORY 6).
+// mean strain that a load along the segment makes (THEORY 6).
 static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *def, int n,
-                             double bend, segment_law law) {
+                             segment_law law) {
     double from = def->span[n], to = def->span[n + 1];
     vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
     vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
@@ -238,8 +274,9 @@ static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *d
                      .definite = true};
     matrix6 q, k, loss;
     c.twist = 0.5 * (bough_section_at(a, from).twist + bough_section_at(a, to).twist);
-    share_left(&c, bend);
+    share_left(&c);
     bough_section_integrate(a, from, to, add_compliance, &c);
+    *law.gain = c.definite ? best_gain(&c) : (bough_section_share){0};
     strain_map(segment_shape(left, right, 1 / c.length), c.length, q);
     change_strains(&c, q);
     if (!c.definite || !bough_symmetric6_inverse(c.compliance, law.stiffness)) return false;
@@ -248,17 +285,17 @@ static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *d
     memset(law.damping, 0, 21 * sizeof *law.damping);
     add_congruent(1, k, loss, law.damping);
     memcpy(law.line, c.line, sizeof c.line);
-    for (int i = 0; i < 18; i++) law.weight[i] = c.weight[i / 3][i % 3];
     return true;
 }
 
 // -- whole ----------------------------------------------------------------------------------------
 
 typedef struct arrays {
-    double *span, *stiffness, *damping, *line, *weight, *bend;
+    double *span, *stiffness, *damping, *line;
     bough_vec3 *position;
     bough_quaternion *rotation;
     bough_vertex_inertia *inertia;
+    bough_section_share *gain;
 } arrays;
 
 static arrays take_arrays(bough_arena *arena, int n) {
@@ -267,8 +304,7 @@ static arrays take_arrays(bough_arena *arena, int n) {
                 .stiffness = bough_arena_doubles(arena, 21 * (size_t)n),
                 .damping = bough_arena_doubles(arena, 21 * (size_t)n),
                 .line = bough_arena_doubles(arena, 36 * (size_t)n),
-                .weight = bough_arena_doubles(arena, 18 * (size_t)n),
-                .bend = bough_arena_doubles(arena, (size_t)n),
+                .gain = bough_arena_take(arena, (size_t)n * sizeof(bough_section_share)),
                 .position = bough_arena_take(arena, vertices * sizeof(bough_vec3)),
                 .rotation = bough_arena_take(arena, vertices * sizeof(bough_quaternion)),
                 .inertia = bough_arena_take(arena, vertices * sizeof(bough_vertex_inertia))};
@@ -297,16 +333,16 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
         m.position[i] = bough_section_at(&a, m.span[i]).position;
         m.rotation[i] = bough_section_rotation(&a, m.span[i]);
     }
-    if (!bough_section_lump(arena, &a, def, m.inertia, m.bend)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", table->name);
-    }
     for (int k = 0; k < n_segment; k++) {
         segment_law law = {m.stiffness + 21 * (size_t)k, m.damping + 21 * (size_t)k,
-                           m.line + 36 * (size_t)k, m.weight + 18 * (size_t)k};
-        if (!segment_matrices(&a, def, k, m.bend[k], law)) {
+                           m.line + 36 * (size_t)k, m.gain + k};
+        if (!segment_matrices(&a, def, k, law)) {
             return bough_fail(BOUGH_INVALID, "rod %s: the stiffness between %g m and %g m is not"
                               " positive definite", table->name, m.span[k], m.span[k + 1]);
         }
+    }
+    if (!bough_section_lump(arena, &a, def, m.gain, m.inertia)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", table->name);
     }
     return bough_ok();
 }

@@ -29,10 +29,16 @@ typedef void (*bough_section_visitor)(void *context, double s, double weight);
 void bough_section_integrate(const bough_section_axis *a, double from, double to,
                              bough_section_visitor visit, void *context);
 
+// A vertex' share of a segment's mass and first moment, in the axes of the segment's middle.
+typedef struct bough_section_share {
+    double mass;       // [kg]
+    bough_vec3 moment; // [kg m]
+} bough_section_share;
+
 // Inertia lumped to the vertices of a def that has its mesh (section_inertia.c): vertex (N + 1). Per
-// segment (N), bend is the arm of the equal and opposite moments that its weight across puts on its two
-// vertices beyond hat functions, times mass [kg m]. False when memory is exhausted.
+// segment (N), gain is what its left vertex takes beyond its share by hat functions. False when memory
+// is exhausted.
 bool bough_section_lump(bough_arena *arena, const bough_section_axis *a, const bough_rod_def *def,
-                        bough_vertex_inertia *vertex, double *bend);
+                        const bough_section_share *gain, bough_vertex_inertia *vertex);
 
 #endif

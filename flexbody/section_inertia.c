@@ -1,5 +1,6 @@
 // Inertia of a section table lumped to vertices.
 #include "core/symmetric6.h"
+#include "flexbody/rod_segment.h"
 #include "flexbody/section_axis.h"
 
 #include <string.h>
@@ -142,21 +143,48 @@ static void add_end_terms(lumping *c) {
     }
 }
 
+// Moves mass and first moment from the right vertex to the left one, and takes from both what that
+// makes of the second moments.
+static void add_gain(lumping *c, bough_section_share gain) {
+    const bough_rod_def *def = c->def;
+    int k = c->segment;
+    bough_quaternion p = def->rotation[k], q = def->rotation[k + 1];
+    double dot = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
+    bough_mat3 middle = mid_frame(p, q, copysign(1.0, dot), 1 / (1 + fabs(dot)));
+    bough_vec3 chord = bough_sub(def->position[k + 1], def->position[k]);
+    bough_vec3 left = bough_mat3_mul(middle, gain.moment);
+    const bough_vec3 moment[2] = {left, bough_axpy(gain.mass, chord, bough_scale(-1, left))};
+    const double mass[2] = {gain.mass, -gain.mass};
+    for (int side = 0; side < 2; side++) {
+        bough_mat3 axes = bough_rotation_matrix(def->rotation[k + side]);
+        bough_vec3 along = bough_mat3_tmul(axes, chord);
+        bough_vec3 second = bough_mat3_tmul(axes, bough_sub(moment[1], moment[0]));
+        bough_vertex_inertia *v = &c->fine[side];
+        v->mass += mass[side];
+        v->moment = bough_add(v->moment, bough_mat3_tmul(axes, moment[side]));
+        add_offsets(v->inertia, -0.5, along, second);
+    }
+}
+
 // One segment's shares, fine (0) and rigid (1).
 typedef struct segment_inertia {
     bough_vertex_inertia side[2][2]; // way, side
-    double shift;                    // first moment of the fine way along the segment [kg m]
+    double shift[2];                 // first moments of the fine way along the segment [kg m]
     bool rigid;                      // the way taken
 } segment_inertia;
 
-static segment_inertia lump_segment(const bough_section_axis *a, const bough_rod_def *def, int k) {
+static segment_inertia lump_segment(const bough_section_axis *a, const bough_rod_def *def, int k,
+                                    bough_section_share gain) {
     lumping c = {.axis = a, .def = def, .segment = k};
     segment_inertia s = {.rigid = false};
     double from = def->span[k], to = def->span[k + 1];
     bough_section_integrate(a, from, to, add_twist, &c);
     bough_section_integrate(a, from, to, add_mass, &c);
-    s.shift = 0.5 * c.curvature / (to - from);
+    double bend = 0.5 * c.curvature / (to - from);
+    s.shift[0] = bend + gain.moment.z;
+    s.shift[1] = (to - from) * gain.mass - s.shift[0];
     add_end_terms(&c);
+    add_gain(&c, gain);
     memcpy(s.side[0], c.fine, sizeof c.fine);
     memcpy(s.side[1], c.rigid, sizeof c.rigid);
     return s;
@@ -220,8 +248,8 @@ static void sum_vertices(const bough_rod_def *def, const segment_inertia *segmen
         }
     }
     for (int i = 0; i <= n && n > 1; i++) {
-        double shift = (i < n && !segment[i].rigid ? segment[i].shift : 0) -
-                       (i > 0 && !segment[i - 1].rigid ? segment[i - 1].shift : 0);
+        double shift = (i < n && !segment[i].rigid ? segment[i].shift[0] : 0) +
+                       (i > 0 && !segment[i - 1].rigid ? segment[i - 1].shift[1] : 0);
         double spread = shift == 0 ? 0 : lack(&vertex[i], shift);
         if (spread > 0) add_spread(def, i, spread, vertex);
     }
@@ -239,11 +267,11 @@ static bool make_rigid(int i, int reach, int n, segment_inertia *segment) {
 }
 
 bool bough_section_lump(bough_arena *arena, const bough_section_axis *a, const bough_rod_def *def,
-                        bough_vertex_inertia *vertex, double *bend) {
+                        const bough_section_share *gain, bough_vertex_inertia *vertex) {
     int n = def->n_segment;
     segment_inertia *segment = bough_arena_take(arena, (size_t)n * sizeof *segment);
     if (segment == NULL) return false;
-    for (int k = 0; k < n; k++) segment[k] = lump_segment(a, def, k);
+    for (int k = 0; k < n; k++) segment[k] = lump_segment(a, def, k, gain[k]);
     for (bool change = true; change;) {
         change = false;
         sum_vertices(def, segment, vertex);
@@ -253,7 +281,6 @@ bool bough_section_lump(bough_arena *arena, const bough_section_axis *a, const b
             change = make_rigid(i, 1, n, segment) || make_rigid(i, 3, n, segment) || change;
         }
     }
-    for (int k = 0; k < n; k++) bend[k] = (segment[k].rigid ? 2 : 1) * segment[k].shift;
     return true;
 }
 

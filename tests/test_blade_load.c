@@ -106,7 +106,7 @@ static void solve(const blade *b, line_load load, double scale, double *found) {
         double q[6];
         load(n, b->table->length, 0.5 * (m->span[k] + m->span[k + 1]), q);
         for (int c = 0; c < 6; c++) q[c] *= scale;
-        bough_rod_lump(m, (bough_rod_reach){m->span[k], m->span[k + 1]}, q, to);
+        bough_rod_lump(m, (bough_rod_reach){m->span[k], m->span[k + 1]}, q, NULL, to);
     }
     bough_rod_rest_state(m, at_rest, state);
     bough_status s = bough_rod_equilibrium(m, &loads, bough_v3(0, 0, 0), &options, &work, state);

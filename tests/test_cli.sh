@@ -95,7 +95,7 @@ usage() {
 help() {
     expect 0 --version
     has ../stdout "^bough $version\$"
-    for form in help --help; do
+    for form in help --help -h; do
         expect 0 $form
         has ../stdout 'bough check SCENE'
         empty ../stderr
@@ -148,6 +148,25 @@ checks() {
     has ../stdout '^ports: 2,'
     has ../stdout '^coupling: ramp, theta auto'
     has ../stdout '^aero: built, 3 blades of '
+    has ../stdout '^rotor: 3 blades, radius 62.94 m, hub height 90 m, tilt 5 deg, overhang 5.0191 m upwind'
+    has ../stdout '^blade blade2: pitch 6.5 deg, cone -2.5 deg, root at 1.5 m'
+    has ../stdout '^wind: uniform, 20 m/s, to 0 deg from x, 0 m/s upwards; at the hub at 0 s \[20, 0, 0\]'
+    has ../stdout '^control: not built'
+    has ../stdout '^load on joint hub: -1.19e+07 N m, ramp from 0 to 20 s$'
+    has ../stdout '^results: 2001 rows of 48 columns, 1.73 MB$'
+    expect 0 check "$folder/apps/turbine/rotor.yaml" --set "aero.wind={kind: bts, file: turbulence.bts}"
+    has ../stdout '^wind: box file .*turbulence.bts, mean .* m/s, .* s.*: covers the rotor'
+    expect 0 check "$folder/apps/turbine/land-operation.yaml"
+    has ../stdout '^control: built, variable-speed law, 25 Hz, gear ratio 97, generator torque and pitch, 0 ev'
+    expect 2 check "$turbine" --set 'control={kind: variable-speed}'
+    has ../stderr "error: control: the joint of 'blade1' cannot pitch it: .*'pitch: false'"
+    expect 0 check "$turbine" --set 'control={kind: variable-speed, pitch: false}'
+    has ../stdout '^control: built, .* generator torque only'
+    sed 's/^    mass: .*/&\n    inertia: [5.1e6, 1e3, 1e3]/' "$mechanisms/pendulum.yaml" >../odd.yaml
+    expect 0 check ../odd.yaml
+    has ../stderr "^../odd.yaml:[0-9]*:[0-9]*: warning: body '.*': no mass distribution has the inertia"
+    refused 'mass: must be in \[0, 1e12\] kg' run "$mechanisms/pendulum.yaml" --set 'bodies[0].mass=1e300 t'
+    refused 'at most 1e+09 are taken' check "$bar" --set 'simulation.duration=1e30 s'
     expect 0 check "$scenes/joints.yaml"
     has ../stdout '^body fork: rigid; universal about x and y on ground: 2 degrees of freedom'
     has ../stdout '^body piston: rigid; cylindrical along and about z on fork: 2 degrees'
@@ -176,6 +195,7 @@ complete_run() {
     expect 0 run "$bar" --set 'simulation.duration=22 ms' --set 'simulation.output.interval=5 ms' \
         --threads 2
     out=out/rubber-bar
+    has ../stdout '^results: 6 rows of 6 columns, 0.000654 MB$'
     has ../stdout '^status: complete$'
     has ../stdout '^real_time_factor: [0-9]'
     has ../stdout '^peak_memory_mb: [0-9]'
@@ -355,7 +375,7 @@ modes() {
     near ../stdout '^ *1 ' 2 0.7349 0.001
     missing turning/shapes.csv
     expect 0 modes "$turbine" --set 'modes={count: 3, at: undeformed, shapes: true}' --out whole
-    has ../stdout '^whole scene: .*, rotor at 4.77465 rpm, seen by an observer at rest; the air'
+    has ../stdout '^whole scene: .*, rotor at 4.77465 rpm, seen by an observer at rest, rotor free to turn; the air'
     has ../stdout '^ *1 .* blades .* flap .* backward '
     has whole/shapes.csv '^body,mode,span (m),ux (m),'
     [ "$(wc -l <whole/shapes.csv)" -eq 451 ] || fail "$said: shapes.csv has not 451 lines"
@@ -383,6 +403,14 @@ shown() {
     expect 0 report out
     has ../stdout '^report: out/report.html$'
     has out/report.html 'data.summary = '
+    touch out/frames/mine.vtp
+    expect 0 run "$bar" --set 'simulation.duration=20 ms' --set 'simulation.output.frames=10 ms' --out out
+    [ "$(find out/frames | wc -l)" -eq 5 ] || fail "$said: three frames and what is not ours"
+    missing out/report.html # of the run before
+    rm out/frames/mine.vtp
+    expect 0 run "$bar" --set 'simulation.duration=20 ms' --out out
+    missing out/frames
+    missing out/frames.pvd
     rm -r out
     refused 'holds no results' report .
 }

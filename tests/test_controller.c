@@ -95,6 +95,18 @@ static void senseless_constants_are_refused(void **state) {
     }
 }
 
+// The line of a nearly vertical slip meets the parabola at its synchronous speed.
+static void slip_of_nearly_nothing_is_a_vertical_line(void **state) {
+    (void)state;
+    bough_controller_def d = bough_controller_def_default();
+    d.slip = 1e-7;
+    d.optimal_from = 1e-3, d.cut_in = 0;
+    bough_status status = bough_controller_check(&d);
+    assert_int_equal(status.code, BOUGH_OK);
+    double below = d.rated_speed * (1 - 1e-6);
+    check_near(bough_controller_torque(&d, below, 0), d.optimal_gain * below * below, 1e-12, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gains_are_those_of_the_design),
@@ -102,6 +114,7 @@ int main(void) {
         cmocka_unit_test(limits_hold),
         cmocka_unit_test(speed_is_regulated),
         cmocka_unit_test(senseless_constants_are_refused),
+        cmocka_unit_test(slip_of_nearly_nothing_is_a_vertical_line),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -139,6 +139,44 @@ static void high_thrust_lies_on_parabola(void **state) {
     assert_true(seen > 5);
 }
 
+// In a skewed wake thrust and torque balance the momentum of the flow through a disk across the wind,
+// up to a = 0.35/cos χ; beyond, the thrust lies on the parabola that goes on there.
+static void skewed_momentum_is_that_of_glauert(void **state) {
+    airfoils *foils = *state;
+    bough_induction_options options = lossless();
+    options.skewed_momentum = true;
+    int low = 0, high = 0;
+    for (double solidity = 0.02; solidity < 0.4; solidity *= 1.3) {
+        for (int degrees = 0; degrees <= 60; degrees += 15) {
+            bough_element e = element_of(&foils->plate);
+            e.solidity = solidity;
+            e.skew = degrees * BOUGH_PI / 180;
+            double t = tan(e.skew), critical = fmin(0.35 / cos(e.skew), 0.5);
+            bough_induction i = bough_induction_solve(&options, &e);
+            double a = i.axial, u = 8 * (1 - a), v = 40 * (1 + i.tangential);
+            double phi = atan2(u, v), w2 = u * u + v * v;
+            double lift = bough_polar_at(e.polar, phi - e.twist).lift;
+            double ct = e.solidity * lift * cos(phi) * w2 / 64;
+            double cq = e.solidity * lift * sin(phi) * w2 / 64;
+            if (a < critical) {
+                low++;
+                double flow = sqrt((1 - a) * (1 - a) + t * t);
+                check_near(ct, 4 * a * flow, 1e-9, 0);
+                check_near(cq, 4 * i.tangential * flow * 5, 1e-9, 0);
+                continue;
+            }
+            high++;
+            double x = 1 - critical, root = sqrt(x * x + t * t), b = a - critical;
+            double start = 4 * critical * root;
+            double slope = 4 * root + 4 * critical * -x / root;
+            double end = fmax(2 + 2.113 * pow(t, 1.527), start + slope * x + 0.001);
+            double bend = (end - start - slope * x) / (x * x);
+            check_near(ct, start + b * (slope + b * bend), 1e-9, 0);
+        }
+    }
+    assert_true(low > 10 && high > 10);
+}
+
 // A small generator with a fixed sequence, so that failures repeat.
 static double uniform(uint64_t *seed, double low, double high) {
     *seed = *seed * 6364136223846793005u + 1442695040888963407u;
@@ -195,12 +233,15 @@ static void lanes_give_what_one_gives(void **state) {
         bough_induction_options options = bough_induction_options_default();
         if (n % 2) options.high_thrust = BOUGH_HIGH_THRUST_BUHL;
         if (n % 3 == 0) options.tip_loss = options.tangential_drag = false;
+        if (n % 7 < 3) options.skewed_momentum = true;
+        double skew = n % 7 == 0 ? 0 : uniform(&seed, 0, 1.5);
         if (n % 5 == 0) options.hub_loss = options.tangential = false;
         bough_element e[N];
         const bough_polar *polar[N];
         double value[9][N], axial[N], tangential[N], loss[N];
         for (int i = 0; i < N; i++) {
             e[i] = random_element(foils, &seed);
+            e[i].skew = skew;
             e[i].skew_normal = uniform(&seed, -0.05, 0.05);
             e[i].skew_chord = uniform(&seed, 0, 0.01);
             if (n % 4 == 0) e[i].inflow_x = fabs(e[i].inflow_x), e[i].twist *= 0.1;
@@ -211,7 +252,7 @@ static void lanes_give_what_one_gives(void **state) {
             for (int c = 0; c < 9; c++) value[c][i] = row[c];
         }
         bough_elements all = {N,        polar,    value[0], value[1], value[2], value[3],
-                              value[4], value[5], value[6], value[7], value[8]};
+                              value[4], value[5], value[6], value[7], value[8], skew};
         bough_induction_solve_all(&options, &all, axial, tangential, loss);
         for (int i = 0; i < N; i++) {
             bough_induction one = bough_induction_solve(&options, e + i);
@@ -245,6 +286,7 @@ int main(void) {
         cmocka_unit_test(small_angles_agree_with_closed_form),
         cmocka_unit_test(torque_balances_angular_momentum),
         cmocka_unit_test(high_thrust_lies_on_parabola),
+        cmocka_unit_test(skewed_momentum_is_that_of_glauert),
         cmocka_unit_test(any_state_is_finite_and_repeats),
         cmocka_unit_test(lanes_give_what_one_gives),
         cmocka_unit_test(mirrored_flow_gives_same_induction),

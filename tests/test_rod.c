@@ -245,18 +245,6 @@ static void newton_solution_knows_loads_along_segments(void **context) {
     check_newton(f);
 }
 
-// So does the strain that gravity and the BRF's turning make.
-static void newton_solution_knows_weight_along_segments(void **context) {
-    fixture *f = *context;
-    unsigned seed = 29;
-    f->model->weighs = true;
-    for (int k = 0; k < 18 * f->model->stride; k++) {
-        f->model->weight[k] = 0.02 * sample_random(&seed);
-    }
-    lay_along(f);
-    check_newton(f);
-}
-
 static void second_evaluation_knows_loads_along_segments(void **context) {
     fixture *f = *context;
     double first[STATES], again[STATES];
@@ -302,7 +290,15 @@ static void follower_load_turns_with_its_section(void **context) {
 static void ramped_load_grows_between_its_times(void **context) {
     (void)context;
     const bough_rod_ramped_load step = {.start = 2, .end = 2}, ramp = {.start = 1, .end = 3};
-    check_near(bough_rod_ramp_factor(&step, 0), 1, 0, 0);
+    const bough_rod_ramped_load always = {.start = 0, .end = 0};
+    const double times[2] = {1, 2}, factors[2] = {-1, 3};
+    const bough_rod_ramped_load table = {.n = 2, .times = times, .factors = factors};
+    check_near(bough_rod_ramp_factor(&always, -1), 1, 0, 0);
+    check_near(bough_rod_ramp_factor(&step, 1.999), 0, 0, 0);
+    check_near(bough_rod_ramp_factor(&step, 2), 1, 0, 0);
+    check_near(bough_rod_ramp_factor(&table, 0), -1, 0, 0);
+    check_near(bough_rod_ramp_factor(&table, 1.25), 0, 0, 1e-15);
+    check_near(bough_rod_ramp_factor(&table, 4), 3, 0, 0);
     check_near(bough_rod_ramp_factor(&ramp, 0.5), 0, 0, 0);
     check_near(bough_rod_ramp_factor(&ramp, 1.5), 0.25, 0, 1e-15);
     check_near(bough_rod_ramp_factor(&ramp, 4), 1, 0, 0);
@@ -390,8 +386,6 @@ int main(void) {
         cmocka_unit_test(second_evaluation_at_a_state_is_the_same),
         cmocka_unit_test_setup_teardown(newton_solution_knows_follower_loads, setup, teardown),
         cmocka_unit_test_setup_teardown(newton_solution_knows_loads_along_segments, setup, teardown),
-        cmocka_unit_test_setup_teardown(newton_solution_knows_weight_along_segments, setup,
-                                        teardown),
         cmocka_unit_test_setup_teardown(second_evaluation_knows_loads_along_segments, setup,
                                         teardown),
         cmocka_unit_test_setup_teardown(wrench_tangent_knows_loads_along_segments, setup, teardown),

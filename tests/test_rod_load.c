@@ -45,7 +45,7 @@ static void resultant_of_a_point_load_is_the_load(void **context) {
     for (int k = 0; k <= 13; k++) {
         double s = k * m->span[N] / 13;
         bough_rod_ramped_load load = empty(arena, m, false);
-        bough_rod_lump(m, (bough_rod_reach){s, s}, wrench, &load);
+        bough_rod_lump(m, (bough_rod_reach){s, s}, wrench, NULL, &load);
         sums sum = resultant(m, load.value);
         assert_false(load.along);
         int n = 0;
@@ -69,7 +69,7 @@ static void resultant_of_a_line_load_is_the_load(void **context) {
     for (int k = 0; k < 4; k++) {
         bough_rod_ramped_load load = empty(arena, m, false);
         double length = reach[k].to - reach[k].from, at = 0.5 * (reach[k].to + reach[k].from);
-        bough_rod_lump(m, reach[k], wrench, &load);
+        bough_rod_lump(m, reach[k], wrench, NULL, &load);
         sums sum = resultant(m, load.value);
         bough_vec3 force = bough_scale(length, bough_v3(3, -2, 0.5));
         bough_vec3 moment = bough_scale(length, bough_v3(1, 4, -0.7));
@@ -88,14 +88,14 @@ static void line_load_goes_to_vertices_and_segments(void **context) {
     bough_arena *arena = bough_arena_create();
     const bough_rod_model *m = sample_uniform(arena, N, 2 * N, stiffness, 0, inertia);
     bough_rod_ramped_load load = empty(arena, m, false), part = empty(arena, m, false);
-    bough_rod_lump(m, (bough_rod_reach){0, 2 * N}, across, &load);
+    bough_rod_lump(m, (bough_rod_reach){0, 2 * N}, across, NULL, &load);
     assert_true(load.along);
     for (int i = 0; i <= N; i++) {
         check_near(load.value[i], i == 0 || i == N ? 12 : 24, 1e-12, 0);
         check_near(load.value[4 * m->stride + i], 0, 0, 0);
         check_near(load.line[i], i < N ? 12 : 0, 1e-12, 0);
     }
-    bough_rod_lump(m, (bough_rod_reach){0, 1}, across, &part);
+    bough_rod_lump(m, (bough_rod_reach){0, 1}, across, NULL, &part);
     assert_false(part.along);
     check_near(part.value[4 * m->stride], 2, 1e-12, 0); // 12 ∫ ½ s (1 − s/2) ds over 0..1
     bough_arena_destroy(arena);
@@ -115,8 +115,8 @@ static void follower_is_lumped_in_section_axes(void **context) {
     const double turned[6] = {f.x, f.y, f.z, l.x, l.y, l.z};
     memcpy(in_section, turned, sizeof turned);
     bough_rod_reach last = {0.5 * (m->span[N - 1] + m->span[N]), m->span[N]};
-    bough_rod_lump(m, last, wrench, &dead);
-    bough_rod_lump(m, last, in_section, &follower);
+    bough_rod_lump(m, last, wrench, NULL, &dead);
+    bough_rod_lump(m, last, in_section, NULL, &follower);
     for (int c = 0; c < 6; c += 3) {
         const double *v = follower.value + c * s + N, *d = dead.value + c * s + N;
         check_vector(bough_mat3_mul(r, bough_v3(v[0], v[s], v[2 * s])),

@@ -1,6 +1,7 @@
 // Static shapes of the rod: analytic ones first, then order of convergence, then reference values.
 #include "tests/check.h"
 
+#include "flexbody/rod_load.h"
 #include "flexbody/rod_static.h"
 #include "tests/sample_rod.h"
 
@@ -88,6 +89,33 @@ static void dead_tip_force_gives_the_elastica(void **context) {
     }
     check_near(error[1], 0, 0, 3e-4);
     check_near(error[0] / error[1], 4, 0, 0.2);
+}
+
+// A cantilever under a load per length that falls linearly from q at the root to nothing at `to`, which
+// may lie between vertices: beam theory with shear, to the fourth order of the segments' length.
+static void load_that_falls_along_the_rod_bends_it_as_beam_theory_says(void **context) {
+    (void)context;
+    // of shear with what the moment's change along a segment of 0.4 m adds
+    const double shear_stiffness = 1 / (1e-4 + 0.4 * 0.4 / 12 / 3), q = 1e-4, length = 2;
+    const double stiffness[6] = {shear_stiffness, shear_stiffness, 1e6, 3, 3, 1};
+    const double start[6] = {q, 0, 0, 0, 0, 0}, end[6] = {0}, always[2] = {0, 0};
+    for (int k = 0; k < 2; k++) {
+        double to = k == 0 ? length : 1.1;
+        bough_arena *arena = bough_arena_create();
+        bent b = straight_rod(arena, 5, length, stiffness);
+        for (int n = 0; n < 5; n++) { // D of a uniform segment: d₃×f (σ² − h²/4)/2 over EI in the mean
+            double mean = 0.4 * 0.4 / 12 / 3;
+            b.model->line[(6 * 4 + 0) * b.model->stride + n] = -mean;
+            b.model->line[(6 * 3 + 1) * b.model->stride + n] = mean;
+        }
+        bough_rod_lump(b.model, (bough_rod_reach){0, to}, start, end,
+                       bough_rod_loads_ramped(&b.loads, arena, b.model, false, always));
+        solve(&b, bough_rod_static_options_default());
+        double bending = q * pow(to, 4) / 30 / 3, turn = q * pow(to, 3) / 24 / 3;
+        double shear = q * to * to / 6 / 1e4;
+        check_near(vertex(&b, 5).x, bending + turn * (length - to) + shear, 5e-4, 0);
+        bough_arena_destroy(arena);
+    }
 }
 
 // Tip of the follower cantilever of Argyris and Symeonidis (1981), displacement along the rod and
@@ -186,6 +214,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(end_moment_bends_rod_to_circle),
         cmocka_unit_test(dead_tip_force_gives_the_elastica),
+        cmocka_unit_test(load_that_falls_along_the_rod_bends_it_as_beam_theory_says),
         cmocka_unit_test(follower_force_bends_the_rod_beyond_a_half_turn),
         cmocka_unit_test(turning_bar_stretches),
         cmocka_unit_test(slender_rod_takes_few_iterations),

@@ -23,7 +23,7 @@ static void all_errors_are_shown_in_order(void **state) {
         "extrapolated, iterated, ramp, monolithic, got 'rampe' (did you mean 'ramp'?)\n"
         "s.yaml:8:12: error: bodies[0].joint: required key 'axis' is missing\n"
         "s.yaml:8:37: error: bodies[0].joint.parent: there is no body 'grond' (did you mean 'ground'?)\n"
-        "s.yaml:9:11: error: bodies[0].mass: must be >= 0 kg, got '-1'\n"
+        "s.yaml:9:11: error: bodies[0].mass: must be in [0, 1e12] kg, got '-1'\n"
         "s.yaml:11:13: error: loads[0].joint: there is no body 'b' (did you mean 'a'?)\n");
 }
 

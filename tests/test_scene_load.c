@@ -109,7 +109,10 @@ static void loads_fit_their_rods(void **state) {
                      "  - {body: b, along: [0, 3], force: [1, 2, 3]}\n"
                      "  - {body: c, at: tip, force: [1, 2, 3]}\n"
                      "  - {body: a, force: [1, 2, 3], frame: follower}\n"
-                     "  - {body: b, at: tip, force: [1, 2, 3], point: [1, 2, 3]}\n",
+                     "  - {body: b, at: tip, force: [1, 2, 3], point: [1, 2, 3]}\n"
+                     "  - {body: b, at: tip, force: [1, 2, 3], end_force: [1, 2, 3]}\n"
+                     "  - {body: b, at: tip, force: [1, 2, 3], factor: {times: [0, 1], values: "
+                     "[1, 2]}, ramp: [0, 1]}\n",
             "s.yaml:7:5: error: loads[0]: expected either 'joint' or 'body'\n"
             "s.yaml:8:5: error: loads[1]: expected either 'joint' or 'body', got both\n"
             "s.yaml:9:5: error: loads[2]: expected either 'at' or 'along'\n"
@@ -131,7 +134,11 @@ static void loads_fit_their_rods(void **state) {
             "s.yaml:21:12: error: loads[14].frame: 'c' moves with the joint of 'c'; loads in "
             "ground axes are built for rods at rest: give 'frame: body' or 'frame: follower'\n"
             "s.yaml:22:40: error: loads[15].frame: 'a' is rigid: 'frame: body' turns with it\n"
-            "s.yaml:23:49: error: loads[16].point: only used with a rigid body\n");
+            "s.yaml:23:49: error: loads[16].point: only used with a rigid body\n"
+            "s.yaml:24:53: error: loads[17].end_force: only used with 'along'\n"
+            "s.yaml:25:89: error: loads[18].ramp: only used without 'factor'\n");
+    accepts(TWO_RODS "  - {body: b, along: [0, 1], end_force: [1, 2, 3], factor: {times: [0, 1], "
+                     "values: [0, 2]}}\n");
     accepts(TWO_RODS "  - {body: a, moment: [1, 2, 3], factor: {times: [0, 1], values: [0, 2]}}\n");
 }
 

@@ -3,8 +3,8 @@
 #
 # A block "yaml NAME" is a file; in a block "console", "$ " begins a command, "> " continues it, the
 # rest is its output. There "..." stands for a word or, last in a line, for the rest, "~2e-5" for a
-# number within a factor of three; others agree within half a percent or one unit of the last digit
-# shown, since machines round differently.
+# number within a factor of three; others agree in all digits shown but for one unit of the last,
+# since machines round differently.
 set -eu
 bough=$1 source=$2 tutorial=$3
 folder=$(mktemp -d)
@@ -43,7 +43,7 @@ compare='
         }
         if (!number(want) || !number(got) || want got ~ /^[-+0-9]*$/) return 0
         off = size(want - got)
-        return off <= 0.005 * size(want) || off <= 1.001 * unit(want)
+        return off <= 1.001 * unit(want)
     }
     # Punctuation that sticks to a number is no part of it.
     function words(line, word) {gsub(/[,;:()]/, " & ", line); return split(line, word, " ")}

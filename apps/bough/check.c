@@ -1,4 +1,6 @@
 // bough check: what a scene builds, and why. Nothing is run or written.
+#include "apps/bough/check_turbine.h"
+#include "apps/bough/forecast.h"
 #include "apps/bough/open.h"
 #include "apps/bough/verb.h"
 #include "apps/output/progress.h"
@@ -119,7 +121,6 @@ static void print_bodies(const bough_simulation *s) {
            plural(tree->n_q + tree->n_v), tree->n_q, tree->n_v, s->leader.solver,
            s->scene->simulation.master.rtol);
     printf("states: %d\n", s->master->assembly->n_state);
-    printf("loads: %d\n", s->scene->n_load);
     if (s->scene->n_spring > 0) printf("springs: %d\n", s->scene->n_spring);
     if (s->scene->n_bushing > 0) printf("bushings: %d\n", s->scene->n_bushing);
     if (tree->n_closures > 0) print_closures(tree);
@@ -159,49 +160,52 @@ static void print_coupling(const bough_simulation *s) {
     printf("threads: %d\n", bough_pool_threads(m->coupling->pool));
 }
 
-// -- aerodynamics ---------------------------------------------------------------------------------
+// -- what acts, what is recorded ------------------------------------------------------------------
 
-static void print_wind(const bough_scene_wind *wind) {
-    static const char *const shears[] = {
-        [BOUGH_SCENE_WIND_UNIFORM] = "uniform",
-        [BOUGH_SCENE_WIND_POWER] = "power law",
-        [BOUGH_SCENE_WIND_LOG] = "logarithmic law",
-        [BOUGH_SCENE_WIND_WND] = "hub-height file",
-        [BOUGH_SCENE_WIND_BTS] = "box file",
-        [BOUGH_SCENE_WIND_IEC] = "IEC 61400-1",
-    };
-    const bough_scene_wind_table *table = &wind->table;
-    printf("wind: %s, ", shears[wind->kind]);
-    if (table->node) {
-        printf("%d speeds from %.6g s to %.6g s", table->n_time, table->time[0],
-               table->time[table->n_time - 1]);
+static void print_vector(const double v[3], const char *unit) {
+    if (v[0] != 0 || v[1] != 0 || v[2] != 0)
+        printf(", [%.6g, %.6g, %.6g] %s", v[0], v[1], v[2], unit);
+}
+
+static void print_load(const bough_scene *scene, const bough_scene_load *load) {
+    static const char *const frames[] = {"ground", "body", "section"};
+    if (load->joint_name != NULL) {
+        bool turns = scene->body[load->joint].joint.kind == BOUGH_JOINT_REVOLUTE;
+        printf("load on joint %s: ", load->joint_name);
+        if (load->n_time > 0) {
+            printf("table from %.6g to %.6g s", load->times[0], load->times[load->n_time - 1]);
+        } else {
+            printf("%.6g %s", load->amount, turns ? "N m" : "N");
+        }
     } else {
-        printf("%.6g m/s", wind->speed);
+        bool along = load->place == BOUGH_SCENE_ALONG;
+        printf("load on %s: %s axes", load->body_name, frames[load->frame]);
+        print_vector(load->force, along ? "N/m" : "N");
+        print_vector(load->moment, along ? "N m/m" : "N m");
+        if (load->n_time > 0) printf(", by a table over time");
     }
-    printf(", to %.6g deg from x, %.6g m/s upwards\n", wind->direction * (180 / BOUGH_PI),
-           wind->vertical);
+    if (load->ramp[1] > 0) printf(", ramp from %.6g to %.6g s", load->ramp[0], load->ramp[1]);
+    putchar('\n');
 }
 
-static const char *tower_words(const bough_scene_tower *tower) {
-    if (!tower->node) return "off";
-    return tower->influence == BOUGH_TOWER_BAK ? "on (Bak)" : "on";
+static void print_loads(const bough_simulation *s) {
+    enum { SHOWN = 12 };
+    int n = s->scene->n_load;
+    const double *g = s->scene->gravity;
+    printf("gravity: [%.6g, %.6g, %.6g] m/s^2\n", g[0], g[1], g[2]);
+    printf("loads: %d\n", n);
+    for (int i = 0; i < n && i < SHOWN; i++) print_load(s->scene, &s->scene->load[i]);
+    if (n > SHOWN) printf("and %d more loads\n", n - SHOWN);
 }
 
-static void print_aero(const bough_simulation *s) {
-    const bough_scene_aero *aero = &s->scene->aero;
-    if (!s->aero) {
-        printf("aero: not built: no aero block\n");
-        return;
-    }
-    long every = bough_master_multiple(1 / aero->rate, s->master->macro_step);
-    printf("aero: built, %d blades of %d stations, %d polars, %.6g Hz (every %ld macro step%s), %s "
-           "between samples, tower influence %s%s%s\n",
-           s->scene->turbine.n_blade, aero->blade.n_station, aero->polars.n_polar, aero->rate,
-           every, every == 1 ? "" : "s", aero->hold == BOUGH_SCENE_LINEAR ? "linear" : "constant",
-           tower_words(&aero->tower),
-           aero->tower.shadow == BOUGH_TOWER_SHADOW_POWLES ? ", Powles shadow" : "",
-           aero->induction.inflow.kind == BOUGH_INFLOW_OYE ? ", dynamic inflow" : "");
-    print_wind(&aero->wind);
+static bough_status print_results(bough_arena *arena, bough_simulation *s,
+                                  const bough_channels *channels) {
+    bough_shape shape;
+    bough_status status = bough_shape_create(arena, s, &shape);
+    if (!bough_is_ok(&status)) return status;
+    bough_forecast_print(bough_run_results(s, channels, bough_forecast_points(&shape)), channels,
+                         stdout);
+    return status;
 }
 
 // -- cost -----------------------------------------------------------------------------------------
@@ -245,7 +249,10 @@ bough_status bough_verb_check(bough_arena *arena, const bough_options *options) 
     printf("title: %s\n", s->scene->title ? s->scene->title : "");
     print_bodies(s);
     print_coupling(s);
-    print_aero(s);
+    bough_check_turbine(s, stdout);
+    print_loads(s);
     printf("channels: %d every %.9g s\n", channels.count, s->scene->simulation.output.interval);
+    status = print_results(arena, s, &channels);
+    if (!bough_is_ok(&status)) return status;
     return print_cost(s, arena);
 }

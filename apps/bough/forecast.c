@@ -11,18 +11,31 @@ static const double frame_head = 500; // bytes of a frame's file beside its poin
 static const double frame_point = 40; // bytes of one of its points
 enum { COLUMN = 18, VERTEX = 96 };    // bytes of a value in channels.out, of a vertex in vertices.h5
 
-static double samples(const bough_run *run, double interval) {
-    return interval > 0 ? run->simulation->master->duration / interval : 0;
+// How often something is recorded: at the start and after every interval.
+static double samples(double duration, double interval) {
+    return interval > 0 ? 1 + floor(duration / interval + 1e-9) : 0;
 }
 
-static double result_bytes(const bough_job *job) {
-    const bough_run *run = &job->run;
-    const bough_scene_output *output = &run->simulation->scene->simulation.output;
-    double points = 0, row = COLUMN * (run->channels.count + 1.0) + (output->binary ? 2 : 0);
-    for (int k = 0; k < job->shape.n_line; k++) points += job->shape.line[k].n_point;
-    return row * samples(run, output->interval) +
-           (frame_head + frame_point * points) * samples(run, output->frames) +
-           VERTEX * points * samples(run, output->vertices);
+bough_forecast bough_run_results(const bough_simulation *simulation, const bough_channels *channels,
+                                 double n_point) {
+    const bough_scene_output *output = &simulation->scene->simulation.output;
+    double duration = simulation->master->duration;
+    double row = COLUMN * (channels->count + 1.0) + 1 + (output->binary ? 2 * channels->count : 0);
+    double rows = 1 + ceil(duration / output->interval - 1e-9); // the end is recorded too
+    return (bough_forecast){
+        rows, row * rows + (frame_head + frame_point * n_point) * samples(duration, output->frames) +
+                  VERTEX * n_point * samples(duration, output->vertices)};
+}
+
+void bough_forecast_print(bough_forecast f, const bough_channels *channels, FILE *stream) {
+    fprintf(stream, "results: %.10g rows of %d columns, %.3g MB\n", f.rows, channels->count + 1,
+            1e-6 * f.bytes);
+}
+
+double bough_forecast_points(const bough_shape *shape) {
+    double n = 0;
+    for (int k = 0; k < shape->n_line; k++) n += shape->line[k].n_point;
+    return n;
 }
 
 // Each macro step evaluates every member at least twice; the shortest of some evaluations [s].
@@ -42,10 +55,11 @@ static double least_step_time(const bough_run *run) {
     return 2 * shortest;
 }
 
-bough_status bough_run_forecast(const bough_job *job) {
+bough_status bough_run_forecast(const bough_job *job, FILE *stream) {
     const bough_run *run = &job->run;
     const bough_master *m = run->simulation->master;
-    double steps = m->duration / m->macro_step, bytes = result_bytes(job);
+    bough_forecast results = bough_run_results(run->simulation, &run->channels, bough_forecast_points(&job->shape));
+    double steps = m->duration / m->macro_step, bytes = results.bytes;
     struct statvfs disk;
     double room = statvfs(job->folder, &disk) == 0
                       ? (double)disk.f_bavail * (double)disk.f_frsize
@@ -56,8 +70,10 @@ bough_status bough_run_forecast(const bough_job *job) {
                           "simulation.output.interval or shorter duration",
                           1e-9 * bytes, job->folder, 1e-9 * room);
     }
+    bough_forecast_print(results, &run->channels, stream);
+    fflush(stream);
     if (steps <= long_run && bytes <= much_data) return bough_ok();
-    fprintf(stderr, "bough: %.3g macro steps, more than %.2g hours; results of about %.2g GB\n",
-            steps, steps * least_step_time(run) / 3600, 1e-9 * bytes);
+    fprintf(stderr, "bough: %.3g macro steps, more than %.2g hours\n", steps,
+            steps * least_step_time(run) / 3600);
     return bough_ok();
 }

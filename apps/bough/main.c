@@ -50,6 +50,7 @@ const bough_verb bough_verbs[] = {
      "explains a command, the keys of a scene or the coupling schemes",
      bough_verb_help},
     {"--help", {BOUGH_OPERAND_OPTIONAL, "TOPIC", 0}, "the same", bough_verb_help},
+    {"-h", {BOUGH_OPERAND_OPTIONAL, "TOPIC", 0}, "the same", bough_verb_help},
     {"--version", {BOUGH_OPERAND_NONE, NULL, 0}, "tells the version", bough_verb_version},
     {0},
 };

@@ -31,7 +31,8 @@ static void print_head(const rod_modes *x) {
     printf("rod %s: %d segments, %.9g m, root held", m->name, m->n, m->span[m->n]);
     if (x->turning.speed != 0) {
         bough_vec3 a = x->turning.axis;
-        printf(", turning at %.9g rpm about (%.6g, %.6g, %.6g); gravity in the mean of a turn",
+        printf(", turning at %.9g rpm about (%.6g, %.6g, %.6g), seen from the rotating frame; gravity "
+               "in the mean of a turn",
                x->turning.speed * 30 / BOUGH_PI, a.x, a.y, a.z);
     }
     printf("\n%4s %12s %12s %11s  %-8s %7s %7s %7s %7s\n", "mode", "frequency", "damped", "damping",

@@ -26,14 +26,30 @@ static const char *body_of(const bough_simulation *s, const bough_scene_mode *mo
     return mode->blades ? "blades" : s->scene->body[mode->body].name;
 }
 
+// Whether nothing but inertia holds the rotor's joint.
+static bool rotor_is_free(const bough_simulation *s) {
+    if (s->scene->turbine.node == NULL) return false;
+    const bough_scene_joint *joint = &s->scene->body[s->scene->turbine.rotor].joint;
+    return joint->spring.stiffness == 0 && joint->motion.node == NULL;
+}
+
+// All blades swing alike in their plane, or what they hang on turns: against each other where the
+// rotor is free, else against what holds it.
+static bool turns_rotor(const bough_scene_mode *mode) {
+    enum { TURN = 3 };
+    if (mode->pattern != BOUGH_PATTERN_COLLECTIVE) return false;
+    return mode->direction == (mode->blades ? BOUGH_ROD_EDGE : TURN);
+}
+
 // -- table ----------------------------------------------------------------------------------------
 
 static void print_head(const bough_simulation *s, const bough_vibration *v) {
     printf("whole scene: %d states, about %s", s->master->assembly->n_state,
            s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM ? "equilibrium" : "its initial state");
     if (v->spin != 0) printf(", rotor at %.6g rpm", v->spin * 30 / BOUGH_PI);
-    if (v->frozen) printf(", azimuth frozen");
+    if (v->frozen) printf(", azimuth frozen: blades as seen from the rotating frame");
     if (v->spin != 0 && v->n_blade > 0) printf(", seen by an observer at rest");
+    if (rotor_is_free(s)) printf(", rotor free to turn");
     if (s->aero) printf("; the air's forces do not follow");
     printf("\n%4s %12s %12s %11s  %-12s %-8s %-12s %8s %8s %8s\n", "mode", "frequency", "damped",
            "damping", "body", "shape", "pattern", "collect.", "forward", "backward");
@@ -48,6 +64,7 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
                m->damped_frequency, 100 * m->damping, body_of(s, m), shape_of(s, m),
                bough_pattern_names[m->pattern]);
         for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
+        if (rotor_is_free(s) && turns_rotor(m)) printf("  free rotor");
         putchar('\n');
     }
     if (v->found < s->scene->modes.count) printf("no more modes found\n");

@@ -11,9 +11,9 @@ bough_status bough_open_scene(bough_arena *arena, const bough_options *options,
         bough_errors_print(&errors, stderr);
         status.message[0] = '\0';
     }
-    if (bough_is_ok(&status) && options->threads > 0) {
-        (*scene)->simulation.threads = options->threads;
-    }
+    if (!bough_is_ok(&status)) return status;
+    bough_scene_warn(*scene, stderr);
+    if (options->threads > 0) (*scene)->simulation.threads = options->threads;
     return status;
 }
 

@@ -103,7 +103,7 @@ static bough_status open_results(bough_job *job) {
                               .kept = job->rows};
     status = bough_recorder_open(job->arena, &def, &job->recorder);
     if (bough_is_ok(&status)) status = open_frames(job);
-    return bough_is_ok(&status) ? bough_run_forecast(job) : status;
+    return bough_is_ok(&status) ? bough_run_forecast(job, stdout) : status;
 }
 
 bough_status bough_job_build(bough_job *job) {
@@ -142,7 +142,10 @@ static bough_status close_results(bough_job *job) {
     bool whole = bough_is_ok(&status) && bough_is_ok(&job->run.outcome);
     if (whole && job->vertices) status = bough_vertices_finish(job->vertices);
     if (bough_is_ok(&status)) status = bough_folder_remove(job->folder, "channels.outb");
-    if (bough_is_ok(&status) && job->frames) status = bough_frames_finish(job->frames);
+    if (bough_is_ok(&status)) status = bough_folder_remove(job->folder, "report.html");
+    if (bough_is_ok(&status)) {
+        status = job->frames ? bough_frames_finish(job->frames) : bough_frames_remove(job->folder);
+    }
     if (bough_is_ok(&status)) status = write_binary(job);
     if (bough_is_ok(&job->run.outcome)) job->run.outcome = status;
     status = bough_run_summarise(job);

@@ -188,11 +188,16 @@ static void put_induction(bough_openfast *o) {
             truth(bough_deck_flag_or(a, "TanInd", true)),
             truth(bough_deck_flag_or(a, "AIDrag", true)), pitt ? "pitt-peters" : "none",
             balance == 1 ? "buhl" : "smooth");
+    bool momentum = bough_deck_flag_or(a, "SkewMomCorr", false);
+    if (momentum && balance != 1) fputs(", skewed_momentum: true", file);
     if (oye) fputs(", inflow: oye", file);
     if (oye && dynamic != 2) {
         fprintf(file, ", inflow_time: %.10g s", bough_deck_number(a, "tau1_const"));
     }
     fputs("}\n", file);
+    if (momentum && balance == 1) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "AeroDyn's SkewMomCorr: of BEM_Mod 2 only");
+    }
     if (bough_deck_flag_or(a, "AIDrag", true) != bough_deck_flag_or(a, "TIDrag", true)) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
                          "TIDrag: drag in the tangential induction as "
@@ -292,7 +297,7 @@ void bough_openfast_aero(bough_openfast *o) {
     put_stall(o);
     put_tower(o);
     static const char *const left[] = {"CavitCheck",  "Buoyancy",    "CompAA", "TFinAero",
-                                       "NacelleDrag", "SkewMomCorr", "SectAvg"};
+                                       "NacelleDrag", "SectAvg"};
     for (size_t i = 0; i < sizeof left / sizeof *left; i++) {
         if (bough_deck_flag_or(a, left[i], false)) {
             bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "AeroDyn's %s", left[i]);

@@ -243,7 +243,7 @@ static void put_law(bough_openfast *o) {
     }
     fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
             "control:\n  kind: variable-speed\n  rate: 50 Hz\n  gear_ratio: %.10g\n"
-            "  efficiency: %.10g\n  law:\n    corner: 100 rad/s\n    cut_in: 0\n    optimal_from: 1e-3 rad/s\n"
+            "  efficiency: %.10g\n  pitch: false\n  law:\n    corner: 100 rad/s\n    cut_in: 0\n    optimal_from: 1e-3 rad/s\n"
             "    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n    rated_power: %.10g\n"
             "    slip: %.10g\n    most_torque: %.10g\n    torque_rate: 1e9\n    power_pitch: 100 rad\n",
             bough_deck_number(o->elasto, "GBRatio"), bough_deck_number(s, "GenEff") / 100, gain,

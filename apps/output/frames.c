@@ -1,6 +1,8 @@
 #include "apps/output/frames.h"
 
+#include <dirent.h>
 #include <errno.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -108,7 +110,31 @@ bough_status bough_frames_keep(bough_frames *f, bough_kept *kept) {
     return bough_folder_keep(f->list_path, f->list, &kept->bytes);
 }
 
+// Removes the frames from number n on: files of exactly the names that are given above.
+static bough_status remove_from(const char *folder, int n) {
+    char path[BOUGH_PATH_MAX], name[32];
+    bough_status status = bough_folder_path(folder, "frames", path);
+    DIR *directory = bough_is_ok(&status) ? opendir(path) : NULL;
+    if (!directory) return status;
+    for (const struct dirent *entry; bough_is_ok(&status) && (entry = readdir(directory)) != NULL;) {
+        int number = atoi(entry->d_name);
+        snprintf(name, sizeof name, "%06d.vtp", number);
+        if (number >= n && strcmp(name, entry->d_name) == 0)
+            status = bough_folder_remove(path, name);
+    }
+    closedir(directory);
+    if (n == 0) rmdir(path); // where nothing else is in it
+    return status;
+}
+
+bough_status bough_frames_remove(const char *folder) {
+    bough_status status = bough_folder_remove(folder, "frames.pvd");
+    return bough_is_ok(&status) ? remove_from(folder, 0) : status;
+}
+
 bough_status bough_frames_finish(bough_frames *f) {
+    bough_status status = remove_from(f->def.folder, f->n_frame);
+    if (!bough_is_ok(&status)) return status;
     fprintf(f->list, "</Collection>\n</VTKFile>\n");
     FILE *list = f->list;
     f->list = NULL;

@@ -34,7 +34,10 @@ bough_status bough_frames_sample(bough_frames *frames, double t);
 // Brings the list of the frames so far to the disk and tells how many they are.
 bough_status bough_frames_keep(bough_frames *frames, bough_kept *kept);
 
-// Writes frames.pvd. Frames of an earlier run that this one has not replaced are not listed.
+// Writes frames.pvd and removes the frames of an earlier run that this one has not replaced.
 bough_status bough_frames_finish(bough_frames *frames);
+
+// Removes all frames of an earlier run from its folder, and their list.
+bough_status bough_frames_remove(const char *folder);
 
 #endif

@@ -192,14 +192,15 @@ typedef enum bough_scene_load_place {
 } bough_scene_load_place;
 
 // On a joint, a rod or a rigid body. Factor in time: 0 before ramp[0], 1 after ramp[1], linear
-// between; {0, 0}: always 1.
+// between, a jump where they are equal; {0, 0}: always 1.
 typedef struct bough_scene_load {
     const bough_node *node;
     const char *joint_name; // NULL: the load acts on a body
     int joint;              // index of the body that the joint carries
     double amount;          // torque [N m] of a revolute joint, force [N] of a prismatic one
     int n_time;             // rows of a table in place of the amount, 0: none
-    double *times, *values; // (n_time) [s], [N m] or [N]; linear between, held before and after
+    double *times, *values; // (n_time) [s], [N m] or [N], on a body factors; linear between, held
+                            // before and after
     const char *body_name;  // NULL: the load acts on a joint
     int body;               // index of a body
     int place;              // bough_scene_load_place
@@ -207,9 +208,10 @@ typedef struct bough_scene_load {
     double span[2];         // AT_SPAN: the first; ALONG: from, to [m]
     double force[3];        // [N]; ALONG: [N/m]
     double moment[3];       // [N m]; ALONG: [N m/m]
+    double end_force[3], end_moment[3]; // ALONG: at span[1], linear between; those above when not given
     int frame;              // bough_scene_load_frame
     double ramp[2];         // [s]
-    double point[3];        // on a rigid body: in its frame [m]; the values are then factors
+    double point[3];        // on a rigid body: in its frame [m]
 } bough_scene_load;
 
 // Springs and dampers along and about the axes of one body or the ground at a point of it, against
@@ -426,6 +428,7 @@ typedef struct bough_scene_control {
     double rate;            // samples per second [Hz]
     double gear_ratio;      // generator speed over rotor speed
     double efficiency;      // electrical over mechanical power
+    bool pitch;             // of the blades too
     const char *library, *input; // BLADED: paths; no input: ""
     int n_event;
     bough_scene_event *event; // (n_event)
@@ -482,6 +485,9 @@ typedef struct bough_scene {
 // found is added to `errors`; then the status is BOUGH_INVALID and *scene is NULL.
 bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets,
                               int n_set, bough_errors *errors, bough_scene **scene);
+
+// Writes a line for everything that is valid but seldom meant: an inertia that no mass has.
+void bough_scene_warn(const bough_scene *scene, FILE *stream);
 
 // The sub-solver of a flexible body: its own or the simulation's.
 const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const bough_scene_body *body);

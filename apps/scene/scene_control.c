@@ -102,6 +102,8 @@ static const bough_key control_keys[] = {
     {.name = "efficiency", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.944",
      AT(efficiency), .example = "0.965",
      .help = "electrical power over the generator's mechanical one"},
+    {.name = "pitch", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(pitch),
+     .help = "pitch the blades, which need joints that can; false: torque only"},
     {.name = "library", .kind = BOUGH_KEY_TEXT, .required = true, .when_key = "kind",
      .when = "bladed", AT(library), .example = "libdiscon.so",
      .help = "file relative to the scene"},

@@ -28,6 +28,9 @@ void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node,
 void bough_scene_read_load_factor(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
 
+// Whether the symmetric matrix xx yy zz xy xz yz is not below zero about any axis.
+bool bough_scene_semidefinite(const double v[6]);
+
 // Checks within one mapping or file; `item` is the struct that was read.
 void bough_scene_check_structure(bough_schema_reader *r, void *item);
 void bough_scene_check_rod(bough_schema_reader *r, void *item);

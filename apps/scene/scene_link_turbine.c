@@ -188,6 +188,12 @@ void bough_link_control(bough_schema_reader *r, bough_scene *s) {
     }
     for (int k = 0; k < s->turbine.n_blade && s->turbine.blade && s->turbine.blade[0] >= 0; k++) {
         if (s->turbine.blade[k] < 0) return;
+        if (k == 0 && s->control.pitch && !has_pitch_joint(&s->body[s->turbine.blade[0]])) {
+            bough_schema_error(r, s->control.node, "",
+                               "the joint of '%s' cannot pitch it: expected 'kind: revolute, axis: "
+                               "z' with a 'motion', or 'pitch: false' here",
+                               s->turbine.blade_name[0]);
+        }
         const bough_scene_body *first = &s->body[s->turbine.blade[0]];
         const bough_scene_body *b = &s->body[s->turbine.blade[k]];
         if (has_pitch_joint(b) != has_pitch_joint(first)) {

@@ -153,10 +153,22 @@ static void refuse_keys(bough_schema_reader *r, const bough_node *load, const ch
 }
 
 static void check_joint_keys(bough_schema_reader *r, const bough_node *load) {
-    static const char *const of_rods[] = {"at",     "along", "moment", "frame",
-                                           "factor", "point", NULL};
+    static const char *const of_rods[] = {"at",     "along", "moment",    "frame",
+                                           "factor", "point", "end_force", "end_moment", NULL};
     check_either(r, load, "torque", "force");
     refuse_keys(r, load, of_rods, "body");
+}
+
+// Where an end is not given it is as the start.
+static void read_ends(bough_schema_reader *r, bough_scene_load *load) {
+    static const char *const of_lines[] = {"end_force", "end_moment", NULL};
+    if (!is_spread(load)) refuse_keys(r, load->node, of_lines, "along");
+    if (bough_node_find(load->node, of_lines[0]) == NULL) {
+        memcpy(load->end_force, load->force, sizeof load->force);
+    }
+    if (bough_node_find(load->node, of_lines[1]) == NULL) {
+        memcpy(load->end_moment, load->moment, sizeof load->moment);
+    }
 }
 
 static void check_body_keys(bough_schema_reader *r, bough_scene_load *load) {
@@ -166,10 +178,17 @@ static void check_body_keys(bough_schema_reader *r, bough_scene_load *load) {
         !check_either(r, load->node, "at", "along")) {
         return;
     }
+    const bough_node *ramp = bough_node_find(load->node, "ramp");
+    if (ramp != NULL && load->n_time > 0) {
+        bough_schema_error(r, ramp, "ramp", "only used without 'factor'");
+    }
     if (bough_node_find(load->node, "force") == NULL &&
-        bough_node_find(load->node, "moment") == NULL) {
+        bough_node_find(load->node, "moment") == NULL &&
+        bough_node_find(load->node, "end_force") == NULL &&
+        bough_node_find(load->node, "end_moment") == NULL) {
         bough_schema_error(r, load->node, "", "expected a 'force' or a 'moment' or both");
     }
+    read_ends(r, load);
     if (!is_spread(load)) return;
     load->place = BOUGH_SCENE_ALONG;
     if (load->span[1] > load->span[0]) return;
@@ -247,22 +266,14 @@ static void check_rigid_load(bough_schema_reader *r, const bough_scene_load *loa
         bough_schema_error(r, given, of_rods[k], "'%s' is rigid: give the 'point'",
                            load->body_name);
     }
-    const bough_node *ramp = bough_node_find(load->node, "ramp");
-    if (ramp != NULL && load->n_time > 0) {
-        bough_schema_error(r, ramp, "ramp", "only used without 'factor'");
-    }
     if (load->frame != BOUGH_SCENE_LOAD_FOLLOWER) return;
     bough_schema_error(r, bough_node_find(load->node, "frame"), "frame",
                        "'%s' is rigid: 'frame: body' turns with it", load->body_name);
 }
 
 static void refuse_rigid_keys(bough_schema_reader *r, const bough_scene_load *load) {
-    static const char *const of_rigid[] = {"point", "factor"};
-    for (int k = 0; k < 2; k++) {
-        const bough_node *given = bough_node_find(load->node, of_rigid[k]);
-        if (given == NULL) continue;
-        bough_schema_error(r, given, of_rigid[k], "only used with a rigid body");
-    }
+    const bough_node *given = bough_node_find(load->node, "point");
+    if (given != NULL) bough_schema_error(r, given, "point", "only used with a rigid body");
 }
 
 void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scene,

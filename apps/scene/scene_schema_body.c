@@ -225,7 +225,7 @@ static const bough_key body_keys[] = {
     {.name = "pitch", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
      AT(pitch), .example = "6.5 deg",
      .help = "last rotation of a body with a rod, about its z by -pitch"},
-    {.name = "mass", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_MASS, .range = ">= 0",
+    {.name = "mass", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_MASS, .range = "[0, 1e12]",
      .fallback = "0", .when_key = "fidelity", .when = "rigid", AT(mass),
      .example = "240 t", .help = "of a rigid body without a rod"},
     {.name = "centre_of_mass", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,

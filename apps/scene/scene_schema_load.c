@@ -29,10 +29,17 @@ static const bough_key load_keys[] = {
     {.name = "moment", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_moment,
      .form = "3 numbers in N m, in N m/m with 'along'", .offset = 0, .example = "[0, 0, 5 kN m]",
      .help = "on the body"},
+    {.name = "end_force", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LINE_FORCE,
+     .fallback = ZERO3, AT(end_force), .example = "[2 kN/m, 0, 0]",
+     .help = "with 'along': the force at its end, when it is not that at its start; linear between"},
+    {.name = "end_moment", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LINE_MOMENT,
+     .fallback = ZERO3, AT(end_moment), .example = "[0, 0, 100]",
+     .help = "the same of the moment"},
     {.name = "factor", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_factor,
      .form = "{times: [...], values: [...]}", .offset = 0,
      .example = "{times: [0, 1, 2], values: [0, 1, 0]}",
-     .help = "on a rigid body, in place of a ramp: by what the load is multiplied"},
+     .help = "on a body, in place of a ramp: by what the load is multiplied, linear between the "
+             "times and held outside"},
     {.name = "frame", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("ground", "body", "follower"),
      .fallback = "ground", AT(frame),
      .help = "axes of a body's load: ground (not of rods whose root moves), body, or follower: a "

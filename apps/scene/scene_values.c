@@ -164,8 +164,7 @@ void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *nod
     }
 }
 
-// Not below zero about any axis; all zero is a point mass.
-static bool is_semidefinite(const double v[6]) {
+bool bough_scene_semidefinite(const double v[6]) {
     double a = v[0], b = v[1], c = v[2], d = v[3], e = v[4], f = v[5];
     double t = 1e-12 * (fabs(a) + fabs(b) + fabs(c));
     double determinant = a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e);
@@ -173,7 +172,9 @@ static bool is_semidefinite(const double v[6]) {
            b * c - f * f >= -t * t && determinant >= -t * t * t;
 }
 
-// field: the six entries
+static const double most_inertia = 1e18; // [kg m²]
+
+// field: the six entries; all zero is a point mass
 void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, void *field) {
     double v[6] = {0}, *inertia = field;
     const char *what = "a list [Ixx, Iyy, Izz] or with Ixy, Ixz, Iyz";
@@ -182,7 +183,9 @@ void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, vo
     memcpy(inertia, v, sizeof v);
     if (n != 3 && n != 6) {
         bough_schema_error(r, node, "", "expected %s, got %d items", what, n);
-    } else if (!is_semidefinite(v)) {
+    } else if (fmax(fmax(v[0], v[1]), v[2]) > most_inertia) {
+        bough_schema_error(r, node, "", "must be at most %g kg m^2", most_inertia);
+    } else if (!bough_scene_semidefinite(v)) {
         bough_schema_error(r, node, "", "the inertia matrix must not be negative about any axis");
     }
 }

@@ -1,6 +1,7 @@
 #include "apps/simulation/aero_link.h"
 
 #include "core/base.h"
+#include "core/force.h"
 #include "flexbody/rod_load.h"
 
 #include <math.h>
@@ -283,11 +284,6 @@ static void gather_blade(bough_aero_link *l, int b) {
 // the step to the sample itself and 5/12 for the period before, times 6.
 static const double debt = 5.5;
 
-static double ramp_factor(const double ramp[2], double t) {
-    if (ramp[1] <= ramp[0]) return 1;
-    return bough_clamp((t - ramp[0]) / (ramp[1] - ramp[0]), 0, 1);
-}
-
 // The signal of fresh loads until the next sample. Linear: continuous, from what was reached to the value
 // extrapolated from the last two samples. In between it runs above or below the straight line by what
 // the last extrapolation has left out: 5/12 of its error times the span, by Adams' formula with the
@@ -399,7 +395,9 @@ static void load_blade(void *self, int b) {
 static void evaluate(void *self, double t) {
     bough_aero_link *l = self;
     bough_pool *pool = l->simulation->pool;
-    l->factor = ramp_factor(l->simulation->scene->aero.ramp, t);
+    const double *ramp = l->simulation->scene->aero.ramp;
+    bool jump = ramp[1] <= ramp[0]; // which a sample at its time follows, up to rounding
+    l->factor = bough_ramp_factor(ramp[0], ramp[1], jump ? t * (1 + 1e-12) : t);
     gather_rotor(l, t);
     bough_pool_run_turns(pool, l->n_blade, approach_blade, l);
     bough_rotor_survey(l->rotor, &l->motion, &l->data);
@@ -435,7 +433,7 @@ void bough_aero_link_hold(bough_aero_link *link, double t) {
 }
 
 bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
-    return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample, evaluate};
+    return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample, evaluate, NULL};
 }
 
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link) { return link->rotor; }

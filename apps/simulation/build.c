@@ -4,6 +4,7 @@
 #include "apps/simulation/aero_link.h"
 #include "apps/simulation/control_link.h"
 #include "apps/simulation/drag_link.h"
+#include "apps/simulation/jump_link.h"
 #include "apps/simulation/load_link.h"
 #include "apps/simulation/equilibrium.h"
 #include "apps/simulation/validity.h"
@@ -21,9 +22,8 @@ static bough_status out_of_memory(void) {
 // -- loads and times ------------------------------------------------------------------------------
 
 static void add_ramp(bough_builder *b, const double ramp[2]) {
-    if (ramp[1] <= ramp[0]) return;
-    b->event[b->n_event++] = ramp[0];
-    b->event[b->n_event++] = ramp[1];
+    if (ramp[1] > 0) b->event[b->n_event++] = ramp[0];
+    if (ramp[1] > ramp[0]) b->event[b->n_event++] = ramp[1];
 }
 
 static void add_motion(bough_builder *b, const bough_scene_motion *motion) {
@@ -202,7 +202,7 @@ static bough_status build_master(bough_builder *b) {
     bough_simulation *s = b->s;
     const bough_scene_simulation *sim = &b->scene->simulation;
     bough_master_def def = bough_master_def_default();
-    bough_sampled_load load[3];
+    bough_sampled_load load[4];
     def.assembly = (bough_assembly_def){s->n_rod + 1, b->member, b->n_connection,
                                         b->connection};
     def.scheme = scheme_options(b->scene);
@@ -218,6 +218,7 @@ static bough_status build_master(bough_builder *b) {
     }
     if (s->drag != NULL) load[def.n_load++] = bough_drag_link_load(s->drag);
     if (s->control != NULL) load[def.n_load++] = bough_control_link_load(s->control);
+    if (s->jump != NULL) load[def.n_load++] = bough_jump_link_load(s->jump, sim->macro_step);
     def.load = load;
     if (sim->initial == BOUGH_SCENE_IN_EQUILIBRIUM) {
         bough_status status = find_equilibrium(&def.assembly, s);
@@ -260,6 +261,7 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
     if (bough_is_ok(&status)) connect(&b);
     if (bough_is_ok(&status)) bough_simulation_update(b.s);
     if (bough_is_ok(&status)) status = bough_load_link_build(arena, b.s);
+    if (bough_is_ok(&status)) status = bough_jump_link_build(arena, b.s);
     if (bough_is_ok(&status) && scene->aero.node != NULL) {
         status = bough_aero_link_build(arena, b.s, &b.s->aero);
     }

@@ -41,6 +41,7 @@ typedef struct bough_simulation {
     struct bough_aero_link *aero; // NULL without an aero block
     struct bough_drag_link *drag; // NULL without drag of tower and hub
     struct bough_control_link *control; // NULL without a control block
+    struct bough_jump_link *jump;       // NULL without loads that jump
     struct bough_validity *validity;    // limits of the models that the run has passed
     bough_master *master;
     bough_pool *pool; // NULL: one thread

@@ -23,7 +23,7 @@ struct bough_control_link {
     const bough_scene_control *control;
     bough_discon *discon; // NULL: the law
     int load, n_blade;
-    bool steers; // the blades have pitch joints
+    bool steers; // the blades are pitched
     bough_events *events; // NULL: none
     bough_event_state event[BOUGH_MOST_EVENTS]; // as far as there are events
     memory now;
@@ -48,7 +48,7 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
     l->control = &scene->control;
     l->load = load;
     l->n_blade = scene->turbine.n_blade < BLADES ? scene->turbine.n_blade : BLADES;
-    l->steers = scene->body[scene->turbine.blade[0]].joint.motion.node != NULL;
+    l->steers = scene->control.pitch && scene->body[scene->turbine.blade[0]].joint.motion.node != NULL;
     for (int b = 0; b < l->n_blade && l->steers; b++)
         l->now.pitch_joint[b] = joint_point(simulation, blade_body(l, b));
     *link = l;
@@ -154,7 +154,7 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
 }
 
 bough_sampled_load bough_control_link_load(bough_control_link *link) {
-    return (bough_sampled_load){1 / link->control->rate, link, sample, NULL};
+    return (bough_sampled_load){1 / link->control->rate, link, sample, NULL, NULL};
 }
 
 void bough_control_link_generator(const bough_control_link *l, double *speed, double *torque,

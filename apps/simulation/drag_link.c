@@ -136,7 +136,7 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
 }
 
 bough_sampled_load bough_drag_link_load(bough_drag_link *link) {
-    return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample, NULL};
+    return (bough_sampled_load){1 / link->simulation->scene->aero.rate, link, sample, NULL, NULL};
 }
 
 void bough_drag_link_hold(bough_drag_link *link, double t) {

@@ -2,6 +2,7 @@
 
 #include "apps/simulation/aero_link.h"
 #include "apps/simulation/drag_link.h"
+#include "apps/simulation/jump_link.h"
 #include "cosim/equilibrium.h"
 #include "flexbody/rod_move.h"
 
@@ -212,6 +213,7 @@ static bough_status balance_members(bough_arena *arena, bough_simulation *s,
     bough_status status = bough_coupled_create(arena, assembly, NULL, &coupled);
     if (!bough_is_ok(&status)) return status;
     def.time = time;
+    if (s->jump != NULL) bough_jump_link_begin(s->jump, time);
     status = bough_coupled_hold(arena, coupled, bough_equilibrium_held(s->tree, true, row), row);
     if (!bough_is_ok(&status)) return status;
     bough_equilibrium_state(assembly, state);

@@ -17,9 +17,8 @@ static bough_rod_reach reach_of(const bough_scene_load *load, const bough_rod_mo
 
 // Force and moment in the axes that the rod wants.
 static void resolve(const bough_simulation *s, const bough_beam *beam, const bough_scene_load *load,
-                    double wrench[6]) {
-    bough_vec3 force = {load->force[0], load->force[1], load->force[2]};
-    bough_vec3 moment = {load->moment[0], load->moment[1], load->moment[2]};
+                    const double *f, const double *l, double wrench[6]) {
+    bough_vec3 force = {f[0], f[1], f[2]}, moment = {l[0], l[1], l[2]};
     if (load->frame == BOUGH_SCENE_LOAD_GROUND) {
         bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
         force = bough_mat3_tmul(r, force);
@@ -37,12 +36,17 @@ bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s) {
         const bough_beam *beam = bough_simulation_beam(s, load->body);
         const bough_rod_model *m = bough_beam_mesh(beam);
         bool follower = load->frame == BOUGH_SCENE_LOAD_FOLLOWER;
-        bough_rod_ramped_load *to = bough_rod_loads_ramped(bough_beam_loads(beam), arena, m,
-                                                           follower, load->ramp);
+        bough_rod_loads *loads = bough_beam_loads(beam);
+        bough_rod_ramped_load *to =
+            load->n_time > 0 ? bough_rod_loads_tabled(loads, arena, m, follower, load->n_time,
+                                                      load->times, load->values)
+                             : bough_rod_loads_ramped(loads, arena, m, follower, load->ramp);
         if (to == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "loads: out of memory");
-        double wrench[6];
-        resolve(s, beam, load, wrench);
-        bough_rod_lump(m, reach_of(load, m), wrench, to);
+        double wrench[6], end[6];
+        resolve(s, beam, load, load->force, load->moment, wrench);
+        resolve(s, beam, load, load->end_force, load->end_moment, end);
+        bool tapered = memcmp(wrench, end, sizeof end) != 0;
+        bough_rod_lump(m, reach_of(load, m), wrench, tapered ? end : NULL, to);
         if (beam->modal != NULL) bough_rod_lump_line(m, to);
     }
     return bough_ok();

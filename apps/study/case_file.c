@@ -121,13 +121,13 @@ static bool take_channel(FILE *f, const bough_load_set *set, bough_channel_count
 static bool take_head(FILE *f, const bough_load_set *set, int number, bough_status *outcome) {
     uint64_t fingerprint;
     int code, found;
-    char message[400] = "";
+    char message[BOUGH_MESSAGE] = "";
     if (fscanf(f, "case %d fingerprint %" SCNx64 " outcome %d", &found, &fingerprint, &code) != 3)
         return false;
     if (!fgets(message, sizeof message, f)) return false;
     message[strcspn(message, "\n")] = '\0';
     *outcome = code == BOUGH_OK ? bough_ok()
-                                : bough_fail((bough_code)code, "%.375s", message + 1);
+                                : bough_fail((bough_code)code, "%s", message + 1);
     return found == number + 1 && fingerprint == set->cases[number].fingerprint;
 }
 

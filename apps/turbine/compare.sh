@@ -46,6 +46,7 @@ function continued(angle, before,   turn) {
 
 function prepare(   k, angle) {
     row[1] = row[2] = 1
+    if (!("Azimuth_[deg]" in column)) fail(results " has no channel Azimuth in deg: no rotor'\''s run")
     angle = column["Azimuth_[deg]"]
     for (k = 1; k <= rows; k++) {
         abscissa[1, k] = value[k, 1]
@@ -87,6 +88,7 @@ END {
         "reference", "off %", "peak", "reference", "off %", "in time %", "at s", "in angle %"
     for (i = 3; i <= names; i++) {
         if (!(title[i] in column)) continue
+        shared++
         name = title[i]; sub(/_\[.*/, "", name); delete wanted[name]
         of_mean = averaged ? percent(own_mean[i] - mean[i], mean[i]) : 999
         of_peak = percent(own_peak[i] - peak[i], peak[i])
@@ -97,6 +99,10 @@ END {
             own_mean[i] / n, mean[i] / n, of_mean, own_peak[i], peak[i], of_peak, in_time, when[i],
             in_angle, judge(name, "mean", of_mean), judge(name, "peak", of_peak),
             judge(name, "history", in_angle)
+    }
+    if (!shared) {
+        print "nothing to compare: " results " has none of the channels of " ARGV[1] ", by name and unit"
+        exit 1
     }
     for (name in wanted) { print "missing: " name; code = 1 }
     if (missing) { print "the run ends " missing " rows before the reference"; code = 1 }
