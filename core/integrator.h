@@ -8,7 +8,33 @@
 #include "core/arena.h"
 #include "core/snapshot.h"
 #include "core/status.h"
-#include "core/subsystem.h"
+
+#include <stdbool.h>
+
+// Work done so far, for the summary.
+typedef struct bough_statistics {
+    long steps, failed_steps, derivatives, jacobians, factorisations, iterations, restarts;
+} bough_statistics;
+
+static inline void bough_statistics_add(bough_statistics *sum, const bough_statistics *part) {
+    sum->steps += part->steps;
+    sum->failed_steps += part->failed_steps;
+    sum->derivatives += part->derivatives;
+    sum->jacobians += part->jacobians;
+    sum->factorisations += part->factorisations;
+    sum->iterations += part->iterations;
+    sum->restarts += part->restarts;
+}
+
+static inline void bough_statistics_subtract(bough_statistics *from, const bough_statistics *part) {
+    from->steps -= part->steps;
+    from->failed_steps -= part->failed_steps;
+    from->derivatives -= part->derivatives;
+    from->jacobians -= part->jacobians;
+    from->factorisations -= part->factorisations;
+    from->iterations -= part->iterations;
+    from->restarts -= part->restarts;
+}
 
 // ẏ = f(t, y). Callbacks return false where there is no finite value.
 typedef struct bough_ode {

@@ -14,8 +14,8 @@ static void take_members(bough_assembly *a, bough_arena *arena, const bough_asse
     a->order = bough_arena_take(arena, n * sizeof(int));
     if (bough_arena_exhausted(arena)) return;
     for (int i = 0; i < def->n_member; i++) {
-        const bough_subsystem *s = def->member[i].subsystem;
-        a->member[i] = s;
+        a->member[i] = def->member[i].member;
+        const bough_system *s = &a->member[i]->system;
         a->stage[i] = def->member[i].stage;
         if (a->stage[i] >= a->n_stage) a->n_stage = a->stage[i] + 1;
         a->state_offset[i + 1] = a->state_offset[i] + s->n_state;
@@ -30,19 +30,19 @@ static void take_members(bough_assembly *a, bough_arena *arena, const bough_asse
 static bool in_range(const bough_assembly *a, const bough_connection *c) {
     return c->from >= 0 && c->from < a->n_member && c->to >= 0 && c->to < a->n_member &&
            c->count > 0 && c->from_offset >= 0 && c->to_offset >= 0 &&
-           c->from_offset + c->count <= a->member[c->from]->n_output &&
-           c->to_offset + c->count <= a->member[c->to]->n_input;
+           c->from_offset + c->count <= a->member[c->from]->system.n_output &&
+           c->to_offset + c->count <= a->member[c->to]->system.n_input;
 }
 
 static bough_status connect(bough_assembly *a, const bough_connection *c) {
     if (!in_range(a, c)) {
-        return bough_fail(BOUGH_INVALID, "a connection leaves the ports of its subsystems");
+        return bough_fail(BOUGH_INVALID, "a connection leaves the ports of its members");
     }
     for (int j = 0; j < c->count; j++) {
         int input = a->input_offset[c->to] + c->to_offset + j;
         if (a->source[input] >= 0) {
             return bough_fail(BOUGH_INVALID, "%s: input %d is connected twice",
-                              a->member[c->to]->name, c->to_offset + j);
+                              a->member[c->to]->system.name, c->to_offset + j);
         }
         a->source[input] = a->output_offset[c->from] + c->from_offset + j;
         a->source_member[input] = c->from;
@@ -61,7 +61,7 @@ static bough_status connect_all(bough_assembly *a, const bough_assembly_def *def
         for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
             if (a->source[j] < 0) {
                 return bough_fail(BOUGH_INVALID, "%s: input %d is not connected",
-                                  a->member[i]->name, j - a->input_offset[i]);
+                                  a->member[i]->system.name, j - a->input_offset[i]);
             }
         }
     }
@@ -109,12 +109,13 @@ static void pair_interfaces(bough_assembly *a, const bough_assembly_def *def) {
     }
 }
 
-static bool probe_feedthrough(const bough_subsystem *s, double *input, double *output) {
+static bool probe_feedthrough(const bough_member *m, double *input, double *output) {
+    const bough_system *s = &m->system;
     bool found = false;
     double *direction = input + s->n_input;
     for (int j = 0; j < s->n_input; j++) {
         direction[j] = 1;
-        s->ops->output_tangent(s->self, *s->time, s->state, input, NULL, direction, output);
+        s->ops->output_tangent(s->self, m->time, m->state, input, NULL, direction, output);
         direction[j] = 0;
         for (int k = 0; k < s->n_output; k++) found = found || output[k] != 0;
     }
@@ -186,9 +187,9 @@ void bough_assembly_gather(const bough_assembly *a, int member, const double *ou
 void bough_assembly_outputs(const bough_assembly *a, double t, double *output, double *input) {
     for (int n = 0; n < a->n_member; n++) {
         int i = a->order[n];
-        const bough_subsystem *s = a->member[i];
+        const bough_system *s = &a->member[i]->system;
         bough_assembly_gather(a, i, output, input);
-        s->ops->output(s->self, t, s->state, input + a->input_offset[i],
+        s->ops->output(s->self, t, a->member[i]->state, input + a->input_offset[i],
                        output + a->output_offset[i]);
     }
     for (int i = 0; i < a->n_member; i++) bough_assembly_gather(a, i, output, input);

@@ -1,4 +1,4 @@
-// The coupled system: subsystems, the stage each advances in, and the connections that copy outputs
+// The coupled system: members, the stage each advances in, and the connections that copy outputs
 // to inputs. Constant once built. Ports of all members are numbered through: input j of member i is
 // component input_offset[i] + j of an array over all inputs, and likewise for outputs and states.
 #ifndef BOUGH_COSIM_ASSEMBLY_H
@@ -6,14 +6,14 @@
 
 #include "core/arena.h"
 #include "core/status.h"
-#include "core/subsystem.h"
+#include "cosim/member.h"
 
-// A subsystem and when it advances: members of one stage in parallel; sequential schemes take the
+// A member and when it advances: members of one stage in parallel; sequential schemes take the
 // stages in order. The members of stage 0 are the leaders.
-typedef struct bough_member {
-    const bough_subsystem *subsystem; // borrowed; outlives the assembly
+typedef struct bough_assembly_member {
+    bough_member *member; // borrowed; outlives the assembly
     int stage;
-} bough_member;
+} bough_assembly_member;
 
 // Outputs from_offset … from_offset + count − 1 of one member are inputs to_offset … of another.
 typedef struct bough_connection {
@@ -23,7 +23,7 @@ typedef struct bough_connection {
 
 typedef struct bough_assembly_def {
     int n_member;
-    const bough_member *member; // (n_member)
+    const bough_assembly_member *member; // (n_member)
     int n_connection;
     const bough_connection *connection; // (n_connection)
 } bough_assembly_def;
@@ -38,7 +38,7 @@ typedef struct bough_interface {
 
 typedef struct bough_assembly {
     int n_member, n_stage;
-    const bough_subsystem **member; // (n_member)
+    bough_member **member;          // (n_member)
     int *stage;                     // (n_member)
     int n_state, n_input, n_output; // sums over the members
     int *state_offset;              // (n_member + 1)

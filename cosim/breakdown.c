@@ -26,8 +26,8 @@ bough_status bough_breakdown_create(bough_arena *arena, const bough_assembly *as
 
 void bough_breakdown_keep(bough_breakdown *b) {
     for (int i = 0; i < b->assembly->n_member; i++) {
-        const bough_subsystem *s = b->assembly->member[i];
-        memcpy(b->state + b->assembly->state_offset[i], s->state,
+        const bough_system *s = &b->assembly->member[i]->system;
+        memcpy(b->state + b->assembly->state_offset[i], b->assembly->member[i]->state,
                (size_t)s->n_state * sizeof(double));
     }
 }
@@ -38,8 +38,7 @@ static bough_stability_advice judge_again(bough_breakdown *b, bough_coupling *c)
     bough_scheme_options options = bough_scheme_options_in_use(c);
     bough_stability_advice advice;
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *s = a->member[i];
-        s->ops->set_state(s->self, c->t0, b->state + a->state_offset[i]);
+        bough_member_set(a->member[i], c->t0, b->state + a->state_offset[i]);
     }
     bough_status status = bough_stability_advise(a, &options, c->t1 - c->t0, &advice);
     return bough_is_ok(&status) ? advice : (bough_stability_advice){0};

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-static const bough_subsystem *subsystem(const bough_condensed *k, int member) {
-    return k->assembly->member[member];
+static const bough_system *system_of(const bough_condensed *k, int member) {
+    return &k->assembly->member[member]->system;
 }
 
 // The member that feeds input j, numbered over all inputs, and by which of its outputs.
@@ -32,7 +32,7 @@ static void choose_leaders(bough_condensed *k) {
 }
 
 static void choose_coordinates(bough_condensed *k, int member) {
-    const bough_subsystem *s = subsystem(k, member);
+    const bough_system *s = system_of(k, member);
     bough_condensed_member *w = &k->part[member];
     w->leader = -1;
     w->by_state = w->is_leader && !k->assembly->feedthrough[member] && s->n_state < s->n_input;
@@ -61,7 +61,7 @@ static void choose_directions(bough_condensed *k, int member) {
 }
 
 static bool take_part(bough_condensed *k, bough_arena *arena, int member) {
-    const bough_subsystem *s = subsystem(k, member);
+    const bough_system *s = system_of(k, member);
     bough_condensed_member *w = &k->part[member];
     size_t n = (size_t)w->n, n_state = (size_t)s->n_state, n_input = (size_t)s->n_input;
     w->column = bough_arena_doubles(arena, n_input * n_state);
@@ -111,20 +111,20 @@ bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *as
 // -- members --------------------------------------------------------------------------------------
 
 // Change of the outputs with the state and the inputs; either may be NULL.
-static void output_change(const bough_subsystem *s, const bough_operating_point *at,
+static void output_change(const bough_system *s, const bough_operating_point *at,
                           const double *state_change, const double *input_change, double *change) {
     s->ops->output_tangent(s->self, at->time, at->state, at->input, state_change, input_change,
                            change);
 }
 
 static void find_columns(const bough_condensed *k, int member, const bough_operating_point *at) {
-    const bough_subsystem *s = subsystem(k, member);
+    const bough_system *s = system_of(k, member);
     s->ops->input_columns(s->self, at->time, at->state, at->input, k->part[member].column);
 }
 
 // The columns of a follower have no γ in them.
 bool bough_condensed_linearise(bough_condensed *k, int member, const bough_operating_point *at) {
-    const bough_subsystem *s = subsystem(k, member);
+    const bough_system *s = system_of(k, member);
     const bough_condensed_member *w = &k->part[member];
     if (!s->ops->linearise(s->self, at->time, at->state, at->input, w->factors)) return false;
     if (!w->is_leader) find_columns(k, member, at);
@@ -132,12 +132,12 @@ bool bough_condensed_linearise(bough_condensed *k, int member, const bough_opera
 }
 
 static bool factor(const bough_condensed *k, int member, double gamma) {
-    const bough_subsystem *s = subsystem(k, member);
+    const bough_system *s = system_of(k, member);
     return s->ops->factor(s->self, k->part[member].factors, gamma);
 }
 
 void bough_condensed_solve_member(const bough_condensed *k, int member, double *x) {
-    const bough_subsystem *s = subsystem(k, member);
+    const bough_system *s = system_of(k, member);
     s->ops->solve(s->self, k->part[member].factors, x);
 }
 
@@ -178,13 +178,13 @@ static void add_columns(int n, int count, const double *column, double factor,
 
 void bough_condensed_add_columns(const bough_condensed *k, int member, double factor,
                                  const double *weight, double *sum) {
-    const bough_subsystem *s = subsystem(k, member);
+    const bough_system *s = system_of(k, member);
     add_columns(s->n_state, s->n_input, k->part[member].column, factor, weight, sum);
 }
 
 // columns ← (I − γJ)⁻¹ γ columns, by the inverse: there are fewer states than inputs
 static void solve_columns(const bough_condensed *k, int member, double gamma) {
-    const bough_subsystem *s = subsystem(k, member);
+    const bough_system *s = system_of(k, member);
     const bough_condensed_member *w = &k->part[member];
     double *right = k->work + k->assembly->state_offset[member], *column = w->column;
     int n = s->n_state;
@@ -206,7 +206,7 @@ static void solve_columns(const bough_condensed *k, int member, double gamma) {
 // The outputs' change with each input, through the states and at once.
 static void find_input_responses(const bough_condensed *k, int member,
                                  const bough_operating_point *at) {
-    const bough_subsystem *s = subsystem(k, member);
+    const bough_system *s = system_of(k, member);
     const bough_condensed_member *w = &k->part[member];
     double *unit = k->unit + k->assembly->input_offset[member];
     double *column = w->column, *response = w->output_change;
@@ -222,7 +222,7 @@ static void find_input_responses(const bough_condensed *k, int member,
 
 static void find_state_responses(const bough_condensed *k, int member,
                                  const bough_operating_point *at) {
-    const bough_subsystem *s = subsystem(k, member);
+    const bough_system *s = system_of(k, member);
     double *state = k->work + k->assembly->state_offset[member];
     double *response = k->part[member].output_change;
     memset(state, 0, (size_t)s->n_state * sizeof(double));
@@ -259,12 +259,12 @@ static bool is_constant(const bough_condensed_member *w, int p, int n_output) {
 static void find_directions(bough_condensed *k, int member) {
     const bough_assembly *a = k->assembly;
     const bough_condensed_member *w = &k->part[member];
-    int n_input = a->member[member]->n_input;
+    int n_input = a->member[member]->system.n_input;
     memset(w->direction, 0, (size_t)w->n * (size_t)n_input * sizeof(double));
     for (int j = 0; j < n_input; j++) {
         int p, input = a->input_offset[member] + j;
         const bough_condensed_member *from = feeder(k, input, &p);
-        int n_output = a->member[a->source_member[input]]->n_output;
+        int n_output = a->member[a->source_member[input]]->system.n_output;
         if (w->leader < 0) {
             w->direction[j * n_input + j] = is_constant(from, p, n_output) ? 0 : 1;
             continue;
@@ -284,7 +284,7 @@ static bool any(const double *x, int n) {
 
 bool bough_condensed_factor_follower(bough_condensed *k, int member,
                                      const bough_operating_point *at) {
-    const bough_subsystem *s = subsystem(k, member);
+    const bough_system *s = system_of(k, member);
     const bough_condensed_member *w = &k->part[member];
     if (!factor(k, member, at->gamma)) return false;
     find_directions(k, member);
@@ -308,7 +308,7 @@ bool bough_condensed_factor_follower(bough_condensed *k, int member,
 static void add_leading(const bough_condensed *k, double factor, int j, double *row) {
     int p;
     const bough_condensed_member *w = feeder(k, j, &p);
-    int n_output = subsystem(k, k->assembly->source_member[j])->n_output;
+    int n_output = system_of(k, k->assembly->source_member[j])->n_output;
     for (int c = 0; c < w->n; c++)
         row[w->first + c] += factor * w->output_change[c * n_output + p];
 }
@@ -324,7 +324,7 @@ static void find_gain_row(const bough_condensed *k, int l) {
         return;
     }
     for (int d = 0; d < w->n; d++) {
-        double response = w->output_change[d * a->member[from]->n_output + p];
+        double response = w->output_change[d * a->member[from]->system.n_output + p];
         if (response == 0) continue;
         if (w->leader >= 0) {
             row[k->part[w->leader].first + d] = response;
@@ -340,7 +340,7 @@ static void add_coordinates(const bough_condensed *k, const double *u, int strid
         const bough_condensed_member *w = &k->part[i];
         if (!w->is_leader) continue;
         const double *column = w->column;
-        for (int j = 0; j < subsystem(k, i)->n_input; j++, l++, column += w->n) {
+        for (int j = 0; j < system_of(k, i)->n_input; j++, l++, column += w->n) {
             double input = u[(size_t)l * (size_t)stride];
             if (!w->by_state) {
                 z[w->first + j] += input;
@@ -372,7 +372,7 @@ static void move_outputs(bough_condensed *k) {
     for (int i = 0; i < k->assembly->n_member; i++) {
         const bough_condensed_member *w = &k->part[i];
         if (!w->is_leader) continue;
-        int n_output = subsystem(k, i)->n_output;
+        int n_output = system_of(k, i)->n_output;
         double *moved = k->moved + k->assembly->output_offset[i];
         memset(moved, 0, (size_t)n_output * sizeof *moved);
         add_columns(n_output, w->n, w->output_change, 1, k->coordinate + w->first, moved);
@@ -402,7 +402,7 @@ void bough_condensed_solve(bough_condensed *k, double *change) {
 void bough_condensed_add_response(const bough_condensed *k, int member, double *x) {
     const bough_assembly *a = k->assembly;
     const bough_condensed_member *w = &k->part[member];
-    int n = subsystem(k, member)->n_state;
+    int n = system_of(k, member)->n_state;
     if (w->by_state) {
         for (int i = 0; i < n; i++) x[i] += k->coordinate[w->first + i];
     } else if (w->is_leader) {

@@ -37,7 +37,7 @@ void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state)
     const bough_assembly *a = coupled->assembly;
     for (int n = 0; n < a->n_member; n++) {
         int i = a->order[n];
-        const bough_subsystem *s = a->member[i];
+        const bough_system *s = &a->member[i]->system;
         bough_assembly_gather(a, i, coupled->output, coupled->input);
         s->ops->output(s->self, t, state + a->state_offset[i], coupled->input + a->input_offset[i],
                        coupled->output + a->output_offset[i]);
@@ -50,20 +50,20 @@ static void evaluate_by(bough_coupled *coupled, int i,
                         bool (*f)(void *self, double t, const double *state, const double *input,
                                   double *rate)) {
     const bough_assembly *a = coupled->assembly;
-    const bough_subsystem *s = a->member[i];
+    const bough_system *s = &a->member[i]->system;
     if (!f(s->self, coupled->time, coupled->at + a->state_offset[i],
            coupled->input + a->input_offset[i], coupled->x + a->state_offset[i])) {
         coupled->status[i] =
-            bough_fail(BOUGH_FAILED, "%s: no finite rate of change at %.6g s", s->name, *s->time);
+            bough_fail(BOUGH_FAILED, "%s: no finite rate of change at %.6g s", s->name, a->member[i]->time);
     }
 }
 
 static void evaluate(bough_coupled *coupled, int i) {
-    evaluate_by(coupled, i, coupled->assembly->member[i]->ops->derivative);
+    evaluate_by(coupled, i, coupled->assembly->member[i]->system.ops->derivative);
 }
 
 static void evaluate_again(bough_coupled *coupled, int i) {
-    const bough_subsystem_ops *ops = coupled->assembly->member[i]->ops;
+    const bough_system_ops *ops = coupled->assembly->member[i]->system.ops;
     evaluate_by(coupled, i, ops->derivative_again ? ops->derivative_again : ops->derivative);
 }
 
@@ -97,7 +97,7 @@ static bough_operating_point operating_point(const bough_coupled *coupled, int i
 static void check(bough_coupled *coupled, int i, bool good) {
     if (good) return;
     coupled->status[i] =
-        bough_fail(BOUGH_RETRY, "%s: singular Newton matrix", coupled->assembly->member[i]->name);
+        bough_fail(BOUGH_RETRY, "%s: singular Newton matrix", coupled->assembly->member[i]->system.name);
 }
 
 static void linearise(bough_coupled *coupled, int i) {
@@ -155,7 +155,7 @@ bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double 
 static void find_output_change(bough_coupled *coupled, int i, const double *x,
                                const double *change) {
     const bough_assembly *a = coupled->assembly;
-    const bough_subsystem *s = a->member[i];
+    const bough_system *s = &a->member[i]->system;
     s->ops->output_tangent(s->self, coupled->setup_time, coupled->setup_state + a->state_offset[i],
                            coupled->setup_input + a->input_offset[i], x, change,
                            coupled->output_change + a->output_offset[i]);
@@ -165,7 +165,7 @@ static void find_output_change(bough_coupled *coupled, int i, const double *x,
 // coordinates they take part in the interface as a whole.
 static void solve_leader(bough_coupled *coupled, int i) {
     const bough_assembly *a = coupled->assembly;
-    const bough_subsystem *s = a->member[i];
+    const bough_system *s = &a->member[i]->system;
     const bough_condensed_member *w = &coupled->interface->part[i];
     double *x = coupled->x + a->state_offset[i];
     double *coordinate = coupled->interface->coordinate + w->first;

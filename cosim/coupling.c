@@ -26,7 +26,7 @@ static bool take(bough_coupling *c, bough_arena *arena) {
     c->followed = bough_arena_take(arena, n_input * sizeof *c->followed);
     c->signal = bough_arena_take(arena, n_member * sizeof *c->signal);
     for (int i = 0; i < a->n_member && c->signal; i++) {
-        c->signal[i].n = a->member[i]->n_input;
+        c->signal[i].n = a->member[i]->system.n_input;
         c->signal[i].coefficient = bough_arena_doubles(arena, 4 * (size_t)c->signal[i].n);
     }
     return !bough_arena_exhausted(arena);
@@ -43,7 +43,7 @@ bough_status bough_coupling_create(bough_arena *arena, const bough_assembly *ass
     c->pool = pool;
     c->failed_member = -1;
     if (!take(c, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    c->t0 = c->t1 = *assembly->member[0]->time;
+    c->t0 = c->t1 = assembly->member[0]->time;
     bough_assembly_outputs(assembly, c->t0, c->output, c->input);
     memcpy(c->applied, c->input, (size_t)assembly->n_input * sizeof(double));
     memcpy(c->past[0], c->input, (size_t)assembly->n_input * sizeof(double));
@@ -139,21 +139,21 @@ void bough_coupling_begin(bough_coupling *c) {
 
 bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const double *input,
                                 const double *input_rate, double *rate) {
-    const bough_subsystem *s = c->assembly->member[member];
+    const bough_system *s = &c->assembly->member[member]->system;
     double *state_rate = c->state_rate + c->assembly->state_offset[member];
-    if (!s->ops->derivative(s->self, t, s->state, input, state_rate)) return false;
-    s->ops->output_tangent(s->self, t, s->state, input, state_rate, input_rate, rate);
+    if (!s->ops->derivative(s->self, t, c->assembly->member[member]->state, input, state_rate)) return false;
+    s->ops->output_tangent(s->self, t, c->assembly->member[member]->state, input, state_rate, input_rate, rate);
     if (s->ops->output_drift == NULL) return true;
     double *drift = c->output_drift + c->assembly->output_offset[member];
-    s->ops->output_drift(s->self, t, s->state, input, drift);
+    s->ops->output_drift(s->self, t, c->assembly->member[member]->state, input, drift);
     for (int k = 0; k < s->n_output; k++)
         rate[k] += drift[k];
     return true;
 }
 
 bough_status bough_coupling_not_finite(const bough_coupling *c, int member) {
-    const bough_subsystem *s = c->assembly->member[member];
-    return bough_fail(BOUGH_RETRY, "%s: no finite rate of change at %.6g s", s->name, *s->time);
+    const bough_system *s = &c->assembly->member[member]->system;
+    return bough_fail(BOUGH_RETRY, "%s: no finite rate of change at %.6g s", s->name, c->assembly->member[member]->time);
 }
 
 // What no method could follow comes of the signal, which a shorter macro step may spare the member.
@@ -162,10 +162,10 @@ static void ask_for_retry(bough_status *status) {
 }
 
 void bough_coupling_advance_to(bough_coupling *c, int member, double t, bool restart) {
-    const bough_subsystem *s = c->assembly->member[member];
-    assert(t >= *s->time && c->t0 < c->t1 && c->signal[member].t0 == c->t0);
-    c->status[member] = s->ops->advance(s->self, t, &c->signal[member], restart);
-    assert(!bough_is_ok(&c->status[member]) || *s->time == t);
+    bough_member *m = c->assembly->member[member];
+    assert(t >= m->time && c->t0 < c->t1 && c->signal[member].t0 == c->t0);
+    c->status[member] = bough_member_advance(m, t, &c->signal[member], restart);
+    assert(!bough_is_ok(&c->status[member]) || m->time == t);
     ask_for_retry(&c->status[member]);
 }
 
@@ -174,19 +174,14 @@ static void advance(bough_coupling *c, int member, bool restart) {
 }
 
 static void advance_first_half(bough_coupling *c, int member, bool restart) {
-    const bough_subsystem *s = c->assembly->member[member];
-    const bough_signal *signal = &c->signal[member];
-    if (s->ops->advance_part == NULL) {
-        advance(c, member, restart);
-        return;
-    }
     double middle = 0.5 * (c->t0 + c->t1) - 1e-9 * (c->t1 - c->t0);
-    c->status[member] = s->ops->advance_part(s->self, middle, c->t1, signal, restart);
+    c->status[member] = bough_member_advance_part(c->assembly->member[member], middle, c->t1,
+                                                  &c->signal[member], restart);
     ask_for_retry(&c->status[member]);
 }
 
 static void advance_second_half(bough_coupling *c, int member) {
-    bool arrived = *c->assembly->member[member]->time >= c->t1;
+    bool arrived = c->assembly->member[member]->time >= c->t1;
     if (bough_is_ok(&c->status[member]) && !arrived) advance(c, member, false);
 }
 
@@ -224,7 +219,7 @@ static bool signal_rate(bough_coupling *c, int member, double t, double *output_
 
 static void lead(bough_coupling *c, int member, bool restart) {
     const bough_assembly *a = c->assembly;
-    const bough_subsystem *s = a->member[member];
+    const bough_system *s = &a->member[member]->system;
     if (!signal_rate(c, member, c->t0, c->start_rate)) {
         c->status[member] = bough_coupling_not_finite(c, member);
         return;
@@ -235,7 +230,7 @@ static void lead(bough_coupling *c, int member, bool restart) {
         c->status[member] = bough_coupling_not_finite(c, member);
         return;
     }
-    s->ops->output(s->self, c->t1, s->state, c->seen + a->input_offset[member],
+    s->ops->output(s->self, c->t1, a->member[member]->state, c->seen + a->input_offset[member],
                    c->end_output + a->output_offset[member]);
 }
 
@@ -337,12 +332,11 @@ void bough_coupling_load(bough_coupling *c, double h, const double *z) {
     double *row[4];
     int n = memory_rows(c, row);
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *s = a->member[i];
-        s->ops->set_state(s->self, 0, z + a->state_offset[i]);
+        bough_member_set(a->member[i], 0, z + a->state_offset[i]);
     }
     for (int p = 0; p < n; p++) memcpy(row[p], z + a->n_state + p * a->n_input, size);
     for (int i = 0; i < a->n_member && c->deficit != NULL; i++) { // of leaders only
-        size_t own = (size_t)a->member[i]->n_input * sizeof(double);
+        size_t own = (size_t)a->member[i]->system.n_input * sizeof(double);
         if (a->stage[i] != 0) memset(c->deficit + a->input_offset[i], 0, own);
     }
     bough_assembly_outputs(a, 0, c->output, c->input);
@@ -357,8 +351,8 @@ void bough_coupling_store(const bough_coupling *c, double *z) {
     double *row[4];
     int n = memory_rows(c, row);
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *s = a->member[i];
-        memcpy(z + a->state_offset[i], s->state, (size_t)s->n_state * sizeof(double));
+        const bough_system *s = &a->member[i]->system;
+        memcpy(z + a->state_offset[i], a->member[i]->state, (size_t)s->n_state * sizeof(double));
     }
     for (int p = 0; p < n; p++) {
         memcpy(z + a->n_state + p * a->n_input, row[p], (size_t)a->n_input * sizeof(double));
@@ -368,10 +362,7 @@ void bough_coupling_store(const bough_coupling *c, double *z) {
 void bough_coupling_snapshot(bough_coupling *c, bough_snapshot *s) {
     const bough_assembly *a = c->assembly;
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *member = a->member[i];
-        void *room = bough_snapshot_room(s, member->ops->save_size(member->self));
-        if (s->move == BOUGH_SNAPSHOT_SAVE) member->ops->save(member->self, room);
-        if (s->move == BOUGH_SNAPSHOT_RESTORE) member->ops->restore(member->self, room);
+        bough_member_snapshot(a->member[i], s);
     }
     bough_snapshot_doubles(s, c->output, a->n_output);
     bough_snapshot_doubles(s, c->input, a->n_input);

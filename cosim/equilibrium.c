@@ -87,8 +87,8 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_coupled *coupled,
     *report = (bough_equilibrium_report){0};
     if (!take(&s, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {
-        size_t size = (size_t)a->member[i]->n_state * sizeof(double);
-        memcpy(s.scale + a->state_offset[i], a->member[i]->scale, size);
+        size_t size = (size_t)a->member[i]->system.n_state * sizeof(double);
+        memcpy(s.scale + a->state_offset[i], a->member[i]->system.scale, size);
     }
     double most = growth, before = INFINITY;
     while (report->steps < def->steps && s.gamma > shortest && find_rate(&s, state)) {

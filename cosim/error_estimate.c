@@ -158,12 +158,13 @@ static void keep_own_errors(bough_error_estimate *e) {
     const double share = e->whole ? whole_share : 1;
     double *slot = e->own + (size_t)e->n_step * (size_t)a->n_state;
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *s = a->member[i];
-        double *error = e->whole ? e->whole->own_error : s->own_error;
+        const bough_member *m = a->member[i];
+        double *error = e->whole ? e->whole->own_error : m->own_error;
         if (e->whole && error) error += a->state_offset[i];
         double *restrict sum = slot + a->state_offset[i];
-        memset(sum, 0, (size_t)s->n_state * sizeof *sum);
-        for (int k = 0; k < s->n_state && error != NULL; k++) {
+        int n = m->system.n_state;
+        memset(sum, 0, (size_t)n * sizeof *sum);
+        for (int k = 0; k < n && error != NULL; k++) {
             sum[k] = share * error[k];
             e->own_sum[a->state_offset[i] + k] += fabs(error[k]);
             error[k] = 0;
@@ -269,8 +270,8 @@ static bool borrow(bough_error_estimate *e, const bough_coupling *c, double h) {
 static bool linearise(bough_error_estimate *e, bough_coupling *c, double h) {
     const bough_assembly *a = e->assembly;
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *s = a->member[i];
-        memcpy(e->at + a->state_offset[i], s->state, (size_t)s->n_state * sizeof(double));
+        const bough_system *s = &a->member[i]->system;
+        memcpy(e->at + a->state_offset[i], a->member[i]->state, (size_t)s->n_state * sizeof(double));
     }
     if (borrow(e, c, h)) return true;
     e->method = method_of(h, own_radius);
@@ -390,7 +391,7 @@ const double *bough_error_estimate_states(const bough_error_estimate *e) {
 double bough_error_estimate_own_share(const bough_error_estimate *e) {
     double own = 0, whole = 0;
     for (int i = 0; i < e->assembly->n_member; i++) {
-        const bough_subsystem *s = e->assembly->member[i];
+        const bough_system *s = &e->assembly->member[i]->system;
         for (int k = 0, j = e->assembly->state_offset[i]; k < s->n_state; k++, j++) {
             own = fmax(own, e->own_sum[j] / s->scale[k]);
             whole = fmax(whole, fabs(e->error[j]) / s->scale[k]);

@@ -41,8 +41,8 @@ bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coup
     n->age = 0;
     const bough_assembly *a = c->assembly;
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *s = a->member[i];
-        memcpy(n->state + a->state_offset[i], s->state, (size_t)s->n_state * sizeof(double));
+        const bough_system *s = &a->member[i]->system;
+        memcpy(n->state + a->state_offset[i], a->member[i]->state, (size_t)s->n_state * sizeof(double));
     }
     bough_status status = bough_ok();
     for (int k = 0; k < n->n_span && bough_is_ok(&status); k++) {

@@ -6,18 +6,18 @@
 static const double sdirk_gamma = 0.29289321881345248; // 1 − 1/√2
 
 typedef struct linear_factors {
-    void *real;      // of the subsystem
+    void *real;      // of the system
     bool linearised; // there, once and for all
     double gamma;    // of the factors; 0: none
 } linear_factors;
 
 typedef struct linear_member {
-    const bough_subsystem *real;
-    double sub_step;
-    double *at, *input_at; // (n_state), (n_input) where the subsystem is linearised
+    const bough_system *real;
+    const bough_member *member; // the linear one
+    double sub_step, time;      // of the linearisation [s]
+    double *at, *input_at; // (n_state), (n_input) where the system is linearised
     double *column;        // (n_input × n_state) B
     linear_factors *own;   // of its own steps
-    double time, *state;   // (n_state) the perturbation
     double *plus, *minus;  // (n_state) scratch
     double *seen;          // (n_input) scratch
 } linear_member;
@@ -36,10 +36,10 @@ static void add_inputs(const linear_member *s, double factor, const double *inpu
 }
 
 static bool shifted_rate(linear_member *s, double factor, const double *state, double *rate) {
-    const bough_subsystem *r = s->real;
+    const bough_system *r = s->real;
     for (int k = 0; k < r->n_state; k++)
         s->plus[k] = s->at[k] + factor * state[k];
-    return r->ops->derivative(r->self, *r->time, s->plus, s->input_at, rate);
+    return r->ops->derivative(r->self, s->time, s->plus, s->input_at, rate);
 }
 
 // J y by central differences along y, B u from the columns.
@@ -47,7 +47,7 @@ static bool derivative(void *self, double t, const double *state, const double *
                        double *rate) {
     (void)t;
     linear_member *s = self;
-    const bough_subsystem *r = s->real;
+    const bough_system *r = s->real;
     double largest = 0;
     for (int k = 0; k < r->n_state; k++)
         largest = fmax(largest, fabs(state[k]) / r->scale[k]);
@@ -68,8 +68,8 @@ static void output_tangent(void *self, double t, const double *state, const doub
                            const double *state_rate, const double *input_rate, double *rate) {
     (void)t, (void)state, (void)input;
     const linear_member *s = self;
-    const bough_subsystem *r = s->real;
-    r->ops->output_tangent(r->self, *r->time, s->at, s->input_at, state_rate, input_rate, rate);
+    const bough_system *r = s->real;
+    r->ops->output_tangent(r->self, s->time, s->at, s->input_at, state_rate, input_rate, rate);
 }
 
 static void output(void *self, double t, const double *state, const double *input, double *out) {
@@ -95,10 +95,10 @@ static bool linearise(void *self, double t, const double *state, const double *i
                       void *factors) {
     (void)t, (void)state, (void)input;
     const linear_member *s = self;
-    const bough_subsystem *r = s->real;
+    const bough_system *r = s->real;
     linear_factors *k = factors;
     if (k->linearised) return true;
-    k->linearised = r->ops->linearise(r->self, *r->time, s->at, s->input_at, k->real);
+    k->linearised = r->ops->linearise(r->self, s->time, s->at, s->input_at, k->real);
     return k->linearised;
 }
 
@@ -120,24 +120,26 @@ static void solve(void *self, void *factors, double *x) {
 // -- own steps ------------------------------------------------------------------------------------
 
 // One SDIRK step of length h: with x1 = y + γh f1, x2 = y + (1 − γ)h f1 + γh f2 = the new state.
-static void step(linear_member *s, const bough_signal *input, double t, double h) {
+static void step(linear_member *s, double t, double h, double *y) {
+    const bough_signal *input = s->member->signal;
     int n = s->real->n_state;
     double part = (1 - sdirk_gamma) / sdirk_gamma;
-    memcpy(s->plus, s->state, (size_t)n * sizeof(double));
+    memcpy(s->plus, y, (size_t)n * sizeof(double));
     bough_signal_value(input, t + sdirk_gamma * h, s->seen);
     add_inputs(s, s->own->gamma, s->seen, s->plus);
     solve(s, s->own, s->plus);
     for (int k = 0; k < n; k++)
-        s->state[k] += part * (s->plus[k] - s->state[k]);
+        y[k] += part * (s->plus[k] - y[k]);
     bough_signal_value(input, t + h, s->seen);
-    add_inputs(s, s->own->gamma, s->seen, s->state);
-    solve(s, s->own, s->state);
+    add_inputs(s, s->own->gamma, s->seen, y);
+    solve(s, s->own, y);
 }
 
-static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
-    (void)restart;
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
+                            double *y) {
+    (void)pause, (void)restart;
     linear_member *s = self;
-    double t0 = s->time;
+    double t0 = *t;
     int n_step = (int)ceil((t1 - t0) / s->sub_step - 1e-6);
     double h = (t1 - t0) / n_step;
     // rounded, so that factors serve all macro steps of nearly the same length
@@ -146,39 +148,19 @@ static bough_status advance(void *self, double t1, const bough_signal *input, bo
         return bough_fail(BOUGH_FAILED, "%s: singular Newton matrix", s->real->name);
     }
     for (int k = 0; k < n_step; k++)
-        step(s, input, t0 + k * h, h);
-    s->time = t1;
+        step(s, t0 + k * h, h, y);
+    *t = t1;
     return bough_ok();
 }
 
-static size_t save_size(void *self) {
-    const linear_member *s = self;
-    return (1 + (size_t)s->real->n_state) * sizeof(double);
+static void statistics(const void *self, bough_statistics *sum) {
+    (void)self, (void)sum;
 }
 
-static void save(void *self, void *copy) {
-    const linear_member *s = self;
-    memcpy(copy, &s->time, sizeof(double));
-    memcpy((double *)copy + 1, s->state, (size_t)s->real->n_state * sizeof(double));
-}
+static const bough_integrator_ops sdirk = {
+    .title = "SDIRK2", .advance = advance, .statistics = statistics};
 
-static void set_state(void *self, double t, const double *state) {
-    linear_member *s = self;
-    s->time = t;
-    memmove(s->state, state, (size_t)s->real->n_state * sizeof(double));
-}
-
-static void restore(void *self, const void *copy) {
-    const double *saved = copy;
-    set_state(self, saved[0], saved + 1);
-}
-
-static void statistics(void *self, bough_statistics *sum) {
-    (void)self;
-    *sum = (bough_statistics){0};
-}
-
-static const bough_subsystem_ops operations = {
+static const bough_system_ops operations = {
     .derivative = derivative,
     .output = output,
     .output_tangent = output_tangent,
@@ -187,39 +169,37 @@ static const bough_subsystem_ops operations = {
     .linearise = linearise,
     .factor = factor,
     .solve = solve,
-    .advance = advance,
-    .save_size = save_size,
-    .save = save,
-    .restore = restore,
-    .set_state = set_state,
-    .statistics = statistics,
 };
 
-bough_status bough_linear_member_create(bough_arena *arena, const bough_subsystem *real,
+bough_status bough_linear_member_create(bough_arena *arena, const bough_member *real,
                                         const double *input, double sub_step,
-                                        bough_subsystem *linear) {
-    size_t n = (size_t)real->n_state, n_input = (size_t)real->n_input;
+                                        bough_member *linear) {
+    const bough_system *r = &real->system;
+    size_t n = (size_t)r->n_state, n_input = (size_t)r->n_input;
     linear_member *s = bough_arena_take(arena, sizeof *s);
     if (!s) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    *s = (linear_member){.real = real, .sub_step = sub_step, .time = *real->time};
+    *s = (linear_member){
+        .real = r, .member = linear, .sub_step = sub_step, .time = real->time};
     s->at = bough_arena_doubles(arena, n);
     s->input_at = bough_arena_doubles(arena, n_input);
     s->column = bough_arena_doubles(arena, n_input * n);
-    s->state = bough_arena_doubles(arena, n);
     s->plus = bough_arena_doubles(arena, n);
     s->minus = bough_arena_doubles(arena, n);
     s->seen = bough_arena_doubles(arena, n_input);
     s->own = factors(s, arena);
-    if (s->own == NULL || bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    *linear = (bough_member){.system = *r,
+                             .solver = sdirk.title,
+                             .time = real->time,
+                             .state = bough_arena_doubles(arena, n),
+                             .integrated = bough_arena_doubles(arena, n),
+                             .integrator = {.ops = &sdirk, .self = s}};
+    linear->system.ops = &operations;
+    linear->system.self = s;
+    if (s->own == NULL || bough_arena_exhausted(arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    }
     memcpy(s->at, real->state, n * sizeof(double));
     memcpy(s->input_at, input, n_input * sizeof(double));
-    real->ops->input_columns(real->self, *real->time, s->at, s->input_at, s->column);
-    *linear = *real;
-    linear->solver = "SDIRK2";
-    linear->time = &s->time;
-    linear->state = s->state;
-    linear->own_error = NULL;
-    linear->ops = &operations;
-    linear->self = s;
+    r->ops->input_columns(r->self, real->time, s->at, s->input_at, s->column);
     return bough_ok();
 }

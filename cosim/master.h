@@ -12,7 +12,7 @@
 #include "cosim/step_control.h"
 
 // Loads that arrive at their own rate: sample() is called at multiples of the period, between
-// steps, and sets the loads inside the subsystems for [t, t_next]. Where it is NULL there is only begin().
+// steps, and sets the loads inside the members for [t, t_next]. Where it is NULL there is only begin().
 typedef struct bough_sampled_load {
     double period; // [s] an integer multiple of the macro step
     void *self;

@@ -44,7 +44,7 @@ static void set_rate(const bough_modes_def *def, double *rate) {
 static void project(const modes *m, double *x) {
     const bough_assembly *a = m->coupled->assembly;
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *s = a->member[i];
+        const bough_system *s = &a->member[i]->system;
         int at = a->state_offset[i];
         if (s->ops->project) s->ops->project(s->self, m->def->state + at, x + at);
     }
@@ -100,8 +100,8 @@ static bool take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
     op->weight = bough_arena_doubles(arena, n);
     if (bough_arena_exhausted(arena)) return false;
     for (int i = 0; i < a->n_member; i++) {
-        for (int k = 0; k < a->member[i]->n_state; k++) {
-            double scale = a->member[i]->scale[k];
+        for (int k = 0; k < a->member[i]->system.n_state; k++) {
+            double scale = a->member[i]->system.scale[k];
             op->weight[a->state_offset[i] + k] = 1 / (scale * scale);
         }
     }

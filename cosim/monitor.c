@@ -121,8 +121,8 @@ static bool all_finite(const double *x, int n) {
 static bough_status check_finite(const bough_monitor *m, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *s = a->member[i];
-        if (all_finite(s->state, s->n_state) &&
+        const bough_system *s = &a->member[i]->system;
+        if (all_finite(a->member[i]->state, s->n_state) &&
             all_finite(c->output + a->output_offset[i], s->n_output)) {
             continue;
         }
@@ -173,7 +173,7 @@ static bough_status unstable(const bough_monitor *m, const bough_coupling *c, co
                       "coupling of %s and %s is unstable at %.6g s: scheme %s, macro step %.6g s, "
                       "interface error grows by %.4g per step (%.3g per second); try a smaller "
                       "macro step%s",
-                      a->member[g->from]->name, a->member[g->to]->name, c->t1, c->scheme->name, h,
+                      a->member[g->from]->system.name, a->member[g->to]->system.name, c->t1, c->scheme->name, h,
                       per_step, log(per_step) / h,
                       m->advice);
 }
@@ -222,7 +222,7 @@ static bough_status look_into(const bough_monitor *m, bough_coupling *c, const g
                       "coupling of %s and %s is unstable at %.6g s: scheme %s, macro step %.6g s, "
                       "their force has grown a hundredfold and more, by %.3g per second; try a "
                       "smaller macro step%s",
-                      a->member[g->from]->name, a->member[g->to]->name, c->t1, c->scheme->name, h,
+                      a->member[g->from]->system.name, a->member[g->to]->system.name, c->t1, c->scheme->name, h,
                       growth, m->advice);
 }
 
@@ -310,7 +310,7 @@ static bough_status lost(const bough_monitor *m, const bough_coupling *c, int in
                       "%.6g s (scheme %s, macro step %.4g s): interface error %.2g of the largest "
                       "force, growing by %.4g per step, and %.2g of the exchanged energy; good "
                       "until %.4g s; try macro_step: %.3g s%s",
-                      a->member[f->body]->name, a->member[receiver(a, f->wrench)]->name, c->t1,
+                      a->member[f->body]->system.name, a->member[receiver(a, f->wrench)]->system.name, c->t1,
                       c->scheme->name, c->t1 - c->t0, b->last.defect, b->growth, b->last.energy,
                       b->good_time, try_step,
                       m->advice);
@@ -369,7 +369,7 @@ static bough_status judge_balance(bough_monitor *m, const bough_coupling *c) {
                       "the coupling of %s has lost the solution by %.6g s (scheme %s, macro step "
                       "%.6g s): %.2g of the energy exchanged at the interfaces is made or lost by "
                       "the coupling itself; try a smaller macro step or scheme: %s",
-                      a->member[body]->name, c->t1, c->scheme->name, c->t1 - c->t0,
+                      a->member[body]->system.name, c->t1, c->scheme->name, c->t1 - c->t0,
                       all.residual / all.exchanged, bough_scheme_last_resort(c->scheme));
 }
 

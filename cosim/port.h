@@ -5,7 +5,7 @@
 #define BOUGH_COSIM_PORT_H
 
 #include "core/arena.h"
-#include "core/subsystem.h"
+#include "core/signal.h"
 
 // A zero signal of n components on [0, 1], in the arena.
 bough_signal bough_port_signal(bough_arena *arena, int n);

@@ -104,8 +104,9 @@ static bool take(bough_iteration *it, const bough_assembly *a, bough_arena *aren
     it->image = bough_arena_doubles(arena, n_node * n);
     it->change = bough_arena_doubles(arena, n);
     for (int i = 0; i < a->n_member && it->copy; i++) {
-        const bough_subsystem *s = a->member[i];
-        it->copy[i] = bough_arena_take(arena, s->ops->save_size(s->self));
+        bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
+        bough_member_snapshot(a->member[i], &measure);
+        it->copy[i] = bough_arena_take(arena, measure.used);
     }
     return !bough_arena_exhausted(arena);
 }
@@ -152,17 +153,14 @@ bough_status bough_iteration_create(bough_coupling *c, bough_arena *arena) {
 
 // -- a sweep --------------------------------------------------------------------------------------
 
-static void save(bough_coupling *c, int member) {
-    const bough_subsystem *s = c->assembly->member[member];
-    const bough_iteration *it = c->iteration;
-    s->ops->save(s->self, it->copy[member]);
+static void transfer(const bough_coupling *c, int member, bough_snapshot_move move) {
+    bough_snapshot copy = {.move = move, .copy = c->iteration->copy[member]};
+    bough_member_snapshot(c->assembly->member[member], &copy);
 }
 
-static void restore(bough_coupling *c, int member) {
-    const bough_subsystem *s = c->assembly->member[member];
-    const bough_iteration *it = c->iteration;
-    s->ops->restore(s->self, it->copy[member]);
-}
+static void save(bough_coupling *c, int member) { transfer(c, member, BOUGH_SNAPSHOT_SAVE); }
+
+static void restore(bough_coupling *c, int member) { transfer(c, member, BOUGH_SNAPSHOT_RESTORE); }
 
 static double node_time(const bough_coupling *c, int k) {
     const bough_iteration *it = c->iteration;
@@ -191,7 +189,7 @@ static void interpolate(bough_coupling *c, int member, int j) {
 // evaluates its outputs.
 static void advance(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
-    const bough_subsystem *s = a->member[member];
+    const bough_system *s = &a->member[member]->system;
     const bough_iteration *it = c->iteration;
     double *seen = c->seen + a->input_offset[member];
     for (int j = a->input_offset[member]; j < a->input_offset[member + 1]; j++) {
@@ -206,7 +204,7 @@ static void advance(bough_coupling *c, int member) {
         bough_coupling_advance_to(c, member, t, k == 0);
         if (!bough_is_ok(&c->status[member])) return;
         bough_signal_value(&c->signal[member], t, seen);
-        s->ops->output(s->self, t, s->state, seen,
+        s->ops->output(s->self, t, a->member[member]->state, seen,
                        it->obtained + k * a->n_output + a->output_offset[member]);
     }
 }
@@ -317,7 +315,7 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
     return bough_fail(BOUGH_RETRY,
                       "coupling of %.24s and %.24s not converged at %.6g s: residual %.2g after %d "
                       "iterations, factor %.3g in each; %s",
-                      a->member[a->source_member[it->input[worst]]]->name, a->member[to]->name,
+                      a->member[a->source_member[it->input[worst]]]->system.name, a->member[to]->system.name,
                       c->t1, residual, sweeps, contraction, advice);
 }
 

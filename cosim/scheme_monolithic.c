@@ -61,8 +61,8 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     bough_status status = bough_coupled_create(arena, a, c->pool, &m->coupled);
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < a->n_member; i++) {
-        size_t size = (size_t)a->member[i]->n_state * sizeof(double);
-        memcpy(m->scale + a->state_offset[i], a->member[i]->scale, size);
+        size_t size = (size_t)a->member[i]->system.n_state * sizeof(double);
+        memcpy(m->scale + a->state_offset[i], a->member[i]->system.scale, size);
     }
     bough_ode ode = {.name = "monolithic system",
                      .n = a->n_state,
@@ -77,11 +77,10 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     return bough_integrator_create(arena, &ode, &c->options.integrator, &m->integrator);
 }
 
-// The members' states, as their set_state leaves them: given motions in place, quaternions of
-// length 1.
+// The members' states as they are set: given motions in place, quaternions of length 1.
 static void take_states(const bough_assembly *a, monolith *m) {
     for (int i = 0; i < a->n_member; i++) {
-        size_t size = (size_t)a->member[i]->n_state * sizeof(double);
+        size_t size = (size_t)a->member[i]->system.n_state * sizeof(double);
         memcpy(m->state + a->state_offset[i], a->member[i]->state, size);
     }
 }
@@ -96,14 +95,13 @@ static bough_status step(bough_coupling *c) {
     m->started = bough_is_ok(&status);
     if (!m->started) return status;
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *s = a->member[i];
-        s->ops->set_state(s->self, c->t1, m->state + a->state_offset[i]);
+        bough_member_set(a->member[i], c->t1, m->state + a->state_offset[i]);
     }
     take_states(a, m);
     bough_coupling_begin(c);
     bough_coupled_inputs(m->coupled, c->t1, m->state);
     for (int i = 0; i < a->n_member; i++) {
-        int first = a->input_offset[i], count = a->member[i]->n_input;
+        int first = a->input_offset[i], count = a->member[i]->system.n_input;
         bough_port_linear(&c->signal[i], 0, count, c->input + first, m->coupled->input + first);
     }
     return bough_ok();

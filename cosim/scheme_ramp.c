@@ -55,7 +55,7 @@ static bough_status check_shape(const bough_coupling *c) {
             return bough_fail(BOUGH_INVALID,
                               "scheme ramp: %s leads, so its outputs must not depend on its "
                               "inputs directly; use another scheme",
-                              a->member[i]->name);
+                              a->member[i]->system.name);
         }
     }
     for (int i = 0; i < a->n_member; i++) {
@@ -95,7 +95,7 @@ static void choose_inputs(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     ramp *r = c->scheme_data;
     for (int i = 0; i < a->n_member; i++) {
-        size_t first = (size_t)a->input_offset[i], n = (size_t)a->member[i]->n_input;
+        size_t first = (size_t)a->input_offset[i], n = (size_t)a->member[i]->system.n_input;
         const double *from = leads(c, i) ? c->applied : c->input;
         memcpy(r->input + first, from + first, n * sizeof(double));
     }
@@ -113,26 +113,26 @@ static void expect_inputs(bough_coupling *c, int member) {
 // H f and h at the start values.
 static bool evaluate(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
-    const bough_subsystem *s = a->member[member];
+    const bough_system *s = &a->member[member]->system;
     const ramp *r = c->scheme_data;
     const double *input = r->input + a->input_offset[member];
     double *increment = r->increment + a->state_offset[member], h = c->t1 - c->t0;
-    if (!s->ops->derivative(s->self, r->middle, s->state, input, increment)) return false;
+    if (!s->ops->derivative(s->self, r->middle, a->member[member]->state, input, increment)) return false;
     for (int k = 0; k < s->n_state; k++)
         increment[k] *= h;
-    s->ops->output(s->self, c->t1, s->state, input, r->base + a->output_offset[member]);
+    s->ops->output(s->self, c->t1, a->member[member]->state, input, r->base + a->output_offset[member]);
     return true;
 }
 
 // Δ and its outputs; change (n_input of the member) NULL for 0.
 static void solve(bough_coupling *c, int member, const double *change) {
     const bough_assembly *a = c->assembly;
-    const bough_subsystem *s = a->member[member];
+    const bough_system *s = &a->member[member]->system;
     const ramp *r = c->scheme_data;
     double *increment = r->increment + a->state_offset[member];
     if (change) bough_condensed_add_columns(r->interface, member, r->gamma, change, increment);
     bough_condensed_solve_member(r->interface, member, increment);
-    s->ops->output_tangent(s->self, c->t1, s->state, r->input + a->input_offset[member], increment,
+    s->ops->output_tangent(s->self, c->t1, a->member[member]->state, r->input + a->input_offset[member], increment,
                            change, r->output + a->output_offset[member]);
 }
 
@@ -143,7 +143,7 @@ static bough_operating_point operating_point(const bough_coupling *c, int member
 }
 
 static void predict_leader(bough_coupling *c, int member) {
-    const bough_subsystem *s = c->assembly->member[member];
+    const bough_system *s = &c->assembly->member[member]->system;
     const ramp *r = c->scheme_data;
     bough_operating_point at = operating_point(c, member);
     if (s->n_input == 0 && s->n_output == 0) return; // nobody asks

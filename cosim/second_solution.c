@@ -54,8 +54,8 @@ static void solve(void *self, double *x) {
 
 static void copy_states(const bough_assembly *a, double *state) {
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *m = a->member[i];
-        memcpy(state + a->state_offset[i], m->state, (size_t)m->n_state * sizeof *state);
+        const bough_system *m = &a->member[i]->system;
+        memcpy(state + a->state_offset[i], a->member[i]->state, (size_t)m->n_state * sizeof *state);
     }
 }
 
@@ -77,7 +77,7 @@ bough_status bough_second_solution_create(bough_arena *arena, const bough_coupli
     s->share = def->share;
     if (!take(s, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {
-        const bough_subsystem *m = a->member[i];
+        const bough_system *m = &a->member[i]->system;
         memcpy(s->scale + a->state_offset[i], m->scale, (size_t)m->n_state * sizeof *s->scale);
     }
     copy_states(a, s->state);

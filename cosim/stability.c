@@ -21,7 +21,7 @@ static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
 typedef struct map {
     bough_arena *arena;
     bough_assembly assembly; // of the linear members
-    bough_subsystem *linear; // (n_member)
+    bough_member *linear;    // (n_member)
     bough_coupling *coupling;
     double macro_step, sub_step;
     int repeat;
@@ -70,7 +70,7 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     double *output = bough_arena_doubles(m->arena, (size_t)a->n_output);
     double *input = bough_arena_doubles(m->arena, (size_t)a->n_input);
     if (bough_arena_exhausted(m->arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_assembly_outputs(a, *a->member[0]->time, output, input);
+    bough_assembly_outputs(a, a->member[0]->time, output, input);
     bough_status status = build_linear_members(m, a, input);
     if (!bough_is_ok(&status)) return status;
     bough_coupling *c = NULL;
@@ -118,8 +118,8 @@ static void choose_weights(map *m, const double *z) {
     const bough_assembly *a = &m->assembly;
     double *weight = m->arnoldi.weight, sum = 0;
     for (int i = 0, k = 0; i < a->n_member; i++) {
-        for (int j = 0; j < a->member[i]->n_state; j++, k++) {
-            weight[k] = 1 / (a->member[i]->scale[j] * a->member[i]->scale[j]);
+        for (int j = 0; j < a->member[i]->system.n_state; j++, k++) {
+            weight[k] = 1 / (a->member[i]->system.scale[j] * a->member[i]->system.scale[j]);
             sum += z[k] * z[k] * weight[k];
         }
     }
@@ -145,9 +145,9 @@ static bough_status start(map *m) {
     double *x = m->pair, *image = m->pair + m->n;
     unsigned seed = 1;
     for (int i = 0, k = 0; i < a->n_member; i++) {
-        for (int j = 0; j < a->member[i]->n_state; j++, k++) {
+        for (int j = 0; j < a->member[i]->system.n_state; j++, k++) {
             seed = seed * 1664525u + 1013904223u;
-            x[k] = a->member[i]->scale[j] * ((double)seed / 2147483648.0 - 1);
+            x[k] = a->member[i]->system.scale[j] * ((double)seed / 2147483648.0 - 1);
         }
     }
     for (int k = 0; k < WARM_UP; k++) {
@@ -213,7 +213,7 @@ static int largest_body(const map *m, const double *real, const double *imaginar
     double largest = -1;
     int body = 0;
     for (int k = 0; k < a->n_interface; k++) {
-        int i = a->interface[k].body, first = a->state_offset[i], count = a->member[i]->n_state;
+        int i = a->interface[k].body, first = a->state_offset[i], count = a->member[i]->system.n_state;
         const double *weight = m->arnoldi.weight;
         double part = 0;
         for (int j = first; j < first + count; j++) {
@@ -384,7 +384,7 @@ void bough_stability_describe(const bough_assembly *a, const bough_stability_adv
                           "scheme %s at a macro step of %.6g s is unstable without the damping of "
                           "outer loads: %.3g Hz in %.40s grow by %.3g per second",
                           options->name, macro_step, advice->now.frequency,
-                          a->member[advice->now.body]->name, advice->now.growth);
+                          a->member[advice->now.body]->system.name, advice->now.growth);
     if (advice->macro_step > 0) {
         length += snprintf(text + length, (size_t)(BOUGH_VERDICT - length),
                            "; macro_step: %.4g s holds", advice->macro_step);

@@ -1,10 +1,10 @@
-// What every subsystem must fulfil, checked at a time, state and input where f is smooth. `tolerance`
+// What every system and every member must fulfil, checked at a time, state and input where f is smooth. `tolerance`
 // is relative to the largest entry of what is compared; 1e-5 suits central differences.
 #ifndef BOUGH_TESTS_CONTRACT_H
 #define BOUGH_TESTS_CONTRACT_H
 
-#include "core/subsystem.h"
-#include "tests/check.h"
+#include "cosim/member.h"
+#include "tests/member.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -51,7 +51,7 @@ static inline void contract_shifted(const double *x, double factor, const double
 // Which of f and h a difference quotient is taken of.
 typedef enum contract_function { CONTRACT_RATE, CONTRACT_OUTPUT } contract_function;
 
-static inline void contract_evaluate(const bough_subsystem *s, contract_function f, double t,
+static inline void contract_evaluate(const bough_system *s, contract_function f, double t,
                                      const double *state, const double *input, double *value) {
     if (f == CONTRACT_OUTPUT) {
         s->ops->output(s->self, t, state, input, value);
@@ -61,7 +61,7 @@ static inline void contract_evaluate(const bough_subsystem *s, contract_function
 }
 
 // Central difference along (dy, du); either may be NULL.
-static inline void contract_difference(const bough_subsystem *s, contract_point at,
+static inline void contract_difference(const bough_system *s, contract_point at,
                                        contract_function f, const double *dy, const double *du,
                                        double *slope) {
     const double step = 1e-6;
@@ -81,7 +81,7 @@ static inline void contract_difference(const bough_subsystem *s, contract_point 
 }
 
 // output_tangent against differences of output, along state and input, together and apart.
-static inline void contract_output_tangent(const bough_subsystem *s, contract_point at) {
+static inline void contract_output_tangent(const bough_system *s, contract_point at) {
     double *dy = contract_doubles(s->n_state), *du = contract_doubles(s->n_input);
     double *slope = contract_doubles(s->n_output), *tangent = contract_doubles(s->n_output);
     for (int which = 1; which < 4; which++) {
@@ -96,7 +96,7 @@ static inline void contract_output_tangent(const bough_subsystem *s, contract_po
 }
 
 // input_columns against differences of derivative.
-static inline void contract_input_columns(const bough_subsystem *s, contract_point at) {
+static inline void contract_input_columns(const bough_system *s, contract_point at) {
     double *column = contract_doubles(s->n_input * s->n_state), *du = contract_doubles(s->n_input);
     double *slope = contract_doubles(s->n_state);
     s->ops->input_columns(s->self, at.t, at.state, at.input, column);
@@ -110,7 +110,7 @@ static inline void contract_input_columns(const bough_subsystem *s, contract_poi
 }
 
 // Factors at the point with that γ, in the arena.
-static inline void *contract_factors(const bough_subsystem *s, contract_point at, double gamma,
+static inline void *contract_factors(const bough_system *s, contract_point at, double gamma,
                                      bough_arena *arena) {
     void *factors = s->ops->factors(s->self, arena);
     assert_non_null(factors);
@@ -121,7 +121,7 @@ static inline void *contract_factors(const bough_subsystem *s, contract_point at
 
 // solve undoes x − γ ∂f/∂y x, the product by differences; with another γ of the same linearisation
 // too, and while others hold factors of their own.
-static inline void contract_newton(const bough_subsystem *s, contract_point at, double gamma) {
+static inline void contract_newton(const bough_system *s, contract_point at, double gamma) {
     int n = s->n_state;
     double *x = contract_doubles(n), *slope = contract_doubles(n), *solved = contract_doubles(n);
     bough_arena *arena = bough_arena_create();
@@ -141,104 +141,111 @@ static inline void contract_newton(const bough_subsystem *s, contract_point at, 
 }
 
 // Two constant pieces of input; `restart` is what the first is told, the second keeps the history.
-static inline void contract_run(const bough_subsystem *s, contract_point at, double length,
-                                bool restart) {
-    double *coefficient = contract_doubles(4 * s->n_input);
-    memcpy(coefficient, at.input, (size_t)s->n_input * sizeof(double));
+static inline void contract_run(bough_member *m, contract_point at, double length, bool restart) {
+    double *coefficient = contract_doubles(4 * m->system.n_input);
+    memcpy(coefficient, at.input, (size_t)m->system.n_input * sizeof(double));
     for (int piece = 0; piece < 2; piece++) {
-        double t0 = *s->time;
-        bough_signal input = {s->n_input, t0, t0 + length, coefficient};
-        bough_status status = s->ops->advance(s->self, input.t1, &input, restart && piece == 0);
+        double t0 = m->time;
+        bough_signal input = {m->system.n_input, t0, t0 + length, coefficient};
+        bough_status status = bough_member_advance(m, input.t1, &input, restart && piece == 0);
         if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-        check_near(*s->time, input.t1, 0, 0);
+        check_near(m->time, input.t1, 0, 0);
     }
     free(coefficient);
 }
 
-// A copy restored twice and advanced twice gives the same bits, and the model-exchange operations in
-// between disturb nothing. Without a restart too: the integrator's history is not that of the copy,
-// and who restores need not say so.
-static inline void contract_save_restore(const bough_subsystem *s, contract_point at,
-                                         double length, bool restart) {
+// A copy restored twice and advanced twice gives the same bits, and questions to the system in between
+// disturb nothing. Without a restart too: the integrator's history is not that of the copy, and who
+// restores need not say so.
+static inline void contract_save_restore(bough_member *m, contract_point at, double length,
+                                         bool restart) {
+    const bough_system *s = &m->system;
     size_t n = (size_t)s->n_state * sizeof(double);
-    void *copy = malloc(s->ops->save_size(s->self));
-    double *first = contract_doubles(s->n_state), *work = contract_doubles(s->n_state);
-    assert_non_null(copy);
-    s->ops->set_state(s->self, at.t, at.state);
-    contract_run(s, at, length, restart);
-    s->ops->save(s->self, copy);
-    double t = *s->time;
-    contract_run(s, at, length, restart);
-    s->ops->restore(s->self, copy);
-    check_near(*s->time, t, 0, 0);
-    contract_run(s, at, length, restart);
-    memcpy(first, s->state, n);
-    s->ops->restore(s->self, copy);
     bough_arena *arena = bough_arena_create();
+    double *first = contract_doubles(s->n_state), *work = contract_doubles(s->n_state);
+    bough_member_set(m, at.t, at.state);
+    contract_run(m, at, length, restart);
+    char *copy = member_save(arena, m);
+    double t = m->time;
+    contract_run(m, at, length, restart);
+    member_restore(m, copy);
+    check_near(m->time, t, 0, 0);
+    contract_run(m, at, length, restart);
+    memcpy(first, m->state, n);
+    member_restore(m, copy);
     void *factors = contract_factors(s, at, length, arena);
     contract_evaluate(s, CONTRACT_RATE, at.t, at.state, at.input, work);
     s->ops->solve(s->self, factors, work);
+    contract_run(m, at, length, restart);
+    assert_memory_equal(first, m->state, n);
+    free(first), free(work);
     bough_arena_destroy(arena);
-    contract_run(s, at, length, restart);
-    assert_memory_equal(first, s->state, n);
-    free(copy), free(first), free(work);
 }
 
-// set_state replaces time and state; a short advance then follows f.
-static inline void contract_set_state(const bough_subsystem *s, contract_point at, double length) {
+// Setting replaces time and state, but for rounding where it is constrained; a short advance then
+// follows f.
+static inline void contract_set_state(bough_member *m, contract_point at, double length) {
+    const bough_system *s = &m->system;
     int n = s->n_state;
     double *rate = contract_doubles(n), *moved = contract_doubles(n);
     double *coefficient = contract_doubles(4 * s->n_input);
     memcpy(coefficient, at.input, (size_t)s->n_input * sizeof(double));
-    s->ops->set_state(s->self, at.t, at.state);
-    check_near(*s->time, at.t, 0, 0);
-    assert_memory_equal(s->state, at.state, (size_t)n * sizeof(double));
+    bough_member_set(m, at.t, at.state);
+    check_near(m->time, at.t, 0, 0);
+    for (int i = 0; i < n; i++) check_near(m->state[i], at.state[i], 0, 1e-15);
     contract_evaluate(s, CONTRACT_RATE, at.t, at.state, at.input, rate);
     bough_signal input = {s->n_input, at.t, at.t + length, coefficient};
-    bough_status status = s->ops->advance(s->self, at.t + length, &input, true);
+    bough_status status = bough_member_advance(m, at.t + length, &input, true);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-    for (int i = 0; i < n; i++) moved[i] = (s->state[i] - at.state[i]) / length;
+    for (int i = 0; i < n; i++) moved[i] = (m->state[i] - at.state[i]) / length;
     contract_near(moved, rate, n, 0.05, "advance over a short time / derivative");
     free(rate), free(moved), free(coefficient);
 }
 
 // A pause on the way changes no bit.
-static inline void contract_pause(const bough_subsystem *s, contract_point at, double length) {
-    if (s->ops->advance_part == NULL) return;
-    size_t n = (size_t)s->n_state * sizeof(double);
-    double *whole = contract_doubles(s->n_state);
-    double *coefficient = contract_doubles(4 * s->n_input);
-    memcpy(coefficient, at.input, (size_t)s->n_input * sizeof(double));
+static inline void contract_pause(bough_member *m, contract_point at, double length) {
+    size_t n = (size_t)m->system.n_state * sizeof(double);
+    double *whole = contract_doubles(m->system.n_state);
+    bough_arena *arena = bough_arena_create();
+    bough_member_set(m, at.t, at.state);
+    char *copy = member_save(arena, m);
+    double *coefficient = contract_doubles(4 * m->system.n_input);
+    memcpy(coefficient, at.input, (size_t)m->system.n_input * sizeof(double));
     for (int run = 0; run < 2; run++) {
-        bough_signal input = {s->n_input, at.t, at.t + length, coefficient};
+        bough_signal input = {m->system.n_input, at.t, at.t + length, coefficient};
         double pause = at.t + 0.4 * length;
         bough_status status = bough_ok();
-        s->ops->set_state(s->self, at.t, at.state);
+        member_restore(m, copy);
         if (run == 1) {
-            status = s->ops->advance_part(s->self, pause, input.t1, &input, true);
-            assert_true(*s->time >= pause && *s->time <= input.t1);
+            status = bough_member_advance_part(m, pause, input.t1, &input, true);
+            assert_true(m->time >= pause && m->time <= input.t1);
         }
-        if (bough_is_ok(&status) && *s->time < input.t1) {
-            status = s->ops->advance(s->self, input.t1, &input, run == 0);
+        if (bough_is_ok(&status) && m->time < input.t1) {
+            status = bough_member_advance(m, input.t1, &input, run == 0);
         }
         if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-        check_near(*s->time, input.t1, 0, 0);
-        if (run == 0) memcpy(whole, s->state, n);
+        check_near(m->time, input.t1, 0, 0);
+        if (run == 0) memcpy(whole, m->state, n);
     }
-    assert_memory_equal(whole, s->state, n);
+    assert_memory_equal(whole, m->state, n);
     free(whole), free(coefficient);
+    bough_arena_destroy(arena);
+}
+
+// What needs no member.
+static inline void contract_check_system(const bough_system *s, contract_point at, double gamma) {
+    contract_output_tangent(s, at);
+    contract_input_columns(s, at);
+    contract_newton(s, at, gamma);
 }
 
 // Everything; `gamma` for the Newton matrix and `length` of an advance [s]. contract_set_state is
 // left to the caller, who knows a length short against the fastest motion.
-static inline void contract_check(const bough_subsystem *s, contract_point at, double gamma,
-                                  double length) {
-    contract_output_tangent(s, at);
-    contract_input_columns(s, at);
-    contract_newton(s, at, gamma);
-    contract_save_restore(s, at, length, true);
-    contract_save_restore(s, at, length, false);
-    contract_pause(s, at, length);
+static inline void contract_check(bough_member *m, contract_point at, double gamma, double length) {
+    contract_check_system(&m->system, at, gamma);
+    contract_save_restore(m, at, length, true);
+    contract_save_restore(m, at, length, false);
+    contract_pause(m, at, length);
 }
 
 #endif

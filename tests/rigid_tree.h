@@ -1,15 +1,16 @@
-// Trees for tests: built with their subsystem, and one that holds everything a tree may.
+// Trees for tests: built as members, and one that holds everything a tree may.
 #ifndef BOUGH_TESTS_RIGID_TREE_H
 #define BOUGH_TESTS_RIGID_TREE_H
 
 #include "tests/check.h"
+#include "tests/member.h"
 
 #include "core/base.h"
 #include "core/dynamics.h"
 #include "core/loop.h"
 #include "core/rotation.h"
 #include "core/tree_build.h"
-#include "core/tree_subsystem.h"
+#include "core/tree_system.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,8 @@ typedef struct fixture {
     bough_arena *arena;
     bough_tree *tree;
     bough_tree_data *data;
-    bough_subsystem s;
+    bough_system s;
+    bough_member *m;
 } fixture;
 
 static inline fixture build_with(const bough_tree_def *def, bough_integrator_kind solver, double rtol) {
@@ -32,9 +34,9 @@ static inline fixture build_with(const bough_tree_def *def, bough_integrator_kin
     assert_int_equal(status.code, BOUGH_OK);
     status = bough_tree_data_create(f.arena, f.tree, &f.data);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0,
-                                         &(bough_integrator_options){solver, rtol, 0, 0.8}, &f.s);
+    status = bough_tree_system_create(f.arena, f.tree, "tree", &f.s);
     assert_int_equal(status.code, BOUGH_OK);
+    f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8});
     assert_true(f.s.n_state <= MOST);
     return f;
 }
@@ -44,10 +46,10 @@ static inline fixture build(const bough_tree_def *def, double rtol) {
 }
 
 static inline void advance(fixture *f, double t1, bool restart) {
-    bough_status status = f->s.ops->advance(f->s.self, t1, NULL, restart);
+    bough_status status = bough_member_advance(f->m, t1, NULL, restart);
     if (!bough_is_ok(&status)) print_error("%s\n", status.message);
     assert_int_equal(status.code, BOUGH_OK);
-    check_near(*f->s.time, t1, 0, 0);
+    check_near(f->m->time, t1, 0, 0);
 }
 
 static inline bough_mat3 diagonal(double a, double b, double c) {

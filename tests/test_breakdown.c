@@ -4,13 +4,15 @@
 
 #include <stdlib.h>
 
-static bough_subsystem_ops fragile; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
-static bough_status (*whole)(void *self, double t1, const bough_signal *input, bool restart);
+static bough_integrator_ops fragile; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+static bough_status (*whole)(void *self, double *t, double pause, double t1, bool restart,
+                             double *y);
 
-static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
+                            double *y) {
     const bough_oscillator *o = self;
     if (!(fabs(o->y[0]) < .6)) return bough_fail(BOUGH_FAILED, "mass1 at t = %g s: torn", t1);
-    return whole(self, t1, input, restart);
+    return whole(self, t, pause, t1, restart, y);
 }
 
 // Runs to the failure.
@@ -23,10 +25,10 @@ static bough_status run(bough_two_mass *m, double macro_step, double start, bool
     m->y0[0] = start;
     bough_status status = bough_two_mass_build(m, def);
     assert_int_equal(status.code, BOUGH_OK);
-    fragile = *m->subsystem[0].ops;
+    fragile = *m->member[0].integrator.ops;
     whole = fragile.advance;
     fragile.advance = advance;
-    m->subsystem[0].ops = &fragile;
+    m->member[0].integrator.ops = &fragile;
     if (!judged) m->master->advice = (bough_stability_advice){0};
     while (bough_is_ok(&status) && !bough_master_done(m->master)) status = bough_step(m->master);
     assert_int_equal(status.code, BOUGH_FAILED);

@@ -50,9 +50,9 @@ static void rods_take_ports_in_the_order_of_the_scene(void **context) {
         assert_ptr_equal(bough_simulation_beam(s, bodies[k]), beam);
         assert_int_equal(beam->rod == NULL, ports[k] < 0);
         if (beam->rod == NULL) continue;
-        assert_ptr_equal(s->rod[beam->port].self, beam->rod);
+        assert_ptr_equal(s->rod[beam->port].system.self, beam->rod);
         assert_ptr_equal(s->master->assembly->member[beam->port + 1], &s->rod[beam->port]);
-        assert_string_equal(s->rod[beam->port].name, names[k]);
+        assert_string_equal(s->rod[beam->port].system.name, names[k]);
         assert_string_equal(s->tree->ports[beam->port].name, names[k]);
     }
     assert_null(bough_simulation_beam(s, 1));
@@ -93,8 +93,8 @@ static void rigid_blades_leave_the_tree_alone(void **context) {
     bough_simulation *s = scene_build(arena, runup, sets);
     assert_int_equal(s->n_rod, 0);
     assert_int_equal(s->n_beam, 3);
-    assert_int_equal(s->leader.n_state, 2);
-    assert_int_equal(s->leader.n_input, 0);
+    assert_int_equal(s->leader.system.n_state, 2);
+    assert_int_equal(s->leader.system.n_input, 0);
     assert_int_equal(s->master->assembly->n_member, 1);
     assert_int_equal(s->master->assembly->n_state, 2);
     for (int k = 0; k < 3; k++) assert_null(s->beam[k].rod);
@@ -168,8 +168,8 @@ static void end_of_a_rod_is_connected_to_its_body(void **context) {
     assert_int_equal(s->n_end, 1);
     assert_int_equal(s->tree->n_bodies, 3);
     assert_string_equal(s->tree->ends[0].name, "cable end");
-    assert_int_equal(s->leader.n_state, 13); // the end is free, the weight welded to it
-    assert_int_equal(s->rod[0].n_state, 13 * 3);
+    assert_int_equal(s->leader.system.n_state, 13); // the end is free, the weight welded to it
+    assert_int_equal(s->rod[0].system.n_state, 13 * 3);
     assert_int_equal(a->n_interface, 2);
     assert_int_equal(a->interface[1].body, 1);
     assert_int_equal(a->interface[1].twist, a->input_offset[1] + BOUGH_ROD_INPUTS);
@@ -403,7 +403,7 @@ static int final_state(const char *scheme, int threads, double *state) {
     const bough_assembly *a = s->master->assembly;
     assert_true(a->n_state + a->n_output <= MOST_STATES);
     for (int i = 0; i < a->n_member; i++) {
-        size_t bytes = (size_t)a->member[i]->n_state * sizeof *state;
+        size_t bytes = (size_t)a->member[i]->system.n_state * sizeof *state;
         memcpy(state + a->state_offset[i], a->member[i]->state, bytes);
     }
     memcpy(state + a->n_state, s->master->coupling->output, (size_t)a->n_output * sizeof *state);

@@ -205,7 +205,7 @@ static invariants measure(const bough_simulation *s, bough_rod_scratch *scratch)
         sum.angular = bough_add(sum.angular, bough_add(bough_mat3_mul(r[i], p.moment),
                                                        bough_cross(x[i], linear)));
     }
-    bough_rod_gather(m, bough_rod_body_state(beam->rod), bough_simulation_rod_input(s, beam),
+    bough_rod_gather(m, s->rod[beam->port].state, bough_simulation_rod_input(s, beam),
                      scratch);
     sum.energy += bough_rod_elastic_energy(m, scratch);
     return sum;
@@ -343,9 +343,9 @@ static void threads_do_not_change_a_bit(void **context) {
         run(s[k]);
     }
     for (int i = 0; i < s[0]->master->assembly->n_member; i++) {
-        const bough_subsystem *a = s[0]->master->assembly->member[i];
-        const bough_subsystem *b = s[1]->master->assembly->member[i];
-        assert_memory_equal(a->state, b->state, (size_t)a->n_state * sizeof(double));
+        const bough_member *a = s[0]->master->assembly->member[i];
+        const bough_member *b = s[1]->master->assembly->member[i];
+        assert_memory_equal(a->state, b->state, (size_t)a->system.n_state * sizeof(double));
     }
     bough_arena_destroy(arena);
 }

@@ -10,7 +10,7 @@ static void inverse_dynamics_inverts_forward_dynamics(void **state) {
     double zero[MOST] = {0};
     int n = f.tree->n_v;
     double t = 0.2;
-    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
     assert_true(bough_tree_forward_dynamics(f.tree, f.data, t, some_input, acceleration));
     bough_tree_inverse_dynamics(f.tree, f.data, t, some_input, acceleration, residual);
     bough_tree_inverse_dynamics(f.tree, f.data, t, some_input, zero, bias);
@@ -31,8 +31,8 @@ static void kinetic_energy_is_the_mass_matrix_form(void **state) {
     fixture f = everything(1e-6);
     double mass[MOST * MOST], energy = 0;
     int n = f.tree->n_v;
-    const double *v = f.s.state + f.tree->n_q;
-    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    const double *v = f.m->state + f.tree->n_q;
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
     bough_tree_mass_matrix(f.tree, f.data, mass);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
@@ -51,11 +51,11 @@ static void energy_follows_the_power_of_the_loads(void **state) {
     for (int i = 0; i < f.tree->n_links; i++)
         f.tree->links[i].spring.damping = 0;
     f.tree->springs[0].damping = 0;
-    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
     bough_tree_sums before = bough_tree_sum(f.tree, f.data);
     for (int k = 1; k <= 10; k++)
         advance(&f, 0.1 * k, k == 1);
-    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
     bough_tree_sums after = bough_tree_sum(f.tree, f.data);
     assert_true(fabs(after.kinetic - before.kinetic) > 1);
     assert_true(after.elastic > 0 && after.elastic != before.elastic);
@@ -76,10 +76,10 @@ static void output_tangent_is_the_derivative(void **state) {
         change[i] = next(&seed);
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i < n; i++)
-            y[i] = f.s.state[i] + (side == 0 ? h : -h) * change[i];
+            y[i] = f.m->state[i] + (side == 0 ? h : -h) * change[i];
         f.s.ops->output(f.s.self, 0, y, some_input, side == 0 ? plus : minus);
     }
-    f.s.ops->output_tangent(f.s.self, 0, f.s.state, some_input, change, NULL, tangent);
+    f.s.ops->output_tangent(f.s.self, 0, f.m->state, some_input, change, NULL, tangent);
     for (int i = 0; i < m; i++) {
         check_near(tangent[i], (plus[i] - minus[i]) / (2 * h), 1e-8, 1e-8);
         assert_true(fabs(tangent[i]) > 1e-4);
@@ -92,10 +92,10 @@ static void output_tangent_along_the_motion_is_the_acceleration(void **state) {
     (void)state;
     fixture f = everything(1e-6);
     double rate[MOST], tangent[MOST], out[MOST];
-    assert_true(f.s.ops->derivative(f.s.self, 0, f.s.state, some_input, rate));
-    f.s.ops->output(f.s.self, 0, f.s.state, some_input, out);
-    f.s.ops->output_tangent(f.s.self, 0, f.s.state, some_input, rate, NULL, tangent);
-    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    assert_true(f.s.ops->derivative(f.s.self, 0, f.m->state, some_input, rate));
+    f.s.ops->output(f.s.self, 0, f.m->state, some_input, out);
+    f.s.ops->output_tangent(f.s.self, 0, f.m->state, some_input, rate, NULL, tangent);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
     double ignored[MOST];
     assert_true(bough_tree_forward_dynamics(f.tree, f.data, 0, some_input, ignored));
     for (int p = 0; p < 2; p++) {
@@ -122,13 +122,13 @@ static void input_columns_are_the_derivative(void **state) {
     int n = f.s.n_state;
     double *columns = calloc((size_t)(n * f.s.n_input), sizeof(double));
     double plus[MOST], minus[MOST], u[12];
-    f.s.ops->input_columns(f.s.self, 0.2, f.s.state, some_input, columns);
+    f.s.ops->input_columns(f.s.self, 0.2, f.m->state, some_input, columns);
     for (int j = 0; j < f.s.n_input; j++) {
         memcpy(u, some_input, sizeof u);
         u[j] += 0.5; // f is linear in u: no truncation error
-        f.s.ops->derivative(f.s.self, 0.2, f.s.state, u, plus);
+        f.s.ops->derivative(f.s.self, 0.2, f.m->state, u, plus);
         u[j] -= 1;
-        f.s.ops->derivative(f.s.self, 0.2, f.s.state, u, minus);
+        f.s.ops->derivative(f.s.self, 0.2, f.m->state, u, minus);
         for (int i = 0; i < n; i++)
             check_near(columns[n * j + i], plus[i] - minus[i], 1e-9, 1e-11);
     }
@@ -147,12 +147,12 @@ static void solve_inverts_the_linearisation(void **state) {
         x[i] = b[i] = next(&seed);
     void *factors = f.s.ops->factors(f.s.self, f.arena);
     assert_non_null(factors);
-    assert_true(f.s.ops->linearise(f.s.self, 0.2, f.s.state, some_input, factors));
+    assert_true(f.s.ops->linearise(f.s.self, 0.2, f.m->state, some_input, factors));
     assert_true(f.s.ops->factor(f.s.self, factors, gamma));
     f.s.ops->solve(f.s.self, factors, x);
     for (int side = 0; side < 2; side++) {
         for (int i = 0; i < n; i++)
-            y[i] = f.s.state[i] + (side == 0 ? h : -h) * x[i];
+            y[i] = f.m->state[i] + (side == 0 ? h : -h) * x[i];
         f.s.ops->derivative(f.s.self, 0.2, y, some_input, side == 0 ? plus : minus);
     }
     for (int i = 0; i < n; i++) {

@@ -10,7 +10,7 @@
 
 static void go_to(fixture *f, double t1) {
     advance(f, t1, false);
-    bough_tree_kinematics(f->tree, f->s.state, f->data);
+    bough_tree_kinematics(f->tree, f->m->state, f->data);
 }
 
 static bough_transform placed(double x, double y, double z, double turn) {
@@ -68,12 +68,12 @@ static void bushing_is_linear_along_and_about_an_axis(void **state) {
     fixture f = build(&def, 1e-10);
     double t = 2.3, delta = 0.2, w = sqrt(25 - delta * delta);
     go_to(&f, t);
-    check_near(f.s.state[2], 0.7 * exp(-delta * t) * (cos(w * t) + delta / w * sin(w * t)), 0, 1e-8);
+    check_near(f.m->state[2], 0.7 * exp(-delta * t) * (cos(w * t) + delta / w * sin(w * t)), 0, 1e-8);
     delta = 0.4, w = sqrt(16 - delta * delta);
     bough_vec3 turn = bough_quaternion_logarithm(
-        (bough_quaternion){f.s.state[3], f.s.state[4], f.s.state[5], f.s.state[6]});
+        (bough_quaternion){f.m->state[3], f.m->state[4], f.m->state[5], f.m->state[6]});
     check_near(turn.z, 2.4 * exp(-delta * t) * (cos(w * t) + delta / w * sin(w * t)), 0, 1e-8);
-    check_near(f.s.state[0], 0, 0, 1e-12);
+    check_near(f.m->state[0], 0, 0, 1e-12);
     bough_arena_destroy(f.arena);
 }
 
@@ -81,7 +81,7 @@ static void bushing_is_linear_along_and_about_an_axis(void **state) {
 static void elements_conserve(void **state) {
     (void)state;
     fixture f = mounted(1e-10, false);
-    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
     bough_tree_sums before = bough_tree_sum(f.tree, f.data);
     double largest = 0;
     for (int k = 1; k <= 20; k++) {
@@ -99,7 +99,7 @@ static void elements_conserve(void **state) {
 static void elements_act_and_react(void **state) {
     (void)state;
     fixture f = mounted(1e-6, true);
-    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
     for (int e = 0; e < bough_tree_n_elements(f.tree); e++) {
         double energy, sum[6], size = 0;
         bough_force_pair pair = bough_element_force(f.tree, f.data, e, &energy);
@@ -130,7 +130,7 @@ static void changes_are_derivatives(void **state) {
     fixture f = mounted(1e-6, true);
     double direction[24], h = 1e-6, t = 0.4;
     for (int i = 0; i < 24; i++) direction[i] = sin(1.3 * i + 0.4);
-    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
     bough_transform pose[2] = {f.data->pose[0], f.data->pose[1]};
     bough_twist twist[2] = {f.data->twist[0], f.data->twist[1]};
     bough_twist shift[2] = {moved(direction), moved(direction + 6)};
@@ -182,9 +182,9 @@ static void tree_with_forces_fulfils_the_contract(void **state) {
     (void)state;
     fixture f = mounted(1e-8, true);
     double y[26], none[1] = {0};
-    memcpy(y, f.s.state, sizeof y);
+    memcpy(y, f.m->state, sizeof y);
     contract_point at = {0.2, y, none, 1e-5};
-    contract_check(&f.s, at, 0.07, 0.05);
+    contract_check(f.m, at, 0.07, 0.05);
     bough_arena_destroy(f.arena);
 }
 
@@ -205,10 +205,10 @@ static void wrench_in_ground_axes_pushes_straight(void **state) {
                           .n_applied = 1, .applied = &applied};
     fixture f = build(&def, 1e-10);
     go_to(&f, 1);
-    check_near(f.s.state[0], 3.0 / 6, 1e-8, 0); // ∫∫ 3t
-    check_near(f.s.state[1], 0, 0, 1e-8);
+    check_near(f.m->state[0], 3.0 / 6, 1e-8, 0); // ∫∫ 3t
+    check_near(f.m->state[1], 0, 0, 1e-8);
     go_to(&f, 2);
-    check_near(f.s.state[0], 0.5 + 1.5 + 1.5 - 0.5, 1e-7, 0);
+    check_near(f.m->state[0], 0.5 + 1.5 + 1.5 - 0.5, 1e-7, 0);
     bough_arena_destroy(f.arena);
 }
 

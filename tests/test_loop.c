@@ -8,7 +8,7 @@
 #include "core/loop.h"
 #include "core/rotation.h"
 #include "core/tree_build.h"
-#include "core/tree_subsystem.h"
+#include "core/tree_system.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -92,7 +92,8 @@ typedef struct fixture {
     bough_arena *arena;
     bough_tree *tree;
     bough_tree_data *data;
-    bough_subsystem s;
+    bough_system s;
+    bough_member *m;
 } fixture;
 
 static fixture build(const bough_tree_def *def, bough_integrator_kind solver, double rtol) {
@@ -100,18 +101,18 @@ static fixture build(const bough_tree_def *def, bough_integrator_kind solver, do
     bough_status status = bough_tree_create(f.arena, def, &f.tree);
     if (bough_is_ok(&status)) status = bough_tree_data_create(f.arena, f.tree, &f.data);
     if (bough_is_ok(&status)) {
-        status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0,
-                                         &(bough_integrator_options){solver, rtol, 0, 0.8}, &f.s);
+        status = bough_tree_system_create(f.arena, f.tree, "tree", &f.s);
     }
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8});
     assert_true(f.s.n_state <= MOST);
     return f;
 }
 
 static void advance(fixture *f, double t1, bool restart) {
-    bough_status status = f->s.ops->advance(f->s.self, t1, NULL, restart);
+    bough_status status = bough_member_advance(f->m, t1, NULL, restart);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-    bough_tree_kinematics(f->tree, f->s.state, f->data);
+    bough_tree_kinematics(f->tree, f->m->state, f->data);
 }
 
 static void check_closed(fixture *f, double allowed) {
@@ -207,10 +208,10 @@ static void closures_act_as_the_joints_they_replace(void **state) {
             base_and_arm(b, kinds[k]);
             bough_tree_def def = {.gravity = down, .n_bodies = 2, .bodies = b};
             fixture open = build(&def, BOUGH_RADAU5, 1e-11);
-            bough_tree_kinematics(open.tree, open.s.state, open.data);
+            bough_tree_kinematics(open.tree, open.m->state, open.data);
             def = closed_def(b, m, &c, &open);
             fixture closed = build(&def, solver, 1e-9);
-            bough_tree_kinematics(closed.tree, closed.s.state, closed.data);
+            bough_tree_kinematics(closed.tree, closed.m->state, closed.data);
             compare(&open, &closed, 1e-9);
             compare_wrenches(&open, &closed);
             assert_int_equal(closed.tree->closure_rank, 6 - bough_joint_n_speeds(kinds[k]));
@@ -310,13 +311,13 @@ static void windows_follow_their_one_equation(void **state) {
             fixture f = build(&w.def, solver, 1e-8);
             assert_int_equal(f.tree->n_rows, 5 * n);
             assert_int_equal(f.tree->closure_rank, 2 * n);
-            bough_tree_kinematics(f.tree, f.s.state, f.data);
+            bough_tree_kinematics(f.tree, f.m->state, f.data);
             bough_tree_sums start = bough_tree_sum(f.tree, f.data);
             for (int k = 1; k <= 40; k++) {
                 advance(&f, 0.01 * k, k == 1);
                 check_closed(&f, 1e-7);
             }
-            check_near(f.s.state[0], angle_at(n, 0.4), 0, 5e-7);
+            check_near(f.m->state[0], angle_at(n, 0.4), 0, 5e-7);
             bough_tree_sums end = bough_tree_sum(f.tree, f.data);
             check_near(end.kinetic + end.potential, start.kinetic + start.potential, 1e-7, 0);
             bough_arena_destroy(f.arena);
@@ -355,7 +356,7 @@ static void closed_trees_fulfil_the_contract(void **state) {
         base_and_arm(b, BOUGH_JOINT_REVOLUTE);
         bough_tree_def def = {.gravity = down, .n_bodies = 2, .bodies = b};
         fixture open = build(&def, BOUGH_RADAU5, 1e-11);
-        bough_tree_kinematics(open.tree, open.s.state, open.data);
+        bough_tree_kinematics(open.tree, open.m->state, open.data);
         def = closed_def(b, m, c, &open);
         c[1] = c[0];
         c[1].name = "again";
@@ -365,13 +366,13 @@ static void closed_trees_fulfil_the_contract(void **state) {
         fixture f = build(&def, solver, 1e-8);
         assert_int_equal(f.tree->n_rows, 10);
         assert_int_equal(f.tree->closure_rank, 5);
-        memcpy(y, f.s.state, (size_t)f.s.n_state * sizeof(double));
+        memcpy(y, f.m->state, (size_t)f.s.n_state * sizeof(double));
         contract_point at = {0.2, y, input, 1e-5};
-        contract_check(&f.s, at, 0.07, 0.05);
-        contract_set_state(&f.s, at, 1e-4);
+        contract_check(f.m, at, 0.07, 0.05);
+        contract_set_state(f.m, at, 1e-4);
         for (int i = 0; i < f.s.n_state; i++)
             y[i] += 0.01 * sin(3.0 * i);
-        contract_check(&f.s, at, 0.07, 0.05);
+        contract_check(f.m, at, 0.07, 0.05);
         bough_arena_destroy(open.arena);
         bough_arena_destroy(f.arena);
     }
@@ -387,13 +388,13 @@ static void driven_cranks_take_the_torque_of_the_weights(void **state) {
     w.body[1].speeds[0] = w.body[2].speeds[0] = 0; // they follow
     for (int solver = BOUGH_IDA; solver <= BOUGH_RADAU5; solver += BOUGH_RADAU5) {
         fixture f = build(&w.def, solver, 1e-9);
-        check_near(f.s.state[4], 1, 1e-9, 0);
+        check_near(f.m->state[4], 1, 1e-9, 0);
         for (int k = 1; k <= 10; k++) {
             double t = 0.1 * k, acceleration[MOST];
             advance(&f, t, k == 1);
             check_closed(&f, 1e-7);
-            check_near(f.s.state[0], t, 0, 1e-14);
-            check_near(f.s.state[1], t, 0, 1e-7);
+            check_near(f.m->state[0], t, 0, 1e-14);
+            check_near(f.m->state[1], t, 0, 1e-7);
             bough_tree_forward_dynamics(f.tree, f.data, t, NULL, acceleration);
             check_near(f.data->drive[0], -2 * 9.81 * sin(t), 0, 1e-5);
         }
@@ -408,11 +409,11 @@ static void violations_decay(void **state) {
     double y[MOST];
     make_windows(&w, 1, BOUGH_JOINT_REVOLUTE);
     fixture f = build(&w.def, BOUGH_RADAU5, 1e-9);
-    memcpy(y, f.s.state, (size_t)f.s.n_state * sizeof(double));
+    memcpy(y, f.m->state, (size_t)f.s.n_state * sizeof(double));
     y[1] += 0.01;
-    f.s.ops->set_state(f.s.self, 0, y);
+    bough_member_set(f.m, 0, y);
     double before, after, rate;
-    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
     bough_loops_residual(f.tree, f.data, 0, &before, &rate);
     check_near(before, 0.01, 0.1, 0);
     advance(&f, 0.05, true); // five of them
@@ -432,14 +433,14 @@ static void loops_are_assembled_from_near(void **state) {
     w.body[2].coordinates[0] = -0.53;
     w.body[1].speeds[0] = w.body[2].speeds[0] = 0; // they follow
     fixture f = build(&w.def, BOUGH_RADAU5, 1e-9);
-    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
     check_closed(&f, 1e-10);
     assert_true(f.tree->closure_moved > 1e-3 && f.tree->closure_moved < 0.05);
-    check_near(f.s.state[1], f.s.state[0], 1e-9, 0); // a parallelogram
-    check_near(f.s.state[2], -f.s.state[0], 1e-9, 0);
-    check_near(f.s.state[3], 1, 0, 0); // given
-    check_near(f.s.state[4], 1, 1e-9, 0);
-    check_near(f.s.state[5], -1, 1e-9, 0);
+    check_near(f.m->state[1], f.m->state[0], 1e-9, 0); // a parallelogram
+    check_near(f.m->state[2], -f.m->state[0], 1e-9, 0);
+    check_near(f.m->state[3], 1, 0, 0); // given
+    check_near(f.m->state[4], 1, 1e-9, 0);
+    check_near(f.m->state[5], -1, 1e-9, 0);
     bough_arena_destroy(f.arena);
 }
 
@@ -468,7 +469,7 @@ static void arches_are_assembled(void **state) {
                           .n_closures = 1,
                           .closures = &closure};
     fixture f = build(&def, BOUGH_RADAU5, 1e-8);
-    bough_tree_kinematics(f.tree, f.s.state, f.data);
+    bough_tree_kinematics(f.tree, f.m->state, f.data);
     check_closed(&f, 1e-9);
     assert_int_equal(f.tree->closure_rank, 2);
     bough_tree_sums start = bough_tree_sum(f.tree, f.data);

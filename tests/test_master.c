@@ -97,13 +97,13 @@ enum { N_FOLLOWER = 3 };
 
 typedef struct star {
     bough_oscillator mass[1 + N_FOLLOWER];
-    bough_subsystem subsystem[1 + N_FOLLOWER];
+    bough_member member[1 + N_FOLLOWER];
     bough_arena *arena;
     bough_master *master;
 } star;
 
 static bough_status star_build(star *s, bough_master_def def) {
-    bough_member member[1 + N_FOLLOWER];
+    bough_assembly_member part[1 + N_FOLLOWER];
     bough_connection connection[2 * N_FOLLOWER];
     for (int i = 0; i < N_FOLLOWER; i++) {
         bough_oscillator *follower = &s->mass[1 + i];
@@ -115,11 +115,11 @@ static bough_status star_build(star *s, bough_master_def def) {
         connection[2 * i + 1] = (bough_connection){.from = 1 + i, .to_offset = i, .count = 1};
     }
     for (int i = 0; i <= N_FOLLOWER; i++) {
-        s->subsystem[i] = bough_oscillator_subsystem(&s->mass[i], i ? "follower" : "leader");
-        member[i] = (bough_member){&s->subsystem[i], i > 0};
+        bough_oscillator_member(&s->mass[i], i ? "follower" : "leader", &s->member[i]);
+        part[i] = (bough_assembly_member){&s->member[i], i > 0};
     }
     def.assembly = (bough_assembly_def){.n_member = 1 + N_FOLLOWER,
-                                        .member = member,
+                                        .member = part,
                                         .n_connection = 2 * N_FOLLOWER,
                                         .connection = connection};
     s->arena = bough_arena_create();
@@ -183,19 +183,19 @@ static void schemes_converge_to_the_monolithic_run(void **state) {
 static void algebraic_loops_are_refused(void **state) {
     (void)state;
     bough_oscillator mass[2];
-    bough_subsystem subsystem[2];
     bough_member member[2];
+    bough_assembly_member part[2];
     bough_connection connection[2];
     for (int i = 0; i < 2; i++) {
         mass[i] = bough_oscillator_told_motion((bough_spring_mass){1, 20, .3}, 10, .5, 0);
         mass[i].n_output = 2;
-        subsystem[i] = bough_oscillator_subsystem(&mass[i], "mass");
-        member[i] = (bough_member){&subsystem[i], i};
+        bough_oscillator_member(&mass[i], "mass", &member[i]);
+        part[i] = (bough_assembly_member){&member[i], i};
         connection[i] = (bough_connection){.from = i, .to = 1 - i, .count = 2};
     }
     bough_arena *arena = bough_arena_create();
     bough_assembly *assembly;
-    bough_assembly_def def = {2, member, 2, connection};
+    bough_assembly_def def = {2, part, 2, connection};
     bough_status status = bough_assembly_build(arena, &def, &assembly);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_non_null(strstr(status.message, "algebraic loop"));

@@ -2,9 +2,9 @@
 #include "tests/check.h"
 
 #include "tests/verification/modal_static.h"
-#include "flexbody/modal_subsystem.h"
+#include "flexbody/modal_system.h"
 #include "flexbody/rod_modes.h"
-#include "flexbody/rod_subsystem.h"
+#include "flexbody/rod_system.h"
 #include "flexbody/section.h"
 #include "tests/contract.h"
 #include "tests/sample_rod.h"
@@ -27,8 +27,7 @@ static bough_modal_model *general(bough_arena *arena, int n, int pieces,
 static bough_modal_body *body_of(bough_arena *arena, const bough_modal_model *m,
                                  const double *input) {
     bough_modal_body *body = NULL;
-    bough_status status = bough_modal_body_create(
-        arena, m, 0, (bough_integrator_options){.kind = BOUGH_CVODE_BDF, .rtol = 1e-8}, input, &body);
+    bough_status status = bough_modal_body_create(arena, m, input, &body);
     assert_int_equal(status.code, BOUGH_OK);
     return body;
 }
@@ -39,15 +38,17 @@ static void check_contract(int pieces, bough_modal_options options) {
     bough_arena *arena = bough_arena_create();
     bough_modal_model *m = general(arena, 7, pieces, options);
     bough_modal_body *body = body_of(arena, m, swaying);
-    bough_subsystem s = bough_modal_body_subsystem(body);
+    bough_system s = bough_modal_body_system(body);
     double *state = bough_arena_doubles(arena, (size_t)m->n_state);
     unsigned seed = 3;
     bough_modal_rest_state(m, swaying, state);
     for (int k = 0; k < m->n_state; k++) state[k] += 0.1 * s.scale[k] * sample_random(&seed);
     sample_loads(m->rod, bough_modal_body_loads(body));
     contract_point at = {0.5, state, swaying, 1e-5};
-    contract_check(&s, at, 0.03, 0.01);
-    contract_set_state(&s, at, 1e-5);
+    bough_member *body_member = member_of(
+        arena, &s, (bough_integrator_options){.kind = BOUGH_CVODE_BDF, .rtol = 1e-8});
+    contract_check(body_member, at, 0.03, 0.01);
+    contract_set_state(body_member, at, 1e-5);
     bough_arena_destroy(arena);
 }
 

@@ -52,7 +52,7 @@ static void run(const char *scheme, const char *solver, const char *rtol, bool s
     assert_true(at->n <= MOST);
     for (int i = 0; i < a->n_member; i++) {
         memcpy(at->state + a->state_offset[i], a->member[i]->state,
-               (size_t)a->member[i]->n_state * sizeof(double));
+               (size_t)a->member[i]->system.n_state * sizeof(double));
     }
     bough_arena_destroy(arena);
 }

@@ -1,8 +1,8 @@
 // A rod that carries bodies: its last vertex moves as an input says and returns a wrench. The rest of
-// test_rod.c and test_rod_subsystem.c is about the port at the root.
+// test_rod.c and test_rod_system.c is about the port at the root.
 #include "tests/check.h"
 
-#include "flexbody/rod_subsystem.h"
+#include "flexbody/rod_system.h"
 #include "tests/contract.h"
 #include "tests/sample_rod.h"
 
@@ -18,8 +18,7 @@ typedef struct pair {
 
 static bough_rod_body *make(bough_arena *arena, bough_rod_model *model, const double *input) {
     bough_rod_body *body = NULL;
-    bough_status status = bough_rod_body_create(arena, model, 0,
-                                                (bough_integrator_options){.kind = BOUGH_CVODE_BDF, .rtol = 1e-6}, input, &body);
+    bough_status status = bough_rod_body_create(arena, model, input, &body);
     assert_int_equal(status.code, BOUGH_OK);
     bough_rod_loads *loads = bough_rod_body_loads(body);
     sample_loads(model, loads);
@@ -58,11 +57,13 @@ static pair make_pair(void) {
 static void operations_agree_on_a_rod_that_carries(void **context) {
     (void)context;
     pair p = make_pair();
-    bough_subsystem s = bough_rod_body_subsystem(p.carrying_body);
+    bough_system s = bough_rod_body_system(p.carrying_body);
     assert_int_equal(s.n_state, STATES);
     assert_int_equal(s.n_input, 22);
     assert_int_equal(s.n_output, 12);
-    contract_check(&s, (contract_point){0.5, p.state, p.input, 1e-5}, 0.03, 0.01);
+    bough_member *m = member_of(
+        p.arena, &s, (bough_integrator_options){.kind = BOUGH_CVODE_BDF, .rtol = 1e-6});
+    contract_check(m, (contract_point){0.5, p.state, p.input, 1e-5}, 0.03, 0.01);
     bough_arena_destroy(p.arena);
 }
 
@@ -70,8 +71,8 @@ static void operations_agree_on_a_rod_that_carries(void **context) {
 static void end_moves_the_rest_as_its_own_vertex_would(void **context) {
     (void)context;
     pair p = make_pair();
-    bough_subsystem whole = bough_rod_body_subsystem(p.free_body);
-    bough_subsystem part = bough_rod_body_subsystem(p.carrying_body);
+    bough_system whole = bough_rod_body_system(p.free_body);
+    bough_system part = bough_rod_body_system(p.carrying_body);
     double a[WHOLE], b[STATES], wrench[6], wrenches[12];
     assert_true(whole.ops->derivative(whole.self, 0.5, p.whole, p.input, a));
     assert_true(part.ops->derivative(part.self, 0.5, p.state, p.input, b));
@@ -89,8 +90,8 @@ static void end_moves_the_rest_as_its_own_vertex_would(void **context) {
 static void end_wrench_is_what_moves_the_last_vertex(void **context) {
     (void)context;
     pair p = make_pair();
-    bough_subsystem whole = bough_rod_body_subsystem(p.free_body);
-    bough_subsystem part = bough_rod_body_subsystem(p.carrying_body);
+    bough_system whole = bough_rod_body_system(p.free_body);
+    bough_system part = bough_rod_body_system(p.carrying_body);
     double rate[WHOLE], wrench[12];
     assert_true(whole.ops->derivative(whole.self, 0.5, p.whole, p.input, rate));
     part.ops->output(part.self, 0.5, p.state, p.input, wrench);

@@ -83,7 +83,7 @@ static void record(bough_simulation *s, history *h) {
         int n = beam->def.n_segment;
         add_blade(s, beam, pose.position, pose.rotation.c1, &h->momentum[k], &h->weight[k]);
         if (beam->rod == NULL) continue;
-        const double *y = bough_rod_body_state(beam->rod);
+        const double *y = s->rod[beam->port].state;
         h->tip[k][b] = bough_v3(y[n - 1], y[2 * n - 1], y[3 * n - 1]);
     }
     double pitch = s->beam[0].body->pitch;

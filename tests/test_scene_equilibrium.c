@@ -78,7 +78,7 @@ static void turning_bar_stretches(void **context) {
     equilibrium_of(s);
     double k = sqrt(1.2 * 20 * 20 / 2.8e7), z = tan(10 * k) / k - 10;
     int n = s->beam[0].def.n_segment;
-    const double *y = bough_rod_body_state(s->beam[0].rod);
+    const double *y = s->rod[s->beam[0].port].state;
     check_near(y[3 * n - 1] - 10, z, 2e-3, 0);
     check_near(y[n - 1], 0, 0, 1e-9);
     check_near(joint_angle(s, 1), 0, 0, 0);
@@ -97,7 +97,7 @@ static void rod_alone_stands_where_its_own_statics_says(void **context) {
     assert_true(bough_is_ok(&status));
     equilibrium_of(s);
     int n = s->beam[0].def.n_segment;
-    const double *y = bough_rod_body_state(s->beam[0].rod);
+    const double *y = s->rod[s->beam[0].port].state;
     for (int k = 0; k < 7 * n; k++) check_near(y[k], steady.state[k], 0, 1e-8);
     bough_arena_destroy(arena);
 }
@@ -117,17 +117,17 @@ static void parked_turbine_stays_at_rest(void **context) {
                           NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, runup, sets);
-    size_t bytes = (size_t)s->rod[0].n_state * sizeof(double);
+    size_t bytes = (size_t)s->rod[0].system.n_state * sizeof(double);
     double *before = bough_arena_take(arena, 3 * bytes);
     for (int k = 0; k < 3; k++)
-        memcpy(before + k * s->rod[0].n_state, s->rod[k].state, bytes);
-    int n = s->rod[0].n_state / BOUGH_ROD_STATES;
+        memcpy(before + k * s->rod[0].system.n_state, s->rod[k].state, bytes);
+    int n = s->rod[0].system.n_state / BOUGH_ROD_STATES;
     assert_true(fabs(before[n - 1]) > 0.5); // bent
     for (int step = 0; step < 50; step++)
         scene_step(s);
     for (int k = 0; k < 3; k++) {
         for (int i = 0; i < 3 * n; i++) {
-            check_near(s->rod[k].state[i], before[k * s->rod[0].n_state + i], 0, 1e-6);
+            check_near(s->rod[k].state[i], before[k * s->rod[0].system.n_state + i], 0, 1e-6);
         }
     }
     bough_arena_destroy(arena);
@@ -166,7 +166,7 @@ static void turning_rotor_starts_smoothly(void **context) {
     for (int k = 0; k < 2; k++) {
         bough_arena *arena = bough_arena_create();
         bough_simulation *s = scene_build(arena, runup, k == 0 ? sets : undeformed);
-        int n = s->rod[0].n_state / BOUGH_ROD_STATES;
+        int n = s->rod[0].system.n_state / BOUGH_ROD_STATES;
         double start = s->rod[1].state[n - 1]; // the tip of a blade away from the tower
         for (int step = 0; step < 25; step++) {
             scene_step(s);

@@ -45,8 +45,8 @@ static void oscillators_fulfil_the_contract(void **state) {
     const double y[2] = {.3, -.7}, u[2] = {.4, .2};
     for (int i = 0; i < 2; i++) {
         contract_point at = {.t = .5, .state = y, .input = u, .tolerance = 1e-8};
-        contract_check(&m.subsystem[i], at, .05, .1);
-        contract_set_state(&m.subsystem[i], at, 1e-4);
+        contract_check(&m.member[i], at, .05, .1);
+        contract_set_state(&m.member[i], at, 1e-4);
     }
     bough_two_mass_destroy(&m);
 }

@@ -148,15 +148,15 @@ static void judging_changes_nothing(void **state) {
     bough_two_mass_destroy(&n);
 }
 
-static void shadows_fulfil_the_contract(void **state) {
+static void linear_members_fulfil_the_contract(void **state) {
     (void)state;
     const double y[2] = {.3, -.7}, u[2] = {.4, .2};
     bough_two_mass m = bough_two_mass_default();
     build(&m, "ramp", .02);
     for (int i = 0; i < 2; i++) {
-        bough_subsystem linear_member;
+        bough_member linear_member;
         bough_status status =
-            bough_linear_member_create(m.arena, &m.subsystem[i], u, 5e-3, &linear_member);
+            bough_linear_member_create(m.arena, &m.member[i], u, 5e-3, &linear_member);
         assert_true(bough_is_ok(&status));
         contract_point at = {.t = 0, .state = y, .input = u, .tolerance = 1e-5};
         contract_check(&linear_member, at, .05, .1);
@@ -174,7 +174,7 @@ int main(void) {
         cmocka_unit_test(the_master_warns_of_an_unstable_coupling),
         cmocka_unit_test(growth_of_the_mechanics_is_no_verdict),
         cmocka_unit_test(judging_changes_nothing),
-        cmocka_unit_test(shadows_fulfil_the_contract),
+        cmocka_unit_test(linear_members_fulfil_the_contract),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

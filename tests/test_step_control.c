@@ -96,12 +96,13 @@ static void steps_grow_again_and_meet_events(void **state) {
     bough_two_mass_destroy(&m);
 }
 
-static bough_subsystem_ops failing; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+static bough_integrator_ops failing; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 static bough_code failure;
 static int calls;
 
-static bough_status fail_to_advance(void *self, double t1, const bough_signal *input, bool restart) {
-    (void)self, (void)input, (void)restart;
+static bough_status fail_to_advance(void *self, double *t, double pause, double t1, bool restart,
+                                    double *y) {
+    (void)self, (void)t, (void)pause, (void)restart, (void)y;
     calls++;
     return bough_fail(failure, "mass1 at t = %g s: gave up", t1);
 }
@@ -119,9 +120,9 @@ static void only_what_asks_for_it_is_repeated(void **state) {
         bough_two_mass m = bough_two_mass_default();
         bough_status status = bough_two_mass_build(&m, definition("gauss-seidel", .16, 1e-3));
         assert_int_equal(status.code, BOUGH_OK);
-        failing = *m.subsystem[0].ops;
+        failing = *m.member[0].integrator.ops;
         failing.advance = fail_to_advance;
-        m.subsystem[0].ops = &failing;
+        m.member[0].integrator.ops = &failing;
         failure = cases[k].code;
         calls = 0;
         status = bough_step(m.master);

@@ -76,9 +76,9 @@ static void clock_changes_no_bit_and_sees_all_parts(void **state) {
         assert_true(bough_is_ok(&one) && bough_is_ok(&other));
     }
     for (int k = 0; k < plain->n_rod; k++) {
-        const bough_subsystem *rod = &plain->rod[k];
+        const bough_member *rod = &plain->rod[k];
         assert_memory_equal(rod->state, clocked->rod[k].state,
-                            (size_t)rod->n_state * sizeof(double));
+                            (size_t)rod->system.n_state * sizeof(double));
     }
     bough_clock_read(clock, seconds);
     for (int p = 0; p < BOUGH_CLOCK_RECORDING; p++) assert_true(seconds[p] > 0);

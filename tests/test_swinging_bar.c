@@ -146,7 +146,7 @@ static bough_simulation *in_the_tree(bough_arena *arena, const char *segments) {
 static bough_vec3 tip_of(bough_simulation *s) {
     const bough_beam *beam = &s->beam[0];
     int n = beam->def.n_segment;
-    const double *y = bough_rod_body_state(beam->rod);
+    const double *y = s->rod[beam->port].state;
     bough_simulation_update(s);
     bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
     bough_vec3 x = {y[n - 1], y[2 * n - 1], y[3 * n - 1]};

@@ -6,7 +6,7 @@
 #include "core/dynamics.h"
 #include "core/rotation.h"
 #include "core/tree_build.h"
-#include "core/tree_subsystem.h"
+#include "core/tree_system.h"
 
 #include <string.h>
 
@@ -17,7 +17,8 @@ typedef struct fixture {
     bough_arena *arena;
     bough_tree *tree;
     bough_tree_data *data;
-    bough_subsystem s;
+    bough_system s;
+    bough_member *m;
     double state[MOST], input[INPUTS];
 } fixture;
 
@@ -64,9 +65,9 @@ static fixture make(void) {
     assert_int_equal(status.code, BOUGH_OK);
     status = bough_tree_data_create(f.arena, f.tree, &f.data);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_subsystem_create(f.arena, f.tree, "tree", 0,
-                                         &(bough_integrator_options){BOUGH_IDA, 1e-8, 0, 0}, &f.s);
+    status = bough_tree_system_create(f.arena, f.tree, "tree", &f.s);
     assert_int_equal(status.code, BOUGH_OK);
+    f.m = member_of(f.arena, &f.s, (bough_integrator_options){BOUGH_IDA, 1e-8, 0, 0});
     for (int i = 0; i < f.s.n_state; i++) f.state[i] = sin(2.3 * i + 0.4);
     int p = f.tree->links[f.tree->ends[0].link].first_coordinate + 3;
     bough_quaternion q = bough_quaternion_exponential(bough_v3(0.5, 0.3, -1));
@@ -81,8 +82,8 @@ static void tree_with_an_end_fulfils_the_contract(void **context) {
     assert_int_equal(f.s.n_input, INPUTS);
     assert_int_equal(f.s.n_output, OUTPUTS);
     contract_point at = {0.2, f.state, f.input, 1e-5};
-    contract_check(&f.s, at, 0.07, 0.05);
-    contract_set_state(&f.s, at, 1e-4);
+    contract_check(f.m, at, 0.07, 0.05);
+    contract_set_state(f.m, at, 1e-4);
     bough_arena_destroy(f.arena);
 }
 

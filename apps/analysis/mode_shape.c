@@ -24,7 +24,7 @@ static void expand(const bough_mode_shape *x, const bough_beam *beam, int part, 
                    double *to) {
     const bough_simulation *s = x->simulation;
     const bough_frame *frame = &s->tree->markers[beam->marker];
-    int at = x->assembly->state_offset[beam->port + 1], n = s->rod[beam->port].n_state;
+    int at = x->assembly->state_offset[beam->port + 1], n = s->rod[beam->port].system.n_state;
     bough_twist twist = bough_tree_frame_twist(s->view, frame);
     double input[BOUGH_ROD_INPUTS] = {0}, change[6] = {0}; // gravity does not matter
     bough_twist_store(twist, input);

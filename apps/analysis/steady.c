@@ -128,7 +128,7 @@ bough_status bough_steady_equilibrium(bough_arena *arena, const bough_simulation
     }
     bough_assembly_outputs(a, time, c->output, c->input);
     memcpy(steady->input, input, (size_t)bough_rod_n_inputs(m) * sizeof *input);
-    memcpy(steady->state, bough_rod_body_state(beam->rod),
+    memcpy(steady->state, s->rod[beam->port].state,
            (size_t)BOUGH_ROD_STATES * m->n * sizeof *input);
     steady->work.scaled = *bough_rod_body_loads(beam->rod);
     bough_rod_gather(m, steady->state, steady->input, &steady->work.scratch);

@@ -68,9 +68,10 @@ static void describe_copy(bough_session *s) {
     bough_mix_text(&s->kind, m->coupling->scheme->name);
     bough_mix(&s->kind, &m->macro_step, sizeof m->macro_step);
     for (int i = 0; i < a->n_member; i++) {
-        size_t size = a->member[i]->ops->save_size(a->member[i]->self);
-        bough_mix_text(&s->kind, a->member[i]->name);
-        bough_mix(&s->kind, &size, sizeof size);
+        bough_snapshot own = {.move = BOUGH_SNAPSHOT_MEASURE};
+        bough_member_snapshot(a->member[i], &own);
+        bough_mix_text(&s->kind, a->member[i]->system.name);
+        bough_mix(&s->kind, &own.used, sizeof own.used);
     }
     for (int i = 0; i < s->run.channels.count; i++) {
         bough_mix_text(&s->kind, s->run.channels.channel[i].name);

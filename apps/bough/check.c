@@ -71,8 +71,8 @@ static double beam_mass(const bough_beam *beam) {
 }
 
 static void print_rod(const bough_simulation *s, const bough_beam *beam) {
-    const bough_subsystem *rod = &s->rod[beam->port];
-    printf("; %d segments, %d states, %s, rtol %.6g", beam->def.n_segment, rod->n_state,
+    const bough_member *rod = &s->rod[beam->port];
+    printf("; %d segments, %d states, %s, rtol %.6g", beam->def.n_segment, rod->system.n_state,
            rod->solver, bough_scene_micro(s->scene, beam->body)->rtol);
 }
 
@@ -80,7 +80,7 @@ static void print_body(const bough_simulation *s, int body) {
     const bough_beam *beam = bough_simulation_beam(s, body);
     bool flexible = beam && beam->port >= 0;
     printf("body %s: %s", s->scene->body[body].name,
-           flexible ? s->rod[beam->port].kind
+           flexible ? s->rod[beam->port].system.kind
            : beam   ? "rigid: no states of its own, integrated from its rod"
                     : "rigid");
     print_joint(s->scene, body);
@@ -213,12 +213,13 @@ static bough_status print_results(bough_arena *arena, bough_simulation *s,
 // Wall time of one evaluation of a member's derivative, the shortest of many [s].
 static double derivative_time(const bough_coupling *c, int member, double *rate) {
     const bough_assembly *a = c->assembly;
-    const bough_subsystem *s = a->member[member];
+    const bough_member *m = a->member[member];
+    const bough_system *s = &m->system;
     const double *input = c->input + a->input_offset[member];
     double shortest = HUGE_VAL;
     for (int i = 0; i < 200; i++) {
         double began = bough_wall_clock();
-        s->ops->derivative(s->self, *s->time, s->state, input, rate);
+        s->ops->derivative(s->self, m->time, m->state, input, rate);
         shortest = fmin(shortest, bough_wall_clock() - began);
     }
     return shortest;
@@ -231,7 +232,7 @@ static bough_status print_cost(const bough_simulation *s, bough_arena *arena) {
     if (!rate) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {
         double time = derivative_time(s->master->coupling, i, rate);
-        printf("derivative_us %s: %.3g\n", a->member[i]->name, 1e6 * time);
+        printf("derivative_us %s: %.3g\n", a->member[i]->system.name, 1e6 * time);
     }
     return bough_ok();
 }

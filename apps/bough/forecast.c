@@ -46,8 +46,8 @@ static double least_step_time(const bough_run *run) {
     for (int k = 0; k < 5; k++) {
         double began = bough_wall_clock();
         for (int i = 0; i < a->n_member; i++) {
-            const bough_subsystem *s = a->member[i];
-            s->ops->derivative(s->self, *s->time, s->state, c->input + a->input_offset[i],
+            const bough_system *s = &a->member[i]->system;
+            s->ops->derivative(s->self, a->member[i]->time, a->member[i]->state, c->input + a->input_offset[i],
                                c->state_rate + a->state_offset[i]);
         }
         shortest = fmin(shortest, bough_wall_clock() - began);

@@ -130,7 +130,7 @@ static void write_interfaces(bough_summary *s, const bough_run *run) {
     for (int k = 0; k < a->n_interface; k++) {
         bough_interface_energy energy = bough_monitor_energy(m->monitor, k);
         bough_summary_object(s, NULL);
-        bough_summary_text(s, "body", a->member[a->interface[k].body]->name);
+        bough_summary_text(s, "body", a->member[a->interface[k].body]->system.name);
         bough_summary_number(s, "energy_residual", energy.residual);
         bough_summary_number(s, "energy_exchanged", energy.exchanged);
         bough_summary_array(s, "wrench_error_estimate");
@@ -218,14 +218,14 @@ static void write_whole(bough_summary *s, const bough_run *run) {
     bough_summary_end(s);
 }
 
-static void write_subsystem(bough_summary *s, const bough_run *run, int member) {
-    const bough_subsystem *subsystem = run->simulation->master->assembly->member[member];
+static void write_member(bough_summary *s, const bough_run *run, int member) {
+    const bough_member *m = run->simulation->master->assembly->member[member];
     bough_statistics done = bough_run_statistics(run, member);
     bough_summary_object(s, NULL);
-    bough_summary_text(s, "name", subsystem->name);
-    bough_summary_text(s, "kind", subsystem->kind);
-    bough_summary_text(s, "solver", subsystem->solver);
-    bough_summary_integer(s, "states", subsystem->n_state);
+    bough_summary_text(s, "name", m->system.name);
+    bough_summary_text(s, "kind", m->system.kind);
+    bough_summary_text(s, "solver", m->solver);
+    bough_summary_integer(s, "states", m->system.n_state);
     write_work(s, &done);
     bough_summary_end(s);
 }
@@ -250,7 +250,7 @@ bough_status bough_run_summarise(const bough_job *job) {
     const bough_assembly *assembly = run->simulation->master->assembly;
     bough_summary_array(&s, "subsystems");
     for (int i = 0; i < assembly->n_member; i++)
-        write_subsystem(&s, run, i);
+        write_member(&s, run, i);
     bough_summary_end(&s);
     return bough_summary_close(&s);
 }
@@ -298,7 +298,7 @@ static void tell_energy(const bough_run *run, FILE *stream) {
         bough_interface_energy energy = bough_monitor_energy(m->monitor, k);
         if (!(energy.exchanged > 0)) continue;
         fprintf(stream, "%s_energy_residual: %.2g of what the interface exchanged\n",
-                a->member[a->interface[k].body]->name, energy.residual / energy.exchanged);
+                a->member[a->interface[k].body]->system.name, energy.residual / energy.exchanged);
     }
 }
 

@@ -2,30 +2,36 @@
 #include "apps/simulation/build.h"
 #include "flexbody/rod_linear.h"
 
-static bough_status build_rod(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
-                              const double *input, bough_subsystem *subsystem) {
+static bough_status build_rod(bough_arena *arena, bough_beam *beam, const double *input,
+                              bough_system *system) {
     bough_rod_model *model = NULL;
     bough_status status = bough_rod_create(arena, &beam->def, &model);
     if (!bough_is_ok(&status)) return status;
-    status = bough_rod_body_create(arena, model, 0, micro, input, &beam->rod);
-    if (bough_is_ok(&status)) *subsystem = bough_rod_body_subsystem(beam->rod);
+    status = bough_rod_body_create(arena, model, input, &beam->rod);
+    if (bough_is_ok(&status)) *system = bough_rod_body_system(beam->rod);
     return status;
 }
 
-bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
-                              const double *input, bough_subsystem *subsystem) {
+static bough_status build_modal(bough_arena *arena, bough_beam *beam, const double *input,
+                                bough_system *system) {
     const bough_scene_modal *modal = &beam->body->modal;
-    if (beam->body->fidelity == BOUGH_SCENE_ROD) {
-        return build_rod(arena, beam, micro, input, subsystem);
-    }
     int pieces = beam->body->fidelity == BOUGH_SCENE_MODAL ? 1 : modal->pieces;
     bough_modal_options options = {modal->modes, modal->statics, modal->stiffening};
     bough_modal_model *model = NULL;
     bough_status status = bough_modal_create(arena, &beam->def, pieces, options, &model);
     if (!bough_is_ok(&status)) return status;
-    status = bough_modal_body_create(arena, model, 0, micro, input, &beam->modal);
-    if (bough_is_ok(&status)) *subsystem = bough_modal_body_subsystem(beam->modal);
+    status = bough_modal_body_create(arena, model, input, &beam->modal);
+    if (bough_is_ok(&status)) *system = bough_modal_body_system(beam->modal);
     return status;
+}
+
+bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
+                              const double *input, bough_member *member) {
+    bool rod = beam->body->fidelity == BOUGH_SCENE_ROD;
+    bough_system system = {0};
+    bough_status status =
+        rod ? build_rod(arena, beam, input, &system) : build_modal(arena, beam, input, &system);
+    return bough_is_ok(&status) ? bough_member_create(arena, &system, 0, &micro, member) : status;
 }
 
 const bough_rod_model *bough_beam_mesh(const bough_beam *beam) {

@@ -50,7 +50,7 @@ static bool is_alike(const bough_simulation *s, const bough_blade_group *group, 
     int rotor = s->tree->bodies[s->scene->turbine.rotor].link;
     double angle = azimuth_of(s, blade) - azimuth_of(s, first) - 2 * BOUGH_PI * k / group->n;
     return blade->port >= 0 && blade->body->fidelity == first->body->fidelity &&
-           s->rod[blade->port].n_state == s->rod[first->port].n_state &&
+           s->rod[blade->port].system.n_state == s->rod[first->port].system.n_state &&
            s->tree->markers[blade->marker].link == rotor &&
            same_structure(&first->def, &blade->def) && fabs(angle) < even;
 }
@@ -76,7 +76,7 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
         return bough_ok();
     }
     group->azimuth = azimuth_of(s, group->blade[0]);
-    group->n_row = s->rod[group->blade[0]->port].n_state;
+    group->n_row = s->rod[group->blade[0]->port].system.n_state;
     group->row = bough_arena_take(arena, (size_t)n * (size_t)group->n_row * sizeof(int));
     if (!group->row) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < n; k++) {

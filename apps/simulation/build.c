@@ -11,7 +11,7 @@
 #include "core/dynamics.h"
 #include "core/linalg.h"
 #include "core/tree_build.h"
-#include "core/tree_subsystem.h"
+#include "core/tree_system.h"
 
 #include <string.h>
 
@@ -126,7 +126,10 @@ static bough_status build_tree(bough_builder *b) {
     bough_integrator_options master = solver_options(&scene->simulation.master);
     // the tree's own method is never asked, and the scheme's may not suit it
     if (bough_scheme_find(scheme_options(scene).name)->one_system) master.kind = BOUGH_ROSENBROCK;
-    return bough_tree_subsystem_create(b->arena, s->tree, "tree", 0, &master, &s->leader);
+    bough_system tree;
+    status = bough_tree_system_create(b->arena, s->tree, "tree", &tree);
+    if (!bough_is_ok(&status)) return status;
+    return bough_member_create(b->arena, &tree, 0, &master, &s->leader);
 }
 
 
@@ -134,7 +137,8 @@ static bough_status build_rods(bough_builder *b) {
     bough_simulation *s = b->s;
     double *motion = bough_arena_doubles(b->arena, (size_t)bough_tree_n_outputs(s->tree) + 1);
     if (motion == NULL) return out_of_memory();
-    s->leader.ops->output(s->leader.self, 0, s->leader.state, NULL, motion);
+    const bough_system *tree = &s->leader.system;
+    tree->ops->output(tree->self, 0, s->leader.state, NULL, motion);
     for (int k = 0; k < s->n_beam; k++) {
         bough_beam *beam = &s->beam[k];
         if (beam->port < 0) continue;
@@ -171,12 +175,12 @@ static void connect_end(bough_builder *b, const bough_beam *beam) {
 
 static void connect(bough_builder *b) {
     bough_simulation *s = b->s;
-    b->member[0] = (bough_member){&s->leader, 0};
+    b->member[0] = (bough_assembly_member){&s->leader, 0};
     for (int i = 0; i < s->n_beam; i++) {
         const bough_beam *beam = &s->beam[i];
         int k = beam->port;
         if (k < 0) continue;
-        b->member[k + 1] = (bough_member){&s->rod[k], 1};
+        b->member[k + 1] = (bough_assembly_member){&s->rod[k], 1};
         bough_connection motion = {.from_offset = BOUGH_PORT_OUTPUTS * k,
                                    .count = BOUGH_PORT_OUTPUTS};
         bough_connection wrench = {.to_offset = BOUGH_PORT_INPUTS * k,

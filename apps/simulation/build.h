@@ -7,8 +7,8 @@
 #include "apps/scene/scene.h"
 #include "core/tree.h"
 #include "cosim/master.h"
-#include "flexbody/modal_subsystem.h"
-#include "flexbody/rod_subsystem.h"
+#include "flexbody/modal_system.h"
+#include "flexbody/rod_system.h"
 
 struct bough_aero_link;
 struct bough_control_link;
@@ -32,11 +32,11 @@ typedef struct bough_simulation {
     bough_tree *tree;
     bough_tree_data *view; // for queries between steps
     double *acceleration;  // of the tree (n_v), scratch of queries
-    bough_subsystem leader;
+    bough_member leader;
     int first_marker;      // of the tree, the first of those that the scene names
     int n_beam;
     bough_beam *beam;      // (n_beam) bodies that have a rod, in the scene's order
-    bough_subsystem *rod;  // (number of rods) their contracts, in port order
+    bough_member *rod;     // (number of rods) in port order
     int n_rod, n_end;
     struct bough_aero_link *aero; // NULL without an aero block
     struct bough_drag_link *drag; // NULL without drag of tower and hub
@@ -82,7 +82,7 @@ bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam
 // Builds the flexible body of a beam, a rod or a modal body, in a frame that moves with `input` (9)
 // at the start.
 bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,
-                              const double *input, bough_subsystem *subsystem);
+                              const double *input, bough_member *member);
 
 // Of a flexible beam: its mesh, its loads, and the state of its vertices from `first` on at `view` as
 // rod.h lays it out, the latter valid until the next call for the same beam.

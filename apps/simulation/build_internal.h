@@ -17,7 +17,7 @@ typedef struct bough_builder {
     bough_port_def *port;       // (n_rod)
     bough_joint_load_def *load; // (n_load): those on joints
     int n_load;
-    bough_member *member;         // leader, then rods
+    bough_assembly_member *member; // leader, then rods
     bough_connection *connection; // two per rod, two more of one that carries bodies
     int n_connection;
     double *event; // corners of loads and of the aerodynamics

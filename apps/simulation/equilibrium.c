@@ -26,15 +26,15 @@ double bough_equilibrium_time(const bough_simulation *s) {
 
 void bough_equilibrium_state(const bough_assembly *assembly, double *state) {
     for (int i = 0; i < assembly->n_member; i++) {
-        const bough_subsystem *m = assembly->member[i];
-        memcpy(state + assembly->state_offset[i], m->state, (size_t)m->n_state * sizeof *state);
+        const bough_member *m = assembly->member[i];
+        size_t size = (size_t)m->system.n_state * sizeof *state;
+        memcpy(state + assembly->state_offset[i], m->state, size);
     }
 }
 
 static void set_state(bough_simulation *s, const bough_assembly *assembly, const double *state) {
     for (int i = 0; i < assembly->n_member; i++) {
-        const bough_subsystem *m = assembly->member[i];
-        m->ops->set_state(m->self, 0, state + assembly->state_offset[i]);
+        bough_member_set(assembly->member[i], 0, state + assembly->state_offset[i]);
     }
     bough_simulation_update(s);
 }
@@ -59,7 +59,7 @@ static const char *body_of(const bough_simulation *s, const bough_assembly *asse
     const bough_tree *tree = s->tree;
     int member = 0;
     while (row >= assembly->state_offset[member + 1]) member++;
-    if (member > 0) return assembly->member[member]->name;
+    if (member > 0) return assembly->member[member]->system.name;
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         int q = row - link->first_coordinate, v = row - tree->n_q - link->first_speed;
@@ -67,7 +67,7 @@ static const char *body_of(const bough_simulation *s, const bough_assembly *asse
             return tree->bodies[link->body].name;
         }
     }
-    return assembly->member[0]->name;
+    return assembly->member[0]->system.name;
 }
 
 static bough_status explain(const bough_simulation *s, const bough_assembly *assembly,
@@ -84,8 +84,8 @@ static double change_of(const bough_assembly *assembly, const double *a, const d
     double change = 0;
     for (int i = 0; i < assembly->n_member; i++) {
         int first = assembly->state_offset[i];
-        for (int k = 0; k < assembly->member[i]->n_state; k++) {
-            double size = fabs(a[first + k] - b[first + k]) / assembly->member[i]->scale[k];
+        for (int k = 0; k < assembly->member[i]->system.n_state; k++) {
+            double size = fabs(a[first + k] - b[first + k]) / assembly->member[i]->system.scale[k];
             change = fmax(change, size);
         }
     }
@@ -208,7 +208,7 @@ static bough_status balance_members(bough_arena *arena, bough_simulation *s,
     bough_coupled *coupled;
     bough_equilibrium_def def = bough_equilibrium_def_default();
     double *state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
-    int *row = bough_arena_take(arena, ((size_t)s->leader.n_state + 1) * sizeof *row);
+    int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
     if (!state || !row) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = bough_coupled_create(arena, assembly, NULL, &coupled);
     if (!bough_is_ok(&status)) return status;

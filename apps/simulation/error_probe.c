@@ -30,7 +30,7 @@ bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s,
     return bough_master_watch(s->master, arena);
 }
 
-static bough_subsystem *member(bough_simulation *s, int i) {
+static bough_member *member(bough_simulation *s, int i) {
     return i == 0 ? &s->leader : &s->rod[i - 1];
 }
 
@@ -46,7 +46,7 @@ static void sample_corrected(bough_error_probe *p, const double *error) {
     for (int i = 0; i < a->n_member; i++) {
         double *state = p->state + a->state_offset[i];
         p->own[i] = member(s, i)->state;
-        for (int k = 0; k < a->member[i]->n_state; k++) {
+        for (int k = 0; k < a->member[i]->system.n_state; k++) {
             state[k] = p->own[i][k] - error[a->state_offset[i] + k];
         }
         member(s, i)->state = state;

@@ -16,7 +16,7 @@ typedef struct bough_error_probe {
     double *passed;     // (channels.count) time when `largest` first passed a hundredth of it [s]
     int lost_for;       // updates in a row with an error larger than all ranges
     int *vector;        // (channels.count) first of the channels X, Y, Z that it is one of
-    const double **own; // (n_member) scratch
+    double **own;        // (n_member) scratch
     double *state;      // (n_state) scratch
     double *value;      // (channels.count) scratch
 } bough_error_probe;

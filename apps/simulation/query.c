@@ -36,8 +36,8 @@ void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, do
                            double root[BOUGH_ROD_MOST_OUTPUTS]) {
     memset(root, 0, BOUGH_ROD_MOST_OUTPUTS * sizeof *root);
     if (beam->port < 0) return;
-    const bough_subsystem *rod = &s->rod[beam->port];
-    rod->ops->output(rod->self, t, rod->state, bough_simulation_rod_input(s, beam), root);
+    const bough_member *rod = &s->rod[beam->port];
+    rod->system.ops->output(rod->system.self, t, rod->state, bough_simulation_rod_input(s, beam), root);
 }
 
 // A vertex in the body's frame: of a rod from its state, else undeformed and carried along.

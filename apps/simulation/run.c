@@ -144,8 +144,7 @@ bough_statistics bough_run_statistics(const bough_run *run, int member) {
     const bough_integrator *whole = m->coupling->whole;
     bough_statistics done = {0};
     if (member < m->assembly->n_member) {
-        const bough_subsystem *subsystem = m->assembly->member[member];
-        subsystem->ops->statistics(subsystem->self, &done);
+        done = bough_member_statistics(m->assembly->member[member]);
     } else if (whole) {
         whole->ops->statistics(whole->self, &done);
     }

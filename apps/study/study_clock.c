@@ -2,11 +2,13 @@
 
 #include "apps/output/progress.h"
 
-// A member behind the clock; one thread at a time works on it.
+// A member's system and integrator behind the clock; one thread at a time works on it.
 typedef struct clocked_member {
-    const bough_subsystem *real;
-    bough_subsystem shown;
-    double own, model; // steps of its own; everything else [s]
+    bough_system real;
+    bough_integrator integrator;
+    bough_integrator_ops shown; // its operations, but for those below
+    bool stepping;              // in a step of its own
+    double own, model;          // steps of its own; everything else [s]
 } clocked_member;
 
 typedef struct clocked_load {
@@ -29,107 +31,134 @@ const char *bough_clock_name(bough_clock_part part) {
 
 // -- members --------------------------------------------------------------------------------------
 
-// Runs `call` of the member m and adds its time to m->part.
-#define CLOCKED(part, call)                                                                        \
+// Runs `call` of the member m and adds its time, unless it is part of an own step, to m->model.
+#define CLOCKED(call)                                                                              \
     clocked_member *m = self;                                                                      \
-    double began = bough_wall_clock();                                                             \
+    double began = m->stepping ? 0 : bough_wall_clock();                                           \
     call;                                                                                          \
-    m->part += bough_wall_clock() - began
+    if (!m->stepping) m->model += bough_wall_clock() - began
 
 static bool derivative(void *self, double t, const double *y, const double *u, double *rate) {
     bool ok;
-    CLOCKED(model, ok = m->real->ops->derivative(m->real->self, t, y, u, rate));
+    CLOCKED(ok = m->real.ops->derivative(m->real.self, t, y, u, rate));
+    return ok;
+}
+
+static bool derivative_again(void *self, double t, const double *y, const double *u,
+                             double *rate) {
+    bool ok;
+    CLOCKED(ok = m->real.ops->derivative_again(m->real.self, t, y, u, rate));
     return ok;
 }
 
 static void output(void *self, double t, const double *y, const double *u, double *out) {
-    CLOCKED(model, m->real->ops->output(m->real->self, t, y, u, out));
+    CLOCKED(m->real.ops->output(m->real.self, t, y, u, out));
 }
 
 static void output_tangent(void *self, double t, const double *y, const double *u,
                            const double *dy, const double *du, double *out) {
-    CLOCKED(model, m->real->ops->output_tangent(m->real->self, t, y, u, dy, du, out));
+    CLOCKED(m->real.ops->output_tangent(m->real.self, t, y, u, dy, du, out));
+}
+
+static void output_drift(void *self, double t, const double *y, const double *u, double *drift) {
+    CLOCKED(m->real.ops->output_drift(m->real.self, t, y, u, drift));
 }
 
 static void input_columns(void *self, double t, const double *y, const double *u, double *column) {
-    CLOCKED(model, m->real->ops->input_columns(m->real->self, t, y, u, column));
+    CLOCKED(m->real.ops->input_columns(m->real.self, t, y, u, column));
 }
 
 static void *factors(void *self, bough_arena *arena) {
     const clocked_member *m = self;
-    return m->real->ops->factors(m->real->self, arena);
+    return m->real.ops->factors(m->real.self, arena);
 }
 
 static bool linearise(void *self, double t, const double *y, const double *u, void *factors) {
     bool ok;
-    CLOCKED(model, ok = m->real->ops->linearise(m->real->self, t, y, u, factors));
+    CLOCKED(ok = m->real.ops->linearise(m->real.self, t, y, u, factors));
     return ok;
 }
 
 static bool factor(void *self, void *factors, double gamma) {
     bool ok;
-    CLOCKED(model, ok = m->real->ops->factor(m->real->self, factors, gamma));
+    CLOCKED(ok = m->real.ops->factor(m->real.self, factors, gamma));
     return ok;
 }
 
 static void solve(void *self, void *factors, double *x) {
-    CLOCKED(model, m->real->ops->solve(m->real->self, factors, x));
+    CLOCKED(m->real.ops->solve(m->real.self, factors, x));
 }
 
-static bough_status advance(void *self, double t1, const bough_signal *input, bool restart) {
-    bough_status status;
-    CLOCKED(own, status = m->real->ops->advance(m->real->self, t1, input, restart));
+static bool constrain(void *self, double t, double *y) {
+    bool far;
+    CLOCKED(far = m->real.ops->constrain(m->real.self, t, y));
+    return far;
+}
+
+static void project(void *self, const double *y, double *x) {
+    CLOCKED(m->real.ops->project(m->real.self, y, x));
+}
+
+static void hold_loads(void *self, double t0, double t1) {
+    CLOCKED(m->real.ops->hold_loads(m->real.self, t0, t1));
+}
+
+// Those that the system has.
+static void show_system(clocked_member *m, bough_system *shown, bough_arena *arena) {
+    bough_system_ops *ops = bough_arena_take(arena, sizeof *ops);
+    if (ops == NULL) return;
+    const bough_system_ops *real = m->real.ops;
+    *ops = (bough_system_ops){.derivative = derivative,
+                              .output = output,
+                              .output_tangent = output_tangent,
+                              .input_columns = input_columns,
+                              .factors = factors,
+                              .linearise = linearise,
+                              .factor = factor,
+                              .solve = solve};
+    if (real->derivative_again != NULL) ops->derivative_again = derivative_again;
+    if (real->output_drift != NULL) ops->output_drift = output_drift;
+    if (real->constrain != NULL) ops->constrain = constrain;
+    if (real->project != NULL) ops->project = project;
+    if (real->hold_loads != NULL) ops->hold_loads = hold_loads;
+    shown->ops = ops;
+    shown->self = m;
+}
+
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
+                            double *y) {
+    clocked_member *m = self;
+    double began = bough_wall_clock();
+    m->stepping = true;
+    bough_status status =
+        m->integrator.ops->advance(m->integrator.self, t, pause, t1, restart, y);
+    m->stepping = false;
+    m->own += bough_wall_clock() - began;
     return status;
 }
 
-static bough_status advance_part(void *self, double pause, double t1, const bough_signal *input,
-                                 bool restart) {
-    const bough_subsystem_ops *ops = ((const clocked_member *)self)->real->ops;
-    if (ops->advance_part == NULL) return advance(self, t1, input, restart);
-    bough_status status;
-    CLOCKED(own, status = ops->advance_part(m->real->self, pause, t1, input, restart));
-    return status;
-}
-
-static size_t save_size(void *self) {
+static void statistics(const void *self, bough_statistics *sum) {
     const clocked_member *m = self;
-    return m->real->ops->save_size(m->real->self);
+    m->integrator.ops->statistics(m->integrator.self, sum);
 }
 
-static void save(void *self, void *copy) {
-    CLOCKED(model, m->real->ops->save(m->real->self, copy));
+static void transfer(void *self, bough_snapshot *s) {
+    clocked_member *m = self;
+    m->integrator.ops->transfer(m->integrator.self, s);
 }
 
-static void restore(void *self, const void *copy) {
-    CLOCKED(model, m->real->ops->restore(m->real->self, copy));
+static void show_member(clocked_member *m, bough_member *shown, bough_arena *arena) {
+    m->real = shown->system;
+    m->integrator = shown->integrator;
+    show_system(m, &shown->system, arena);
+    if (m->integrator.ops == NULL) return;
+    m->shown = *m->integrator.ops;
+    m->shown.advance = advance;
+    m->shown.statistics = statistics;
+    if (m->shown.transfer != NULL) m->shown.transfer = transfer;
+    shown->integrator.ops = &m->shown;
+    shown->integrator.self = m;
 }
-
-static void set_state(void *self, double t, const double *y) {
-    CLOCKED(model, m->real->ops->set_state(m->real->self, t, y));
-}
-
-static void statistics(void *self, bough_statistics *sum) {
-    const clocked_member *m = self;
-    m->real->ops->statistics(m->real->self, sum);
-}
-
-static const bough_subsystem_ops clocked_ops = {
-    .derivative = derivative,
-    .output = output,
-    .output_tangent = output_tangent,
-    .input_columns = input_columns,
-    .factors = factors,
-    .linearise = linearise,
-    .factor = factor,
-    .solve = solve,
-    .advance = advance,
-    .advance_part = advance_part,
-    .save_size = save_size,
-    .save = save,
-    .restore = restore,
-    .set_state = set_state,
-    .statistics = statistics,
-};
 
 // -- loads ----------------------------------------------------------------------------------------
 
@@ -161,11 +190,7 @@ bough_status bough_clock_create(bough_arena *arena, bough_simulation *s, bough_c
     c->load = bough_arena_take(arena, (size_t)c->n_load * sizeof *c->load);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {
-        clocked_member *m = &c->member[i];
-        *m = (clocked_member){.real = a->member[i], .shown = *a->member[i]};
-        m->shown.ops = &clocked_ops;
-        m->shown.self = m;
-        a->member[i] = &m->shown;
+        show_member(&c->member[i], a->member[i], arena);
     }
     for (int i = 0; i < c->n_load; i++) {
         c->load[i].real = master->load[i];

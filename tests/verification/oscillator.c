@@ -89,9 +89,9 @@ static void input_series(const bough_signal *s, double t, double (*series)[4]) {
     }
 }
 
-static void step(bough_oscillator *o, const bough_signal *input, double t, double h) {
-    double series[BOUGH_OSCILLATOR_PORT][4], term[2] = {o->y[0], o->y[1]}, power = 1;
-    input_series(input, t, series);
+static void step(const bough_oscillator *o, double t, double h, double *y) {
+    double series[BOUGH_OSCILLATOR_PORT][4], term[2] = {y[0], y[1]}, power = 1;
+    input_series(o->member->signal, t, series);
     for (int k = 0; k < 24; k++) {
         double next[2];
         for (int i = 0; i < 2; i++) {
@@ -101,53 +101,41 @@ static void step(bough_oscillator *o, const bough_signal *input, double t, doubl
         power *= h;
         for (int i = 0; i < 2; i++) {
             term[i] = next[i] / (k + 1);
-            o->y[i] += power * term[i];
+            y[i] += power * term[i];
         }
     }
 }
 
-static bough_status advance(void *self, double t1, const bough_signal *input,
-                                              bool restart) {
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
+                            double *y) {
     bough_oscillator *o = self;
-    double rate = sqrt(fabs(o->a[1][0])) + fabs(o->a[1][1]) + 1, t0 = o->time;
+    (void)pause;
+    double rate = sqrt(fabs(o->a[1][0])) + fabs(o->a[1][1]) + 1, t0 = *t;
     int n = (int)ceil((t1 - t0) * rate);
     for (int k = 0; k < n; k++) {
-        step(o, input, t0 + (t1 - t0) * k / n, (t1 - t0) / n);
+        step(o, t0 + (t1 - t0) * k / n, (t1 - t0) / n, y);
     }
-    o->time = t1;
+    *t = t1;
     o->advances++;
     o->restarts += restart;
     return bough_ok();
 }
 
-static size_t save_size(void *self) {
-    (void)self;
-    return sizeof(bough_oscillator);
-}
-
-static void save(void *self, void *copy) {
-    memcpy(copy, self, sizeof(bough_oscillator));
-}
-
-static void restore(void *self, const void *copy) {
-    memcpy(self, copy, sizeof(bough_oscillator));
-}
-
-static void set_state(void *self, double t, const double *y) {
-    bough_oscillator *o = self;
-    o->time = t;
-    if (o->n_state == 0) return;
-    o->y[0] = y[0];
-    o->y[1] = y[1];
-}
-
-static void statistics(void *self, bough_statistics *sum) {
+static void statistics(const void *self, bough_statistics *sum) {
     const bough_oscillator *o = self;
     sum->steps += o->advances;
     sum->restarts += o->restarts;
 }
 
-static const bough_subsystem_ops operations = {
+// Its states are all that a step depends on.
+static void transfer(void *self, bough_snapshot *s) {
+    (void)self, (void)s;
+}
+
+static const bough_integrator_ops taylor = {
+    .title = "Taylor series", .advance = advance, .statistics = statistics, .transfer = transfer};
+
+static const bough_system_ops operations = {
     .derivative = derivative,
     .output = output,
     .output_tangent = output_tangent,
@@ -156,27 +144,28 @@ static const bough_subsystem_ops operations = {
     .linearise = linearise,
     .factor = factor,
     .solve = solve,
-    .advance = advance,
-    .save_size = save_size,
-    .save = save,
-    .restore = restore,
-    .set_state = set_state,
-    .statistics = statistics,
 };
 
-bough_subsystem bough_oscillator_subsystem(bough_oscillator *o, const char *name) {
+bough_system bough_oscillator_system(bough_oscillator *o, const char *name) {
     o->scale[0] = o->scale[1] = 1;
-    return (bough_subsystem){.name = name,
-                             .kind = "oscillator",
-                             .solver = "Taylor series",
-                             .n_state = o->n_state,
-                             .n_input = o->n_input,
-                             .n_output = o->n_output,
-                             .scale = o->scale,
-                             .time = &o->time,
+    return (bough_system){.name = name,
+                          .kind = "oscillator",
+                          .n_state = o->n_state,
+                          .n_input = o->n_input,
+                          .n_output = o->n_output,
+                          .scale = o->scale,
+                          .initial = o->y,
+                          .ops = &operations,
+                          .self = o};
+}
+
+void bough_oscillator_member(bough_oscillator *o, const char *name, bough_member *member) {
+    o->member = member;
+    *member = (bough_member){.system = bough_oscillator_system(o, name),
+                             .solver = taylor.title,
                              .state = o->y,
-                             .ops = &operations,
-                             .self = o};
+                             .integrated = o->integrated,
+                             .integrator = {.ops = &taylor, .self = o}};
 }
 
 // -- kinds ----------------------------------------------------------------------------------------

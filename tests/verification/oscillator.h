@@ -1,10 +1,10 @@
-// Masses with springs as subsystems: linear, of two states or none, integrated exactly to rounding
+// Masses with springs as members: linear, of two states or none, integrated exactly to rounding
 // (Taylor series of the state under the cubic input). What the studies of coupling schemes and their
 // tests are made of.
 #ifndef BOUGH_TESTS_VERIFICATION_OSCILLATOR_H
 #define BOUGH_TESTS_VERIFICATION_OSCILLATOR_H
 
-#include "core/subsystem.h"
+#include "cosim/member.h"
 
 enum { BOUGH_OSCILLATOR_PORT = 4 };
 
@@ -14,7 +14,8 @@ typedef struct bough_oscillator {
     double d[BOUGH_OSCILLATOR_PORT][BOUGH_OSCILLATOR_PORT];
     int n_state; // 2, or 0: only D counts
     int n_input, n_output;
-    double time, y[2], scale[2];
+    double y[2], scale[2], integrated[2];
+    const bough_member *member; // that it is
     long advances, restarts;
 } bough_oscillator;
 
@@ -37,6 +38,9 @@ bough_oscillator bough_oscillator_telling_motion(bough_spring_mass s, double k, 
 bough_oscillator bough_oscillator_link(double k, double c);
 
 // Its contract; the oscillator stays where it is.
-bough_subsystem bough_oscillator_subsystem(bough_oscillator *o, const char *name);
+bough_system bough_oscillator_system(bough_oscillator *o, const char *name);
+
+// A member that integrates it exactly, with its state at o->y; both stay where they are.
+void bough_oscillator_member(bough_oscillator *o, const char *name, bough_member *member);
 
 #endif

@@ -99,7 +99,7 @@ static bough_status find(bough_arena *arena, const char *path, const bough_rival
     while (beam->port < 0) beam++;
     size_t vertices = (size_t)beam->def.n_segment + 1;
     blade->n = beam->def.n_segment;
-    blade->n_state = s->rod[beam->port].n_state;
+    blade->n_state = s->rod[beam->port].system.n_state;
     blade->span = bough_arena_doubles(arena, vertices);
     blade->flap = bough_arena_doubles(arena, vertices);
     blade->twist = bough_arena_doubles(arena, vertices);

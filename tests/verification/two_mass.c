@@ -56,14 +56,14 @@ static void make_masses(bough_two_mass *m) {
     m->mass[1].y[1] = y[3];
     static const char *const names[3] = {"mass1", "mass2", "spring"};
     for (int i = 0; i < 3; i++) {
-        m->subsystem[i] = bough_oscillator_subsystem(&m->mass[i], names[i]);
+        bough_oscillator_member(&m->mass[i], names[i], &m->member[i]);
     }
 }
 
 bough_status bough_two_mass_build(bough_two_mass *m, bough_master_def def) {
     bool kin = m->kinematic;
     make_masses(m);
-    bough_member member[3] = {{&m->subsystem[0], 0}, {&m->subsystem[1], 1}, {&m->subsystem[2], 0}};
+    bough_assembly_member member[3] = {{&m->member[0], 0}, {&m->member[1], 1}, {&m->member[2], 0}};
     bough_connection connection[3][4] = {
         [BOUGH_CUT_FORCE_DISPLACEMENT] = {{.from = 0, .to = 1, .count = 2, .kinematic = kin},
                                           {.from = 1, .to = 0, .count = 1}},

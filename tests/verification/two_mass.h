@@ -19,7 +19,7 @@ typedef struct bough_two_mass {
     bough_cut cut;
     bool kinematic; // motions are marked as such: where held, by their rate
     bough_oscillator mass[3]; // the third is the spring of the force–force cut
-    bough_subsystem subsystem[3];
+    bough_member member[3];
     bough_arena *arena;
     bough_master *master;
 } bough_two_mass;

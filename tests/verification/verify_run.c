@@ -200,7 +200,7 @@ static invariants measure(const gauge *g) {
         bough_simulation_beam_motion(s, beam, g->motion[k]);
         for (int i = 1; i <= model->n; i++)
             add_vertex(beam, &g->motion[k], i, s->tree->gravity, &sum);
-        bough_rod_gather(model, bough_rod_body_state(beam->rod),
+        bough_rod_gather(model, s->rod[beam->port].state,
                          bough_simulation_rod_input(s, beam), &g->scratch[k]);
         sum.strain_energy += bough_rod_elastic_energy(model, &g->scratch[k]);
     }
@@ -324,9 +324,7 @@ static bough_status look(void *self) {
 
 // What a step of the tree takes.
 static void count_work(case_run *r) {
-    bough_statistics work;
-    const bough_subsystem *leader = &r->run->simulation->leader;
-    leader->ops->statistics(leader->self, &work);
+    bough_statistics work = bough_member_statistics(&r->run->simulation->leader);
     for (int i = 0; i < r->x->n_expect; i++) {
         const bough_verify_expect *e = &r->x->expect[i];
         if (e->diagnosis || e->quantity.what != BOUGH_VERIFY_WORK || work.steps == 0) continue;

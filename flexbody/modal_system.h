@@ -1,23 +1,20 @@
-// A modal body, of one piece or several, behind the contract of core/subsystem.h: kind "modal".
-// Its ports are a rod's (rod_subsystem.h), so are its loads and its vertices' state.
-#ifndef BOUGH_FLEXBODY_MODAL_SUBSYSTEM_H
-#define BOUGH_FLEXBODY_MODAL_SUBSYSTEM_H
+// A modal body, of one piece or several, behind the contract of core/system.h: kind "modal".
+// Its ports are a rod's (rod_system.h), so are its loads and its vertices' state.
+#ifndef BOUGH_FLEXBODY_MODAL_SYSTEM_H
+#define BOUGH_FLEXBODY_MODAL_SYSTEM_H
 
-#include "core/subsystem.h"
-#include "core/integrator.h"
+#include "core/system.h"
 #include "flexbody/modal_chain.h"
 
 typedef struct bough_modal_body bough_modal_body;
 
-// Builds state, solvers and scratch in the arena. Starts at rest relative to its frame, which moves
-// with `input` (9) at time `start`; tolerances are those of a rod for the vertex that a shape moves
-// most.
+// Builds the body in the arena. It starts at rest relative to its frame, which moves with `input` (9);
+// tolerances are those of a rod for the vertex that a shape moves most.
 bough_status bough_modal_body_create(bough_arena *arena, const bough_modal_model *model,
-                                     double start, bough_integrator_options micro, const double *input,
-                                     bough_modal_body **body);
+                                     const double *input, bough_modal_body **body);
 
 // The contract's view; valid as long as the arena.
-bough_subsystem bough_modal_body_subsystem(bough_modal_body *body);
+bough_system bough_modal_body_system(bough_modal_body *body);
 
 // The loads, to be changed between steps only; no followers.
 bough_rod_loads *bough_modal_body_loads(bough_modal_body *body);

@@ -1,0 +1,80 @@
+// The contract of a model: a rod, a modal body, the tree, a mass, or all of them connected.
+//
+// A system is an ordinary differential equation with ports,
+//     ẏ = f(t, y, u),   o = h(t, y, u),
+// that can be asked for f, h, their tangents and the solution of (I − γ ∂f/∂y) x = b. It has no
+// current time and state, no integrator and no factors: these belong to who asks, and no question
+// changes the answer to another.
+#ifndef BOUGH_CORE_SYSTEM_H
+#define BOUGH_CORE_SYSTEM_H
+
+#include "core/arena.h"
+
+#include <stdbool.h>
+
+typedef struct bough_system_ops {
+    // f: rate (n_state). False when it has no finite value there.
+    bool (*derivative)(void *self, double t, const double *state, const double *input,
+                       double *rate);
+
+    // h: output (n_output).
+    void (*output)(void *self, double t, const double *state, const double *input, double *output);
+
+    // ∂h/∂y·state_rate + ∂h/∂u·input_rate: output_rate (n_output). Either rate may be NULL for 0.
+    void (*output_tangent)(void *self, double t, const double *state, const double *input,
+                           const double *state_rate, const double *input_rate,
+                           double *output_rate);
+
+    // ∂f/∂u: column (n_input × n_state), column j = ∂f/∂u_j as row j of the array.
+    void (*input_columns)(void *self, double t, const double *state, const double *input,
+                          double *column);
+
+    // Memory of one linearisation and its factors in the arena; NULL when that is exhausted. They
+    // belong to who asks: others' steps, evaluations and factors leave them alone.
+    void *(*factors)(void *self, bough_arena *arena);
+
+    // Linearises f about (t, state, input). False when the tangents are not finite.
+    bool (*linearise)(void *self, double t, const double *state, const double *input,
+                      void *factors);
+
+    // Factors I − γ ∂f/∂y of the last linearisation. False when singular.
+    bool (*factor)(void *self, void *factors, double gamma);
+
+    // Solves with the last factors, in place: x (n_state).
+    void (*solve)(void *self, void *factors, double *x);
+
+    // -- optional: NULL where there is no use for it --------------------------------------------
+
+    // f at another time and input, the state being that of the last call of derivative, between which
+    // and this one only outputs were asked for: cheaper.
+    bool (*derivative_again)(void *self, double t, const double *state, const double *input,
+                             double *rate);
+
+    // ∂h/∂t: drift (n_output). NULL: 0.
+    void (*output_drift)(void *self, double t, const double *state, const double *input,
+                         double *drift);
+
+    // Brings a state that was integrated to t onto what it must fulfil exactly: given motions,
+    // quaternions of length 1. True when that changes it by more than an integrator's history bears.
+    bool (*constrain)(void *self, double t, double *state);
+
+    // Takes out of a tangent x (n_state) at `state` what is no motion: changes of a quaternion's
+    // length.
+    void (*project)(void *self, const double *state, double *x);
+
+    // Loads stay what they are for derivatives from t0 to t1: what can be found once for all of them
+    // is. t0 = t1: no longer.
+    void (*hold_loads)(void *self, double t0, double t1);
+} bough_system_ops;
+
+typedef struct bough_system {
+    const char *name;      // as the scene names it, for messages
+    const char *kind;      // "tree", "rod", …
+    int n_state, n_input, n_output;
+    const double *scale;   // error scale of each state (n_state): tolerance = rtol · scale
+    const double *initial; // (n_state) where a run starts
+    const bough_system_ops *ops;
+    void *self;
+} bough_system;
+
+#endif

@@ -1,0 +1,142 @@
+#include "cosim/member.h"
+
+#include <string.h>
+
+// -- the system under its inputs, as an integrator sees it ----------------------------------------
+
+// A system without inputs may be advanced without a signal.
+static const double *input_at(const bough_member *m, double t) {
+    if (m->signal != NULL) bough_signal_value(m->signal, t, m->input);
+    return m->input;
+}
+
+static bool derivative(void *self, double t, const double *y, double *rate) {
+    const bough_member *m = self;
+    return m->system.ops->derivative(m->system.self, t, y, input_at(m, t), rate);
+}
+
+static bool derivative_again(void *self, double t, const double *y, double *rate) {
+    const bough_member *m = self;
+    return m->system.ops->derivative_again(m->system.self, t, y, input_at(m, t), rate);
+}
+
+static bool linearise(void *self, double t, const double *y) {
+    const bough_member *m = self;
+    return m->system.ops->linearise(m->system.self, t, y, input_at(m, t), m->factors);
+}
+
+static bool factor(void *self, double gamma) {
+    const bough_member *m = self;
+    return m->system.ops->factor(m->system.self, m->factors, gamma);
+}
+
+static void solve(void *self, double *x) {
+    const bough_member *m = self;
+    m->system.ops->solve(m->system.self, m->factors, x);
+}
+
+bough_status bough_member_create(bough_arena *arena, const bough_system *system, double start,
+                                 const bough_integrator_options *options, bough_member *member) {
+    bough_member *m = member;
+    size_t n = (size_t)system->n_state;
+    *m = (bough_member){.system = *system,
+                        .solver = bough_integrator_find(options->kind)->title,
+                        .state = bough_arena_doubles(arena, n),
+                        .integrated = bough_arena_doubles(arena, n),
+                        .input = bough_arena_doubles(arena, (size_t)system->n_input),
+                        .factors = system->ops->factors(system->self, arena)};
+    if (m->factors == NULL || bough_arena_exhausted(arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", system->name);
+    }
+    bough_member_set(m, start, system->initial);
+    if (n == 0) return bough_ok();
+    bool again = system->ops->derivative_again != NULL;
+    bough_ode ode = {.name = system->name,
+                     .n = system->n_state,
+                     .scale = system->scale,
+                     .self = m,
+                     .derivative = derivative,
+                     .derivative_again = again ? derivative_again : NULL,
+                     .linearise = linearise,
+                     .factor = factor,
+                     .solve = solve};
+    bough_status status = bough_integrator_create(arena, &ode, options, &m->integrator);
+    m->own_error = m->integrator.own_error;
+    return status;
+}
+
+// -- own steps ------------------------------------------------------------------------------------
+
+static void hold_loads(const bough_member *m, double t0, double t1) {
+    if (m->system.ops->hold_loads != NULL) m->system.ops->hold_loads(m->system.self, t0, t1);
+}
+
+static bool constrain(const bough_member *m) {
+    if (m->system.ops->constrain == NULL) return false;
+    return m->system.ops->constrain(m->system.self, m->time, m->state);
+}
+
+bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
+                                       const bough_signal *input, bool restart) {
+    size_t size = (size_t)m->system.n_state * sizeof(double);
+    double t = m->time;
+    bough_status status = bough_ok();
+    m->signal = input;
+    if (!m->paused) {
+        memcpy(m->integrated, m->state, size);
+        hold_loads(m, t, t1);
+    }
+    if (m->integrator.ops == NULL) {
+        t = t1;
+    } else {
+        status = m->integrator.ops->advance(m->integrator.self, &t, pause, t1,
+                                            restart || !m->started, m->integrated);
+    }
+    m->started = bough_is_ok(&status);
+    m->paused = m->started && t < t1;
+    if (!m->paused) hold_loads(m, t1, t1);
+    if (!m->started) return status;
+    m->time = m->paused ? t : t1;
+    memcpy(m->state, m->integrated, size);
+    if (!m->paused && constrain(m)) m->started = false;
+    return status;
+}
+
+bough_status bough_member_advance(bough_member *m, double t1, const bough_signal *input,
+                                  bool restart) {
+    return bough_member_advance_part(m, t1, t1, input, restart);
+}
+
+bough_statistics bough_member_statistics(const bough_member *m) {
+    bough_statistics sum = {0};
+    if (m->integrator.ops != NULL) m->integrator.ops->statistics(m->integrator.self, &sum);
+    return sum;
+}
+
+// -- state ----------------------------------------------------------------------------------------
+
+// The state is another's now: its own steps have made no error in it.
+static void begin_anew(bough_member *m, bool started) {
+    size_t size = (size_t)m->system.n_state * sizeof(double);
+    m->started = started;
+    if (m->paused) hold_loads(m, m->time, m->time);
+    m->paused = false;
+    if (m->own_error != NULL) memset(m->own_error, 0, size);
+}
+
+void bough_member_set(bough_member *m, double t, const double *state) {
+    m->time = t;
+    memmove(m->state, state, (size_t)m->system.n_state * sizeof(double));
+    constrain(m);
+    begin_anew(m, false);
+}
+
+void bough_member_snapshot(bough_member *m, bough_snapshot *s) {
+    const bough_integrator_ops *ops = m->integrator.ops;
+    bool kept = ops != NULL && ops->transfer != NULL, started = m->started && kept;
+    bough_snapshot_take(s, &m->time, sizeof m->time);
+    bough_snapshot_take(s, &started, sizeof started);
+    bough_snapshot_doubles(s, m->state, m->system.n_state);
+    if (kept) ops->transfer(m->integrator.self, s);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) begin_anew(m, started);
+}

@@ -1,0 +1,169 @@
+#include "flexbody/rod_system.h"
+
+#include "flexbody/rod_tangent.h"
+
+#include <string.h>
+
+struct bough_rod_body {
+    const bough_rod_model *model;
+    bough_rod_loads loads;
+    double *initial;         // (13 n)
+    double *scale;           // (13 n)
+    bough_rod_scratch scratch;
+};
+
+// -- the contract -----------------------------------------------------------------------------------
+
+static bool derivative(void *self, double t, const double *state, const double *input,
+                       double *rate) {
+    bough_rod_body *b = self;
+    return bough_rod_derivative(b->model, &b->loads, t, state, input, &b->scratch, rate);
+}
+
+static bool derivative_again(void *self, double t, const double *state, const double *input,
+                             double *rate) {
+    bough_rod_body *b = self;
+    return bough_rod_derivative_again(b->model, &b->loads, t, state, input, &b->scratch, rate);
+}
+
+static void output(void *self, double t, const double *state, const double *input,
+                   double *wrench) {
+    bough_rod_body *b = self;
+    bough_rod_root_wrench(b->model, &b->loads, t, state, input, &b->scratch, wrench);
+    if (!bough_rod_carries(b->model)) return;
+    bough_rod_end_wrench(b->model, &b->loads, t, state, input, &b->scratch,
+                         wrench + BOUGH_ROD_OUTPUTS);
+}
+
+static void output_tangent(void *self, double t, const double *state, const double *input,
+                           const double *state_rate, const double *input_rate, double *rate) {
+    bough_rod_body *b = self;
+    bough_rod_wrench_tangent(b->model, state, input, state_rate, input_rate, &b->scratch, rate);
+    if (!bough_rod_carries(b->model)) return;
+    bough_rod_variation at = {state, input, state_rate, input_rate};
+    bough_rod_end_tangent(b->model, &b->loads, t, &at, &b->scratch, rate + BOUGH_ROD_OUTPUTS);
+}
+
+static void input_columns(void *self, double t, const double *state, const double *input,
+                          double *column) {
+    (void)t;
+    bough_rod_body *b = self;
+    bough_rod_input_columns(b->model, state, input, &b->scratch, column);
+}
+
+static void *factors(void *self, bough_arena *arena) {
+    const bough_rod_body *b = self;
+    bough_rod_tangent *k = bough_arena_take(arena, sizeof *k);
+    return k != NULL && bough_rod_tangent_init(k, arena, b->model) ? k : NULL;
+}
+
+static bool linearise(void *self, double t, const double *state, const double *input,
+                      void *factors) {
+    bough_rod_body *b = self;
+    return bough_rod_linearise(b->model, &b->loads, t, state, input, &b->scratch, factors);
+}
+
+static bool factor(void *self, void *factors, double gamma) {
+    const bough_rod_body *b = self;
+    return bough_rod_factor(b->model, factors, gamma);
+}
+
+static void solve(void *self, void *factors, double *x) {
+    const bough_rod_body *b = self;
+    bough_rod_solve(b->model, factors, x);
+}
+
+// |p| = 1 to rounding in what others see.
+static bool constrain(void *self, double t, double *state) {
+    (void)t;
+    const bough_rod_body *b = self;
+    int n = b->model->n;
+    double *p = state + (size_t)BOUGH_ROD_P * n;
+    for (int i = 0; i < n; i++) {
+        bough_quaternion unit = bough_quaternion_normalised(
+            (bough_quaternion){p[i], p[n + i], p[2 * n + i], p[3 * n + i]});
+        p[i] = unit.w;
+        p[n + i] = unit.x;
+        p[2 * n + i] = unit.y;
+        p[3 * n + i] = unit.z;
+    }
+    return false;
+}
+
+// δp ← δp − p (p·δp)/|p|²
+static void project(void *self, const double *state, double *x) {
+    const bough_rod_body *b = self;
+    int n = b->model->n;
+    const double *p = state + (size_t)BOUGH_ROD_P * n;
+    double *change = x + (size_t)BOUGH_ROD_P * n;
+    for (int i = 0; i < n; i++) {
+        double along = 0, square = 0;
+        for (int c = 0; c < 4; c++) {
+            along += p[c * n + i] * change[c * n + i];
+            square += p[c * n + i] * p[c * n + i];
+        }
+        for (int c = 0; c < 4; c++) change[c * n + i] -= p[c * n + i] * along / square;
+    }
+}
+
+// -- life -------------------------------------------------------------------------------------------
+
+static bool take_memory(bough_rod_body *b, bough_arena *arena) {
+    size_t states = (size_t)BOUGH_ROD_STATES * b->model->n;
+    b->initial = bough_arena_doubles(arena, states);
+    b->scale = bough_arena_doubles(arena, states);
+    bool ok = bough_rod_loads_init(&b->loads, arena, b->model);
+    ok = bough_rod_scratch_init(&b->scratch, arena, b->model) && ok;
+    return ok && !bough_arena_exhausted(arena);
+}
+
+bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *model,
+                                   const double *input, bough_rod_body **body) {
+    // error scales of x, p, u, W: a tenth of a radian weighs as a metre
+    static const double scale[BOUGH_ROD_STATES] = {1, 1, 1, 0.1, 0.1, 0.1, 0.1,
+                                                   1, 1, 1, 0.1, 0.1, 0.1};
+    bough_rod_body *b = bough_arena_take(arena, sizeof *b);
+    if (b == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", model->name);
+    b->model = model;
+    if (!take_memory(b, arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", model->name);
+    }
+    bough_rod_rest_state(model, input, b->initial);
+    int n = model->n;
+    for (int k = 0; k < BOUGH_ROD_STATES * n; k++) b->scale[k] = scale[k / n];
+    *body = b;
+    return bough_ok();
+}
+
+bough_system bough_rod_body_system(bough_rod_body *body) {
+    static const bough_system_ops ops = {
+        .derivative = derivative,
+        .derivative_again = derivative_again,
+        .output = output,
+        .output_tangent = output_tangent,
+        .input_columns = input_columns,
+        .factors = factors,
+        .linearise = linearise,
+        .factor = factor,
+        .solve = solve,
+        .constrain = constrain,
+        .project = project,
+    };
+    return (bough_system){.name = body->model->name,
+                          .kind = "rod",
+                          .n_state = BOUGH_ROD_STATES * body->model->n,
+                          .n_input = bough_rod_n_inputs(body->model),
+                          .n_output = bough_rod_n_outputs(body->model),
+                          .scale = body->scale,
+                          .initial = body->initial,
+                          .ops = &ops,
+                          .self = body};
+}
+
+bough_rod_loads *bough_rod_body_loads(bough_rod_body *body) {
+    return &body->loads;
+}
+
+const bough_rod_model *bough_rod_body_model(const bough_rod_body *body) {
+    return body->model;
+}
