@@ -35,7 +35,7 @@ static double slope(const bough_controller_def *d) {
 // a difference of large numbers when the slip is next to nothing.
 static double transition(const bough_controller_def *d) {
     double first = synchronous(d);
-    return 2 * first / (1 + sqrt(1 - 4 * d->optimal_gain * first / slope(d)));
+    return 2 * first / (1 + sqrt(fmax(1 - 4 * d->optimal_gain * first / slope(d), 0)));
 }
 
 bough_status bough_controller_check(const bough_controller_def *d) {
@@ -62,7 +62,9 @@ bough_status bough_controller_check(const bough_controller_def *d) {
 
 double bough_controller_torque(const bough_controller_def *d, double speed, double pitch) {
     double torque;
-    if (speed >= d->rated_speed || pitch >= d->power_pitch) {
+    if (speed >= d->rated_speed && d->above_rated == BOUGH_CONSTANT_TORQUE) {
+        torque = d->rated_power / d->rated_speed;
+    } else if (speed >= d->rated_speed || pitch >= d->power_pitch) {
         torque = d->rated_power / fmax(speed, d->cut_in);
     } else if (speed <= d->cut_in) {
         torque = 0;

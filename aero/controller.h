@@ -9,12 +9,15 @@
 
 #include "core/status.h"
 
+typedef enum bough_above_rated { BOUGH_CONSTANT_POWER, BOUGH_CONSTANT_TORQUE } bough_above_rated;
+
 typedef struct bough_controller_def {
     double corner;             // of the low-pass filter of the speed [rad/s]
     double cut_in;             // no torque below [rad/s]
     double optimal_from;       // torque = gain·speed² from here … [rad/s]
     double optimal_gain;       // … at the best tip-speed ratio [N m s²/rad²]
-    double rated_speed;        // constant power from here [rad/s]
+    double rated_speed;        // constant power or torque from here [rad/s]
+    int above_rated;           // bough_above_rated: which of the two
     double rated_power;        // mechanical [W]
     double slip;               // of the line between the two, share of its synchronous speed [-]
     double most_torque;        // [N m]

@@ -425,6 +425,10 @@ imported() {
     sed 's/CompHydro/CompHydra/; s/CompElast/CompPlast/' "$folder/tests/decks/main.fst" >../bad.fst
     refused "bad.fst: no 'CompElast': expected a line" import openfast ../bad.fst --out out
     refused "cannot read 'none.fst'" import openfast none.fst --out out
+    refused 'cannot open the wind file none.bts' \
+        import openfast "$folder/tests/decks/main.fst" --wind none.bts --out out
+    refused 'the controller cannot be loaded' \
+        import openfast "$folder/tests/decks/main.fst" --controller ./none.so --out out
     refused 'missing KIND FILE' import openfast
     expect 0 import windio "$folder/tests/decks/turbine-2.yaml" --out out
     has ../stdout '^scene: out/scene.yaml$'

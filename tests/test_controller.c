@@ -39,6 +39,21 @@ static void torque_follows_the_regions(void **state) {
     }
 }
 
+// Constant torque instead, and a line that is as good as vertical.
+static void torque_may_stay(void **state) {
+    (void)state;
+    bough_controller_def d = bough_controller_def_default();
+    d.above_rated = BOUGH_CONSTANT_TORQUE;
+    double rated = d.rated_power / d.rated_speed;
+    check_near(bough_controller_torque(&d, 1.5 * d.rated_speed, 0), rated, 1e-12, 0);
+    d.slip = 1e-9;
+    bough_status status = bough_controller_check(&d);
+    assert_int_equal(status.code, BOUGH_OK);
+    check_near(bough_controller_torque(&d, d.rated_speed * (1 + 1e-9), 0), rated, 1e-12, 0);
+    double below = d.rated_speed * (1 - 1e-6);
+    check_near(bough_controller_torque(&d, below, 0), d.optimal_gain * below * below, 1e-12, 0);
+}
+
 static void limits_hold(void **state) {
     (void)state;
     bough_controller_def d = bough_controller_def_default();
@@ -111,6 +126,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gains_are_those_of_the_design),
         cmocka_unit_test(torque_follows_the_regions),
+        cmocka_unit_test(torque_may_stay),
         cmocka_unit_test(limits_hold),
         cmocka_unit_test(speed_is_regulated),
         cmocka_unit_test(senseless_constants_are_refused),

@@ -1,46 +1,9 @@
 // Decks of OpenFAST as scenes: the numbers, by hand; what bad decks are told; that a scene runs.
-#include "tests/import.h"
+#include "tests/import_deck.h"
 
 #include "apps/api/bough.h"
 #include "apps/import/section.h"
-#include "apps/output/folder.h"
 #include "tests/scratch.h"
-
-static const char *const decks[] = {
-    "main.fst",        "parts/elasto.dat",     "parts/blade.dat",       "parts/tower.dat",
-    "parts/beam.dat",  "parts/beam-blade.dat", "parts/wind.dat",        "parts/aero.dat",
-    "parts/servo.dat", "parts/aero-blade.dat", "parts/foils/round.dat", "parts/foils/flat.dat",
-    "v4/main.fst",     "v4/elasto.dat",        "v4/blade.dat",          "v4/aero.dat",
-    "v5/main.fst",     "v5/elasto.dat",        "v5/aero-blade.dat",     "v5/aero.dat",
-    "v5/servo.dat",    "v5/beam.dat",          "v5/beam-blade.dat",
-};
-enum { N_DECK = sizeof decks / sizeof *decks };
-
-// Imports the decks under this main file with two texts replaced (NULL: none).
-static trial import_main(const char *main, const edit *one, const edit *two) {
-    static const char *const folder[] = {"parts/foils", "v4", "v5"};
-    trial t = {.arena = bough_arena_create()};
-    char path[128];
-    strcpy(t.folder, "/tmp/bough-import-XXXXXX");
-    assert_non_null(mkdtemp(t.folder));
-    for (int i = 0; i < 3; i++) {
-        snprintf(path, sizeof path, "%s/%s", t.folder, folder[i]);
-        bough_status made = bough_folder_make(path);
-        assert_true(bough_is_ok(&made));
-    }
-    for (int i = 0; i < N_DECK; i++)
-        copy_deck(t.folder, decks[i], one, two);
-    snprintf(path, sizeof path, "%s/%s", t.folder, main);
-    snprintf(t.out, sizeof t.out, "%s/out", t.folder);
-    t.status = bough_import_openfast(path, t.out, NULL);
-    return t;
-}
-
-static trial import_with(const edit *one, const edit *two) {
-    return import_main("main.fst", one, two);
-}
-
-static trial import(const edit *change) { return import_with(change, NULL); }
 
 // A reference line of 5 m along z and 5 m on a slope of 3 to 4; a station at 6.25 m of it.
 static void beamdyn_stations_keep_line_and_matrices(void **context) {
@@ -76,12 +39,18 @@ static void turbine_has_the_decks_values(void **context) {
     check_near(number(s, "simulation.duration"), 3.02, 1e-9, 0); // whole macro steps
     check_near(number(s, "bodies.1.joint.stiffness"), 5e7, 1e-9, 0);
     check_near(number(s, "bodies.1.inertia.2"), 6000 - 8000 * 0.25, 1e-9, 0);
+    assert_string_equal(text(s, "bodies.2.name"), "generator");
     assert_string_equal(text(s, "bodies.2.joint.placement.1"), "rotate y 6 deg");
     assert_string_equal(text(s, "bodies.2.joint.placement.2"), "move x -2.5 m");
     assert_string_equal(text(s, "bodies.2.joint.speed"), "20 rpm");
-    check_near(number(s, "bodies.2.inertia.0"), 600 + 2 * 900, 1e-9, 0);
-    assert_string_equal(text(s, "bodies.4.joint.placement.0"), "rotate x 120 deg");
-    assert_string_equal(text(s, "bodies.5.pitch"), "5.5 deg");
+    check_near(number(s, "bodies.2.inertia.0"), 2 * 900, 1e-9, 0);
+    assert_string_equal(text(s, "bodies.3.joint.parent"), "generator");
+    check_near(number(s, "bodies.3.joint.stiffness"), 1e7, 1e-9, 0);
+    check_near(number(s, "bodies.3.joint.damping"), 2e4, 1e-9, 0);
+    check_near(number(s, "bodies.3.inertia.0"), 600, 1e-9, 0);
+    assert_string_equal(text(s, "bodies.5.joint.placement.0"), "rotate x 120 deg");
+    assert_string_equal(text(s, "bodies.6.pitch"), "5.5 deg");
+    assert_string_equal(text(s, "turbine.rotor"), "generator");
     assert_string_equal(text(s, "aero.wind.kind"), "power");
     assert_string_equal(text(s, "aero.wind.direction"), "-15 deg");
     check_near(number(s, "aero.air_density"), 1.2, 1e-9, 0);
@@ -91,7 +60,8 @@ static void turbine_has_the_decks_values(void **context) {
     assert_string_equal(text(s, "aero.pitching_moment"), "false");
     check_near(number(s, "aero.tower.drag.1"), 0.8, 1e-9, 0);
     check_near(number(s, "control.law.optimal_gain"), 0.0004 * pow(30 / acos(-1.0), 2), 1e-9, 0);
-    assert_true(list_says(&t, "DrTrDOF: the drive train is rigid"));
+    assert_string_equal(text(s, "control.law.above_rated"), "torque");
+    assert_true(list_says(&t, "the hub turns against the generator"));
     done(&t);
 }
 
@@ -261,23 +231,18 @@ static void controller_libraries_and_wind_files_stay_in_place(void **context) {
              BOUGH_SAMPLE_DISCON);
     const edit library = {"parts/servo.dat", "0   PCMode", line};
     const edit wind = {"parts/wind.dat", "1    WindType",
-                       "\"foils/flat.dat\"  FileName_BTS\n3    WindType"};
+                       "\"BOX.bts\"  FileName_BTS\n3    WindType"};
     trial t = import_with(&library, &wind);
     assert_string_equal(t.status.message, "");
     const bough_node *s = read_file(&t, "scene.yaml");
     assert_string_equal(text(s, "control.kind"), "bladed");
     assert_string_equal(text(s, "control.library"), BOUGH_SAMPLE_DISCON);
-    assert_string_equal(text(s, "bodies.3.joint.kind"), "revolute");
+    assert_string_equal(text(s, "bodies.4.joint.kind"), "revolute");
     assert_string_equal(text(s, "aero.wind.kind"), "bts");
     assert_int_equal(text(s, "aero.wind.file")[0], '/');
-    assert_non_null(strstr(text(s, "aero.wind.file"), "/parts/foils/flat.dat"));
+    assert_non_null(strstr(text(s, "aero.wind.file"), "/parts/box.bts"));
     done(&t);
-    a_scene_steps(&library, &(edit){"parts/elasto.dat", "True          TwFADOF1", "F  TwFADOF1"});
-    t = import(&(edit){"parts/servo.dat", "1   VSContrl   - simple",
-                       "5   VSContrl\n\"none.so\"  DLL_FileName"});
-    assert_true(list_says(&t, "no library "));
-    assert_true(list_says(&t, "VSContrl 5: no torque"));
-    done(&t);
+    a_scene_steps(&library, &(edit){"parts/elasto.dat", "True          DrTrDOF", "F  DrTrDOF"});
 }
 
 static void bad_decks_are_told_where(void **context) {
@@ -295,7 +260,7 @@ static void bad_decks_are_told_where(void **context) {
          "elasto.dat:6: YawDOF: expected True or False, got 'Maybe'"},
         {{"main.fst", "parts/wind.dat", "parts/wand.dat"}, "main.fst:17: cannot read"},
         {{"main.fst", "0    CompHydro", "1    CompHydro"}, "main.fst:10: CompHydro: expected 0"},
-        {{"parts/wind.dat", "1    WindType", "4    WindType"}, "wind.dat:2: WindType: expected 1"},
+        {{"parts/wind.dat", "1    WindType", "4    WindType"}, "wind.dat:2: WindType 4: expected a line"},
         {{"parts/beam.dat", "kp_zr", "kp_z"}, "beam.dat: no table with the columns kp_xr"},
         {{"parts/beam.dat", "5.0     6.0", "nan     6.0"}, "beam.dat:9: kp_zr: expected a number"},
         {{"parts/beam.dat", "5.0     6.0", "9.5     6.0"}, "kp_zr: expected points that go"},
@@ -304,10 +269,10 @@ static void bad_decks_are_told_where(void **context) {
         {{"parts/beam-blade.dat", "3   station_total", "4   station_total"}, "the file ends"},
         {{"parts/aero-blade.dat", "6.0       2 ", "6.0       3 "}, "BlAFID: row 2: expected"},
         {{"parts/aero-blade.dat", "  3   NumBlNds", "  4   NumBlNds"}, "3 rows, expected 4"},
-        {{"parts/foils/flat.dat", "180.0   0.02\n", "170.0   0.02\n"},
-         "flat.dat:5: alpha: expected"},
+        {{"parts/foils/flat.dat", "-10.0", "-190.0"},
+         "flat.dat:7: alpha: expected"},
         {{"parts/aero-blade.dat", "2       1.0\n", "2       0.0\n"},
-         "the model gives no scene: blade-aero.yaml:5: stations.rows[1].chord: must be > 0 m"},
+         "aero-blade.dat:2: BlChord: row 2: expected a positive one"},
         {{"parts/servo.dat", "400   VS_RtTq", "4   VS_RtTq"}, "servo.dat:6: VS_RtGnSp"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {

@@ -18,7 +18,7 @@ static trial import_of(const char *deck, const edit *change) {
     copy_deck(t.folder, deck, change, NULL);
     snprintf(path, sizeof path, "%s/%s", t.folder, deck);
     snprintf(t.out, sizeof t.out, "%s/out", t.folder);
-    t.status = bough_import_windio(path, t.out, NULL);
+    t.status = bough_import_windio(path, t.out, &(bough_import_options){0}, NULL);
     return t;
 }
 

@@ -10,7 +10,7 @@ _bough() {
     elif [ "$verb" = import ] && [ "$COMP_CWORD" -eq 2 ]; then
         words=$("$1" help import | grep -o "'[a-z]*" | tr -d "'") files=
     elif [ "${word#-}" != "$word" ]; then
-        words=$("$1" help "$verb" 2>/dev/null | sed -n 's/^  \(-h, \)\{0,1\}\(--[a-z]*\).*/\2/p') files=
+        words=$("$1" help "$verb" 2>/dev/null | sed -n 's/^  \(-h, \)\{0,1\}\(--[a-z-]*\).*/\2/p') files=
     fi
     while IFS= read -r word; do
         COMPREPLY+=("$word")

@@ -29,6 +29,12 @@ static const option_row rows[] = {
      BOUGH_OPTION_CHECKPOINT, false},
     {"resume", NULL, "goes on from the last checkpoint in the folder for the results",
      BOUGH_OPTION_RESUME, false},
+    {"wind", "FILE", "wind for the imported model, in place of its own: .bts, .wnd or uniform",
+     BOUGH_OPTION_WIND, false},
+    {"controller", "FILE", "library in the style of Bladed, in place of the model's own",
+     BOUGH_OPTION_CONTROLLER, false},
+    {"clamp-base", NULL, "an offshore turbine as if clamped at its tower's base",
+     BOUGH_OPTION_CLAMP_BASE, false},
     {"quiet", NULL, "no progress line", BOUGH_OPTION_QUIET, false},
 };
 enum { N_ROW = sizeof rows / sizeof *rows };
@@ -107,6 +113,9 @@ static bough_status take_option(bough_option_flag flag, const char *text, bough_
     case BOUGH_OPTION_CASE: options->only = text; break;
     case BOUGH_OPTION_CHECKPOINT: options->checkpoint = text; break;
     case BOUGH_OPTION_RESUME: options->resume = true; break;
+    case BOUGH_OPTION_WIND: options->wind = text; break;
+    case BOUGH_OPTION_CONTROLLER: options->controller = text; break;
+    case BOUGH_OPTION_CLAMP_BASE: options->clamp_base = true; break;
     case BOUGH_OPTION_QUIET: options->quiet = true; break;
     }
     return bough_ok();

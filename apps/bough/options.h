@@ -18,6 +18,9 @@ typedef enum bough_option_flag {
     BOUGH_OPTION_CHECKPOINT = 1 << 5,
     BOUGH_OPTION_RESUME = 1 << 6,
     BOUGH_OPTION_CASE = 1 << 7,
+    BOUGH_OPTION_WIND = 1 << 8,
+    BOUGH_OPTION_CONTROLLER = 1 << 9,
+    BOUGH_OPTION_CLAMP_BASE = 1 << 10,
 } bough_option_flag;
 
 typedef enum bough_operand {
@@ -45,6 +48,8 @@ typedef struct bough_options {
     int part, parts;  // of a study, from 1; 0: all of it
     const char *checkpoint; // simulated time between checkpoints; NULL: none
     bool resume;            // from the last one
+    const char *wind, *controller; // files for an imported model; NULL: its own
+    bool clamp_base;               // of an imported offshore turbine
     bool quiet, help;
 } bough_options;
 

@@ -3,13 +3,14 @@
 #include "apps/output/folder.h"
 #include "core/input_file.h"
 
-#include <errno.h>
+#include <dirent.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 enum { MOST_BYTES = 16 << 20, WORD = 1024, MOST_WORDS = 64 };
 
@@ -51,14 +52,25 @@ static bough_status read_bytes(bough_arena *arena, const char *path, char **text
     return status;
 }
 
+// Lines of a text may end with \n, \r\n or \r; the number of lines when all end with \n.
+static int mend_line_ends(char *text) {
+    char *to = text;
+    int n = 1;
+    for (const char *from = text; *from; from++) {
+        if (from[0] == '\r' && from[1] == '\n') continue;
+        *to = *from == '\r' ? '\n' : *from;
+        n += *to++ == '\n';
+    }
+    *to = '\0';
+    return n;
+}
+
 bough_deck *bough_deck_open(bough_arena *arena, const char *path, bough_status *status) {
     if (!bough_is_ok(status)) return NULL;
     char *text = NULL;
     *status = read_bytes(arena, path, &text);
     if (!bough_is_ok(status)) return NULL;
-    int n = 1;
-    for (const char *at = text; *at; at++)
-        n += *at == '\n';
+    int n = mend_line_ends(text);
     bough_deck *deck = bough_arena_take(arena, sizeof *deck);
     const char **line = bough_arena_take(arena, (size_t)n * sizeof *line);
     const char *copy = bough_arena_string(arena, path);
@@ -71,8 +83,6 @@ bough_deck *bough_deck_open(bough_arena *arena, const char *path, bough_status *
         line[i] = text;
         text += strcspn(text, "\n");
         if (*text) *text++ = '\0';
-        char *end = strchr(line[i], '\r');
-        if (end) *end = '\0';
     }
     return deck;
 }
@@ -104,19 +114,24 @@ static bool is_one_of(const char *word, const char *names) {
     }
 }
 
-static bool is_rule(const char *line) {
+// A rule or a comment, which has no value.
+static bool has_no_value(const char *line) {
     line += strspn(line, " \t");
-    return strncmp(line, "---", 3) == 0 || strncmp(line, "===", 3) == 0;
+    return strncmp(line, "---", 3) == 0 || strncmp(line, "===", 3) == 0 || strchr("!#%", *line);
 }
 
-int bough_deck_line(const bough_deck *deck, const char *names) {
+int bough_deck_line_from(const bough_deck *deck, int first, const char *names) {
     char word[WORD];
-    for (int i = 0; deck && i < deck->n; i++) {
+    for (int i = first; deck && i < deck->n; i++) {
         const char *at = deck->line[i];
-        if (is_rule(at) || !next_word(&at, word)) continue;
+        if (has_no_value(at) || !next_word(&at, word)) continue;
         if (next_word(&at, word) && is_one_of(word, names)) return i;
     }
     return -1;
+}
+
+int bough_deck_line(const bough_deck *deck, const char *names) {
+    return bough_deck_line_from(deck, 0, names);
 }
 
 int bough_deck_find(const bough_deck *deck, const char *words) {
@@ -152,14 +167,21 @@ static bool is_default(const bough_deck *deck, const char *names) {
 
 // -- values ---------------------------------------------------------------------------------------
 
-// Fortran's spelling, 1.5D+3, is known; hexadecimal, infinity and NaN are not.
+// Fortran's spellings, 1.5D+3 and 1.5+100, are known; hexadecimal, infinity and NaN are not.
 static bool read_number(const char *word, double *value) {
-    char copy[64], *end;
-    size_t length = strlen(word);
-    if (length == 0 || length >= sizeof copy) return false;
+    char copy[64], *end, last = '\0';
+    size_t length = strlen(word), n = 0;
+    if (length == 0 || length >= sizeof copy - 1) return false;
     if (strspn(word, "+-.0123456789eEdD") != length) return false;
-    for (size_t i = 0; i <= length; i++)
-        copy[i] = word[i] == 'd' || word[i] == 'D' ? 'e' : word[i];
+    for (size_t i = 0; i <= length; i++) {
+        char letter = word[i] && strchr("dDE", word[i]) ? 'e' : word[i];
+        bool sign = letter == '+' || letter == '-';
+        if (sign && last && last != 'e') {
+            if (memchr(copy, 'e', n) || n + 2 >= sizeof copy) return false;
+            copy[n++] = 'e';
+        }
+        copy[n++] = last = letter;
+    }
     *value = strtod(copy, &end);
     return *end == '\0' && isfinite(*value);
 }
@@ -188,8 +210,9 @@ bool bough_deck_flag(const bough_deck *deck, const char *names) {
     char word[WORD];
     int line = value_of(deck, names, "True", word);
     if (line < 0) return false;
-    if (is_one_of(word, "true|t|.true.")) return true;
-    if (is_one_of(word, "false|f|.false.")) return false;
+    const char *first = word + (word[0] == '.'); // Fortran reads no further
+    if (*first == 't' || *first == 'T') return true;
+    if (*first == 'f' || *first == 'F') return false;
     bough_deck_fail(deck, line, "%.*s: expected True or False, got '%.60s'",
                     (int)strcspn(names, "|"), names, word);
     return false;
@@ -216,8 +239,35 @@ bool bough_deck_flag_or(const bough_deck *deck, const char *names, bool fallback
 
 // -- files ----------------------------------------------------------------------------------------
 
-// The first word of a line as a path relative to the deck.
-static const char *path_at(const bough_deck *deck, int line) {
+// Puts into *name (of `size`) how the folder spells it, where capitals are the only difference:
+// decks come from systems to which they are the same.
+static void respell(const char *folder, char *name, size_t size) {
+    DIR *stream = opendir(folder);
+    if (!stream) return;
+    for (const struct dirent *entry; (entry = readdir(stream));) {
+        if (strcasecmp(entry->d_name, name) != 0 || strlen(entry->d_name) >= size) continue;
+        strcpy(name, entry->d_name);
+        break;
+    }
+    closedir(stream);
+}
+
+// Folder by folder, as far as they are there.
+static void respell_path(char path[BOUGH_PATH_MAX]) {
+    char part[BOUGH_PATH_MAX];
+    for (size_t from = 0, n; path[from]; from += n + (path[from + n] == '/')) {
+        n = strcspn(path + from, "/");
+        snprintf(part, sizeof part, "%.*s", (int)(from + n), path);
+        if (n == 0 || access(part, F_OK) == 0) continue;
+        snprintf(part, sizeof part, "%.*s", (int)n, path + from);
+        char folder[BOUGH_PATH_MAX];
+        snprintf(folder, sizeof folder, "%.*s", (int)from, path);
+        respell(from > 0 ? folder : ".", part, n + 1);
+        memcpy(path + from, part, n);
+    }
+}
+
+const char *bough_deck_path_at(const bough_deck *deck, int line) {
     char word[WORD], path[BOUGH_PATH_MAX];
     const char *at = line >= 0 && line < deck->n ? deck->line[line] : "";
     if (!bough_is_ok(deck->status)) return "";
@@ -231,12 +281,13 @@ static const char *path_at(const bough_deck *deck, int line) {
     const char *slash = strrchr(deck->path, '/');
     int folder = slash && word[0] != '/' ? (int)(slash - deck->path) + 1 : 0;
     snprintf(path, sizeof path, "%.*s%s", folder, deck->path, word);
+    if (access(path, F_OK) != 0) respell_path(path);
     const char *copy = bough_arena_string(deck->arena, path);
     return copy ? copy : "";
 }
 
 const char *bough_deck_file_at(const bough_deck *deck, int line) {
-    const char *path = path_at(deck, line);
+    const char *path = bough_deck_path_at(deck, line);
     if (!bough_is_ok(deck->status)) return "";
     char why[BOUGH_INPUT_REASON];
     FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
@@ -257,7 +308,7 @@ const char *bough_deck_file(const bough_deck *deck, const char *names) {
 const char *bough_deck_path(const bough_deck *deck, const char *names) {
     char word[WORD];
     int line = value_of(deck, names, "\"file\"", word);
-    return line < 0 ? "" : path_at(deck, line);
+    return line < 0 ? "" : bough_deck_path_at(deck, line);
 }
 
 // -- tables ---------------------------------------------------------------------------------------
@@ -278,9 +329,18 @@ static bool find_columns(const char *line, const char *const *column, int n_colu
     return true;
 }
 
-static bool skipped(const char *line) {
+static bool is_comment(const char *line) {
     line += strspn(line, " \t");
-    return *line == '\0' || *line == '!' || *line == '#' || *line == '(';
+    return *line == '\0' || strchr("!#%", *line);
+}
+
+bool bough_deck_is_comment(const bough_deck *deck, int line) {
+    return line >= 0 && line < deck->n && is_comment(deck->line[line]);
+}
+
+// A comment, or units below the columns' names.
+static bool skipped(const char *line) {
+    return is_comment(line) || line[strspn(line, " \t")] == '(';
 }
 
 static void read_row(const bough_deck *deck, int line, const char *const *column, int n_column,

@@ -29,6 +29,9 @@ bough_deck *bough_deck_open(bough_arena *arena, const char *path, bough_status *
 // The line [from 0] that has the name behind its value; -1: none.
 int bough_deck_line(const bough_deck *deck, const char *names);
 
+// The same from a line on.
+int bough_deck_line_from(const bough_deck *deck, int first, const char *names);
+
 // The value of that name.
 double bough_deck_number(const bough_deck *deck, const char *names);
 int bough_deck_whole(const bough_deck *deck, const char *names, int least, int most);
@@ -41,10 +44,15 @@ int bough_deck_whole_or(const bough_deck *deck, const char *names, int fallback)
 bool bough_deck_flag_or(const bough_deck *deck, const char *names, bool fallback);
 
 // The path of a file that is named relative to this one, whether it is there or not; refused unless
-// it can be read; and the first word of a line as such.
+// it can be read; and the first word of a line as such. Where only capitals differ from what is there,
+// the path is as there.
 const char *bough_deck_path(const bough_deck *deck, const char *names);
+const char *bough_deck_path_at(const bough_deck *deck, int line);
 const char *bough_deck_file(const bough_deck *deck, const char *names);
 const char *bough_deck_file_at(const bough_deck *deck, int line);
+
+// Whether there is such a line, and it is empty or a comment (!, #, %).
+bool bough_deck_is_comment(const bough_deck *deck, int line);
 
 // A table of `n` rows below the line that names all columns, units below it skipped: (n ×
 // n_column), NULL after a failure. A column "?Name" need not be there: its entries are then NaN.
@@ -52,7 +60,7 @@ const double *bough_deck_table(const bough_deck *deck, const char *const *column
                                int n);
 
 // Reads `count` numbers that stand from *line on, which moves behind the last one's; empty lines
-// and comments (! and #) are skipped. `what` names them in messages.
+// and comments are skipped. `what` names them in messages.
 void bough_deck_numbers(const bough_deck *deck, int *line, const char *what, int count, double *to);
 
 // The first line that has the words; -1: none.

@@ -2,6 +2,7 @@
 
 #include "apps/output/folder.h"
 #include "apps/scene/scene.h"
+#include "apps/simulation/run.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -12,7 +13,10 @@
 #include <string.h>
 #include <unistd.h>
 
-static const double macro_step = 0.02; // [s]
+// Macro steps [s], and by how much the rotor may turn in one [rad].
+static const double longest_step = 0.02, shortest_step = 0.02 / 32, most_turn = 0.07;
+
+enum { TRIAL_STEPS = 2 };
 
 const char *const bough_import_name[BOUGH_N_IMPORT_FILE] = {
     "scene.yaml",      "blade-structure.yaml", "tower-structure.yaml",
@@ -56,9 +60,13 @@ char bough_import_letter(char letter) {
 }
 
 void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity,
-                      double duration) {
+                      double duration, double rotor_speed) {
     FILE *file = d->file[BOUGH_IMPORT_SCENE];
-    double steps = fmax(ceil(duration / macro_step - 1e-6), 1);
+    double step = longest_step;
+    while (step * rotor_speed > most_turn && step > shortest_step * 1.5)
+        step /= 2;
+    double steps = fmax(ceil(duration / step - 1e-6), 1);
+    d->macro_step = step;
     fprintf(file,
             "# Imported from %s: import.txt tells what was taken.\n"
             "# Ground axes: x downwind, z up. The rotor turns positive about the shaft's x.\n"
@@ -69,9 +77,9 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
             "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
             "  macro_step: %g s\n"
             "  coupling: {scheme: monolithic} # all bodies coupled at the stages of the steps\n"
-            "  master: {solver: rosenbrock, step: 10 ms, rtol: 4.5e-4}\n"
+            "  master: {solver: rosenbrock, step: %g ms, rtol: 4.5e-4}\n"
             "  error_estimate: linearised # second-solution: surer, at three times the cost\n  threads: 2\n",
-            -gravity, steps * macro_step, macro_step);
+            -gravity, steps * step, step, 500 * step);
 }
 
 // -- files ----------------------------------------------------------------------------------------
@@ -96,12 +104,38 @@ static bough_status write_file(const char *folder, int kind, const char *text) {
     return bough_folder_commit(path, file);
 }
 
-static bough_status write_files(const char *folder, char *const *text) {
+static bough_status write_box(const char *folder, const bough_wind_box *box) {
+    char path[BOUGH_PATH_MAX];
+    FILE *file;
+    bough_status status = bough_folder_path(folder, BOUGH_IMPORT_BOX, path);
+    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    if (!bough_is_ok(&status)) return status;
+    if (bough_wind_box_write(box, "imported", file)) return bough_folder_commit(path, file);
+    bough_folder_discard(path, file);
+    return bough_fail(BOUGH_IO, "cannot write '%.200s'", path);
+}
+
+static bough_status write_files(const char *folder, const bough_draft *d) {
     bough_status status = bough_folder_make(folder);
     for (int i = 0; i < BOUGH_N_IMPORT_FILE && bough_is_ok(&status); i++) {
-        if (text[i][0]) status = write_file(folder, i, text[i]);
+        if (d->file_text[i][0]) status = write_file(folder, i, d->file_text[i]);
     }
+    if (d->box && bough_is_ok(&status)) status = write_box(folder, d->box);
     return status;
+}
+
+// The scene's model can be built and goes its first steps; a controller's library, which is another's
+// program, is loaded but not called.
+static bough_status try_scene(bough_arena *arena, bough_scene *scene) {
+    bough_run run;
+    scene->simulation.threads = 1;
+    bool calls = scene->control.node && scene->control.kind == BOUGH_SCENE_BLADED;
+    bough_status status = bough_run_create(arena, scene, &run);
+    for (int i = 0; i < TRIAL_STEPS && !calls && bough_is_ok(&status) && !bough_run_done(&run); i++)
+        status = bough_run_step(&run);
+    if (bough_is_ok(&status)) return status;
+    return bough_fail(status.code, "the model gives a scene that cannot run: %.300s",
+                      status.message);
 }
 
 // What the deck's own checks have let through.
@@ -111,7 +145,7 @@ static bough_status check_scene(bough_arena *arena, const char *folder) {
     bough_scene *scene;
     bough_status status = bough_folder_path(folder, bough_import_name[BOUGH_IMPORT_SCENE], path);
     if (bough_is_ok(&status)) status = bough_scene_read(arena, path, NULL, 0, &errors, &scene);
-    if (errors.n == 0) return status;
+    if (errors.n == 0) return bough_is_ok(&status) ? try_scene(arena, scene) : status;
     const bough_error *e = errors.item;
     const char *slash = strrchr(e->file, '/');
     return bough_fail(BOUGH_INVALID, "the model gives no scene: %.40s:%d: %.80s: %.200s",
@@ -122,9 +156,10 @@ static bough_status check_scene(bough_arena *arena, const char *folder) {
 static bough_status finish_files(const char *from, const char *folder, bool good) {
     char old[BOUGH_PATH_MAX], path[BOUGH_PATH_MAX];
     bough_status status = bough_ok();
-    for (int i = BOUGH_N_IMPORT_FILE - 1; i >= 0; i--) {
-        bough_status named = bough_folder_path(from, bough_import_name[i], old);
-        if (bough_is_ok(&named)) named = bough_folder_path(folder, bough_import_name[i], path);
+    for (int i = BOUGH_N_IMPORT_FILE; i >= 0; i--) {
+        const char *name = i < BOUGH_N_IMPORT_FILE ? bough_import_name[i] : BOUGH_IMPORT_BOX;
+        bough_status named = bough_folder_path(from, name, old);
+        if (bough_is_ok(&named)) named = bough_folder_path(folder, name, path);
         if (!bough_is_ok(&named) || !good) {
             unlink(old);
         } else if (rename(old, path) != 0 && errno != ENOENT && bough_is_ok(&status)) {
@@ -141,7 +176,7 @@ static bough_status publish(bough_draft *d, const char *folder) {
     bool present = access(folder, F_OK) == 0;
     bough_status status = bough_folder_path(folder, "import.partial", draft);
     if (!bough_is_ok(&status)) return status;
-    status = write_files(draft, d->file_text);
+    status = write_files(draft, d);
     if (bough_is_ok(&status)) status = check_scene(d->arena, draft);
     bough_status finished = finish_files(draft, folder, bough_is_ok(&status));
     if (bough_is_ok(&status)) status = finished;

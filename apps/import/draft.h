@@ -3,6 +3,7 @@
 #ifndef BOUGH_IMPORT_DRAFT_H
 #define BOUGH_IMPORT_DRAFT_H
 
+#include "aero/wind_box.h"
 #include "core/arena.h"
 #include "core/status.h"
 
@@ -35,23 +36,28 @@ typedef struct bough_draft {
     FILE *file[BOUGH_N_IMPORT_FILE]; // texts of the files; one left empty is not written
     char *note_text[BOUGH_N_NOTE], *file_text[BOUGH_N_IMPORT_FILE];
     size_t note_size[BOUGH_N_NOTE], file_size[BOUGH_N_IMPORT_FILE];
+    double macro_step;               // [s]; air and control are sampled as often
+    const bough_wind_box *box;       // to be written as wind.bts; NULL: none
 } bough_draft;
+
+#define BOUGH_IMPORT_BOX "wind.bts"
 
 // Takes memory; a failure is in *status. The draft must then stay where it is.
 void bough_draft_start(bough_draft *d, bough_status *status);
 
-// Writes the files unless there was a failure or they could not be read as a scene, the list also
-// to `echo` (NULL: nobody), and gives the memory back.
+// Writes the files unless there was a failure or they make no scene that can be built and stepped,
+// the list also to `echo` (NULL: nobody), and gives the memory back.
 void bough_draft_finish(bough_draft *d, const char *folder, FILE *echo);
 
 // A line of the list.
 void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-// The scene's first lines: title and comment, time, solvers; of duration [s], a multiple of which
-// is what the macro step needs. `origin`: "an OpenFAST model".
+// The scene's first lines: title and comment, time, solvers; of duration [s], rounded up to whole
+// macro steps, which are as short as a rotor of that speed [rad/s] needs. `origin`: "an OpenFAST
+// model".
 void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity,
-                      double duration);
+                      double duration, double rotor_speed);
 
 // "[1, 2, 3]" in the scene's spelling.
 void bough_import_list(FILE *file, const double *value, int n);

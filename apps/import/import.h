@@ -4,16 +4,27 @@
 
 #include "core/status.h"
 
+#include <stdbool.h>
 #include <stdio.h>
+
+// What the user adds to a model or takes in place of its own; NULL: as the model has it.
+typedef struct bough_import_options {
+    const char *wind;       // file of the wind
+    const char *controller; // library in the style of Bladed
+    bool clamp_base;        // an offshore turbine without what is below its tower
+} bough_import_options;
 
 // Turns an OpenFAST model of a land-based turbine (the .fst file and those that it names) into
 // `folder`/scene.yaml with its tables, and import.txt, a list of what was taken, approximated and
 // left out, which `echo` also receives (NULL: nobody). Nothing is written unless the whole model
-// could be read. BOUGH_INVALID says file:line, the value's name and what was expected.
-bough_status bough_import_openfast(const char *path, const char *folder, FILE *echo);
+// could be read, and its scene built and stepped. BOUGH_INVALID says file:line, the value's name and
+// what was expected.
+bough_status bough_import_openfast(const char *path, const char *folder,
+                                   const bough_import_options *options, FILE *echo);
 
 // The same with a turbine of the WindIO ontology, a YAML file in the layout of version 1 or 2;
 // BOUGH_INVALID says file:line:col.
-bough_status bough_import_windio(const char *path, const char *folder, FILE *echo);
+bough_status bough_import_windio(const char *path, const char *folder,
+                                 const bough_import_options *options, FILE *echo);
 
 #endif

@@ -15,13 +15,23 @@ bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const
 
 // -- reading --------------------------------------------------------------------------------------
 
-static void refuse_water(const bough_openfast *o) {
-    static const char *const part[] = {"CompHydro", "CompSeaSt", "CompSub", "CompMooring",
-                                       "CompIce",   "CompSoil",  "MHK"};
+// What is below the tower is left out where its base is to be clamped.
+static void leave_water(bough_openfast *o) {
+    static const char *const part[] = {"CompHydro",   "CompSeaSt", "CompSub",
+                                       "CompMooring", "CompIce",   "CompSoil"};
     for (size_t i = 0; i < sizeof part / sizeof *part; i++) {
         if (bough_deck_whole_or(o->main, part[i], 0) == 0) continue;
+        if (o->options->clamp_base) {
+            bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: the tower's base is clamped", part[i]);
+            continue;
+        }
         bough_deck_fail(o->main, bough_deck_line(o->main, part[i]),
-                        "%s: expected 0, a turbine on land", part[i]);
+                        "%s: expected 0, a turbine on land; --clamp-base imports it as if clamped "
+                        "at the tower's base", part[i]);
+    }
+    if (bough_deck_whole_or(o->main, "MHK", 0) != 0) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "MHK"),
+                        "MHK: expected 0, a turbine in air");
     }
 }
 
@@ -36,21 +46,25 @@ static void refuse_other_rotors(const bough_openfast *o) {
 }
 
 static void open_modules(bough_openfast *o) {
-    int elastic = bough_deck_whole(o->main, "CompElast", 1, 2);
+    int elastic = bough_deck_whole(o->main, "CompElast", 1, 3);
     int air = bough_deck_whole(o->main, "CompAero", 0, 3);
-    refuse_water(o);
+    if (elastic == 3) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "CompElast"),
+                        "CompElast: expected 1 (ElastoDyn) or 2 (with BeamDyn), got 3 (Simplified "
+                        "ElastoDyn), which describes no blades");
+    }
+    leave_water(o);
     refuse_other_rotors(o);
     o->beamdyn = elastic == 2;
     o->elasto = bough_openfast_open(o, o->main, "EDFile");
     if (bough_deck_whole(o->main, "CompInflow", 0, 2) == 1) {
         o->inflow = bough_openfast_open(o, o->main, "InflowFile");
-    } else if (air != 0) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "without InflowWind the air is still");
     }
     if (air == 2) o->aero = bough_openfast_open(o, o->main, "AeroFile");
     if (air == 1 || air == 3) {
         bough_deck_fail(o->main, bough_deck_line(o->main, "CompAero"),
-                        "CompAero: expected 0 or 2 (AeroDyn 15), got %d", air);
+                        "CompAero: expected 0 or 2 (AeroDyn 15), got %d: AeroDyn 14, AeroDisk and "
+                        "external loads describe no blade elements", air);
     }
     if (bough_deck_whole_or(o->main, "CompServo", 0) == 1) {
         o->servo = bough_openfast_open(o, o->main, "ServoFile");
@@ -86,9 +100,13 @@ static void read_shape(bough_openfast *o) {
 static void put_head(bough_openfast *o, const char *path) {
     double g = bough_deck_number_or(o->main, "Gravity",
                                     bough_deck_number_or(o->elasto, "Gravity", 9.80665));
-    double most = bough_deck_number(o->main, "TMax");
+    double most = bough_deck_number(o->main, "TMax"), turn = bough_openfast_rotor_speed(o);
+    if (!(most >= 0 && most <= 1e6)) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "TMax"),
+                        "TMax: expected a time from 0 to 1e6 s");
+    }
     const char *slash = strrchr(path, '/');
-    bough_draft_head(&o->draft, slash ? slash + 1 : path, "an OpenFAST model", g, most);
+    bough_draft_head(&o->draft, slash ? slash + 1 : path, "an OpenFAST model", g, most, turn);
     bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
                      "solver settings, output channels, visualisation, "
                      "linearisation: the scene has its own");
@@ -113,7 +131,7 @@ static void write_scene(bough_openfast *o, const char *path) {
         bough_openfast_beamdyn(o);
     else
         bough_openfast_blade(o);
-    bough_openfast_library(o);
+    bough_openfast_generator(o);
     bough_openfast_bodies(o);
     bough_openfast_aero_tables(o);
     bough_openfast_aero(o);
@@ -129,9 +147,10 @@ static void convert(bough_openfast *o, const char *path) {
     write_scene(o, path);
 }
 
-bough_status bough_import_openfast(const char *path, const char *folder, FILE *echo) {
+bough_status bough_import_openfast(const char *path, const char *folder,
+                                   const bough_import_options *options, FILE *echo) {
     bough_status status;
-    bough_openfast o = {0};
+    bough_openfast o = {.options = options};
     bough_draft_start(&o.draft, &status);
     if (bough_is_ok(&status)) convert(&o, path);
     bough_draft_finish(&o.draft, folder, echo);

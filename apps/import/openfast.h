@@ -5,19 +5,32 @@
 
 #include "apps/import/deck.h"
 #include "apps/import/draft.h"
+#include "apps/import/import.h"
 
 enum { BOUGH_IMPORT_BLADES = 3 };
 
+// What acts on the generator.
+typedef enum bough_generator {
+    BOUGH_GENERATOR_FREE,    // nothing
+    BOUGH_GENERATOR_DRIVEN,  // it turns at the speed of the start
+    BOUGH_GENERATOR_LAW,     // a torque over the speed
+    BOUGH_GENERATOR_LIBRARY, // a controller in the style of Bladed
+} bough_generator;
+
 typedef struct bough_openfast {
     bough_draft draft;
+    const bough_import_options *options;
     bough_deck *main, *elasto, *tower, *servo, *inflow, *aero; // NULL: the model has none
     int n_blade;
     bool beamdyn; // blades by BeamDyn, else by ElastoDyn
     bool rigid_blade, rigid_tower;
-    const char *library;          // of a controller in the style of Bladed; NULL: none
+    bough_generator generator;
+    const char *library;          // of the controller
+    const char *lacks_control;    // why a generator that should have a torque is driven; NULL: it is not
     double hub_radius;            // [m]
     double blade_length;          // [m]
     double blade_mass;            // [kg]
+    double blade_inertia;         // about the rotor's axis, without cone [kg m2]
     double tower_base, tower_top; // above ground [m]
 } bough_openfast;
 
@@ -29,18 +42,26 @@ void bough_openfast_beamdyn(bough_openfast *o);
 void bough_openfast_blade(bough_openfast *o);
 void bough_openfast_tower(bough_openfast *o, double top_mass);
 
-// Tables of airfoils and blade elements, and the part `aero` of the scene.
+// Adds a slice of a blade to its mass and inertia: from and to [m], mass there [kg/m].
+void bough_openfast_weigh(bough_openfast *o, const double span[2], const double mass[2]);
+
+// Tables of airfoils and blade elements, and the part `aero` of the scene; its wind.
 void bough_openfast_aero_tables(bough_openfast *o);
 void bough_openfast_aero(bough_openfast *o);
+void bough_openfast_wind(bough_openfast *o);
 
-// Looks for the controller's library.
-void bough_openfast_library(bough_openfast *o);
+// The highest speed of the rotor that the decks tell [rad/s].
+double bough_openfast_rotor_speed(const bough_openfast *o);
 
-// The parts `bodies` and `turbine` of the scene; `control` and `loads`.
+// Finds out what acts on the generator.
+void bough_openfast_generator(bough_openfast *o);
+
+// The parts `bodies` and `turbine` of the scene; `control`.
 void bough_openfast_bodies(bough_openfast *o);
 void bough_openfast_control(bough_openfast *o);
 
-// Whether a controller steers the generator's torque: ServoDyn's simple law or a library.
-bool bough_openfast_controlled(const bough_openfast *o);
+// The generator's inertia on the slow shaft [kg m2]; whether it turns against the hub.
+double bough_openfast_generator_inertia(const bough_openfast *o);
+bool bough_openfast_shaft_twists(const bough_openfast *o);
 
 #endif

@@ -1,4 +1,4 @@
-// InflowWind and AeroDyn 15: wind, airfoils, blade elements, what the theory counts.
+// AeroDyn 15: airfoils, blade elements, what the theory counts.
 #include "apps/import/openfast.h"
 
 #include <math.h>
@@ -17,35 +17,71 @@ static void airfoil_name(const char *path, int number, char name[NAME]) {
     name[n] = '\0';
 }
 
-static void put_polar(bough_openfast *o, const bough_deck *deck, const char *name) {
-    int column[4] = {bough_deck_whole(o->aero, "InCol_Alfa", 1, MOST_COLUMNS),
-                     bough_deck_whole(o->aero, "InCol_Cl", 1, MOST_COLUMNS),
-                     bough_deck_whole(o->aero, "InCol_Cd", 1, MOST_COLUMNS),
-                     bough_deck_whole(o->aero, "InCol_Cm", 0, MOST_COLUMNS)};
-    int n = bough_deck_whole(deck, "NumAlf", 2, MOST_ROWS), width = 0;
-    int first = bough_deck_line(deck, "NumAlf"), line = first + 1;
-    for (int k = 0; k < 4; k++)
+enum { POLAR = 4 }; // angle, lift, drag, moment
+
+// The rows (n × POLAR) of a file's first table.
+static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
+    int column[POLAR] = {bough_deck_whole_or(o->aero, "InCol_Alfa", 1),
+                         bough_deck_whole_or(o->aero, "InCol_Cl", 2),
+                         bough_deck_whole_or(o->aero, "InCol_Cd", 3),
+                         bough_deck_whole_or(o->aero, "InCol_Cm", 0)};
+    int width = 0, line = bough_deck_line(deck, "NumAlf") + 1;
+    *n = bough_deck_whole(deck, "NumAlf", 1, MOST_ROWS);
+    for (int k = 0; k < POLAR; k++) {
         width = column[k] > width ? column[k] : width;
+        if (column[k] >= (k < 3) && column[k] <= MOST_COLUMNS) continue;
+        bough_deck_fail(o->aero, bough_deck_line(o->aero, "InCol_Alfa"),
+                        "InCol_Alfa, InCol_Cl, InCol_Cd, InCol_Cm: expected columns from 1 to %d",
+                        (int)MOST_COLUMNS);
+    }
+    if (!bough_is_ok(o->draft.status)) return NULL;
+    double *table = bough_arena_doubles(o->draft.arena, (size_t)POLAR * (size_t)*n), row[MOST_COLUMNS];
+    if (!table) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    for (int i = 0; i < *n && bough_is_ok(o->draft.status); i++) {
+        bough_deck_numbers(deck, &line, "a row of the polar", width, row);
+        for (int k = 0; k < POLAR; k++)
+            table[POLAR * i + k] = column[k] > 0 ? row[column[k] - 1] : 0;
+        double angle = table[POLAR * i];
+        if (fabs(angle) <= 180 + 1e-3 && (i == 0 || angle > table[POLAR * (i - 1)])) continue;
+        bough_deck_fail(deck, line - 1,
+                        "alpha: expected angles that grow, from -180 to 180 deg, got %g", angle);
+    }
+    return bough_is_ok(o->draft.status) ? table : NULL;
+}
+
+static void put_row(FILE *file, double angle, const double *rest) {
+    const double value[POLAR] = {angle, rest[0], rest[1], rest[2]};
+    fputs("        - ", file);
+    bough_import_list(file, value, POLAR);
+    fputc('\n', file);
+}
+
+// From -180 to 180 deg, where the values are one: the mean of what the table's ends have.
+static void put_polar(bough_openfast *o, const bough_deck *deck, const char *name) {
+    const double close = 1e-3; // [deg]
+    int n;
+    const double *table = read_polar(o, deck, &n);
+    if (!table) return;
     FILE *file = o->draft.file[BOUGH_IMPORT_POLARS];
+    const double *first = table, *last = table + POLAR * (n - 1);
+    double end[3], gap = 0;
+    for (int c = 0; c < 3; c++) {
+        end[c] = (first[1 + c] + last[1 + c]) / 2;
+        gap = fmax(gap, fabs(first[1 + c] - last[1 + c]));
+    }
+    bool whole = n > 1 && first[0] <= close - 180 && last[0] >= 180 - close;
     fprintf(file, "  - name: %s\n    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n",
             name);
-    double row[MOST_COLUMNS] = {0}, last = 0;
-    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
-        bough_deck_numbers(deck, &line, "a row of the polar", width, row);
-        double value[4];
-        for (int k = 0; k < 4; k++)
-            value[k] = column[k] > 0 ? row[column[k] - 1] : 0;
-        bool good = i == 0 ? value[0] == -180 : value[0] > last;
-        if (!good || (i == n - 1 && value[0] != 180)) {
-            bough_deck_fail(deck, line - 1,
-                            "alpha: expected angles that grow from -180 to 180 deg, "
-                            "got %g",
-                            value[0]);
-        }
-        last = value[0];
-        fputs("        - ", file);
-        bough_import_list(file, value, 4);
-        fputc('\n', file);
+    put_row(file, -180, end);
+    for (int i = 0; i < n; i++) {
+        const double *row = table + POLAR * i;
+        if (fabs(row[0]) < 180 - close) put_row(file, row[0], row + 1);
+    }
+    put_row(file, 180, end);
+    if (!whole || gap > 1e-6) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "%s: from %g to %g deg, at 180 deg the mean of its ends", name, first[0],
+                         last[0]);
     }
     if (bough_deck_whole_or(deck, "NumTabs", 1) > 1) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
@@ -58,10 +94,12 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
 static int put_polars(bough_openfast *o, char (*name)[NAME]) {
     int n = bough_deck_whole(o->aero, "NumAFfiles", 1, MOST_AIRFOILS);
     int line = bough_deck_line(o->aero, "AFNames");
-    if (line < 0) bough_deck_fail(o->aero, -1, "no 'AFNames': expected a line '\"file\"  AFNames'");
+    if (line < 0) line = bough_deck_line(o->aero, "NumAFfiles") + 1; // the label may be missing
     fputs("polars:\n", o->draft.file[BOUGH_IMPORT_POLARS]);
-    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
-        const char *path = bough_deck_file_at(o->aero, line + i);
+    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++, line++) {
+        while (bough_deck_is_comment(o->aero, line))
+            line++;
+        const char *path = bough_deck_file_at(o->aero, line);
         bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
         if (!deck) return 0;
         airfoil_name(path, i + 1, name[i]);
@@ -75,27 +113,72 @@ static int put_polars(bough_openfast *o, char (*name)[NAME]) {
 
 enum { SPAN, CURVE, SWEEP, CURVE_ANGLE, TWIST, CHORD, AIRFOIL, N_COLUMN };
 
+static void put_element(FILE *file, const double *row, double span, const char *name) {
+    fprintf(file, "    - [%.10g, %.10g, %.10g, %.10g, %.10g, %s]\n", span, row[CURVE], row[SWEEP],
+            row[TWIST], row[CHORD], name);
+}
+
+// From the root to the tip: what stands beyond the tip is cut, and what ends before it goes on as it
+// is there. A station within a millimetre of either is at it.
+static void put_span(bough_openfast *o, const double *row, int n, char (*name)[NAME]) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_AERO];
+    const double close = 1e-3, length = o->blade_length; // [m]
+    double first = row[SPAN], last = row[(n - 1) * N_COLUMN + SPAN];
+    if (first > close) put_element(file, row, 0, name[(int)row[AIRFOIL] - 1]);
+    for (int i = 0; i < n; i++, row += N_COLUMN) {
+        double before = i > 0 ? row[SPAN - N_COLUMN] : row[SPAN], at = row[SPAN];
+        if (before >= length - close && i > 0) break;
+        if (at < close && i == 0) at = 0;
+        if (at < length - close) {
+            put_element(file, row, at, name[(int)row[AIRFOIL] - 1]);
+            continue;
+        }
+        double cut[N_COLUMN], share = at > before ? fmin((length - before) / (at - before), 1) : 1;
+        for (int c = 0; c < N_COLUMN; c++)
+            cut[c] = i > 0 ? row[c - N_COLUMN] + share * (row[c] - row[c - N_COLUMN]) : row[c];
+        put_element(file, cut, length, name[(int)row[AIRFOIL] - 1]);
+    }
+    if (last < length - close) {
+        row -= N_COLUMN;
+        put_element(file, row, length, name[(int)row[AIRFOIL] - 1]);
+    }
+    if (first > close || fabs(last - length) > close) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "blade elements from %g to %g m on a blade of %g m: cut at its tip, or gone "
+                         "on with as they end", first, last, length);
+    }
+}
+
 static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)[NAME],
                          int n_name) {
-    const char *const column[] = {"BlSpn",   "BlCrvAC", "BlSwpAC", "BlCrvAng",
+    const char *const column[] = {"BlSpn",   "BlCrvAC", "BlSwpAC", "?BlCrvAng",
                                   "BlTwist", "BlChord", "BlAFID"};
-    int n = bough_deck_whole(deck, "NumBlNds", 2, MOST_ROWS);
+    int n = bough_deck_whole(deck, "NumBlNds", 1, MOST_ROWS);
     const double *row = bough_deck_table(deck, column, N_COLUMN, n);
-    FILE *file = o->draft.file[BOUGH_IMPORT_AERO];
-    fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar]\n  rows:\n", file);
-    double angle = 0;
-    for (int i = 0; row && i < n; i++, row += N_COLUMN) {
-        int id = (int)row[AIRFOIL];
-        if (id < 1 || id > n_name || id != row[AIRFOIL]) {
-            bough_deck_fail(deck, bough_deck_line(deck, "NumBlNds"),
-                            "BlAFID: row %d: expected an airfoil from 1 to %d, got %g", i + 1,
-                            n_name, row[AIRFOIL]);
-            return;
+    fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar]\n  rows:\n",
+          o->draft.file[BOUGH_IMPORT_AERO]);
+    double angle = 0, last = -1;
+    for (int i = 0; row && i < n; i++) {
+        const double *r = row + N_COLUMN * i;
+        int id = r[AIRFOIL] >= 1 && r[AIRFOIL] <= n_name ? (int)r[AIRFOIL] : 0, line = -1;
+        if (id != r[AIRFOIL] || !(r[SPAN] > last) || !(r[CHORD] > 0)) {
+            line = bough_deck_line(deck, "NumBlNds");
         }
-        angle = fmax(angle, fabs(row[CURVE_ANGLE]));
-        fprintf(file, "    - [%.10g, %.10g, %.10g, %.10g, %.10g, %s]\n", row[SPAN], row[CURVE],
-                row[SWEEP], row[TWIST], row[CHORD], name[id - 1]);
+        if (id != r[AIRFOIL]) {
+            bough_deck_fail(deck, line, "BlAFID: row %d: expected an airfoil from 1 to %d, got %g",
+                            i + 1, n_name, r[AIRFOIL]);
+        } else if (!(r[SPAN] > last)) {
+            bough_deck_fail(deck, line, "BlSpn: row %d: expected spans that grow from 0, got %g m",
+                            i + 1, r[SPAN]);
+        } else if (!(r[CHORD] > 0)) {
+            bough_deck_fail(deck, line, "BlChord: row %d: expected a positive one, got %g m", i + 1,
+                            r[CHORD]);
+        }
+        last = r[SPAN];
+        angle = fmax(angle, isnan(r[CURVE_ANGLE]) ? 0 : fabs(r[CURVE_ANGLE]));
     }
+    if (!row || !bough_is_ok(o->draft.status)) return;
+    put_span(o, row, n, name);
     bough_draft_note(&o->draft, BOUGH_TAKEN, "%d blade elements", n);
     if (angle > 0) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
@@ -112,57 +195,6 @@ void bough_openfast_aero_tables(bough_openfast *o) {
     int n = name ? put_polars(o, name) : 0;
     bough_deck *deck = bough_openfast_open(o, o->aero, "ADBlFile(1)|ADBlFile1");
     if (bough_is_ok(o->draft.status)) put_elements(o, deck, name, n);
-}
-
-// -- wind -----------------------------------------------------------------------------------------
-
-// A wind file stays where it is.
-static void put_wind_file(bough_openfast *o, const char *kind, const char *names) {
-    const char *path = bough_deck_file(o->inflow, names);
-    fprintf(o->draft.file[BOUGH_IMPORT_SCENE], "  wind: {kind: %s, file: ", kind);
-    bough_import_path(o->draft.file[BOUGH_IMPORT_SCENE], path);
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "wind of %s, by its path", path);
-}
-
-static void put_steady(bough_openfast *o, double up) {
-    double speed = bough_deck_number(o->inflow, "HWindSpeed");
-    double power = bough_deck_number_or(o->inflow, "PLExp|PLexp", 0);
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fprintf(file, "  wind: {kind: %s, speed: %.10g m/s", power > 0 ? "power" : "uniform",
-            speed * cos(up));
-    if (power > 0) {
-        fprintf(file, ", exponent: %.10g, reference_height: %.10g m", power,
-                bough_deck_number(o->inflow, "RefHt"));
-    }
-    if (up != 0) fprintf(file, ", vertical: %.10g m/s", speed * sin(up));
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "steady wind of %g m/s", speed);
-}
-
-static void put_wind(bough_openfast *o) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    if (!o->inflow) {
-        fputs("  wind: {kind: uniform, speed: 0 m/s}\n", file);
-        return;
-    }
-    double radian = acos(-1.0) / 180;
-    double to = bough_deck_number_or(o->inflow, "PropagationDir|PropogationDir", 0);
-    double up = bough_deck_number_or(o->inflow, "VFlowAng", 0) * radian;
-    switch (bough_deck_whole(o->inflow, "WindType", 1, 7)) {
-    case 1: put_steady(o, up); break;
-    case 2:
-        put_wind_file(o, "wnd", "Filename_Uni|FileName_Uni|Filename");
-        fprintf(file, ", reference_height: %.10g m, reference_length: %.10g m",
-                bough_deck_number(o->inflow, "RefHt_Uni"),
-                bough_deck_number(o->inflow, "RefLength"));
-        break;
-    case 3: put_wind_file(o, "bts", "FileName_BTS|Filename_BTS"); break;
-    default:
-        bough_deck_fail(o->inflow, bough_deck_line(o->inflow, "WindType"),
-                        "WindType: expected 1 (steady), 2 (uniform) or 3 (TurbSim): others cannot "
-                        "be read");
-    }
-    if (to != 0) fprintf(file, ", direction: %.10g deg", -to);
-    fputs("}\n", file);
 }
 
 // -- theory ---------------------------------------------------------------------------------------
@@ -191,9 +223,8 @@ static void put_induction(bough_openfast *o) {
     bool momentum = bough_deck_flag_or(a, "SkewMomCorr", false);
     if (momentum && balance != 1) fputs(", skewed_momentum: true", file);
     if (oye) fputs(", inflow: oye", file);
-    if (oye && dynamic != 2) {
-        fprintf(file, ", inflow_time: %.10g s", bough_deck_number(a, "tau1_const"));
-    }
+    double time = oye && dynamic != 2 ? bough_deck_number_or(a, "tau1_const", 0) : 0;
+    if (time > 0) fprintf(file, ", inflow_time: %.10g s", time);
     fputs("}\n", file);
     if (momentum && balance == 1) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "AeroDyn's SkewMomCorr: of BEM_Mod 2 only");
@@ -246,6 +277,13 @@ static void put_stall(bough_openfast *o) {
     if (!bough_deck_flag_or(a, "UseBlCm", true)) fputs("  pitching_moment: false\n", file);
 }
 
+// A switch that was a flag before AeroDyn 15.04.
+static int shadow_of(const bough_deck *a) {
+    const char *text = bough_deck_line(a, "TwrShadow") >= 0 ? bough_deck_text(a, "TwrShadow") : "0";
+    if (strchr("tTfF.", text[0])) return bough_deck_flag_or(a, "TwrShadow", false);
+    return bough_deck_whole_or(a, "TwrShadow", 0);
+}
+
 static void put_column(FILE *file, const char *key, const double *row, int column, int n) {
     fprintf(file, "    %s: [", key);
     for (int i = 0; i < n; i++)
@@ -253,15 +291,40 @@ static void put_column(FILE *file, const char *key, const double *row, int colum
     fputs("]\n", file);
 }
 
+// The rows above the ground; from the first below it on the ground's.
+static const double *above_ground(bough_openfast *o, const double *row, int *n) {
+    double *kept = bough_arena_doubles(o->draft.arena, 3 * ((size_t)*n + 1));
+    if (!kept) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    int m = 0;
+    for (int i = 0; kept && i < *n; i++) {
+        const double *r = row + 3 * i;
+        if (i + 1 < *n && r[3] <= 0) continue;
+        double height = fmax(r[0], 0);
+        if (!(r[1] > 0) || r[2] < 0 || (m > 0 && !(height > kept[3 * (m - 1)]))) {
+            bough_deck_fail(o->aero, bough_deck_line(o->aero, "NumTwrNds"),
+                            "TwrElev, TwrDiam, TwrCd: row %d: expected heights that grow, positive "
+                            "diameters, drag from 0", i + 1);
+        }
+        const double own[] = {height, r[1], r[2]};
+        memcpy(kept + 3 * m++, own, sizeof own);
+    }
+    if (kept && m == 1) { // one for the whole height
+        const double own[] = {fmax(o->tower_top, kept[0] + 1), kept[1], kept[2]};
+        memcpy(kept + 3 * m++, own, sizeof own);
+    }
+    *n = m;
+    return kept;
+}
+
 static void put_tower(bough_openfast *o) {
     const bough_deck *a = o->aero;
     const char *const column[] = {"TwrElev", "TwrDiam", "TwrCd"};
-    int potential = bough_deck_whole_or(a, "TwrPotent", 0);
-    int shadow = bough_deck_whole_or(a, "TwrShadow", 0);
+    int potential = bough_deck_whole_or(a, "TwrPotent", 0), shadow = shadow_of(a);
     bool drag = bough_deck_flag_or(a, "TwrAero", false) && !o->rigid_tower;
     if (potential == 0 && shadow == 0 && !drag) return;
     int n = bough_deck_whole(a, "NumTwrNds", 1, MOST_ROWS);
     const double *row = bough_deck_table(a, column, 3, n);
+    if (row) row = above_ground(o, row, &n);
     if (!row) return;
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     fprintf(file, "  tower:\n    influence: %s\n", potential == 2 ? "bak" : "potential");
@@ -287,9 +350,9 @@ void bough_openfast_aero(bough_openfast *o) {
     if (!a || !bough_is_ok(o->draft.status)) return;
     double density = bough_deck_number_or(o->main, "AirDens", 1.225);
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fprintf(file, "aero:\n  rate: 50 Hz\n  air_density: %.10g\n",
+    fprintf(file, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n", 1 / o->draft.macro_step,
             bough_deck_number_or(a, "AirDens", density));
-    put_wind(o);
+    bough_openfast_wind(o);
     fprintf(file, "  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n",
             bough_import_name[BOUGH_IMPORT_AERO], bough_import_name[BOUGH_IMPORT_POLARS],
             o->hub_radius);

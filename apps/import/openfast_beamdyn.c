@@ -4,6 +4,8 @@
 
 #include <math.h>
 
+static const double close_enough = 1e-4; // of shares
+
 enum { MOST = 1000, MATRIX = BOUGH_IMPORT_MATRIX, STATION = 1 + 2 * MATRIX };
 
 // What bends, for the first frequencies.
@@ -72,36 +74,52 @@ static void put_station(bough_openfast *o, const bough_deck *deck, const line_po
     fputs("]\n", file);
 }
 
+// Puts the section `s` at a share of the line.
+static void add_station(bough_openfast *o, const bough_deck *deck, const line_point *p, int n_point,
+                        double share, const double *s, int line, beam *b) {
+    line_point at = at_share(p, n_point, share);
+    int i = b->n++;
+    put_station(o, deck, &at, s, line);
+    b->span[i] = at.z;
+    b->flap[i] = s[1 + 4 * 7];
+    b->edge[i] = s[1 + 3 * 7];
+    b->mass[i] = s[1 + MATRIX];
+    if (i > 0) bough_openfast_weigh(o, b->span + i - 1, b->mass + i - 1);
+}
+
 static void put_stations(bough_openfast *o, const bough_deck *deck, const line_point *p,
                          int n_point, beam *b) {
-    int n = b->n;
+    int n = bough_deck_whole(deck, "station_total", 1, MOST);
     int line = bough_deck_find(deck, "DISTRIBUTED PROPERTIES") + 1;
     if (bough_is_ok(o->draft.status) && line == 0) {
         bough_deck_fail(deck, -1, "no section 'DISTRIBUTED PROPERTIES'");
     }
-    double last = 0, s[STATION], strange = 0;
+    double first = 0, last = 0, s[STATION], strange = 0;
     fprintf(o->draft.file[BOUGH_IMPORT_BLADE],
             "stations:\n  columns: [span, twist deg, axis, stiffness, mass]\n  rows:\n");
     for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
         bough_deck_numbers(deck, &line, "a station's share of the length", 1, s);
         int start = line - 1;
         bough_deck_numbers(deck, &line, "a station's two matrices", 2 * MATRIX, s + 1);
-        bool good = s[0] >= 0 && s[0] <= 1 && (i == 0 ? s[0] == 0 : s[0] > last);
-        if (!good || (i == n - 1 && s[0] != 1)) {
+        bool good = i == 0 ? s[0] >= -close_enough : s[0] > last;
+        if (!good || s[0] > 1 + close_enough) {
             bough_deck_fail(deck, start,
                             "the station stands at %g: expected shares that grow from 0 to 1",
                             s[0]);
         }
-        if (!bough_is_ok(o->draft.status)) return;
-        line_point at = at_share(p, n_point, s[0]);
-        put_station(o, deck, &at, s, start);
-        strange = fmax(strange, bough_section_strangeness(s + 1 + MATRIX));
-        b->span[i] = at.z;
-        b->flap[i] = s[1 + 4 * 7];
-        b->edge[i] = s[1 + 3 * 7];
-        b->mass[i] = s[1 + MATRIX];
-        if (i > 0) o->blade_mass += (at.z - b->span[i - 1]) * (b->mass[i] + b->mass[i - 1]) / 2;
         last = s[0];
+        if (i == 0) first = last;
+        if (fabs(s[0]) <= close_enough) s[0] = 0;
+        if (fabs(s[0] - 1) <= close_enough) s[0] = 1;
+        if (i == 0 && s[0] > 0) add_station(o, deck, p, n_point, 0, s, start, b);
+        if (bough_is_ok(o->draft.status)) add_station(o, deck, p, n_point, s[0], s, start, b);
+        strange = fmax(strange, bough_section_strangeness(s + 1 + MATRIX));
+        if (i == n - 1 && s[0] < 1) add_station(o, deck, p, n_point, 1, s, start, b);
+    }
+    if (bough_is_ok(o->draft.status) && (fabs(first) > close_enough || fabs(last - 1) > close_enough)) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "stations from %g to %g of the length: the blade goes on as they end", first,
+                         last);
     }
     bough_draft_note(&o->draft, BOUGH_TAKEN,
                      "%d stations with full stiffness and mass; the blade weighs "
@@ -168,8 +186,8 @@ void bough_openfast_beamdyn(bough_openfast *o) {
     if (!bough_is_ok(o->draft.status)) return;
     o->blade_length = p[n - 1].z;
     fprintf(o->draft.file[BOUGH_IMPORT_BLADE], "length: %.10g\n", o->blade_length);
-    beam b = {.n = bough_deck_whole(blade, "station_total", 2, MOST)};
-    if (!bough_is_ok(o->draft.status) || !take_beam(o, &b, b.n)) return;
+    beam b = {0};
+    if (!take_beam(o, &b, MOST + 2)) return;
     put_stations(o, blade, p, n, &b);
     if (bough_is_ok(o->draft.status)) put_damping(o, blade, &b);
 }

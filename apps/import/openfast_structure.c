@@ -4,6 +4,7 @@
 #include "apps/import/section.h"
 
 #include <math.h>
+#include <string.h>
 
 enum { MOST = 1000, GRID = 400, FIRST = 2, COEFFICIENTS = 5 };
 
@@ -73,14 +74,48 @@ static double total_mass(const slender *b) {
     return sum * b->mass_factor * b->length;
 }
 
-static void check_rows(const bough_deck *deck, const slender *b, const char *count) {
+void bough_openfast_weigh(bough_openfast *o, const double span[2], const double mass[2]) {
+    double own = (span[1] - span[0]) * (mass[0] + mass[1]) / 2;
+    double radius = o->hub_radius + (span[0] + span[1]) / 2;
+    o->blade_mass += own;
+    o->blade_inertia += own * radius * radius;
+}
+
+// The table from 0 to 1: where it ends before, it goes on as it ends; one station is the whole.
+static void extend(bough_openfast *o, const bough_deck *deck, slender *b, const char *count) {
+    const double close = 1e-4;
+    if (!b->row || b->n < 1) return;
+    size_t width = (size_t)b->width;
+    double *row = bough_arena_doubles(o->draft.arena, width * ((size_t)b->n + 2));
+    if (!row) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!row) return;
+    const double *last = b->row + width * (size_t)(b->n - 1);
+    double first = b->n == 1 ? 1 : b->row[0], end = b->n == 1 ? 0 : last[0];
+    int before = first > close, after = end < 1 - close;
+    memcpy(row, b->row, width * sizeof *row);
+    memcpy(row + width * (size_t)before, b->row, width * (size_t)b->n * sizeof *row);
+    memcpy(row + width * (size_t)(b->n + before), last, width * sizeof *row);
+    if (b->n == 1) before = 0;
+    b->n += before + after;
+    b->row = row;
+    row[0] = 0;
+    row[width * (size_t)(b->n - 1)] = 1;
+    if (before || after) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "%s: the table goes on to both ends as it is there", count);
+    }
+    if (end > 1 + close || first < -close) {
+        bough_deck_fail(deck, bough_deck_line(deck, count),
+                        "%s: expected shares of the span from 0 to 1, got %g to %g", count, first, end);
+    }
+}
+
+static void check_rows(const bough_deck *deck, const slender *b, const char *count, int second) {
     int line = bough_deck_line(deck, count);
     for (int i = 0; b->row && i < b->n; i++) {
         const double *r = &b->row[i * b->width];
-        double want = i == 0 ? 0 : 1;
-        bool ends = (i > 0 && i < b->n - 1) || fabs(r[0] - want) < 1e-6;
-        if (ends && (i == 0 || r[0] > r[-b->width]) && r[b->mass] > 0 && r[b->bending] > 0)
-            continue;
+        bool grows = i == 0 || r[0] > r[-b->width];
+        if (grows && r[b->mass] > 0 && r[b->bending] > 0 && r[second] > 0) continue;
         bough_deck_fail(deck, line,
                         "%s: row %d of its table: expected shares of the span that grow "
                         "from 0 to 1, positive mass and stiffness",
@@ -119,7 +154,7 @@ void bough_openfast_blade(bough_openfast *o) {
     if (!deck) return;
     const char *const column[] = {"BlFract", "StrcTwst", "BMassDen", "FlpStff",
                                   "EdgStff", "?GJStff",  "?EAStff"};
-    int n = bough_deck_whole(deck, "NBlInpSt", 2, MOST);
+    int n = bough_deck_whole(deck, "NBlInpSt", 1, MOST);
     slender b = {.n = n,
                  .width = N_BLADE_COLUMN,
                  .mass = MASS,
@@ -129,11 +164,21 @@ void bough_openfast_blade(bough_openfast *o) {
                  .bending_factor = bough_deck_number_or(deck, "AdjFlSt", 1),
                  .length = bough_deck_number(o->elasto, "TipRad") - o->hub_radius};
     double edge = bough_deck_number_or(deck, "AdjEdSt", 1);
+    extend(o, deck, &b, "NBlInpSt");
     if (!bough_is_ok(o->draft.status)) return;
-    check_rows(deck, &b, "NBlInpSt");
+    if (!(b.length > 0)) {
+        bough_deck_fail(o->elasto, bough_deck_line(o->elasto, "TipRad"),
+                        "TipRad: expected more than HubRad");
+    }
+    check_rows(deck, &b, "NBlInpSt", EDGE);
     put_blade(o, deck, &b, edge);
     o->blade_length = b.length;
-    o->blade_mass = total_mass(&b);
+    for (int i = 1; i < b.n; i++) {
+        const double *r = &b.row[i * b.width];
+        bough_openfast_weigh(o, (const double[]){r[-b.width] * b.length, r[0] * b.length},
+                             (const double[]){r[MASS - b.width] * b.mass_factor,
+                                              r[MASS] * b.mass_factor});
+    }
     bough_draft_note(&o->draft, BOUGH_TAKEN,
                      "%d stations, mass times AdjBlMs %g: the blade weighs %.7g "
                      "kg, without tip mass",
@@ -162,7 +207,7 @@ void bough_openfast_tower(bough_openfast *o, double top_mass) {
     bough_deck *deck = bough_openfast_open(o, o->elasto, "TwrFile");
     if (!deck) return;
     const char *const column[] = {"HtFract", "TMassDen", "TwFAStif", "TwSSStif"};
-    int n = bough_deck_whole(deck, "NTwInpSt", 2, MOST);
+    int n = bough_deck_whole(deck, "NTwInpSt", 1, MOST);
     slender b = {.n = n,
                  .width = N_TOWER_COLUMN,
                  .mass = 1,
@@ -173,15 +218,17 @@ void bough_openfast_tower(bough_openfast *o, double top_mass) {
                  .length = o->tower_top - o->tower_base,
                  .end_mass = top_mass};
     double side = bough_deck_number_or(deck, "AdjSSSt", 1);
+    extend(o, deck, &b, "NTwInpSt");
+    if (!bough_is_ok(o->draft.status)) return;
+    check_rows(deck, &b, "NTwInpSt", SIDE);
     slender bare = b; // to which the deck's ratio refers: ElastoDyn's is of the tower alone
     bare.end_mass = 0;
     double time = damping(deck, bare, "TwrFADmp(1)|TwrFADmp1", "TwFAM1Sh");
     if (!bough_is_ok(o->draft.status)) return;
-    check_rows(deck, &b, "NTwInpSt");
     const double times[] = {time, time, time, time, time, time};
     FILE *file = o->draft.file[BOUGH_IMPORT_TOWER];
     bough_section_head(file, b.length, times);
-    for (int i = 0; i < n; i++) {
+    for (int i = 0; i < b.n; i++) {
         const double *r = &b.row[i * b.width];
         double mass = r[1] * b.mass_factor, axial = steel * mass;
         double x = r[SIDE] * side, y = r[FORE] * b.bending_factor, ratio = 80.8 / 210;

@@ -103,7 +103,7 @@ static void put_head(bough_windio *w, const char *path) {
     const char *slash = strrchr(path, '/');
     const bough_node *name = bough_entry(w->root, "name");
     const char *title = name && name->kind == BOUGH_SCALAR ? name->text : slash ? slash + 1 : path;
-    bough_draft_head(&w->draft, title, "a WindIO turbine", 9.80665, duration);
+    bough_draft_head(&w->draft, title, "a WindIO turbine", 9.80665, duration, w->rated_speed);
 }
 
 static void note_left(bough_windio *w) {
@@ -135,9 +135,10 @@ static void convert(bough_windio *w, const char *path) {
     note_left(w);
 }
 
-bough_status bough_import_windio(const char *path, const char *folder, FILE *echo) {
+bough_status bough_import_windio(const char *path, const char *folder,
+                                 const bough_import_options *options, FILE *echo) {
     bough_status status;
-    bough_windio w = {0};
+    bough_windio w = {.options = options};
     bough_draft_start(&w.draft, &status);
     if (bough_is_ok(&status)) convert(&w, path);
     bough_draft_finish(&w.draft, folder, echo);

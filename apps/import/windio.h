@@ -5,9 +5,11 @@
 #define BOUGH_IMPORT_WINDIO_H
 
 #include "apps/import/entry.h"
+#include "apps/import/import.h"
 
 typedef struct bough_windio {
     bough_draft draft;
+    const bough_import_options *options;
     const bough_node *root, *parts; // the file; its components
     const bough_node *blade, *shape, *hub, *train;
     const bough_node *tower; // NULL: none

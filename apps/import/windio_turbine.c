@@ -204,8 +204,8 @@ void bough_windio_air(bough_windio *w) {
     FILE *file = d->file[BOUGH_IMPORT_SCENE];
     double shear = bough_entry_number_or(d, w->root, "environment.shear_exp", 0);
     double height = w->tower_top + w->hub_height;
-    fprintf(file, "aero:\n  rate: 50 Hz\n  air_density: %.10g\n  wind: {kind: %s, speed: %.6g m/s",
-            w->density, shear > 0 ? "power" : "uniform", w->wind);
+    fprintf(file, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n  wind: {kind: %s, speed: %.6g m/s",
+            1 / d->macro_step, w->density, shear > 0 ? "power" : "uniform", w->wind);
     if (shear > 0) {
         fprintf(file, ", exponent: %.10g, reference_height: %.10g m", shear, height);
         bough_draft_note(d, BOUGH_TAKEN, "wind that grows with height^%g", shear);
@@ -270,11 +270,11 @@ void bough_windio_law(bough_windio *w) {
     double rated = 0.99 * held; // so that torque and pitch do not compete
     double rate = bough_windio_control(w, "torque.max_torque_rate", "max_torque_rate", 1, 1e9);
     fprintf(d->file[BOUGH_IMPORT_SCENE],
-            "control:\n  kind: variable-speed\n  rate: 50 Hz\n  gear_ratio: %.10g\n"
-            "  efficiency: %.10g\n  law:\n    cut_in: 0\n    optimal_from: 1e-3 rad/s\n"
+            "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
+            "  efficiency: %.10g\n  law:\n    cut_in: 0 rad/s\n    optimal_from: 1e-3 rad/s\n"
             "    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n    rated_power: %.10g\n"
             "    most_torque: %.10g\n    torque_rate: %.10g\n",
-            ratio, efficiency, 0.99 * power / (rated * rated * rated), rated, power,
+            1 / d->macro_step, ratio, efficiency, 0.99 * power / (rated * rated * rated), rated, power,
             1.1 * power / rated, rate);
     bough_draft_note(d, BOUGH_TAKEN, "rated power %g MW at %.4g rpm of the rotor",
                      w->rated_power / 1e6, w->rated_speed * 30 / BOUGH_PI);

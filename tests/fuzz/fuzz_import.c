@@ -84,7 +84,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     snprintf(path, sizeof path, "%s/%.*smain.fst", fuzz_folder(), version, decks[i]);
     snprintf(out, sizeof out, "%s/out", fuzz_folder());
     fuzz_file(decks[i], data, size);
-    bough_status status = bough_import_openfast(path, out, NULL);
+    bough_status status = bough_import_openfast(path, out, &(bough_import_options){0}, NULL);
     fuzz_demand(bough_is_ok(&status) || status.message[0], "a reason");
     if (bough_is_ok(&status)) read_scene(out);
     fuzz_file(decks[i], original[i].text, original[i].size);

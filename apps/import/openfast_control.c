@@ -1,0 +1,296 @@
+// ServoDyn: what acts on the generator, and what steers the pitch.
+#include "apps/import/openfast.h"
+
+#include "aero/discon.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+enum { NONE, SIMPLE, LIBRARY = 5, THEVENIN = 2 };
+
+static const double rpm = 3.14159265358979323846 / 30; // [rad/s]
+
+static int torque_mode(const bough_openfast *o) {
+    return o->servo ? bough_deck_whole_or(o->servo, "VSContrl", NONE) : NONE;
+}
+
+static int pitch_mode(const bough_openfast *o) {
+    return o->servo ? bough_deck_whole_or(o->servo, "PCMode", NONE) : NONE;
+}
+
+// -- speeds ---------------------------------------------------------------------------------------
+
+// Of an induction generator without torque [rad/s].
+static double synchronous_speed(const bough_openfast *o) {
+    if (bough_deck_whole_or(o->servo, "GenModel", SIMPLE) == SIMPLE) {
+        return bough_deck_number(o->servo, "SIG_SySp") * rpm;
+    }
+    return 120 * rpm * bough_deck_number(o->servo, "TEC_Freq") /
+           bough_deck_number(o->servo, "TEC_NPol");
+}
+
+double bough_openfast_rotor_speed(const bough_openfast *o) {
+    const double usual_tip = 70; // [m/s]
+    double speed = fabs(bough_deck_number(o->elasto, "RotSpeed")) * rpm, fast = 0;
+    double ratio = bough_deck_number_or(o->elasto, "GBRatio", 1);
+    bool free = bough_deck_flag_or(o->elasto, "GenDOF", true);
+    if (!free || !o->servo) return speed;
+    if (torque_mode(o) == SIMPLE) fast = bough_deck_number(o->servo, "VS_RtGnSp") * rpm;
+    if (torque_mode(o) == NONE) fast = synchronous_speed(o);
+    speed = fmax(speed, ratio > 0 && isfinite(fast) ? fabs(fast) / ratio : 0);
+    return speed > 0 ? speed : usual_tip / bough_deck_number(o->elasto, "TipRad");
+}
+
+// -- what acts on the generator -------------------------------------------------------------------
+
+static void lack(bough_openfast *o, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+// The generator has a torque of which too little is known.
+static void lack(bough_openfast *o, const char *format, ...) {
+    char text[400];
+    va_list list;
+    va_start(list, format);
+    vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    o->lacks_control = bough_arena_string(o->draft.arena, text);
+    o->generator = BOUGH_GENERATOR_DRIVEN;
+    bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: the generator keeps the speed of the start, "
+                     "%g rpm of the rotor, and the pitch is held", text,
+                     bough_deck_number(o->elasto, "RotSpeed"));
+}
+
+static bool take_library(bough_openfast *o, const char *path, char why[200]) {
+    bough_discon *discon;
+    bough_status status = bough_discon_open(o->draft.arena, path, "", &discon);
+    snprintf(why, 200, "%.190s", status.message);
+    if (!bough_is_ok(&status)) return false;
+    o->library = path;
+    o->generator = BOUGH_GENERATOR_LIBRARY;
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "controller: %s, by its path", path);
+    if (torque_mode(o) != pitch_mode(o)) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "the library steers both torque and pitch");
+    }
+    return true;
+}
+
+// The deck's library, unless the user gives another.
+static void find_library(bough_openfast *o) {
+    char why[200];
+    const char *given = o->options->controller;
+    if (given && !take_library(o, given, why)) {
+        *o->draft.status = bough_fail(BOUGH_INVALID, "--controller: %.200s", why);
+    }
+    if (given) return;
+    const char *path = bough_deck_path(o->servo, "DLL_FileName");
+    if (!bough_is_ok(o->draft.status) || take_library(o, path, why)) return;
+    if (torque_mode(o) == LIBRARY) {
+        lack(o, "a controller, which --controller FILE of the import gives (%s)", why);
+    } else {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "PCMode 5: the pitch is held: %s", why);
+    }
+}
+
+// A generator without controller, once it is switched on.
+static void find_induction(bough_openfast *o) {
+    int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
+    bool timed = bough_deck_flag_or(o->servo, "GenTiStr", true);
+    if (timed && bough_deck_number_or(o->servo, "TimGenOn", 0) >= bough_deck_number(o->main, "TMax")) {
+        return;
+    }
+    if (model == SIMPLE || model == THEVENIN) o->generator = BOUGH_GENERATOR_LAW;
+    if (model != SIMPLE && model != THEVENIN) lack(o, "the user's generator of GenModel %d", model);
+    if (!timed) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "SpdGenOn: the generator works from the start");
+    }
+}
+
+void bough_openfast_generator(bough_openfast *o) {
+    if (!bough_is_ok(o->draft.status)) return;
+    if (!bough_deck_flag_or(o->elasto, "GenDOF", true)) {
+        o->generator = BOUGH_GENERATOR_DRIVEN;
+        bough_draft_note(&o->draft, BOUGH_TAKEN, "GenDOF False: the rotor turns at %g rpm",
+                         bough_deck_number(o->elasto, "RotSpeed"));
+        if (o->options->controller) {
+            bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "--controller: GenDOF is False");
+        }
+        return;
+    }
+    int torque = torque_mode(o);
+    if (torque == SIMPLE) o->generator = BOUGH_GENERATOR_LAW;
+    if (o->options->controller || torque == LIBRARY || pitch_mode(o) == LIBRARY) find_library(o);
+    if (o->generator != BOUGH_GENERATOR_FREE || !o->servo) return;
+    if (torque == NONE) {
+        find_induction(o);
+    } else {
+        lack(o, "the torque of VSContrl %d, the user's own routine", torque);
+    }
+}
+
+// -- torque over speed ----------------------------------------------------------------------------
+
+// No torque up to a speed, or growing with its square, then a line to the most, which stays.
+typedef struct torque_line {
+    double gain;       // of the square [N m s2/rad2]
+    double full_speed; // where the torque is the most [rad/s]
+    double most;       // [N m]
+    double slip;       // full speed over that where the line begins, less 1
+} torque_line;
+
+static torque_line read_variable_speed(const bough_openfast *o) {
+    const bough_deck *s = o->servo;
+    torque_line l = {.gain = bough_deck_number(s, "VS_Rgn2K") / (rpm * rpm),
+                     .full_speed = bough_deck_number(s, "VS_RtGnSp") * rpm,
+                     .most = bough_deck_number(s, "VS_RtTq"),
+                     .slip = bough_deck_number(s, "VS_SlPc") / 100};
+    bool good = l.full_speed > 0 && l.most > 0 && l.slip > 0 && l.gain >= 0;
+    if (good && l.gain * l.full_speed * l.full_speed <= l.most * (1 + 1e-6)) {
+        l.gain = fmin(l.gain, l.most / (l.full_speed * l.full_speed));
+        return l;
+    }
+    bough_deck_fail(s, bough_deck_line(s, "VS_RtGnSp"),
+                    "VS_RtGnSp, VS_RtTq, VS_Rgn2K, VS_SlPc: expected positive values, and "
+                    "VS_Rgn2K VS_RtGnSp^2 at most VS_RtTq");
+    return l;
+}
+
+// To the pull-out torque, at which it stays.
+static torque_line read_simple(const bough_openfast *o) {
+    const bough_deck *s = o->servo;
+    double ratio = bough_deck_number_or(s, "SIG_PORt", 1);
+    torque_line l = {.slip = bough_deck_number(s, "SIG_SlPc") / 100 * ratio,
+                     .most = bough_deck_number(s, "SIG_RtTq") * ratio};
+    l.full_speed = synchronous_speed(o) * (1 + l.slip);
+    if (l.slip > 0 && l.most > 0 && l.full_speed > 0) return l;
+    bough_deck_fail(s, bough_deck_line(s, "SIG_SlPc"),
+                    "SIG_SlPc, SIG_SySp, SIG_RtTq, SIG_PORt: expected positive values");
+    return l;
+}
+
+// Of the circuit as seen from the rotor's winding: the slope at no slip, and the pull-out torque.
+static torque_line read_thevenin(const bough_openfast *o) {
+    const bough_deck *s = o->servo;
+    double r = bough_deck_number(s, "TEC_SRes"), rotor = bough_deck_number(s, "TEC_RRes");
+    double leak = bough_deck_number(s, "TEC_SLR"), mutual = bough_deck_number(s, "TEC_MR");
+    double line = bough_deck_number(s, "TEC_VLL"), omega = synchronous_speed(o);
+    double square = r * r + (leak + mutual) * (leak + mutual);
+    double volts = line * line * mutual * mutual / square; // 3 V² of a phase
+    double resistance = r * mutual * mutual / square;
+    double reactance = mutual * (r * r + leak * (leak + mutual)) / square +
+                       bough_deck_number(s, "TEC_RLR");
+    torque_line l = {.most = volts / (2 * omega * (hypot(resistance, reactance) - resistance))};
+    l.slip = l.most * omega * rotor / volts;
+    l.full_speed = omega * (1 + l.slip);
+    if (l.most > 0 && l.slip > 0 && isfinite(l.full_speed) && l.full_speed > 0) return l;
+    bough_deck_fail(s, bough_deck_line(s, "TEC_Freq"),
+                    "TEC_Freq, TEC_NPol, TEC_SRes, TEC_RRes, TEC_VLL, TEC_SLR, TEC_RLR, TEC_MR: "
+                    "expected positive values");
+    return l;
+}
+
+static torque_line read_line(bough_openfast *o) {
+    if (torque_mode(o) == SIMPLE) {
+        bough_draft_note(&o->draft, BOUGH_TAKEN, "the generator's torque over its speed");
+        return read_variable_speed(o);
+    }
+    int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
+    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                     "GenModel %d: torque on a line from the synchronous speed to the pull-out "
+                     "torque, at which it stays; below that speed the generator does not drive",
+                     model);
+    return model == SIMPLE ? read_simple(o) : read_thevenin(o);
+}
+
+// Least slip at which the sampled torque does not hunt: the rate at which the line alone would slow
+// the generator, times the sample; twice this is stable on a rigid shaft.
+static double least_slip(const bough_openfast *o, const torque_line *l) {
+    const double most_gain = 0.75;
+    double ratio = bough_deck_number(o->elasto, "GBRatio");
+    double inertia = bough_openfast_generator_inertia(o);
+    if (!bough_openfast_shaft_twists(o)) {
+        inertia += o->n_blade * o->blade_inertia + bough_deck_number(o->elasto, "HubIner");
+    }
+    return ratio * ratio * l->most * o->draft.macro_step / (most_gain * inertia * l->full_speed);
+}
+
+static void put_law(bough_openfast *o) {
+    torque_line l = read_line(o);
+    double least = least_slip(o, &l), full = l.full_speed;
+    if (!bough_is_ok(o->draft.status)) return;
+    if (!(l.slip >= least) && isfinite(least)) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "torque grows to its most over %.2g %% of the speed, not %.2g %%, which "
+                         "samples each %g s could not hold", 100 * least, 100 * l.slip,
+                         o->draft.macro_step);
+        if (l.gain == 0) full *= (1 + least) / (1 + l.slip);
+        l.slip = least;
+    }
+    fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
+            "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
+            "  efficiency: %.10g\n  pitch: false\n  law:\n    corner: %.10g rad/s\n    cut_in: 0 rad/s\n"
+            "    optimal_from: 1e-3 rad/s\n    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n"
+            "    rated_power: %.10g\n    above_rated: torque\n    slip: %.10g\n"
+            "    most_torque: %.10g\n    torque_rate: 1e9\n    power_pitch: 100 rad\n",
+            1 / o->draft.macro_step, bough_deck_number(o->elasto, "GBRatio"),
+            bough_deck_number_or(o->servo, "GenEff", 100) / 100, 2 / o->draft.macro_step, l.gain,
+            full, l.most * full, l.slip, l.most);
+    if (bough_deck_number_or(o->servo, "TimGenOn", 0) > 0) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "TimGenOn: the generator works from the start");
+    }
+}
+
+// -- library --------------------------------------------------------------------------------------
+
+static void put_library(bough_openfast *o) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    double step = o->draft.macro_step;
+    double efficiency = o->servo ? bough_deck_number_or(o->servo, "GenEff", 100) / 100 : 1;
+    fprintf(file,
+            "control:\n  kind: bladed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
+            "  efficiency: %.10g\n  library: ",
+            1 / step, bough_deck_number(o->elasto, "GBRatio"), efficiency);
+    bough_import_path(file, o->library);
+    if (o->servo && bough_deck_line(o->servo, "DLL_InFile") >= 0) {
+        const char *input = bough_deck_path(o->servo, "DLL_InFile");
+        fputs("\n  input: ", file);
+        bough_import_path(file, input);
+    }
+    fputc('\n', file);
+    double asked = o->servo ? bough_deck_number_or(o->servo, "DLL_DT", step) : step;
+    if (fabs(asked - step) > 1e-9) {
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "DLL_DT %g s: the library is called each %g s",
+                         asked, step);
+    }
+}
+
+// Manoeuvres that would begin within the run.
+static void note_manoeuvres(bough_openfast *o) {
+    static const char *const start[] = {"TPitManS(1)|TPitManS1", "TYawManS", "TimGenOf", "THSSBrDp"};
+    static const char *const what[] = {"TPitManS: the pitch manoeuvre", "TYawManS: the yaw manoeuvre",
+                                       "TimGenOf: the generator stays on", "THSSBrDp: the brake"};
+    double end = bough_deck_number(o->main, "TMax");
+    for (size_t i = 0; i < sizeof start / sizeof *start; i++) {
+        if (bough_deck_number_or(o->servo, start[i], end) >= end) continue;
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s", what[i]);
+    }
+}
+
+void bough_openfast_control(bough_openfast *o) {
+    if (!bough_is_ok(o->draft.status)) return;
+    if (o->generator == BOUGH_GENERATOR_LIBRARY) put_library(o);
+    if (o->generator == BOUGH_GENERATOR_LAW) put_law(o);
+    if (!o->servo) return;
+    int pitch = pitch_mode(o);
+    if (o->generator == BOUGH_GENERATOR_FREE) {
+        bough_draft_note(&o->draft, BOUGH_TAKEN, "TimGenOn: no torque acts on the generator");
+    }
+    if (pitch != NONE && pitch != LIBRARY && o->generator != BOUGH_GENERATOR_LIBRARY)
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "PCMode %d: the pitch is held", pitch);
+    if (bough_deck_whole_or(o->servo, "YCMode", 0) != 0) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "YCMode: yaw control");
+    }
+    if (bough_deck_whole_or(o->servo, "HSSBrMode", 0) != 0) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "HSSBrMode: the brake");
+    }
+    note_manoeuvres(o);
+}

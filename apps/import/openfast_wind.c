@@ -1,0 +1,184 @@
+// InflowWind: the wind of the scene, or what stands for a file that is not there.
+#include "apps/import/openfast.h"
+#include "apps/import/wind_convert.h"
+
+#include "aero/wind_hub.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { STEADY = 1, UNIFORM, TURBSIM, BLADED, HAWC, NATIVE_BLADED = 7 };
+
+// -- which file -----------------------------------------------------------------------------------
+
+// The line that names the file of a type; -1: none. Old decks have the name 'Filename' twice.
+static int file_line(const bough_deck *w, int type) {
+    if (type == UNIFORM) return bough_deck_line(w, "FileName_Uni|Filename");
+    if (type == TURBSIM) {
+        int line = bough_deck_line(w, "FileName_BTS"), part = bough_deck_find(w, "Parameters for Binary");
+        return line >= 0 || part < 0 ? line : bough_deck_line_from(w, part, "Filename");
+    }
+    return bough_deck_line(w, type == HAWC ? "FileName_u" : "FileNameRoot|FilenameRoot");
+}
+
+// The type of a file by how it begins.
+static int type_of(const char *path) {
+    unsigned char b[2] = {0};
+    FILE *file = fopen(path, "rb");
+    if (!file) return UNIFORM; // whose reader says why
+    size_t n = fread(b, 1, 2, file);
+    fclose(file);
+    int first = b[0] | b[1] << 8;
+    if (n == 2 && (first == 7 || first == 8)) return TURBSIM;
+    return n == 2 && first >= 0xFF00 ? BLADED : UNIFORM;
+}
+
+// -- what is written ------------------------------------------------------------------------------
+
+static double rotor_diameter(const bough_openfast *o) { return 2 * (o->hub_radius + o->blade_length); }
+
+static double hub_height(const bough_openfast *o) {
+    return o->tower_top + bough_deck_number_or(o->elasto, "Twr2Shft", 0);
+}
+
+// The number of a name above zero, else the fallback.
+static double positive(const bough_openfast *o, const char *names, double fallback) {
+    double value = o->inflow ? bough_deck_number_or(o->inflow, names, fallback) : fallback;
+    return value > 0 ? value : fallback;
+}
+
+static void put_steady(bough_openfast *o, double speed) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    double power = o->inflow ? bough_deck_number_or(o->inflow, "PLExp|PLexp", 0) : 0;
+    fprintf(file, "  wind: {kind: %s, speed: %.10g m/s", power > 0 ? "power" : "uniform", speed);
+    if (power > 0) {
+        fprintf(file, ", exponent: %.10g, reference_height: %.10g m", fmin(power, 1),
+                positive(o, "RefHt", hub_height(o)));
+    }
+}
+
+static void put_uniform(bough_openfast *o, const char *path) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    fputs("  wind: {kind: wnd, file: ", file);
+    bough_import_path(file, path);
+    fprintf(file, ", reference_height: %.10g m, reference_length: %.10g m",
+            positive(o, "RefHt_Uni|RefHt", hub_height(o)), positive(o, "RefLength", rotor_diameter(o)));
+}
+
+static void put_box(bough_openfast *o, const char *path) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    fputs("  wind: {kind: bts, file: ", file);
+    if (path) bough_import_path(file, path);
+    if (!path) fputs(BOUGH_IMPORT_BOX, file);
+}
+
+// A steady wind in place of what cannot be had; the scene and the list say so.
+static void put_stand_in(bough_openfast *o, const char *why) {
+    const double usual = 8; // [m/s]
+    double speed = positive(o, "HWindSpeed", positive(o, "URef", usual));
+    fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
+            "  # This scene lacks its wind, which --wind FILE of the import gives:\n  # %s\n", why);
+    put_steady(o, speed);
+    bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "the wind, which --wind FILE gives: %s; %g m/s instead",
+                     why, speed);
+}
+
+// -- files ----------------------------------------------------------------------------------------
+
+static bough_status read_hawc(bough_openfast *o, bough_wind_box *box) {
+    static const char *const names[] = {"FileName_u", "FileName_v", "FileName_w"};
+    static const char *const factor[] = {"SFx", "SFy", "SFz"};
+    static const char *const sigma[] = {"SigmaFx", "SigmaFy", "SigmaFz"};
+    const bough_deck *w = o->inflow;
+    bough_hawc_def d = {.nx = bough_deck_whole(w, "nx", 2, 1 << 24),
+                        .ny = bough_deck_whole(w, "ny", 2, 4096),
+                        .nz = bough_deck_whole(w, "nz", 2, 4096),
+                        .dx = bough_deck_number(w, "dx"),
+                        .dy = bough_deck_number(w, "dy"),
+                        .dz = bough_deck_number(w, "dz"),
+                        .height = bough_deck_number(w, "RefHt_Hawc|RefHt_HAWC"),
+                        .mean = bough_deck_number(w, "URef"),
+                        .profile = bough_deck_whole_or(w, "WindProfile", 0),
+                        .exponent = bough_deck_number_or(w, "PLExp_Hawc|PLExp_HAWC", 0),
+                        .roughness = bough_deck_number_or(w, "Z0", 0),
+                        .scaling = bough_deck_whole_or(w, "ScaleMethod", 0)};
+    for (int c = 0; c < 3; c++) {
+        d.file[c] = bough_deck_path(w, names[c]);
+        d.factor[c] = bough_deck_number_or(w, factor[c], 1);
+        d.sigma[c] = bough_deck_number_or(w, sigma[c], 1);
+    }
+    if (!bough_is_ok(o->draft.status)) return bough_ok();
+    return bough_wind_hawc_read(o->draft.arena, &d, box);
+}
+
+// Reads the file, so that only what can be used is named in the scene.
+static void put_file(bough_openfast *o, int type, const char *path) {
+    bough_arena *arena = o->draft.arena;
+    bough_wind_box *box = bough_arena_take(arena, sizeof *box);
+    bough_wind_hub hub;
+    bough_status status = box ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (box && type == UNIFORM) status = bough_wind_hub_read(arena, path, &hub);
+    if (box && type == TURBSIM) status = bough_wind_box_read(arena, path, box);
+    if (box && type == BLADED) status = bough_wind_bladed_read(arena, path, box);
+    if (box && type == HAWC) status = read_hawc(o, box);
+    if (!bough_is_ok(o->draft.status)) return;
+    if (status.code == BOUGH_INVALID && !o->options->wind) {
+        put_stand_in(o, status.message);
+        return;
+    }
+    if (!bough_is_ok(&status)) {
+        *o->draft.status = status;
+        return;
+    }
+    bool made = type == BLADED || type == HAWC;
+    if (made) o->draft.box = box;
+    if (type == UNIFORM) put_uniform(o, path);
+    if (type != UNIFORM) put_box(o, made ? NULL : path);
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "wind of %s, %s", path,
+                     made ? "as " BOUGH_IMPORT_BOX : "by its path");
+}
+
+static void put_type(bough_openfast *o, int type) {
+    if (type == STEADY) {
+        double speed = bough_deck_number(o->inflow, "HWindSpeed");
+        put_steady(o, speed);
+        bough_draft_note(&o->draft, BOUGH_TAKEN, "steady wind of %g m/s", speed);
+        return;
+    }
+    if (type == NATIVE_BLADED || type == 6) {
+        put_stand_in(o, type == 6 ? "WindType 6, the user's own routine"
+                                  : "WindType 7, Bladed's native files");
+        return;
+    }
+    int line = file_line(o->inflow, type);
+    if (line < 0) {
+        bough_deck_fail(o->inflow, bough_deck_line(o->inflow, "WindType"),
+                        "WindType %d: expected a line that names its file", type);
+        return;
+    }
+    const char *path = bough_deck_path_at(o->inflow, line);
+    if (bough_is_ok(o->draft.status)) put_file(o, type, path);
+}
+
+void bough_openfast_wind(bough_openfast *o) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    const char *given = o->options->wind;
+    double to = 0, up = 0;
+    if (o->inflow) {
+        to = bough_deck_number_or(o->inflow, "PropagationDir|PropogationDir", 0);
+        up = bough_deck_number_or(o->inflow, "VFlowAng", 0);
+    }
+    if (given) {
+        put_file(o, type_of(given), given);
+    } else if (o->inflow) {
+        put_type(o, bough_deck_whole(o->inflow, "WindType", 1, 7));
+    } else if (bough_deck_whole_or(o->main, "CompInflow", 0) == 0) {
+        fputs("  wind: {kind: uniform, speed: 0 m/s", file);
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "without InflowWind the air is still");
+    } else {
+        put_stand_in(o, "CompInflow 2, the wind of another program");
+    }
+    if (to != 0) fprintf(file, ", direction: %.10g deg", -to);
+    if (up != 0) fprintf(file, ", upflow: %.10g deg", up);
+    fputs("}\n", file);
+}
