@@ -102,6 +102,11 @@ help() {
     done
     expect 0 help scene
     has ../stdout 'macro_step: (number.* s'
+    expect 0 help channels
+    has ../stdout '^| RootMyb{a} | kN-m |'
+    expect 0 help study
+    has ../stdout '^- equivalent_cycles: '
+    refused "json-schema: of 'scene' or 'study', got 'coupling'" help coupling --json-schema
     expect 0 help coupling
     has ../stdout '^ *ramp '
     for form in 'help run' 'run --help' 'run -h'; do
@@ -153,7 +158,7 @@ checks() {
     has ../stdout '^wind: uniform, 20 m/s, to 0 deg from x, 0 m/s upwards; at the hub at 0 s \[20, 0, 0\]'
     has ../stdout '^control: not built'
     has ../stdout '^load on joint hub: -1.19e+07 N m, ramp from 0 to 20 s$'
-    has ../stdout '^results: 2001 rows of 48 columns, 1.73 MB$'
+    has ../stdout '^results: 2001 rows of 51 columns, 1.84 MB$'
     expect 0 check "$folder/apps/turbine/rotor.yaml" --set "aero.wind={kind: bts, file: turbulence.bts}"
     has ../stdout '^wind: box file .*turbulence.bts, mean .* m/s, .* s.*: covers the rotor'
     expect 0 check "$folder/apps/turbine/land-operation.yaml"
@@ -313,6 +318,50 @@ bad_output() {
     expect 1 run "$bar" --set "$short" --out full
     has ../stderr '^bough: error: .*No space left'
     rm -r full taken
+}
+
+# A cantilever under a force at its tip: the moment at a place is the force times what is left.
+sensed() {
+    cat >../bar.yaml <<'EOF'
+gravity: [0, 0, 0]
+simulation: {duration: 10 ms, macro_step: 10 ms, initial: equilibrium, output: {channels: ['*Spn*']}}
+bodies:
+  - name: bar
+    fidelity: rod
+    joint: {kind: fixed, parent: ground}
+    rod: {length: 2 m, segments: 8, stiffness: [1e8, 1e8, 3e8, 20e3, 20e3, 15e3], mass: [1, 0, 0, 1e-4, 1e-4, 0]}
+sensors: [{body: bar, at: [0, 0.6 m, 2 m]}]
+loads: [{body: bar, at: tip, force: [10, 0, 7]}]
+EOF
+    expect 0 run ../bar.yaml --out sensed
+    awk '/^ *Time/ { for (i = 1; i <= NF; i++) at[$i] = i }
+        $1 + 0 > 0.005 { for (name in at) print name, $at[name] }' sensed/channels.out >../sensed
+    [ "$(wc -l <../sensed)" -eq 37 ] || fail "$said: 36 channels and the time"
+    near ../sensed '^barSpn1MLy ' 2 0.0199907 1e-6 # 10 N times 2 m, less 7 N times the deflection
+    near ../sensed '^barSpn2MLy ' 2 0.0139918 1e-6
+    near ../sensed '^barSpn3MLy ' 2 0 1e-9
+    near ../sensed '^barSpn1FLx ' 2 0.01 1e-9
+    near ../sensed '^barSpn2FLz ' 2 0.0070051 1e-7 # turned with the section by 0.029 deg
+    near ../sensed '^barSpn3TDx ' 2 0.0013328 1e-6 # F L^3 / 3 EI
+    rm -r sensed
+    refused "bodies\[0\]\|sensors\[0\].body: there is no body 'b'" run ../bar.yaml --set 'sensors[0].body=b'
+    refused "3 m is beyond the end of 'bar', at 2 m" run ../bar.yaml --set 'sensors[0].at=[3 m]'
+    expect 2 run ../bar.yaml --set 'simulation.output.channels=[Rot*]'
+    has ../stderr "simulation.output.channels: no channel matches 'Rot\*'"
+    expect 0 check ../bar.yaml --set 'bodies[bar].rod.segments=4'
+    has ../stdout '^body bar: .* 4 segments'
+    refused "there is no item with 'name: baz'" check ../bar.yaml --set 'bodies[baz].rod.segments=4'
+    # the same wrench from both sides of the cut
+    expect 0 run "$folder/apps/turbine/land.yaml" --set 'simulation.duration=0.1 s' --out sensed \
+        --set 'sensors=[{body: blade1, at: [0]}, {body: tower, at: [0, 87.6 m]}]'
+    awk '/^ *Time/ { for (i = 1; i <= NF; i++) at[$i] = i }
+        $1 + 0 > 0.095 { for (name in at) print name, $at[name] }' sensed/channels.out >../sensed
+    value() { sed -n "s/^$1 //p" ../sensed; }
+    near ../sensed '^Spn1MLyb1 ' 2 "$(value RootMyb1)" 1e-3
+    near ../sensed '^TwHt1MLyt ' 2 "$(value TwrBsMyt)" 1e-3
+    near ../sensed '^TwHt2FLzt ' 2 "$(value YawBrFzp)" 1
+    near ../sensed '^RotTorq ' 2 59.5 1e-3 # 11.9 MN m at a two hundredth of the ramp
+    rm -r sensed
 }
 
 # near FILE PATTERN N VALUE TOLERANCE: word N of the line that matches.
@@ -476,6 +525,7 @@ checks
 complete_run
 failed_run
 statics "$@"
+sensed
 modes "$@"
 interrupted_run
 bad_output

@@ -244,7 +244,12 @@ bough_status bough_verb_check(bough_arena *arena, const bough_options *options) 
     bough_status status = bough_open(arena, options, &s);
     if (!bough_is_ok(&status)) return status;
     bough_channels channels = bough_channels_start(arena);
+    const bough_scene_output *output = &s->scene->simulation.output;
+    bough_channels recorded;
     status = bough_simulation_channels(s, &channels);
+    if (bough_is_ok(&status)) {
+        status = bough_channels_choose(&channels, output->n_channel, output->channels, &recorded);
+    }
     if (!bough_is_ok(&status)) return status;
     printf("scene: %s\n", s->scene->file);
     printf("title: %s\n", s->scene->title ? s->scene->title : "");
@@ -252,8 +257,8 @@ bough_status bough_verb_check(bough_arena *arena, const bough_options *options) 
     print_coupling(s);
     bough_check_turbine(s, stdout);
     print_loads(s);
-    printf("channels: %d every %.9g s\n", channels.count, s->scene->simulation.output.interval);
-    status = print_results(arena, s, &channels);
+    printf("channels: %d every %.9g s\n", recorded.count, output->interval);
+    status = print_results(arena, s, &recorded);
     if (!bough_is_ok(&status)) return status;
     return print_cost(s, arena);
 }

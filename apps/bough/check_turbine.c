@@ -9,30 +9,6 @@ static const double degree = BOUGH_PI / 180;
 
 // -- geometry -------------------------------------------------------------------------------------
 
-// The rotor as it stands: hub, axis of its joint, and how far a blade's undeformed tip is from it.
-typedef struct rotor {
-    bough_vec3 hub, axis;
-    double radius;
-} rotor;
-
-static rotor rotor_of(const bough_simulation *s) {
-    const bough_scene *scene = s->scene;
-    int body = scene->turbine.rotor;
-    bough_transform hub = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
-    double along[3] = {0};
-    along[scene->body[body].joint.axis] = 1; // unchanged by the joint's own turn
-    rotor r = {hub.position, bough_mat3_mul(hub.rotation, bough_v3(along[0], along[1], along[2])), 0};
-    for (int k = 0; k < scene->turbine.n_blade; k++) {
-        const bough_beam *blade = bough_simulation_beam(s, scene->turbine.blade[k]);
-        bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]);
-        bough_vec3 tip = blade->def.position[blade->def.n_segment];
-        tip = bough_sub(bough_add(root.position, bough_mat3_mul(root.rotation, tip)), r.hub);
-        tip = bough_sub(tip, bough_scale(bough_dot(tip, r.axis), r.axis));
-        r.radius = fmax(r.radius, sqrt(bough_dot(tip, tip)));
-    }
-    return r;
-}
-
 // The vertical from which the overhang counts: that of the tower's top, else of the ground's origin.
 static bough_vec3 tower_axis(const bough_simulation *s) {
     if (s->tower_top == NULL) return bough_v3(0, 0, 0);
@@ -41,7 +17,7 @@ static bough_vec3 tower_axis(const bough_simulation *s) {
     return bough_add(foot.position, bough_mat3_mul(foot.rotation, top->position[top->n_segment]));
 }
 
-static void print_rotor(const bough_simulation *s, const rotor *r, FILE *stream) {
+static void print_rotor(const bough_simulation *s, const bough_rotor_place *r, FILE *stream) {
     bough_vec3 from = bough_sub(r->hub, tower_axis(s));
     double level = hypot(r->axis.x, r->axis.y);
     fprintf(stream, "rotor: %d blade%s, radius %.6g m, hub height %.6g m, tilt %.6g deg, ",
@@ -54,7 +30,7 @@ static void print_rotor(const bough_simulation *s, const rotor *r, FILE *stream)
     fprintf(stream, " along the shaft\n");
 }
 
-static void print_blades(const bough_simulation *s, const rotor *r, FILE *stream) {
+static void print_blades(const bough_simulation *s, const bough_rotor_place *r, FILE *stream) {
     for (int k = 0; k < s->scene->turbine.n_blade; k++) {
         const bough_beam *blade = bough_simulation_beam(s, s->scene->turbine.blade[k]);
         bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]);
@@ -69,7 +45,7 @@ static void print_blades(const bough_simulation *s, const rotor *r, FILE *stream
 
 // -- air ------------------------------------------------------------------------------------------
 
-static void print_box(const bough_simulation *s, const bough_wind_box *box, const rotor *r,
+static void print_box(const bough_simulation *s, const bough_wind_box *box, const bough_rotor_place *r,
                       FILE *stream) {
     const bough_rotor *air = bough_aero_link_rotor(s->aero);
     bool covered = bough_rotor_in_wind(air, r->hub, r->radius);
@@ -93,7 +69,7 @@ static void print_hub_file(const bough_simulation *s, const bough_wind_hub *hub,
             last < s->master->duration ? ", then as its last row" : "");
 }
 
-static void print_wind(const bough_simulation *s, const rotor *r, FILE *stream) {
+static void print_wind(const bough_simulation *s, const bough_rotor_place *r, FILE *stream) {
     static const char *const kinds[] = {
         [BOUGH_SCENE_WIND_UNIFORM] = "uniform",
         [BOUGH_SCENE_WIND_POWER] = "power law",
@@ -127,7 +103,7 @@ static const char *tower_words(const bough_scene_tower *tower) {
     return tower->influence == BOUGH_TOWER_BAK ? "on (Bak)" : "on";
 }
 
-static void print_aero(const bough_simulation *s, const rotor *r, FILE *stream) {
+static void print_aero(const bough_simulation *s, const bough_rotor_place *r, FILE *stream) {
     const bough_scene_aero *aero = &s->scene->aero;
     if (!s->aero) {
         fprintf(stream, "aero: not built: no aero block\n");
@@ -168,9 +144,9 @@ static void print_control(const bough_simulation *s, FILE *stream) {
 void bough_check_turbine(bough_simulation *s, FILE *stream) {
     bough_simulation_update(s);
     bool turbine = s->scene->turbine.node != NULL;
-    rotor r = {0};
+    bough_rotor_place r = {0};
     if (turbine) {
-        r = rotor_of(s);
+        r = bough_simulation_rotor(s);
         print_rotor(s, &r, stream);
         print_blades(s, &r, stream);
     }

@@ -58,7 +58,7 @@ static double least_step_time(const bough_run *run) {
 bough_status bough_run_forecast(const bough_job *job, FILE *stream) {
     const bough_run *run = &job->run;
     const bough_master *m = run->simulation->master;
-    bough_forecast results = bough_run_results(run->simulation, &run->channels, bough_forecast_points(&job->shape));
+    bough_forecast results = bough_run_results(run->simulation, &job->recorded, bough_forecast_points(&job->shape));
     double steps = m->duration / m->macro_step, bytes = results.bytes;
     struct statvfs disk;
     double room = statvfs(job->folder, &disk) == 0
@@ -70,7 +70,7 @@ bough_status bough_run_forecast(const bough_job *job, FILE *stream) {
                           "simulation.output.interval or shorter duration",
                           1e-9 * bytes, job->folder, 1e-9 * room);
     }
-    bough_forecast_print(results, &run->channels, stream);
+    bough_forecast_print(results, &job->recorded, stream);
     fflush(stream);
     if (steps <= long_run && bytes <= much_data) return bough_ok();
     fprintf(stderr, "bough: %.3g macro steps, more than %.2g hours\n", steps,

@@ -2,6 +2,8 @@
 #include "apps/bough/verb.h"
 #include "apps/bough/version.h"
 #include "apps/scene/scene.h"
+#include "apps/simulation/channel_table.h"
+#include "apps/study/study.h"
 #include "cosim/scheme.h"
 
 #include <string.h>
@@ -18,13 +20,18 @@ static void help_coupling(FILE *stream) {
 typedef struct topic {
     const char *name, *summary;
     void (*write)(FILE *stream);
+    void (*json)(FILE *stream); // NULL: it has no schema
 } topic;
 
 static const topic topics[] = {
-    {"scene", "every key of a scene with unit, range, default and example", bough_scene_help},
-    {"coupling", "the coupling schemes", help_coupling},
+    {"scene", "every key of a scene with unit, range, default and example", bough_scene_help,
+     bough_scene_json_schema},
+    {"study", "every key of a study", bough_study_help, bough_study_json_schema},
+    {"channels", "every channel that a run can record, with unit, axes, sign", bough_channel_table_help,
+     NULL},
+    {"coupling", "the coupling schemes", help_coupling, NULL},
 };
-static const char *const topic_names[] = {"scene", "coupling", NULL};
+static const char *const topic_names[] = {"scene", "study", "channels", "coupling", NULL};
 
 static void usage(const bough_verb *verb, const char *before, FILE *stream) {
     fprintf(stream, "%sbough %s", before, verb->name);
@@ -54,17 +61,27 @@ void bough_help_overview(FILE *stream) {
 
 bough_status bough_verb_help(bough_arena *arena, const bough_options *options) {
     (void)arena;
-    if (!options->operand) {
+    const char *word = options->operand ? options->operand : options->json ? "scene" : NULL;
+    if (!word) {
         bough_help_overview(stdout);
         return bough_ok();
     }
     for (size_t i = 0; i < sizeof topics / sizeof *topics; i++) {
-        if (strcmp(topics[i].name, options->operand) != 0) continue;
-        topics[i].write(stdout);
+        if (strcmp(topics[i].name, word) != 0) continue;
+        if (!options->json) {
+            topics[i].write(stdout);
+        } else if (topics[i].json) {
+            topics[i].json(stdout);
+        } else {
+            break;
+        }
         return bough_ok();
     }
-    const bough_verb *verb = bough_verb_find(options->operand);
-    if (!verb) return bough_verb_unknown("topic", options->operand, topic_names);
+    if (options->json) {
+        return bough_fail(BOUGH_INVALID, "--json-schema: of 'scene' or 'study', got '%.80s'", word);
+    }
+    const bough_verb *verb = bough_verb_find(word);
+    if (!verb) return bough_verb_unknown("topic", word, topic_names);
     bough_help_verb(verb, stdout);
     return bough_ok();
 }

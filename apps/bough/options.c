@@ -17,7 +17,7 @@ typedef struct option_row {
 } option_row;
 
 static const option_row rows[] = {
-    {"set", "KEY=VALUE", "replaces or adds a value of the scene: 'bodies[2].pitch=5 deg'",
+    {"set", "KEY=VALUE", "replaces or adds a value of the scene: 'bodies[blade1].pitch=5 deg'",
      BOUGH_OPTION_SET, true},
     {"out", "DIR", "folder for the results; default out/<name of the scene>", BOUGH_OPTION_OUT,
      false},
@@ -35,6 +35,8 @@ static const option_row rows[] = {
      BOUGH_OPTION_CONTROLLER, false},
     {"clamp-base", NULL, "an offshore turbine as if clamped at its tower's base",
      BOUGH_OPTION_CLAMP_BASE, false},
+    {"json-schema", NULL, "of scene (default) or study: the keys as JSON Schema, for editors",
+     BOUGH_OPTION_JSON, false},
     {"quiet", NULL, "no progress line", BOUGH_OPTION_QUIET, false},
 };
 enum { N_ROW = sizeof rows / sizeof *rows };
@@ -116,6 +118,7 @@ static bough_status take_option(bough_option_flag flag, const char *text, bough_
     case BOUGH_OPTION_WIND: options->wind = text; break;
     case BOUGH_OPTION_CONTROLLER: options->controller = text; break;
     case BOUGH_OPTION_CLAMP_BASE: options->clamp_base = true; break;
+    case BOUGH_OPTION_JSON: options->json = true; break;
     case BOUGH_OPTION_QUIET: options->quiet = true; break;
     }
     return bough_ok();

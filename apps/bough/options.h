@@ -21,6 +21,7 @@ typedef enum bough_option_flag {
     BOUGH_OPTION_WIND = 1 << 8,
     BOUGH_OPTION_CONTROLLER = 1 << 9,
     BOUGH_OPTION_CLAMP_BASE = 1 << 10,
+    BOUGH_OPTION_JSON = 1 << 11,
 } bough_option_flag;
 
 typedef enum bough_operand {
@@ -50,6 +51,7 @@ typedef struct bough_options {
     bool resume;            // from the last one
     const char *wind, *controller; // files for an imported model; NULL: its own
     bool clamp_base;               // of an imported offshore turbine
+    bool json; // of help: a schema for editors
     bool quiet, help;
 } bough_options;
 

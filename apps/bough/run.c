@@ -18,7 +18,7 @@ static bough_status sample_row(void *self, double t) {
     const bough_simulation *s = job->run.simulation;
     if (t < s->scene->simulation.output.from - 1e-6 * s->master->macro_step) return status;
     const double *value = bough_recorder_values(job->recorder);
-    for (int i = 0; i < job->run.channels.count; i++)
+    for (int i = 0; i < job->recorded.count; i++)
         bough_sample_statistics_add(&job->statistics[i], t, value[i]);
     return status;
 }
@@ -99,7 +99,7 @@ static bough_status open_results(bough_job *job) {
     if (!bough_is_ok(&status)) return status;
     bough_recorder_def def = {.folder = job->folder,
                               .title = title(job),
-                              .channels = &job->run.channels,
+                              .channels = &job->recorded,
                               .kept = job->rows};
     status = bough_recorder_open(job->arena, &def, &job->recorder);
     if (bough_is_ok(&status)) status = open_frames(job);
@@ -112,8 +112,12 @@ bough_status bough_job_build(bough_job *job) {
     bough_status status = bough_open_scene(job->arena, job->options, &scene);
     if (bough_is_ok(&status)) status = bough_run_create(job->arena, scene, &job->run);
     if (!bough_is_ok(&status)) return status;
+    const bough_scene_output *output = &scene->simulation.output;
+    status = bough_channels_choose(&job->run.channels, output->n_channel, output->channels,
+                                   &job->recorded);
+    if (!bough_is_ok(&status)) return status;
     record(job);
-    size_t n = (size_t)job->run.channels.count;
+    size_t n = (size_t)job->recorded.count;
     job->statistics = bough_arena_take(job->arena, (n + 1) * sizeof *job->statistics);
     if (!job->statistics) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     job->build_s = bough_wall_clock() - began;
@@ -125,7 +129,7 @@ static bough_status write_binary(const bough_job *job) {
     if (!output->binary || !bough_is_ok(&job->run.outcome)) return bough_ok();
     return bough_binary_write(&(bough_binary_def){.folder = job->folder,
                                                   .title = title(job),
-                                                  .channels = &job->run.channels,
+                                                  .channels = &job->recorded,
                                                   .interval = output->interval});
 }
 

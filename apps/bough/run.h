@@ -14,9 +14,10 @@ typedef struct bough_job {
     const bough_options *options;
     bough_arena *arena;
     bough_run run;
+    bough_channels recorded; // those of the run's channels that are
     const char *folder;
     bough_recorder *recorder;
-    bough_sample_statistics *statistics; // (run.channels.count) of the rows
+    bough_sample_statistics *statistics; // (recorded.count) of the rows
     bough_shape shape;
     bough_frames *frames;     // NULL: none are stored
     bough_vertices *vertices; // NULL: none are stored

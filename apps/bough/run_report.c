@@ -98,7 +98,7 @@ static void write_size(bough_summary *s, const bough_job *job) {
     bough_summary_integer(s, "states", sim->master->assembly->n_state);
     bough_summary_integer(s, "macro_steps", sim->master->steps);
     bough_summary_integer(s, "rows", bough_recorder_rows(job->recorder));
-    bough_summary_integer(s, "channels", run->channels.count);
+    bough_summary_integer(s, "channels", job->recorded.count);
 }
 
 static void write_control(bough_summary *s, const bough_run *run) {
@@ -182,11 +182,11 @@ static void write_verdict(bough_summary *s, const bough_run *run) {
 static void write_statistics(bough_summary *s, const bough_job *job) {
     bough_summary_number(s, "statistics_from", job->run.simulation->scene->simulation.output.from);
     bough_summary_object(s, "statistics");
-    for (int k = 0; k < job->run.channels.count; k++) {
+    for (int k = 0; k < job->recorded.count; k++) {
         const bough_sample_statistics *x = &job->statistics[k];
         if (!(x->n > 0)) continue;
-        bough_summary_object(s, job->run.channels.channel[k].name);
-        bough_summary_text(s, "unit", job->run.channels.channel[k].unit);
+        bough_summary_object(s, job->recorded.channel[k].name);
+        bough_summary_text(s, "unit", job->recorded.channel[k].unit);
         bough_summary_number(s, "min", x->least);
         bough_summary_number(s, "max", x->most);
         bough_summary_number(s, "mean", x->mean);

@@ -129,6 +129,9 @@ const char *bough_key_example(const bough_key *key);
 // Writes every key below the schema as a list in Markdown, indented by `indent`.
 void bough_schema_help(const bough_schema *schema, int indent, FILE *stream);
 
+// Writes a JSON Schema that a file which one of the n schemas describes meets.
+void bough_schema_json(const char *title, const bough_schema *const *schema, int n, FILE *stream);
+
 // Writes the SI unit of every dimension and an example with another, as a list in Markdown.
 void bough_schema_help_units(FILE *stream);
 

@@ -30,6 +30,9 @@ void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bou
 void bough_schema_value(bough_schema_reader *r, const bough_key *key, const bough_node *node,
                         void *item);
 
+// Writes a mapping of the schema as an object of JSON Schema.
+void bough_schema_json_object(const bough_schema *schema, FILE *stream);
+
 static inline void *bough_field_at(void *item, size_t offset) { return (char *)item + offset; }
 
 #endif

@@ -1,6 +1,7 @@
 #include "apps/output/channels.h"
 
 #include <assert.h>
+#include <fnmatch.h>
 #include <stdarg.h>
 #include <stdbool.h>
 #include <stdint.h>
@@ -90,6 +91,60 @@ bough_status bough_channels_add(bough_channels *list, const char *unit, const ch
 
 int bough_channels_find(const bough_channels *list, const char *name) {
     return list->capacity > 0 ? *slot_of(list, name) - 1 : -1;
+}
+
+// -- choice ---------------------------------------------------------------------------------------
+
+typedef struct choice {
+    const bough_channels *all;
+    int n;
+    int *from;     // (n) index in `all`
+    double *value; // (all->count) scratch
+} choice;
+
+static void sample_choice(void *self, double t, double *value) {
+    const choice *x = self;
+    bough_channels_sample(x->all, t, x->value);
+    for (int k = 0; k < x->n; k++) value[k] = x->value[x->from[k]];
+}
+
+static bool matches(const char *name, int n, const char *const *pattern) {
+    for (int k = 0; k < n; k++) {
+        if (fnmatch(pattern[k], name, 0) == 0) return true;
+    }
+    return false;
+}
+
+static bough_status check_pattern(const bough_channels *all, const char *pattern) {
+    for (int i = 0; i < all->count; i++) {
+        if (fnmatch(pattern, all->channel[i].name, 0) == 0) return bough_ok();
+    }
+    return bough_fail(BOUGH_INVALID,
+                      "simulation.output.channels: no channel matches '%.80s'; the first of %d is "
+                      "'%s', 'bough help channels' tells them all",
+                      pattern, all->count, all->count > 0 ? all->channel[0].name : "");
+}
+
+bough_status bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
+                                   bough_channels *chosen) {
+    *chosen = *all;
+    if (n == 0) return bough_ok();
+    bough_arena *arena = all->arena;
+    choice *x = bough_arena_take(arena, sizeof *x);
+    if (!x) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the output channels");
+    x->all = all;
+    x->from = bough_arena_take(arena, ((size_t)all->count + 1) * sizeof *x->from);
+    x->value = bough_arena_doubles(arena, (size_t)all->count + 1);
+    if (!x->from || !x->value) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the channels");
+    *chosen = bough_channels_start(arena);
+    bough_status status = bough_channels_group(chosen, sample_choice, x);
+    for (int k = 0; k < n && bough_is_ok(&status); k++) status = check_pattern(all, pattern[k]);
+    for (int i = 0; i < all->count && bough_is_ok(&status); i++) {
+        if (!matches(all->channel[i].name, n, pattern)) continue;
+        x->from[x->n++] = i;
+        status = bough_channels_add(chosen, all->channel[i].unit, "%s", all->channel[i].name);
+    }
+    return status;
 }
 
 void bough_channels_sample(const bough_channels *list, double t, double *value) {

@@ -45,6 +45,12 @@ bough_status bough_channels_add(bough_channels *list, const char *unit, const ch
 // The index of the channel with this name, −1 if there is none.
 int bough_channels_find(const bough_channels *list, const char *name);
 
+// A list of those channels of `all`, which outlives it, whose names match one of n shell patterns
+// ("Root*"), in their order there; all of them for n = 0. BOUGH_INVALID names a pattern that none
+// matches.
+bough_status bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
+                                   bough_channels *chosen);
+
 // Asks every group: value (count).
 void bough_channels_sample(const bough_channels *list, double t, double *value);
 

@@ -1,6 +1,7 @@
 #include "apps/output/progress.h"
 
 #include <stdio.h>
+#include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -31,6 +32,14 @@ int bough_progress_text(const bough_progress *p, double t, double wall, char *te
     return length;
 }
 
+// Characters of the line: one less than the terminal has, whose last would break it.
+static int width(void) {
+    enum { USUAL = 72 };
+    struct winsize size;
+    bool known = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 1;
+    return known && size.ws_col <= USUAL ? size.ws_col - 1 : USUAL;
+}
+
 void bough_progress_show(bough_progress *p, double t) {
     if (!p->visible) return;
     double now = bough_wall_clock();
@@ -42,10 +51,11 @@ void bough_progress_show(bough_progress *p, double t) {
     } else {
         bough_progress_text(p, t, now - p->began, text, sizeof text);
     }
-    fprintf(stderr, "\r%-72s", text);
+    int room = width();
+    fprintf(stderr, "\r%-*.*s", room, room, text);
     fflush(stderr);
 }
 
 void bough_progress_clear(const bough_progress *p) {
-    if (p->visible) fprintf(stderr, "\r%72s\r", "");
+    if (p->visible) fprintf(stderr, "\r%*s\r", width(), "");
 }

@@ -45,6 +45,8 @@ typedef struct bough_scene_output {
     double frames;   // between stored shapes [s]; 0: none
     double vertices; // between stored vertices [s]; 0: none
     bool binary;     // channels.outb beside channels.out
+    int n_channel;   // 0: all
+    const char **channels; // (n_channel) patterns of those that are recorded
 } bough_scene_output;
 
 typedef struct bough_scene_step_control {
@@ -233,6 +235,15 @@ typedef struct bough_scene_marker {
     int body;        // index, or BOUGH_GROUND
     double point[3]; // in the body's frame [m]
 } bough_scene_marker;
+
+// Places on a rod whose motion and section loads are recorded.
+typedef struct bough_scene_sensor {
+    const bough_node *node;
+    const char *body_name;
+    int body; // index of a body of fidelity rod
+    int n_at;
+    double *at; // (n_at) arc lengths from the root [m]
+} bough_scene_sensor;
 
 // A linear spring and damper between points of two rigid bodies or the ground.
 typedef struct bough_scene_spring {
@@ -475,6 +486,8 @@ typedef struct bough_scene {
     bough_scene_closure *closure; // (n_closure)
     int n_marker;
     bough_scene_marker *marker; // (n_marker)
+    int n_sensor;
+    bough_scene_sensor *sensor; // (n_sensor)
     bough_scene_turbine turbine;
     bough_scene_aero aero; // needs the turbine
     bough_scene_control control; // likewise
@@ -494,5 +507,8 @@ const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const boug
 
 // Writes every key of a scene and of its data files with unit, range, default and meaning.
 void bough_scene_help(FILE *stream);
+
+// Writes the same as JSON Schema.
+void bough_scene_json_schema(FILE *stream);
 
 #endif

@@ -294,6 +294,33 @@ static void link_marker(bough_schema_reader *r, const bough_scene *s, bough_scen
     bough_schema_error(r, node, "body", "'%s' is a rod, whose tip is recorded", marker->body_name);
 }
 
+static bool is_sensed_before(const bough_scene *s, const bough_scene_sensor *sensor) {
+    for (const bough_scene_sensor *x = s->sensor; x < sensor; x++) {
+        if (x->node != NULL && x->body == sensor->body) return true;
+    }
+    return false;
+}
+
+static void link_sensor(bough_schema_reader *r, const bough_scene *s, bough_scene_sensor *sensor) {
+    const bough_node *node = bough_link_value(sensor->node, "body");
+    sensor->body = bough_link_body(r, s, node, "body", sensor->body_name);
+    if (sensor->body < 0) return;
+    const bough_scene_body *body = &s->body[sensor->body];
+    if (body->fidelity != BOUGH_SCENE_ROD) {
+        bough_schema_error(r, node, "body", "'%s' is not of fidelity rod", body->name);
+    } else if (is_sensed_before(s, sensor)) {
+        bough_schema_error(r, node, "body", "'%s' has a sensor already: give all places there",
+                           body->name);
+    }
+    double length = body->rod.structure.length;
+    for (int k = 0; k < sensor->n_at && length > 0; k++) {
+        if (sensor->at[k] <= length * (1 + 1e-9)) continue;
+        bough_schema_error(r, bough_node_find(sensor->node, "at"), "at",
+                           "%g m is beyond the end of '%s', at %g m", sensor->at[k], body->name,
+                           length);
+    }
+}
+
 // -- modes ----------------------------------------------------------------------------------------
 
 static void link_modes(bough_schema_reader *r, bough_scene *s) {
@@ -396,6 +423,10 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
     for (int i = 0; i < scene->n_marker; i++) {
         bough_link_at(r, "markers[%d]", i);
         if (scene->marker[i].node != NULL) link_marker(r, scene, &scene->marker[i]);
+    }
+    for (int i = 0; i < scene->n_sensor; i++) {
+        bough_link_at(r, "sensors[%d]", i);
+        if (scene->sensor[i].node != NULL) link_sensor(r, scene, &scene->sensor[i]);
     }
     for (int i = 0; i < scene->n_bushing; i++) {
         bough_link_at(r, "bushings[%d]", i);

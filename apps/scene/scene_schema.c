@@ -99,6 +99,10 @@ static const bough_key output_keys[] = {
      .offset = offsetof(bough_scene_output, binary),
      .help = "at the end also channels.outb, OpenFAST's binary form: one scale and 16 bits a "
              "channel"},
+    {.name = "channels", .kind = BOUGH_KEY_TEXTS, .count = 1,
+     .offset = offsetof(bough_scene_output, channels),
+     .count_offset = offsetof(bough_scene_output, n_channel), .example = "[RotSpeed, 'Root*']",
+     .help = "names or patterns of the channels that are recorded; left out: all"},
 };
 static const bough_schema output_schema = {SCHEMA("the output", bough_scene_output, output_keys)};
 
@@ -215,6 +219,9 @@ static const bough_key scene_keys[] = {
      .help = "joints that close loops between rigid bodies"},
     {.name = "markers", .kind = BOUGH_KEY_LIST, .of = &bough_scene_marker_schema, AT(marker),
      .count_offset = offsetof(bough_scene, n_marker), .help = "points that are recorded"},
+    {.name = "sensors", .kind = BOUGH_KEY_LIST, .of = &bough_scene_sensor_schema, AT(sensor),
+     .count_offset = offsetof(bough_scene, n_sensor),
+     .help = "places on rods whose motion and section loads are recorded"},
     {.name = "turbine", .kind = BOUGH_KEY_MAPPING, .of = &bough_scene_turbine_schema, AT(turbine),
      .help = "names what channels and aerodynamics need"},
     {.name = "aero", .kind = BOUGH_KEY_MAPPING, .of = &bough_scene_aero_schema, AT(aero),
@@ -251,8 +258,21 @@ void bough_scene_help(FILE *stream) {
           "are SI "
           "numbers or carry a unit:\n\n", stream);
     bough_schema_help_units(stream);
+    fputs("\nAn angle or an angular speed that is not 0 needs its unit.\n\n"
+          "A list of mappings with the same keys may be written as a table; a unit at the head of a "
+          "column holds for\nall its numbers:\n\n"
+          "    stations:\n"
+          "      columns: [span, twist deg, chord]\n"
+          "      rows:\n"
+          "        - [0, 13.3, 3.5]\n"
+          "        - [10, 11.5, 4.6]\n", stream);
     fputs("\n## An example\n\n", stream);
     fputs(example, stream);
     fputs("\n## Keys\n\n", stream);
     bough_schema_help(&bough_scene_schema, 0, stream);
+}
+
+void bough_scene_json_schema(FILE *stream) {
+    const bough_schema *schema[] = {&bough_scene_schema};
+    bough_schema_json("A scene of bough", schema, 1, stream);
 }

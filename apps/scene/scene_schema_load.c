@@ -146,6 +146,18 @@ static const bough_key marker_keys[] = {
 const bough_schema bough_scene_marker_schema = {
     SCHEMA("a marker", bough_scene_marker, marker_keys)};
 
+#define AT(member) .offset = offsetof(bough_scene_sensor, member)
+static const bough_key sensor_keys[] = {
+    {.name = "body", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name), .example = "blade1",
+     .help = "name of a body of fidelity rod"},
+    {.name = "at", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_LENGTH, .range = ">= 0",
+     .required = true, .count = 1, AT(at), .count_offset = offsetof(bough_scene_sensor, n_at),
+     .example = "[20 m, 40 m]", .help = "where on the rod, counted from the root: its places 1, 2, ..."},
+};
+#undef AT
+const bough_schema bough_scene_sensor_schema = {
+    SCHEMA("a sensor", bough_scene_sensor, sensor_keys)};
+
 #define AT(member) .offset = offsetof(bough_scene_turbine, member)
 static const bough_key turbine_keys[] = {
     {.name = "rotor", .kind = BOUGH_KEY_TEXT, .required = true, AT(rotor_name),

@@ -2,6 +2,8 @@
 // before it is read, so that they are checked like everything else.
 #include "apps/scene/scene_internal.h"
 
+#include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -69,16 +71,38 @@ static bough_node *new_node(const replacement *s, bough_node_kind kind, const ch
 
 static bough_node *put(const replacement *s, const bough_node *node, const char *rest, int depth);
 
-// "[2]…": an item that exists; "[2-4]…": several.
+// The index of the item whose key 'name' is the word in brackets; −1 if there is none.
+static int named_item(const bough_node *node, const char *rest, char **end) {
+    size_t length = strcspn(rest + 1, "]");
+    *end = (char *)(uintptr_t)rest + 1 + length;
+    for (int i = 0; node != NULL && node->kind == BOUGH_SEQUENCE && i < node->n; i++) {
+        const bough_node *name = bough_node_find(node->value[i], "name");
+        bool plain = name != NULL && name->kind == BOUGH_SCALAR && strlen(name->text) == length;
+        if (plain && strncmp(name->text, rest + 1, length) == 0) return i;
+    }
+    return -1;
+}
+
+// "[2]…" or "[blade1]…": an item that exists; "[2-4]…": several.
 static bough_node *put_item(const replacement *s, const bough_node *node, const char *rest,
                             int depth) {
     char *end, text[120];
-    long index = rest[1] >= '0' && rest[1] <= '9' ? strtol(rest + 1, &end, 10) : -1, last = index;
-    if (index >= 0 && *end == '-' && end[1] >= '0' && end[1] <= '9') {
+    int named = named_item(node, rest, &end);
+    bool is_name = rest[1] != ']' && (rest[1] < '0' || rest[1] > '9') && *end == ']';
+    if (is_name && named < 0) {
+        snprintf(text, sizeof text, "there is no item with 'name: %.*s' in that list",
+                 (int)fmin(60, (double)(end - rest - 1)), rest + 1);
+        return refuse(s, text);
+    }
+    long index = named >= 0                         ? named
+                 : rest[1] >= '0' && rest[1] <= '9' ? strtol(rest + 1, &end, 10)
+                                                    : -1,
+         last = index;
+    if (named < 0 && index >= 0 && *end == '-' && end[1] >= '0' && end[1] <= '9') {
         last = strtol(end + 1, &end, 10);
     }
     if (index < 0 || *end != ']' || last < index) {
-        return refuse(s, "expected an index such as [0] or [0-2]");
+        return refuse(s, "expected an index such as [0] or [0-2], or a name as [blade1]");
     }
     if (node == NULL || node->kind != BOUGH_SEQUENCE) {
         return refuse(s, "there is no list to take an index of");

@@ -94,6 +94,14 @@ const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam
 // in `input`.
 void bough_beam_ride(const bough_beam *beam, const double *input, double *state);
 
+// The turbine's rotor as it stands in `view`: hub and axis of its joint in the ground, and how far
+// the blades' undeformed tips are from that axis at most.
+typedef struct bough_rotor_place {
+    bough_vec3 hub, axis;
+    double radius; // [m]
+} bough_rotor_place;
+bough_rotor_place bough_simulation_rotor(const bough_simulation *s);
+
 // The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);
 

@@ -2,6 +2,8 @@
 // where the quantity is the same.
 #include "apps/simulation/aero_link.h"
 #include "apps/simulation/build.h"
+#include "apps/simulation/channel_table.h"
+#include "apps/simulation/observe.h"
 #include "apps/simulation/control_link.h"
 #include "core/dynamics.h"
 #include "core/force.h"
@@ -39,16 +41,14 @@ static bool is_rotor(const bough_scene *scene, int body) {
 // What is recorded of a joint with axes: each coordinate and its rate.
 static const struct {
     int n;
-    struct {
-        const char *name; // after the body's, before Pos and Vel
-        bool angle;
-    } coordinate[3];
+    bool angle[3];
+    bough_channel_part part;
 } joint_channels[BOUGH_JOINT_PLANAR + 1] = {
-    [BOUGH_JOINT_REVOLUTE] = {1, {{"", true}}},
-    [BOUGH_JOINT_PRISMATIC] = {1, {{"", false}}},
-    [BOUGH_JOINT_CYLINDRICAL] = {2, {{"", false}, {"Ang", true}}},
-    [BOUGH_JOINT_UNIVERSAL] = {2, {{"Ang1", true}, {"Ang2", true}}},
-    [BOUGH_JOINT_PLANAR] = {3, {{"1", false}, {"2", false}, {"Ang", true}}},
+    [BOUGH_JOINT_REVOLUTE] = {1, {true}, BOUGH_CHANNELS_REVOLUTE},
+    [BOUGH_JOINT_PRISMATIC] = {1, {false}, BOUGH_CHANNELS_PRISMATIC},
+    [BOUGH_JOINT_CYLINDRICAL] = {2, {false, true}, BOUGH_CHANNELS_CYLINDRICAL},
+    [BOUGH_JOINT_UNIVERSAL] = {2, {true, true}, BOUGH_CHANNELS_UNIVERSAL},
+    [BOUGH_JOINT_PLANAR] = {3, {false, false, true}, BOUGH_CHANNELS_PLANAR},
 };
 
 static int n_recorded(const bough_scene *scene, int body) {
@@ -79,39 +79,28 @@ static void sample_joints(void *self, double t, double *value) {
         const double *q = s->leader.state + coordinate;
         joint_rates(s, i, q, rate);
         for (int k = 0; k < n; k++, value += 2) {
-            bool angle = joint_channels[s->scene->body[i].joint.kind].coordinate[k].angle;
+            bool angle = joint_channels[s->scene->body[i].joint.kind].angle[k];
             value[0] = q[k] / (angle ? DEGREE : 1);
             value[1] = rate[k] / (angle ? DEGREE : 1);
         }
     }
 }
 
-static bough_status add_joint(const bough_scene *scene, int body, bough_channels *list) {
-    const char *name = scene->body[body].name;
-    int kind = scene->body[body].joint.kind;
-    bough_status status = bough_ok();
-    for (int k = 0; k < n_recorded(scene, body) && bough_is_ok(&status); k++) {
-        bool angle = joint_channels[kind].coordinate[k].angle;
-        const char *which = joint_channels[kind].coordinate[k].name;
-        status = bough_channels_add(list, angle ? "deg" : "m", "%s%sPos", name, which);
-        if (!bough_is_ok(&status)) break;
-        status = bough_channels_add(list, angle ? "deg/s" : "m/s", "%s%sVel", name, which);
-    }
-    return status;
-}
-
 static bough_status add_joints(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_joints, s);
     for (int i = 0; i < s->scene->n_body && bough_is_ok(&status); i++) {
-        status = add_joint(s->scene, i, list);
+        const bough_scene_body *body = &s->scene->body[i];
+        if (n_recorded(s->scene, i) == 0) continue;
+        status = bough_channel_family_add(list, joint_channels[body->joint.kind].part, body->name, "");
     }
     return status;
 }
 
 static bough_status add_rotor(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_rotor, s);
-    if (bough_is_ok(&status)) status = bough_channels_add(list, "rpm", "RotSpeed");
-    if (bough_is_ok(&status)) status = bough_channels_add(list, "deg", "Azimuth");
+    if (bough_is_ok(&status)) {
+        status = bough_channel_family_add(list, BOUGH_CHANNELS_ROTOR, "", "");
+    }
     return status;
 }
 
@@ -143,10 +132,10 @@ static bool has_motion(const bough_scene *scene) {
 static bough_status add_drive(const bough_scene_body *body, int k, bough_channels *list) {
     int kind = body->joint.kind;
     bool force = kind == BOUGH_JOINT_PRISMATIC || (kind == BOUGH_JOINT_CYLINDRICAL && k == 0);
-    if (kind == BOUGH_JOINT_UNIVERSAL) {
-        return bough_channels_add(list, "N-m", "%sTrq%d", body->name, k + 1);
-    }
-    return bough_channels_add(list, force ? "N" : "N-m", force ? "%sFrc" : "%sTrq", body->name);
+    bough_channel_part part = kind == BOUGH_JOINT_UNIVERSAL ? BOUGH_CHANNELS_DRIVE_UNIVERSAL
+                              : force                       ? BOUGH_CHANNELS_DRIVE_FORCE
+                                                            : BOUGH_CHANNELS_DRIVE_TORQUE;
+    return bough_channel_family_add(list, part, body->name, k == 0 ? "1" : "2");
 }
 
 static bough_status add_drives(bough_simulation *s, bough_channels *list) {
@@ -169,9 +158,7 @@ static void sample_springs(void *self, double t, double *value) {
 static bough_status add_springs(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_springs, s);
     for (int k = 0; k < s->scene->n_spring && bough_is_ok(&status); k++) {
-        const char *name = s->scene->spring[k].name;
-        status = bough_channels_add(list, "m", "%sLen", name);
-        if (bough_is_ok(&status)) status = bough_channels_add(list, "N", "%sFrc", name);
+        status = bough_channel_family_add(list, BOUGH_CHANNELS_SPRING, s->scene->spring[k].name, "");
     }
     return status;
 }
@@ -196,12 +183,8 @@ static void sample_bushings(void *self, double t, double *value) {
 
 static bough_status add_bushings(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_bushings, s);
-    for (int k = 0; k < s->scene->n_bushing; k++) {
-        for (int c = 0; c < 6 && bough_is_ok(&status); c++) {
-            status = bough_channels_add(list, c < 3 ? "N" : "N-m", "%s%s%c",
-                                        s->scene->bushing[k].name, c < 3 ? "Frc" : "Mom",
-                                        "XYZ"[c % 3]);
-        }
+    for (int k = 0; k < s->scene->n_bushing && bough_is_ok(&status); k++) {
+        status = bough_channel_family_add(list, BOUGH_CHANNELS_BUSHING, s->scene->bushing[k].name, "");
     }
     return status;
 }
@@ -216,11 +199,8 @@ static void sample_closures(void *self, double t, double *value) {
 
 static bough_status add_closures(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_closures, s);
-    for (int k = 0; k < s->scene->n_closure; k++) {
-        for (int c = 0; c < 6 && bough_is_ok(&status); c++) {
-            status = bough_channels_add(list, c < 3 ? "N" : "N-m", "%s%c%c",
-                                        s->scene->closure[k].name, c < 3 ? 'F' : 'M', "xyz"[c % 3]);
-        }
+    for (int k = 0; k < s->scene->n_closure && bough_is_ok(&status); k++) {
+        status = bough_channel_family_add(list, BOUGH_CHANNELS_CLOSURE, s->scene->closure[k].name, "");
     }
     return status;
 }
@@ -237,10 +217,8 @@ static void sample_markers(void *self, double t, double *value) {
 
 static bough_status add_markers(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_markers, s);
-    for (int k = 0; k < s->scene->n_marker; k++) {
-        for (int c = 0; c < 3 && bough_is_ok(&status); c++) {
-            status = bough_channels_add(list, "m", "%s%c", s->scene->marker[k].name, "XYZ"[c]);
-        }
+    for (int k = 0; k < s->scene->n_marker && bough_is_ok(&status); k++) {
+        status = bough_channel_family_add(list, BOUGH_CHANNELS_MARKER, s->scene->marker[k].name, "");
     }
     return status;
 }
@@ -256,6 +234,13 @@ static void tip(const bough_simulation *s, const bough_beam *beam, bough_vec3 *d
     bough_vec3 x = bough_simulation_beam_tip(s, beam, &p);
     *displacement = bough_sub(x, beam->def.position[n]);
     *rotation = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
+}
+
+// The channels of a part with a number in place of {a}.
+static bough_status add_numbered(bough_channels *list, bough_channel_part part, int number) {
+    char text[12];
+    snprintf(text, sizeof text, "%d", number);
+    return bough_channel_family_add(list, part, text, "");
 }
 
 enum { BLADE_CHANNELS = 12 };
@@ -280,18 +265,9 @@ static void sample_blades(void *self, double t, double *value) {
 }
 
 static bough_status add_blades(bough_simulation *s, bough_channels *list) {
-    static const struct {
-        const char *name, *unit;
-    } channels[BLADE_CHANNELS] = {
-        {"OoPDefl", "m"},  {"IPDefl", "m"},   {"TwstDefl", "deg"}, {"TipDxb", "m"},
-        {"TipDyb", "m"},   {"TipDzb", "m"},   {"RootFxb", "kN"},   {"RootFyb", "kN"},
-        {"RootFzb", "kN"}, {"RootMxb", "kN-m"}, {"RootMyb", "kN-m"}, {"RootMzb", "kN-m"}};
     bough_status status = bough_channels_group(list, sample_blades, s);
-    for (int b = 0; b < s->scene->turbine.n_blade; b++) {
-        for (int k = 0; k < BLADE_CHANNELS && bough_is_ok(&status); k++) {
-            status = bough_channels_add(list, channels[k].unit, "%s%d", channels[k].name, b + 1);
-        }
-    }
+    for (int b = 0; b < s->scene->turbine.n_blade && bough_is_ok(&status); b++)
+        status = add_numbered(list, BOUGH_CHANNELS_BLADE, b + 1);
     return status;
 }
 
@@ -338,10 +314,6 @@ static void sample_tower(void *self, double t, double *value) {
 }
 
 static bough_status add_tower(bough_simulation *s, bough_channels *list) {
-    static const char *const name[TOWER_CHANNELS] = {
-        "TTDspFA",  "TTDspSS",  "TTDspAx",  "TTDspRoll", "TTDspPtch", "TTDspTwst",
-        "TwrBsFxt", "TwrBsFyt", "TwrBsFzt", "TwrBsMxt",  "TwrBsMyt",  "TwrBsMzt"};
-    static const char *const unit[] = {"m", "deg", "kN", "kN-m"};
     const bough_rod_def *top = &s->tower_top->def;
     int n = top->n_segment;
     bough_tree_kinematics(s->tree, s->tree->initial, s->view); // where no rod is bent
@@ -349,8 +321,8 @@ static bough_status add_tower(bough_simulation *s, bough_channels *list) {
         s, (bough_transform){top->position[n], bough_rotation_matrix(top->rotation[n])});
     bough_simulation_update(s);
     bough_status status = bough_channels_group(list, sample_tower, s);
-    for (int k = 0; k < TOWER_CHANNELS && bough_is_ok(&status); k++) {
-        status = bough_channels_add(list, unit[k / 3], "%s", name[k]);
+    if (bough_is_ok(&status)) {
+        status = bough_channel_family_add(list, BOUGH_CHANNELS_TOWER, "", "");
     }
     return status;
 }
@@ -387,8 +359,8 @@ static bough_status add_tips(bough_simulation *s, bough_channels *list) {
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         if (is_blade(s->scene, beam->body)) continue;
-        for (int c = 0; c < 3 && bough_is_ok(&status); c++) {
-            status = bough_channels_add(list, "m", "%sTip%c", beam->body->name, "XYZ"[c]);
+        if (bough_is_ok(&status)) {
+            status = bough_channel_family_add(list, BOUGH_CHANNELS_TIP, beam->body->name, "");
         }
     }
     return status;
@@ -417,16 +389,17 @@ static void sample_wind(void *self, double t, double *value) {
     bough_vec3 wind = bough_aero_link_hub_wind(s->aero, t);
     bough_vec3 mean = bough_mat3_mul(bough_mat3_transpose(axes),
                                      bough_aero_link_data(s->aero, &factor)->disk_wind);
-    const double values[6] = {wind.x, wind.y, wind.z, mean.x, mean.y, mean.z};
+    double angle, speed;
+    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
+    double ratio = speed * bough_simulation_rotor(s).radius / mean.x;
+    const double values[] = {wind.x, wind.y, wind.z, mean.x, mean.y, mean.z,
+                             isfinite(ratio) ? ratio : 0};
     memcpy(value, values, sizeof values);
 }
 
 static bough_status add_wind(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_wind, s);
-    for (int c = 0; c < 6 && bough_is_ok(&status); c++) {
-        status = c < 3 ? bough_channels_add(list, "m/s", "Wind1Vel%c", "XYZ"[c])
-                       : bough_channels_add(list, "m/s", "RtVAvg%ch", "xyz"[c - 3]);
-    }
+    if (bough_is_ok(&status)) status = bough_channel_family_add(list, BOUGH_CHANNELS_WIND, "", "");
     return status;
 }
 
@@ -450,25 +423,22 @@ static void sample_nodes(void *self, double t, double *value) {
 }
 
 static bough_status add_nodes(bough_simulation *s, bough_channels *list) {
-    static const char *const channels[NODE_CHANNELS][2] = {
-        {"VRel", "m/s"}, {"Alpha", "deg"}, {"Phi", "deg"}, {"AxInd", "-"}, {"TnInd", "-"},
-        {"Cl", "-"},     {"Cd", "-"},      {"Cm", "-"},    {"Fx", "N/m"},  {"Fy", "N/m"}};
     const bough_scene_aero *aero = &s->scene->aero;
     bough_status status = bough_channels_group(list, sample_nodes, s);
     for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++) {
-        int blade = k / aero->n_node + 1, node = (int)aero->nodes[k % aero->n_node];
-        for (int c = 0; c < NODE_CHANNELS && bough_is_ok(&status); c++)
-            status = bough_channels_add(list, channels[c][1], "AB%dN%03d%s", blade, node,
-                                        channels[c][0]);
+        char blade[12], node[12];
+        snprintf(blade, sizeof blade, "%d", k / aero->n_node + 1);
+        snprintf(node, sizeof node, "%03d", (int)aero->nodes[k % aero->n_node]);
+        if (bough_is_ok(&status)) {
+            status = bough_channel_family_add(list, BOUGH_CHANNELS_ELEMENT, blade, node);
+        }
     }
     return status;
 }
 
 static bough_status add_aero(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_aero, s);
-    if (bough_is_ok(&status)) status = bough_channels_add(list, "N", "RtAeroFxh");
-    if (bough_is_ok(&status)) status = bough_channels_add(list, "N-m", "RtAeroMxh");
-    if (bough_is_ok(&status)) status = bough_channels_add(list, "W", "RtAeroPwr");
+    if (bough_is_ok(&status)) status = bough_channel_family_add(list, BOUGH_CHANNELS_AIR, "", "");
     if (bough_is_ok(&status)) status = add_wind(s, list);
     if (bough_is_ok(&status) && s->scene->aero.n_node > 0) status = add_nodes(s, list);
     return status;
@@ -492,11 +462,11 @@ static void sample_control(void *self, double t, double *value) {
 
 static bough_status add_control(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_control, s);
-    if (bough_is_ok(&status)) status = bough_channels_add(list, "rpm", "GenSpeed");
-    if (bough_is_ok(&status)) status = bough_channels_add(list, "kN-m", "GenTq");
-    if (bough_is_ok(&status)) status = bough_channels_add(list, "kW", "GenPwr");
+    if (bough_is_ok(&status)) {
+        status = bough_channel_family_add(list, BOUGH_CHANNELS_CONTROL, "", "");
+    }
     for (int b = 0; b < s->scene->turbine.n_blade && bough_is_ok(&status); b++)
-        status = bough_channels_add(list, "deg", "BldPitch%d", b + 1);
+        status = add_numbered(list, BOUGH_CHANNELS_PITCH, b + 1);
     return status;
 }
 
@@ -513,7 +483,14 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     find_tower(s);
     if (bough_is_ok(&status) && s->tower_top != NULL) status = add_tower(s, channels);
     if (bough_is_ok(&status)) status = add_tips(s, channels);
+    if (bough_is_ok(&status)) status = bough_observe_sections(channels->arena, s, channels);
+    if (bough_is_ok(&status) && s->tower_top != NULL) {
+        status = bough_observe_yaw_bearing(s, channels);
+    }
     s->n_motion_channel = channels->count;
+    if (bough_is_ok(&status) && s->scene->turbine.node != NULL) {
+        status = bough_observe_shaft(s, channels);
+    }
     if (bough_is_ok(&status) && s->aero != NULL) status = add_aero(s, channels);
     if (bough_is_ok(&status) && s->control != NULL) status = add_control(s, channels);
     return status;

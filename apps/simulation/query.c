@@ -32,6 +32,24 @@ double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam)
     return beam->body->pitch - s->leader.state[coordinate];
 }
 
+bough_rotor_place bough_simulation_rotor(const bough_simulation *s) {
+    const bough_scene *scene = s->scene;
+    int body = scene->turbine.rotor;
+    bough_transform hub = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
+    double along[3] = {0};
+    along[scene->body[body].joint.axis] = 1; // unchanged by the joint's own turn
+    bough_rotor_place r = {hub.position, bough_mat3_mul(hub.rotation, bough_v3(along[0], along[1], along[2])), 0};
+    for (int k = 0; k < scene->turbine.n_blade; k++) {
+        const bough_beam *blade = bough_simulation_beam(s, scene->turbine.blade[k]);
+        bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]);
+        bough_vec3 tip = blade->def.position[blade->def.n_segment];
+        tip = bough_sub(bough_add(root.position, bough_mat3_mul(root.rotation, tip)), r.hub);
+        tip = bough_sub(tip, bough_scale(bough_dot(tip, r.axis), r.axis));
+        r.radius = fmax(r.radius, sqrt(bough_dot(tip, tip)));
+    }
+    return r;
+}
+
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
                            double root[BOUGH_ROD_MOST_OUTPUTS]) {
     memset(root, 0, BOUGH_ROD_MOST_OUTPUTS * sizeof *root);

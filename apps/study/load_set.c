@@ -82,7 +82,7 @@ static const bough_key sweep_keys[] = {
      .form = "{KEY: [VALUE, ...], ...}", AT(grid),
      .help = "a run for each combination of the values; the key 'scene' takes files"},
 };
-static const bough_schema sweep_schema = {.name = "a sweep", .size = sizeof(bough_load_set),
+const bough_schema bough_sweep_schema = {.name = "a sweep", .size = sizeof(bough_load_set),
     .n_key = COUNT(sweep_keys), .key = sweep_keys};
 
 static const bough_key set_keys[] = {
@@ -121,7 +121,7 @@ static void check_set(bough_schema_reader *r, void *item) {
     }
 }
 
-static const bough_schema set_schema = {.name = "a load set", .size = sizeof(bough_load_set),
+const bough_schema bough_load_set_schema = {.name = "a load set", .size = sizeof(bough_load_set),
     .n_key = COUNT(set_keys), .key = set_keys, .check = check_set};
 // clang-format on
 
@@ -141,7 +141,7 @@ bough_load_set *bough_load_set_parse(bough_arena *arena, const char *path, const
     const bough_node *kind = bough_node_find(root, "kind");
     s->sweep = strcmp(kind->text, "sweep") == 0;
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
-    bough_schema_read(&reader, s->sweep ? &sweep_schema : &set_schema, root, s);
+    bough_schema_read(&reader, s->sweep ? &bough_sweep_schema : &bough_load_set_schema, root, s);
     if (errors->n > 0) return NULL;
     s->file = bough_arena_string(arena, path);
     if (s->sweep) make_group(arena, s);

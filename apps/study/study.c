@@ -282,6 +282,26 @@ static const bough_schema study_schema = {
     .key = study_keys, .check = check_study};
 // clang-format on
 
+// -- help -----------------------------------------------------------------------------------------
+
+void bough_study_help(FILE *stream) {
+    fputs("# Studies\n\n"
+          "A study is a YAML file that names a scene and what is run with it: `bough study STUDY`. "
+          "Keys in braces are\nthose of the scene, written as for `--set`; values are as in scenes. "
+          "Tutorials: `docs/tutorials/study.md`,\n`docs/tutorials/loads.md`.\n"
+          "\n## work-precision, timing, stability\n\n", stream);
+    bough_schema_help(&study_schema, 0, stream);
+    fputs("\n## sweep\n\n", stream);
+    bough_schema_help(&bough_sweep_schema, 0, stream);
+    fputs("\n## load-set\n\n", stream);
+    bough_schema_help(&bough_load_set_schema, 0, stream);
+}
+
+void bough_study_json_schema(FILE *stream) {
+    const bough_schema *schema[] = {&study_schema, &bough_sweep_schema, &bough_load_set_schema};
+    bough_schema_json("A study of bough", schema, 3, stream);
+}
+
 // -- reading --------------------------------------------------------------------------------------
 
 const char *bough_study_path(bough_arena *arena, const char *study, const char *scene) {

@@ -11,6 +11,7 @@
 #include "core/status.h"
 
 #include <stdint.h>
+#include <stdio.h>
 
 enum { BOUGH_STUDY_AXES = 6, BOUGH_STUDY_MEASURES = 8, BOUGH_STUDY_CELLS = 10000 };
 
@@ -115,6 +116,10 @@ typedef struct bough_study {
 // NULL.
 bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
                               bough_errors *errors, bough_study **study);
+
+// Writes every key of a study, as Markdown and as JSON Schema.
+void bough_study_help(FILE *stream);
+void bough_study_json_schema(FILE *stream);
 
 // A scene's path from that of the study which names it.
 const char *bough_study_path(bough_arena *arena, const char *study, const char *scene);

@@ -5,6 +5,9 @@
 #include "apps/config/schema.h"
 #include "apps/study/study.h"
 
+// The tables of sweeps and of load sets, in load_set.c.
+extern const bough_schema bough_sweep_schema, bough_load_set_schema;
+
 // Readers of keys with their values, and of keys with lists of values.
 void bough_study_read_settings(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void *field);

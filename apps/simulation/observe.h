@@ -1,0 +1,14 @@
+// Channels that observe.c takes from other files.
+#ifndef BOUGH_APPS_SIMULATION_OBSERVE_H
+#define BOUGH_APPS_SIMULATION_OBSERVE_H
+
+#include "apps/simulation/build.h"
+
+// Motion and section loads of rods at the places of the scene's sensors.
+bough_status bough_observe_sections(bough_arena *arena, bough_simulation *s, bough_channels *list);
+
+// What the rotor does to its shaft; what the tower carries, to the tower's top.
+bough_status bough_observe_shaft(bough_simulation *s, bough_channels *list);
+bough_status bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list);
+
+#endif

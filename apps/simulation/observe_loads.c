@@ -1,0 +1,192 @@
+// Loads inside the structure: in sections of rods, in the rotor's shaft, on the tower's top.
+#include "apps/simulation/channel_table.h"
+#include "apps/simulation/observe.h"
+#include "core/force.h"
+
+#include <stdio.h>
+
+static const double degree = BOUGH_PI / 180;
+
+// -- sections -------------------------------------------------------------------------------------
+
+// A place on a rod: within a segment, at a share of its length.
+typedef struct place {
+    int segment;
+    double share;
+} place;
+
+typedef struct sensor {
+    const bough_simulation *simulation;
+    const bough_beam *beam;
+    int n;
+    place *place; // (n)
+    bough_rod_scratch scratch;
+} sensor;
+
+enum { PLACE_CHANNELS = 12 };
+
+static bough_vec3 blend(bough_vec3 a, bough_vec3 b, double share) {
+    return bough_add(a, bough_scale(share, bough_sub(b, a)));
+}
+
+// A vertex as gathered in scratch->vertex: place and rotation in the body's frame.
+static bough_vec3 vertex_position(const sensor *x, int i) {
+    const double *v = x->scratch.vertex + i;
+    int n = bough_beam_mesh(x->beam)->stride;
+    return bough_v3(v[0], v[n], v[2 * n]);
+}
+
+static bough_quaternion vertex_rotation(const sensor *x, int i) {
+    const double *p = x->scratch.vertex + i;
+    int n = bough_beam_mesh(x->beam)->stride;
+    return (bough_quaternion){p[3 * n], p[4 * n], p[5 * n], p[6 * n]};
+}
+
+// Rotation vector of a section against the undeformed one, in the body's axes.
+static bough_vec3 vertex_turn(const sensor *x, int i) {
+    bough_quaternion back = bough_quaternion_conjugate(x->beam->def.rotation[i]);
+    return bough_quaternion_logarithm(bough_quaternion_product(vertex_rotation(x, i), back));
+}
+
+static bough_vec3 segment_row(const sensor *x, int segment, int row) {
+    const double *f = x->scratch.segment + segment;
+    int n = bough_beam_mesh(x->beam)->stride;
+    return bough_v3(f[row * n], f[(row + 1) * n], f[(row + 2) * n]);
+}
+
+// A segment's force is the same all along it, its moment goes linearly from what it does to the left
+// vertex to the opposite of what it does to the right one: so nodal loads act in between.
+static void sample_place(const sensor *x, place at, double *value) {
+    int left = at.segment, right = left + 1;
+    const bough_rod_def *def = &x->beam->def;
+    bough_vec3 shift = blend(bough_sub(vertex_position(x, left), def->position[left]),
+                             bough_sub(vertex_position(x, right), def->position[right]), at.share);
+    bough_vec3 turn = blend(vertex_turn(x, left), vertex_turn(x, right), at.share);
+    bough_vec3 force = segment_row(x, left, 0);
+    bough_vec3 first = bough_mat3_mul(bough_rotation_matrix(vertex_rotation(x, left)), segment_row(x, left, 3));
+    bough_vec3 last = bough_mat3_mul(bough_rotation_matrix(vertex_rotation(x, right)), segment_row(x, left, 6));
+    bough_vec3 moment = blend(first, bough_scale(-1, last), at.share);
+    bough_mat3 axes = bough_rotation_matrix(bough_quaternion_exponential(turn));
+    force = bough_mat3_tmul(axes, force);
+    moment = bough_mat3_tmul(axes, moment);
+    const double values[PLACE_CHANNELS] = {
+        shift.x,         shift.y,         shift.z,         turn.x / degree, turn.y / degree,
+        turn.z / degree, force.x / 1e3,   force.y / 1e3,   force.z / 1e3,   moment.x / 1e3,
+        moment.y / 1e3,  moment.z / 1e3};
+    for (int k = 0; k < PLACE_CHANNELS; k++) value[k] = values[k];
+}
+
+static void sample_sections(void *self, double t, double *value) {
+    sensor *x = self;
+    const bough_rod_model *m = bough_beam_mesh(x->beam);
+    const double *state = bough_beam_state(x->simulation, x->beam, 1);
+    bough_rod_gather(m, state, bough_simulation_rod_input(x->simulation, x->beam), &x->scratch);
+    bough_rod_load(m, bough_beam_loads(x->beam), t, &x->scratch);
+    bool good = bough_rod_forces(m, 0, m->n_segment, &x->scratch);
+    for (int k = 0; k < x->n; k++, value += PLACE_CHANNELS) {
+        sample_place(x, x->place[k], value);
+        for (int c = 6; c < PLACE_CHANNELS && !good; c++) value[c] = (double)NAN;
+    }
+}
+
+static place find_place(const bough_rod_def *def, double span) {
+    int i = 0;
+    while (i < def->n_segment - 1 && def->span[i + 1] <= span) i++;
+    return (place){i, (span - def->span[i]) / (def->span[i + 1] - def->span[i])};
+}
+
+// Blades and a tower of one rod have OpenFAST's names.
+static bough_status add_place(const bough_simulation *s, const bough_beam *beam, int number,
+                              bough_channels *list) {
+    const bough_scene_turbine *turbine = &s->scene->turbine;
+    int body = (int)(beam->body - s->scene->body);
+    char b[12], a[12];
+    snprintf(b, sizeof b, "%d", number);
+    for (int k = 0; turbine->node != NULL && k < turbine->n_blade; k++) {
+        if (turbine->blade[k] != body) continue;
+        snprintf(a, sizeof a, "%d", k + 1);
+        return bough_channel_family_add(list, BOUGH_CHANNELS_BLADE_SECTION, a, b);
+    }
+    if (beam == s->tower_top && beam == s->tower_foot) {
+        return bough_channel_family_add(list, BOUGH_CHANNELS_TOWER_SECTION, "", b);
+    }
+    return bough_channel_family_add(list, BOUGH_CHANNELS_SECTION, beam->body->name, b);
+}
+
+static bough_status add_sensor(bough_arena *arena, bough_simulation *s,
+                               const bough_scene_sensor *from, bough_channels *list) {
+    sensor *x = bough_arena_take(arena, sizeof *x);
+    if (!x) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the sensors");
+    *x = (sensor){s, bough_simulation_beam(s, from->body), from->n_at, NULL, {0}};
+    x->place = bough_arena_take(arena, (size_t)x->n * sizeof *x->place);
+    if (!x->place || !bough_rod_scratch_init(&x->scratch, arena, bough_beam_mesh(x->beam))) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the sensors");
+    }
+    bough_status status = bough_channels_group(list, sample_sections, x);
+    for (int k = 0; k < x->n && bough_is_ok(&status); k++) {
+        x->place[k] = find_place(&x->beam->def, from->at[k]);
+        status = add_place(s, x->beam, k + 1, list);
+    }
+    return status;
+}
+
+bough_status bough_observe_sections(bough_arena *arena, bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_ok();
+    for (int k = 0; k < s->scene->n_sensor && bough_is_ok(&status); k++)
+        status = add_sensor(arena, s, &s->scene->sensor[k], list);
+    return status;
+}
+
+// -- shaft ----------------------------------------------------------------------------------------
+
+// What acts on the rotor's joint besides inertia: loads, its spring, the motion that drives it.
+static void sample_shaft(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    const bough_tree *tree = s->tree;
+    int body = s->scene->turbine.rotor, q, v;
+    bough_tree_joint_rows(tree, body, &q, &v);
+    int row = v - tree->n_q;
+    double torque = s->view->passive[row];
+    for (int k = 0; k < tree->n_loads; k++) {
+        const bough_joint_load_def *load = &tree->loads[k];
+        if (load->body != tree->bodies[body].link) continue;
+        torque += load->n > 0 ? bough_table_value(load->n, load->times, load->values, t)
+                              : load->value * bough_ramp_factor(load->start, load->end, t);
+    }
+    if (s->scene->body[body].joint.motion.node != NULL) torque += s->view->drive[row];
+    value[0] = -torque / 1e3;
+    value[1] = -torque * s->leader.state[v] / 1e3;
+}
+
+bough_status bough_observe_shaft(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_shaft, s);
+    if (!bough_is_ok(&status)) return status;
+    return bough_channel_family_add(list, BOUGH_CHANNELS_SHAFT, "", "");
+}
+
+// -- yaw bearing ----------------------------------------------------------------------------------
+
+// The opposite of what the tower's last segment and the loads there do to what it carries, from the
+// body's and the section's axes into those of the body that turn with the section.
+static void sample_yaw_bearing(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    const bough_beam *top = s->tower_top;
+    double w[BOUGH_ROD_MOST_OUTPUTS];
+    bough_quaternion p;
+    bough_simulation_root(s, top, t, w);
+    bough_simulation_beam_tip(s, top, &p);
+    bough_vec3 force = bough_v3(-w[6], -w[7], -w[8]);
+    bough_vec3 moment = bough_mat3_mul(bough_rotation_matrix(p), bough_v3(-w[9], -w[10], -w[11]));
+    bough_quaternion back = bough_quaternion_conjugate(top->def.rotation[top->def.n_segment]);
+    bough_mat3 axes = bough_rotation_matrix(bough_quaternion_product(p, back));
+    force = bough_mat3_tmul(axes, force);
+    moment = bough_mat3_tmul(axes, moment);
+    const double values[6] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
+    for (int k = 0; k < 6; k++) value[k] = values[k] / 1e3;
+}
+
+bough_status bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_yaw_bearing, s);
+    if (!bough_is_ok(&status)) return status;
+    return bough_channel_family_add(list, BOUGH_CHANNELS_YAW_BEARING, "", "");
+}
