@@ -175,6 +175,11 @@ int bough_rotor_memory_size(const bough_rotor *rotor);
 void bough_rotor_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to);
 void bough_rotor_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data);
 
+// Rows of that memory that are states of the air, section by section: the delayed inductions, the shed
+// wake, the lags of pressure and separation; the others are their inputs at the last sample. The first
+// row is the time of the last sample. Returns their number; row has room for the memory's length.
+int bough_rotor_memory_states(const bough_rotor *rotor, int *row);
+
 // Drag by the undisturbed wind at a time [s]: of the tower, bough_tower_drag [N/m], and of a hub of
 // that drag area [m²] at a place and velocity in ground axes [N].
 bough_vec3 bough_rotor_tower_drag(const bough_rotor *rotor, bough_vec3 position, bough_vec3 axis,

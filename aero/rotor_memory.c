@@ -63,6 +63,16 @@ int bough_rotor_memory_size(const bough_rotor *rotor) {
     return per_section == 0 ? 0 : SCALARS + per_section * n_section(rotor);
 }
 
+int bough_rotor_memory_states(const bough_rotor *rotor, int *row) {
+    static const int inflow[] = {2, 3, 4, 5}, stall[] = {3, 4, 6, 8}; // of their structs' doubles
+    int n = 0, first = has_inflow(rotor) ? SCALARS + INFLOW * n_section(rotor) : SCALARS;
+    for (int k = 0; k < n_section(rotor); k++) {
+        for (int i = 0; i < 4 && has_inflow(rotor); i++) row[n++] = SCALARS + INFLOW * k + inflow[i];
+        for (int i = 0; i < 4 && rotor->airfoil; i++) row[n++] = first + STALL * k + stall[i];
+    }
+    return n;
+}
+
 void bough_rotor_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to) {
     const bough_rotor_memory *memory = &data->memory;
     if (!memory->clock) return;

@@ -12,6 +12,10 @@ extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *
 extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
                     const int *lda, const int *pivot, double *b, const int *ldb, int *info,
                     size_t trans_length);
+extern void dgemm_(const char *transa, const char *transb, const int *m, const int *n, const int *k,
+                   const double *alpha, const double *a, const int *lda, const double *b,
+                   const int *ldb, const double *beta, double *c, const int *ldc,
+                   size_t transa_length, size_t transb_length);
 extern void zgetrf_(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
 extern void zgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
                     const int *lda, const int *pivot, double *b, const int *ldb, int *info,
@@ -163,6 +167,38 @@ void bough_dense_solve(int n, int n_right, const double *factor, const int *pivo
     }
     int info = 0;
     dgetrs_("N", &n, &n_right, factor, &n, pivot, b, &n, &info, 1);
+}
+
+static void solve_small_transposed(int n, const double *factor, const int *pivot, double *x) {
+    for (int k = 0; k < n; k++) {
+        for (int i = 0; i < k; i++) x[k] -= factor[k * n + i] * x[i];
+        x[k] /= factor[k * n + k];
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        for (int i = k + 1; i < n; i++) x[k] -= factor[k * n + i] * x[i];
+    }
+    for (int k = n - 1; k >= 0; k--) {
+        if (pivot[k] != k) swap(&x[k], &x[pivot[k]]);
+    }
+}
+
+void bough_dense_solve_transposed(int n, int n_right, const double *factor, const int *pivot,
+                                  double *b) {
+    if (n == 0 || n_right == 0) return;
+    if (n <= SMALL) {
+        for (int j = 0; j < n_right; j++) solve_small_transposed(n, factor, pivot, b + j * n);
+        return;
+    }
+    int info = 0;
+    dgetrs_("T", &n, &n_right, factor, &n, pivot, b, &n, &info, 1);
+}
+
+void bough_dense_product(bough_product p, const double *a, const double *b, double *c) {
+    if (p.m == 0 || p.n == 0) return;
+    prepare();
+    int inner = p.k > 0 ? p.k : 1; // rows of b
+    dgemm_(p.transposed ? "T" : "N", "N", &p.m, &p.n, &p.k, &p.share, a,
+           p.transposed ? &inner : &p.m, b, &inner, &p.keep, c, &p.m, 1, 1);
 }
 
 bool bough_complex_factor(int n, double *a, int *pivot) {

@@ -19,6 +19,19 @@ bool bough_dense_factor(int n, double *a, int *pivot);
 // Solves a x = b in place with those factors: b (n × n_right, column-major).
 void bough_dense_solve(int n, int n_right, const double *factor, const int *pivot, double *b);
 
+// Solves aᵀ x = b in place with them.
+void bough_dense_solve_transposed(int n, int n_right, const double *factor, const int *pivot,
+                                  double *b);
+
+// c ← share a b + keep c, all column-major: a (m × k), or its transpose where a is given (k × m), b (k × n),
+// c (m × n).
+typedef struct bough_product {
+    int m, n, k;
+    bool transposed; // a
+    double share, keep;
+} bough_product;
+void bough_dense_product(bough_product p, const double *a, const double *b, double *c);
+
 // The same for complex matrices and one right side, real and imaginary parts next to each other:
 // a (n × n × 2, column-major), b (n × 2).
 bool bough_complex_factor(int n, double *a, int *pivot);

@@ -28,7 +28,7 @@ void bough_modes_harmonic(int n, int h, const double *real, const double *imagin
 }
 
 // The sum over ±h of i h exp(i 2πh (k − l)/n) is −2 h sin(2πh (k − l)/n).
-static void set_rate(const bough_modes_def *def, double *rate) {
+void bough_modes_rate(const bough_modes_def *def, double *rate) {
     int n = def->n_part;
     for (int k = 0; k < n; k++) {
         for (int l = 0; l < n; l++) {
@@ -41,12 +41,12 @@ static void set_rate(const bough_modes_def *def, double *rate) {
     }
 }
 
-static void project(const modes *m, double *x) {
-    const bough_assembly *a = m->coupled->assembly;
+void bough_modes_project(const bough_coupled *coupled, const double *state, double *x) {
+    const bough_assembly *a = coupled->assembly;
     for (int i = 0; i < a->n_member; i++) {
         const bough_system *s = &a->member[i]->system;
         int at = a->state_offset[i];
-        if (s->ops->project) s->ops->project(s->self, m->def->state + at, x + at);
+        if (s->ops->project) s->ops->project(s->self, state + at, x + at);
     }
 }
 
@@ -76,7 +76,7 @@ static void apply(void *self, const double *z, double *image) {
     int n = m->coupled->assembly->n_state;
     memcpy(image, z, (size_t)n * sizeof *image);
     bough_coupled_solve(m->coupled, image);
-    project(m, image);
+    bough_modes_project(m->coupled, m->def->state, image);
     if (m->def->spin == 0) return;
     double size = largest(image, n);
     memcpy(m->term, image, (size_t)n * sizeof *image);
@@ -84,7 +84,7 @@ static void apply(void *self, const double *z, double *image) {
         turn(m, m->term, m->turned);
         memcpy(m->term, m->turned, (size_t)n * sizeof *m->term);
         bough_coupled_solve(m->coupled, m->term);
-        project(m, m->term);
+        bough_modes_project(m->coupled, m->def->state, m->term);
         for (int i = 0; i < n; i++) image[i] += m->term[i];
         if (largest(m->term, n) <= series * size) return;
     }
@@ -119,7 +119,7 @@ bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled,
                                .self = &m,
                                .apply = apply};
     if (!take(arena, &m, &op)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    if (def->spin != 0) set_rate(def, m.rate);
+    if (def->spin != 0) bough_modes_rate(def, m.rate);
     bough_status status = bough_coupled_setup(coupled, def->time, def->state, def->input, op.gamma);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
     status = bough_eigen_nearest(arena, &op, wanted, pair, found);

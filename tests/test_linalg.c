@@ -37,7 +37,27 @@ static void lu_solves_systems_of_any_size(void **state) {
         assert_true(bough_dense_factor(n, a, pivot));
         bough_dense_solve(n, 1, a, pivot, b);
         for (int i = 0; i < n; i++) check_near(b[i], i - 2.5, 0, 1e-12);
+        memset(b, 0, sizeof b); // and its transpose
+        for (int k = 0; k < n * n; k++) a[k] = sin(1.7 * k * k + n) - (k % (n + 1) == 0 ? 0.9 : 0);
+        for (int c = 0; c < n; c++) {
+            for (int r = 0; r < n; r++) b[c] += a[c * n + r] * (r - 2.5);
+        }
+        assert_true(bough_dense_factor(n, a, pivot));
+        bough_dense_solve_transposed(n, 1, a, pivot, b);
+        for (int i = 0; i < n; i++) check_near(b[i], i - 2.5, 0, 1e-12);
     }
+}
+
+// (2 × 3)(3 × 2), and the transpose of the first.
+static void product_of_matrices(void **state) {
+    (void)state;
+    const double a[6] = {1, 2, 3, 4, 5, 6}, b[6] = {1, 0, -1, 2, 1, 0}, at[6] = {1, 3, 5, 2, 4, 6};
+    const double expected[4] = {-4, -4, 5, 8};
+    double c[4] = {1, 1, 1, 1};
+    bough_dense_product((bough_product){2, 2, 3, false, 1, 0}, a, b, c);
+    for (int i = 0; i < 4; i++) check_near(c[i], expected[i], 1e-15, 0);
+    bough_dense_product((bough_product){2, 2, 3, true, 2, -1}, at, b, c);
+    for (int i = 0; i < 4; i++) check_near(c[i], expected[i], 1e-15, 0);
 }
 
 static void lu_refuses_singular_and_nan(void **state) {
@@ -181,6 +201,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lu_solves_with_interchanges),
         cmocka_unit_test(lu_solves_systems_of_any_size),
+        cmocka_unit_test(product_of_matrices),
         cmocka_unit_test(lu_refuses_singular_and_nan),
         cmocka_unit_test(complex_lu_solves),
         cmocka_unit_test(symmetric_eigenvectors_rebuild_the_matrix),

@@ -1,5 +1,6 @@
 #include "apps/analysis/vibration.h"
 
+#include "apps/analysis/aeroelastic.h"
 #include "apps/analysis/mode_share.h"
 #include "apps/analysis/steady.h"
 #include "cosim/modes.h"
@@ -14,6 +15,7 @@ static const double least_point = 1, spins = 4;
 static const double free_motion = 1e-3;
 
 enum { FREE_MOTIONS = 8 }; // that may be found before the modes
+enum { PER_MODE = 3 };     // states of motion kept for each mode in the air that is wanted
 
 static const double rounding = 1e-10;   // damping ratios below it are none
 
@@ -130,24 +132,54 @@ static void drop_other_motions(const bough_tree *tree, double point, int count,
     v->found = kept;
 }
 
+// Of the bodies alone.
+static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s, const solution *x,
+                                 int count, bough_vibration *v) {
+    int wanted = count + FREE_MOTIONS + 2 * s->tree->closure_rank;
+    v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
+    if (!v->pair) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_status status = bough_modes_find(arena, x->coupled, &x->def, wanted, v->pair, &v->found);
+    while (status.code == BOUGH_FAILED && wanted > 1) { // the highest may be beyond rounding
+        wanted /= 2;
+        status = bough_modes_find(arena, x->coupled, &x->def, wanted, v->pair, &v->found);
+    }
+    return status;
+}
+
+// In the air that follows their motion.
+static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const solution *x,
+                                 int count, bough_vibration *v) {
+    bough_air_tangent air;
+    bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
+    bough_status status =
+        bough_air_tangent_find(arena, s, x->coupled, x->def.time, x->state, dynamic, &air);
+    if (!bough_is_ok(&status)) return status;
+    v->reduced = bough_arena_take(arena, sizeof *v->reduced);
+    if (!v->reduced || !bough_air_tangent_average(arena, s, &x->group, &air)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    }
+    status = bough_aeroelastic_reduce(arena, s, x->coupled, &x->def, &x->group, &air,
+                                      PER_MODE * (count + FREE_MOTIONS), v->reduced);
+    if (!bough_is_ok(&status)) return status;
+    v->pair = bough_arena_take(arena, (size_t)v->reduced->n_all * sizeof *v->pair);
+    if (!v->pair) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    return bough_aeroelastic_modes(arena, v->reduced, v->pair, &v->found);
+}
+
 static bough_status solve(bough_arena *arena, bough_simulation *s, double time, int count,
                           bough_vibration *v) {
     solution x = {0};
-    int wanted = count + FREE_MOTIONS + 2 * s->tree->closure_rank;
-    v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
-    if (!v->pair || !v->mode) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!v->mode) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = prepare(arena, s, &x);
     if (!bough_is_ok(&status)) return status;
     define(time, &x);
     v->n_blade = x.group.n;
     v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
     v->frozen = is_frozen(s, &x.group);
-    status = bough_modes_find(arena, x.coupled, &x.def, wanted, v->pair, &v->found);
-    while (status.code == BOUGH_FAILED && wanted > 1) { // the highest may be beyond rounding
-        wanted /= 2;
-        status = bough_modes_find(arena, x.coupled, &x.def, wanted, v->pair, &v->found);
-    }
+    bool in_air = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
+    status = in_air ? solve_in_air(arena, s, &x, count, v)
+                    : solve_bodies(arena, s, &x, count, v);
     drop_other_motions(s->tree, x.def.point, count, v);
     return bough_is_ok(&status) ? describe(arena, s, &x, v) : status;
 }

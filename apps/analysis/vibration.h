@@ -1,5 +1,5 @@
 // Modes of the whole scene about its equilibrium, at rest or in steady rotation, or about the state
-// it begins in. The air's forces are those of the equilibrium: they neither stiffen nor damp.
+// it begins in. The air's forces are those of the equilibrium, or follow the motion (aeroelastic.h).
 //
 // Where the turbine's rotor turns, its blades are equal and evenly spaced and at least three, the
 // frequencies are those an observer at rest sees: the multi-blade transform of cosim/modes.h, about
@@ -47,6 +47,7 @@ typedef struct bough_vibration {
     int found;
     bough_scene_mode *mode;  // (found) by the distance of λ from a point near 0
     bough_eigen_pair *pair;  // (found)
+    struct bough_aeroelastic *reduced; // in the air that follows: what they are the modes of; or NULL
 } bough_vibration;
 
 extern const char *const bough_pattern_names[BOUGH_PATTERNS];

@@ -50,7 +50,8 @@ static void print_head(const bough_simulation *s, const bough_vibration *v) {
     if (v->frozen) printf(", azimuth frozen: blades as seen from the rotating frame");
     if (v->spin != 0 && v->n_blade > 0) printf(", seen by an observer at rest");
     if (rotor_is_free(s)) printf(", rotor free to turn");
-    if (s->aero) printf("; the air's forces do not follow");
+    static const char *const air[] = {"do not follow", "follow at once", "follow in time"};
+    if (s->aero) printf("; the air's forces %s", air[s->scene->modes.air]);
     printf("\n%4s %12s %12s %11s  %-12s %-8s %-12s %8s %8s %8s\n", "mode", "frequency", "damped",
            "damping", "body", "shape", "pattern", "collect.", "forward", "backward");
     printf("%4s %12s %12s %11s\n", "", "(Hz)", "(Hz)", "(%)");

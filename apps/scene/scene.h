@@ -453,6 +453,12 @@ typedef enum bough_scene_modes_of {
 } bough_scene_modes_of;
 
 // What `bough modes` finds; a run does not read it.
+typedef enum bough_scene_modes_air {
+    BOUGH_SCENE_AIR_FROZEN,
+    BOUGH_SCENE_AIR_QUASI_STEADY,
+    BOUGH_SCENE_AIR_DYNAMIC,
+} bough_scene_modes_air;
+
 typedef struct bough_scene_modes {
     const bough_node *node;
     int of;                 // bough_scene_modes_of
@@ -463,6 +469,7 @@ typedef struct bough_scene_modes {
     int about;              // index of the body on the revolute joint, when named
     double axis[3];         // in place of it, ground axes; {0, 0, 0}: not given
     double centre[3];       // a point of that axis, in the ground [m]
+    int air;                // bough_scene_modes_air; of the whole scene
     bool shapes;            // written too
 } bough_scene_modes;
 

@@ -186,6 +186,10 @@ static const bough_key modes_keys[] = {
     {.name = "centre", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
      .fallback = ZERO3, AT(centre), .example = "[0, 0, 90 m]",
      .help = "of 'axis': a point of it, in the ground"},
+    {.name = "air", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("frozen", "quasi-steady", "dynamic"),
+     .fallback = "frozen", AT(air),
+     .help = "of the whole scene: the air's forces stay those of the equilibrium, follow the motion at "
+             "once, or with the scene's dynamic inflow and stall"},
     {.name = "shapes", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(shapes),
      .help = "write the modes' shapes"},
 };

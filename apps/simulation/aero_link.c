@@ -421,15 +421,27 @@ double bough_aero_link_evaluated(const bough_aero_link *link) { return link->eva
 
 void bough_aero_link_renew(bough_aero_link *link) { link->evaluated = (double)NAN; }
 
-void bough_aero_link_hold(bough_aero_link *link, double t) {
+void bough_aero_link_go_on(bough_aero_link *link, double t) {
     bool jumped;
     link->started = false;
-    bough_rotor_forget(link->rotor, &link->data);
     bough_aero_link_renew(link);
     sample(link, t, t + 1, &jumped); // constant: there is none before it
     link->started = false;
-    bough_rotor_forget(link->rotor, &link->data);
     bough_aero_link_renew(link);
+}
+
+void bough_aero_link_hold(bough_aero_link *link, double t) {
+    bough_rotor_forget(link->rotor, &link->data);
+    bough_aero_link_go_on(link, t);
+    bough_rotor_forget(link->rotor, &link->data);
+}
+
+void bough_aero_link_remember(const bough_aero_link *link, double *to) {
+    bough_rotor_save(link->rotor, &link->data, to);
+}
+
+void bough_aero_link_remind(bough_aero_link *link, const double *from) {
+    bough_rotor_restore(link->rotor, from, &link->data);
 }
 
 bough_sampled_load bough_aero_link_load(bough_aero_link *link) {

@@ -18,6 +18,13 @@ bough_sampled_load bough_aero_link_load(bough_aero_link *link);
 // Samples the blades as they are and holds the loads from t on; the next sample starts anew.
 void bough_aero_link_hold(bough_aero_link *link, double t);
 
+// The same, but the air goes on from what it remembers of the last sample, and will from this one.
+void bough_aero_link_go_on(bough_aero_link *link, double t);
+
+// What the air remembers, as bough_rotor_save has it.
+void bough_aero_link_remember(const bough_aero_link *link, double *to);
+void bough_aero_link_remind(bough_aero_link *link, const double *from);
+
 // All that the next samples depend on as a row of numbers, and the loads that the bodies have, for
 // schemes that repeat samples: restoring puts the loads back. The results below are not in it.
 int bough_aero_link_size(const bough_aero_link *link);

@@ -32,7 +32,8 @@ void bough_equilibrium_state(const bough_assembly *assembly, double *state) {
     }
 }
 
-static void set_state(bough_simulation *s, const bough_assembly *assembly, const double *state) {
+void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly,
+                                 const double *state) {
     for (int i = 0; i < assembly->n_member; i++) {
         bough_member_set(assembly->member[i], 0, state + assembly->state_offset[i]);
     }
@@ -99,7 +100,7 @@ static bough_status balance(bough_arena *arena, bough_simulation *s, bough_coupl
     bough_status status = bough_equilibrium_find(arena, coupled, def, state, &report);
     work->steps += report.steps;
     if (status.code == BOUGH_FAILED) return explain(s, coupled->assembly, &report);
-    if (bough_is_ok(&status)) set_state(s, coupled->assembly, state);
+    if (bough_is_ok(&status)) bough_equilibrium_set_state(s, coupled->assembly, state);
     def->step = BOUGH_EQUILIBRIUM_LONGEST; // near it now
     return status;
 }

@@ -33,4 +33,8 @@ bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assem
 // States of all members (n_state) into a row.
 void bough_equilibrium_state(const bough_assembly *assembly, double *state);
 
+// The other way round; the members' clocks are set to 0, and `view` follows.
+void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly,
+                                 const double *state);
+
 #endif

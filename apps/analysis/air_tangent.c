@@ -1,0 +1,212 @@
+#include "apps/analysis/air_tangent.h"
+
+#include "apps/simulation/aero_link.h"
+#include "apps/simulation/drag_link.h"
+#include "apps/simulation/equilibrium.h"
+
+#include <string.h>
+
+// Differences, in units of the states' scales; of the air's states, absolute; over so long a time a rate of
+// the air's states is taken [s], and so long they come to rest.
+static const double difference = 1e-5, air_difference = 1e-6, moment = 1e-5, long_while = 1e4;
+
+enum { SETTLINGS = 4 };
+
+typedef struct work {
+    bough_simulation *simulation;
+    bough_coupled *coupled;
+    double time;
+    bool dynamic;
+    int n_memory, n_air;
+    int *row;                       // (n_air) of the memory
+    double *memory, *before, *after; // (n_memory): at rest, around a moment
+    double *state;                  // (n)
+    double *rate[2], *air_rate[2];   // (n), (n_air) on either side
+} work;
+
+static bool take(bough_arena *arena, work *w) {
+    size_t n = (size_t)w->coupled->assembly->n_state, m = (size_t)w->n_memory + 1;
+    w->row = bough_arena_take(arena, m * sizeof *w->row);
+    w->memory = bough_arena_doubles(arena, m);
+    w->before = bough_arena_doubles(arena, m);
+    w->after = bough_arena_doubles(arena, m);
+    w->state = bough_arena_doubles(arena, n);
+    for (int side = 0; side < 2; side++) {
+        w->rate[side] = bough_arena_doubles(arena, n);
+        w->air_rate[side] = bough_arena_doubles(arena, m);
+    }
+    return !bough_arena_exhausted(arena);
+}
+
+// Lets the air go on for `step` from the memory in `from`, which is changed, to `to`.
+static void go_on(work *w, double step, double *from, double *to) {
+    from[0] = w->time - step;
+    bough_aero_link_remind(w->simulation->aero, from);
+    bough_aero_link_go_on(w->simulation->aero, w->time);
+    bough_aero_link_remember(w->simulation->aero, to);
+}
+
+// Rates of all states at `state` under the loads that the air has for w->state and the memory in
+// w->before. The first moment makes the air's inputs those of this state.
+static bough_status find_rates(work *w, const double *state, double *rate, double *air_rate) {
+    bough_simulation *s = w->simulation;
+    bough_equilibrium_set_state(s, w->coupled->assembly, w->state);
+    if (w->dynamic) {
+        go_on(w, moment, w->before, w->after);
+        memcpy(w->before, w->after, (size_t)w->n_memory * sizeof *w->before);
+        go_on(w, moment, w->before, w->after);
+        for (int k = 0; k < w->n_air; k++) {
+            air_rate[k] = (w->after[w->row[k]] - w->before[w->row[k]]) / moment;
+        }
+    } else {
+        bough_aero_link_hold(s->aero, w->time);
+    }
+    if (s->drag != NULL) bough_drag_link_hold(s->drag, w->time);
+    return bough_coupled_rate(w->coupled, w->time, state, rate);
+}
+
+// Brings the air to rest about `state`; what it remembers then, to w->memory.
+static void settle(work *w, const double *state) {
+    bough_simulation *s = w->simulation;
+    bough_equilibrium_set_state(s, w->coupled->assembly, state);
+    bough_aero_link_hold(s->aero, w->time);
+    if (s->drag != NULL) bough_drag_link_hold(s->drag, w->time);
+    if (!w->dynamic) return;
+    bough_aero_link_go_on(s->aero, w->time);
+    bough_aero_link_remember(s->aero, w->before);
+    for (int k = 0; k < SETTLINGS; k++) {
+        go_on(w, long_while, w->before, w->memory);
+        memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
+    }
+}
+
+// Both sides of a difference are in the work: their slopes, of the bodies' rates and of the air's.
+static void set_column(const work *w, double size, double *column, double *air_column) {
+    int n = w->coupled->assembly->n_state;
+    for (int k = 0; k < n; k++) column[k] = (w->rate[1][k] - w->rate[0][k]) / (2 * size);
+    for (int k = 0; k < w->n_air; k++) {
+        air_column[k] = (w->air_rate[1][k] - w->air_rate[0][k]) / (2 * size);
+    }
+}
+
+static bool meets_air(const bough_simulation *s, int member) {
+    if (member == 0 || s->drag != NULL) return true;
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) {
+        if (bough_simulation_beam(s, s->scene->turbine.blade[b])->port + 1 == member) return true;
+    }
+    return false;
+}
+
+static bough_status follow_motion(work *w, const double *state, bough_air_tangent *t) {
+    const bough_assembly *a = w->coupled->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        if (!meets_air(w->simulation, i)) continue;
+        for (int k = 0; k < a->member[i]->system.n_state; k++) {
+            int at = a->state_offset[i] + k;
+            double size = difference * a->member[i]->system.scale[k];
+            for (int side = 0; side < 2; side++) {
+                memcpy(w->state, state, (size_t)a->n_state * sizeof *state);
+                memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
+                w->state[at] += (2 * side - 1) * size;
+                bough_status status = find_rates(w, state, w->rate[side], w->air_rate[side]);
+                if (!bough_is_ok(&status)) return status;
+            }
+            set_column(w, size, t->motion + (size_t)at * a->n_state, t->drive + (size_t)at * t->n_air);
+        }
+    }
+    return bough_ok();
+}
+
+static bough_status follow_memory(work *w, const double *state, bough_air_tangent *t) {
+    const bough_assembly *a = w->coupled->assembly;
+    for (int k = 0; k < w->n_air; k++) {
+        for (int side = 0; side < 2; side++) {
+            memcpy(w->state, state, (size_t)a->n_state * sizeof *state);
+            memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
+            w->before[w->row[k]] += (2 * side - 1) * air_difference;
+            bough_status status = find_rates(w, state, w->rate[side], w->air_rate[side]);
+            if (!bough_is_ok(&status)) return status;
+        }
+        set_column(w, air_difference, t->lift + (size_t)k * a->n_state,
+                   t->lag + (size_t)k * t->n_air);
+    }
+    return bough_ok();
+}
+
+bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
+                                    double time, const double *state, bool dynamic,
+                                    bough_air_tangent *t) {
+    const bough_rotor *rotor = bough_aero_link_rotor(s->aero);
+    int n_memory = dynamic ? bough_rotor_memory_size(rotor) : 0;
+    work w = {.simulation = s, .coupled = coupled, .time = time, .n_memory = n_memory,
+              .dynamic = n_memory > 0};
+    if (!take(arena, &w)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (w.dynamic) w.n_air = bough_rotor_memory_states(rotor, w.row);
+    size_t n = (size_t)coupled->assembly->n_state, m = (size_t)w.n_air;
+    *t = (bough_air_tangent){.n = (int)n,
+                             .n_air = w.n_air,
+                             .n_per_blade = w.n_air / s->scene->turbine.n_blade,
+                             .motion = bough_arena_doubles(arena, n * n),
+                             .lift = bough_arena_doubles(arena, n * m + 1),
+                             .drive = bough_arena_doubles(arena, n * m + 1),
+                             .lag = bough_arena_doubles(arena, m * m + 1)};
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    settle(&w, state);
+    bough_status status = follow_motion(&w, state, t);
+    if (bough_is_ok(&status)) status = follow_memory(&w, state, t);
+    settle(&w, state);
+    return status;
+}
+
+// -- mean over azimuths ---------------------------------------------------------------------------
+
+// a (rows × ·): its block of parts (k, l) becomes the mean over all (k + i, l + i).
+typedef struct blocks {
+    int n_part, rows;
+    int n_to, n_from;      // entries of a part
+    const int *to, *from;  // (n_part × n_to), (n_part × n_from)
+} blocks;
+
+static void average(const blocks *b, double *a) {
+    for (int apart = 0; apart < b->n_part; apart++) {
+        for (int j = 0; j < b->n_from; j++) {
+            for (int i = 0; i < b->n_to; i++) {
+                double sum = 0;
+                for (int pass = 0; pass < 2; pass++) {
+                    for (int k = 0; k < b->n_part; k++) {
+                        int l = (k + apart) % b->n_part;
+                        size_t column = (size_t)b->from[l * b->n_from + j] * (size_t)b->rows;
+                        double *entry = a + column + (size_t)b->to[k * b->n_to + i];
+                        if (pass == 0) sum += *entry / b->n_part;
+                        if (pass == 1) *entry = sum;
+                    }
+                }
+            }
+        }
+    }
+}
+
+void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group,
+                            int n_per_blade, int *row) {
+    const bough_scene_turbine *turbine = &s->scene->turbine;
+    for (int k = 0; k < group->n; k++) {
+        for (int b = 0; b < turbine->n_blade; b++) {
+            if (bough_simulation_beam(s, turbine->blade[b]) != group->blade[k]) continue;
+            for (int j = 0; j < n_per_blade; j++) row[k * n_per_blade + j] = b * n_per_blade + j;
+        }
+    }
+}
+
+bool bough_air_tangent_average(bough_arena *arena, const bough_simulation *s,
+                               const bough_blade_group *group, bough_air_tangent *t) {
+    if (group->n == 0) return true;
+    int *air = bough_arena_take(arena, ((size_t)t->n_air + 1) * sizeof *air);
+    if (!air) return false;
+    bough_air_tangent_rows(s, group, t->n_per_blade, air);
+    int n = group->n, m = t->n_per_blade;
+    average(&(blocks){n, t->n, group->n_row, group->n_row, group->row, group->row}, t->motion);
+    average(&(blocks){n, t->n, group->n_row, m, group->row, air}, t->lift);
+    average(&(blocks){n, t->n_air, m, group->n_row, air, group->row}, t->drive);
+    average(&(blocks){n, t->n_air, m, m, air, air}, t->lag);
+    return true;
+}

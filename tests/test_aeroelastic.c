@@ -1,0 +1,148 @@
+// Modes in the air: damping of a rigid rotor on a slide beside its thrust's slope and beside time
+// marching; without density the modes of the bodies alone.
+#include "apps/analysis/vibration.h"
+#include "apps/simulation/aero_link.h"
+#include "tests/built_scene.h"
+
+#include <string.h>
+
+// The blades of the run-up rigid on a heavy hub, whose nacelle slides along the wind on a spring.
+static const char *const sliding[] = {
+    "gravity=[0, 0, 0]",
+    "bodies[1].joint.kind=prismatic",
+    "bodies[1].joint.axis=x",
+    "bodies[1].joint.stiffness=1e6",
+    "bodies[2].joint.placement=[move x -5 m]",
+    "bodies[2].joint.speed=12.1 rpm",
+    "bodies[2].inertia=[1e14, 6e13, 6e13, 0, 0, 0]",
+    "bodies[3-5].fidelity=rigid",
+    "bodies[3-5].pitch=0 deg",
+    "aero.wind.speed=9 m/s",
+    "aero.ramp=[0 s, 0 s]",
+    "aero.rate=200 Hz",
+    "aero.tower.influence=potential",
+    "aero.tower.diameter=[1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3, 1e-3]",
+    "simulation.macro_step=5 ms",
+    "simulation.threads=1",
+    "loads[0].torque=0",
+    "modes.of=scene",
+};
+enum { SLIDING = sizeof sliding / sizeof *sliding, MOST = SLIDING + 6 };
+
+// The scene with more settings (up to NULL).
+static bough_simulation *build(bough_arena *arena, const char *const *more) {
+    const char *sets[MOST + 1] = {NULL};
+    memcpy(sets, sliding, sizeof sliding);
+    for (int k = 0; k < MOST - SLIDING && more[k] != NULL; k++) sets[SLIDING + k] = more[k];
+    return scene_build(arena, "apps/turbine/runup.yaml", sets);
+}
+
+static bough_scene_mode slide_mode(bough_arena *arena, bough_simulation *s) {
+    bough_vibration v;
+    bough_status status = bough_vibration_find(arena, s, 2, &v);
+    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
+    assert_int_equal(status.code, BOUGH_OK);
+    assert_int_equal(v.found, 1);
+    return v.mode[0];
+}
+
+static double thrust(const char *wind) {
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = build(arena, (const char *const[]){wind, NULL});
+    double factor;
+    bough_aero_link_hold(s->aero, 0);
+    double value = bough_aero_link_data(s->aero, &factor)->thrust;
+    bough_arena_destroy(arena);
+    return value;
+}
+
+// m ẍ + T' ẋ + k x = 0 with T' the slope of the thrust over the wind.
+static void quasi_steady_damping_is_the_slope_of_the_thrust(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = build(arena, (const char *const[]){"modes.air=quasi-steady", NULL});
+    bough_scene_mode m = slide_mode(arena, s);
+    double slope = (thrust("aero.wind.speed=9.01 m/s") - thrust("aero.wind.speed=8.99 m/s")) / 0.02;
+    double omega = 2 * BOUGH_PI * m.frequency, mass = 1e6 / (omega * omega);
+    check_near(mass, 240e3 + 56780 + 3 * 17.7e3, 1e-2, 0); // the blades' to 5 %
+    check_near(m.growth, -slope / (2 * mass), 1e-3, 0);
+    bough_arena_destroy(arena);
+}
+
+// Growth [1/s] and frequency [Hz] of the slide's decay after a push, from two swings between a turning
+// point and the next.
+static void march(bough_simulation *s, double *growth, double *frequency) {
+    double x[3] = {0}, time[4] = {0}, turn[4] = {0};
+    int q, v, found = 0;
+    bough_tree_joint_rows(s->tree, 1, &q, &v);
+    while (found < 4) {
+        assert_false(bough_master_done(s->master));
+        scene_step(s);
+        x[0] = x[1], x[1] = x[2], x[2] = s->leader.state[q];
+        double t = s->master->time - s->master->macro_step;
+        if (t < 5 || (x[1] - x[0]) * (x[2] - x[1]) > 0) continue;
+        double bend = (x[0] - 2 * x[1] + x[2]) / 2, rise = (x[2] - x[0]) / 2;
+        time[found] = t - rise / (2 * bend) * s->master->macro_step;
+        turn[found++] = x[1] - rise * rise / (4 * bend);
+    }
+    *growth = log((turn[2] - turn[3]) / (turn[0] - turn[1])) / (time[2] - time[0]);
+    *frequency = 1 / (time[2] - time[0]);
+}
+
+static void dynamic_damping_is_that_of_time_marching(void **state) {
+    (void)state;
+    static const char *const air[3][2] = {{"oye", "none"}, {"equilibrium", "hgm"}, {"oye", "hgm"}};
+    for (int k = 0; k < 3; k++) {
+        char inflow[64], stall[64];
+        snprintf(inflow, sizeof inflow, "aero.induction.inflow=%s", air[k][0]);
+        snprintf(stall, sizeof stall, "aero.dynamic_stall=%s", air[k][1]);
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s =
+            build(arena, (const char *const[]){inflow, stall, "modes.air=dynamic", NULL});
+        bough_scene_mode m = slide_mode(arena, s);
+        bough_simulation *run = build(
+            arena, (const char *const[]){inflow, stall, "simulation.initial=equilibrium",
+                                         "simulation.duration=20 s",
+                                         "loads[0]={body: nacelle, force: [1e5, 0, 0], factor: {times: "
+                                         "[0, 0.5, 1], values: [0, 1, 0]}}",
+                                         NULL});
+        double growth, frequency;
+        march(run, &growth, &frequency);
+        check_near(m.growth, growth, 2e-3, 0);
+        check_near(m.damped_frequency, frequency, 1e-3, 0);
+        bough_arena_destroy(arena);
+    }
+}
+
+// The blades bend; next to no air: the reduced system has the modes of the bodies.
+static void thin_air_leaves_the_modes_as_they_are(void **state) {
+    (void)state;
+    const char *sets[] = {"bodies[2].joint.speed=12.1 rpm", "bodies[3-5].rod.segments=10",
+                          "aero.air_density=1e-9", "modes.count=8", "modes.air=frozen",
+                          "simulation.threads=1", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_vibration v[2];
+    for (int k = 0; k < 2; k++) {
+        if (k == 1) sets[4] = "modes.air=quasi-steady";
+        bough_simulation *s = scene_build(arena, "apps/turbine/runup.yaml", sets);
+        bough_status status = bough_vibration_find(arena, s, 8, &v[k]);
+        if (!bough_is_ok(&status)) print_error("%s\n", status.message);
+        assert_int_equal(status.code, BOUGH_OK);
+        assert_int_equal(v[k].found, 8);
+    }
+    for (int k = 0; k < 8; k++) {
+        check_near(v[1].mode[k].frequency, v[0].mode[k].frequency, 1e-6, 0);
+        check_near(v[1].mode[k].growth, v[0].mode[k].growth, 1e-4, 0);
+        assert_int_equal(v[1].mode[k].pattern, v[0].mode[k].pattern);
+    }
+    bough_arena_destroy(arena);
+}
+
+int main(void) {
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(quasi_steady_damping_is_the_slope_of_the_thrust),
+        cmocka_unit_test(dynamic_damping_is_that_of_time_marching),
+        cmocka_unit_test(thin_air_leaves_the_modes_as_they_are),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
