@@ -219,7 +219,7 @@ static bough_status macro_step(bough_master *m) {
     set_time(m, c->t1);
     m->steps++;
     evaluate_loads(m);
-    if (m->by_second) bough_second_solution_step(m->second, c);
+    if (m->second) bough_second_solution_step(m->second, c);
     if (m->estimate) bough_error_estimate_step(m->estimate, c);
     if (m->estimate && bough_master_done(m)) bough_error_estimate_finish(m->estimate, c);
     return bough_ok();
@@ -258,7 +258,6 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_monitor_snapshot(m->monitor, c, s);
     if (m->estimate) bough_error_estimate_snapshot(m->estimate, s);
     if (m->second) bough_second_solution_snapshot(m->second, s);
-    bough_snapshot_take(s, &m->by_second, sizeof m->by_second);
     if (m->control) bough_step_control_snapshot(m->control, s);
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
     m->next_event = 0;

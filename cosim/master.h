@@ -60,7 +60,6 @@ typedef struct bough_master {
     bough_monitor *monitor;
     bough_error_estimate *estimate; // NULL: the scheme makes no coupling error
     bough_second_solution *second;  // NULL: there is none
-    bool by_second;                 // the error is told by it
     bough_error_source error;       // asked for
     bough_step_control *control;    // NULL: fixed steps
     bough_breakdown *breakdown;

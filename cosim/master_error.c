@@ -63,7 +63,6 @@ bough_status bough_master_watch(bough_master *m, bough_arena *arena) {
     if (wants_second(m)) {
         bough_second_solution_def chosen = choose(m);
         status = bough_second_solution_create(arena, m->coupling, &chosen, &m->second);
-        m->by_second = true;
     }
     bool one_system = m->coupling->scheme->one_system;
     bool linearised = one_system ? m->error == BOUGH_ERROR_BY_LINEARISED_MEMBERS && can_linearise(m)
@@ -77,30 +76,31 @@ bough_status bough_master_watch(bough_master *m, bough_arena *arena) {
 // -- answers --------------------------------------------------------------------------------------
 
 bool bough_master_measures(const bough_master *m) {
-    return m->by_second && bough_second_solution_error(m->second);
+    return m->second && bough_second_solution_error(m->second);
 }
 
+// A second solution that broke down leaves its place to the linearised members.
 long bough_master_errors(const bough_master *m) {
-    if (m->by_second) return m->steps;
+    if (m->second) return m->steps;
     return m->estimate ? bough_error_estimate_batches(m->estimate) : 0;
 }
 
 const double *bough_master_state_error(const bough_master *m) {
-    if (m->by_second) return bough_second_solution_error(m->second);
+    if (bough_master_measures(m)) return bough_second_solution_error(m->second);
     return m->estimate ? bough_error_estimate_states(m->estimate) : NULL;
 }
 
 double bough_master_error_safety(const bough_master *m) {
-    return m->by_second ? 1 : BOUGH_ERROR_SAFETY;
+    return bough_master_measures(m) ? 1 : BOUGH_ERROR_SAFETY;
 }
 
 double bough_master_input_error(const bough_master *m, int j) {
-    if (m->by_second) return bough_second_solution_input(m->second, j);
+    if (bough_master_measures(m)) return bough_second_solution_input(m->second, j);
     return m->estimate ? bough_error_estimate_input(m->estimate, j) : (double)NAN;
 }
 
 const char *bough_master_error_source(const bough_master *m) {
-    if (m->by_second) return "second solution";
+    if (bough_master_measures(m)) return "second solution";
     return m->estimate ? "linearised members" : "not estimated";
 }
 

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double most_steps = 5000; // a macro step on average: beyond it nobody would wait
+static const double most_steps = 20000; // a macro step on average: beyond it nobody would wait
 
 struct bough_second_solution {
     const bough_assembly *assembly;

@@ -116,7 +116,9 @@ static void uniform_beam_needs_no_table(void **state) {
     check_near(beam->damping[0], 0, 0, 0);
     check_near(s->simulation.output.interval, s->simulation.macro_step, 0, 0);
     assert_int_equal(s->simulation.threads, 0);
-    assert_string_equal(bough_scheme_name(s->simulation.coupling.scheme), "ramp");
+    assert_string_equal(bough_scheme_name(s->simulation.coupling.scheme), "monolithic");
+    assert_int_equal(s->simulation.master.solver, BOUGH_ROSENBROCK);
+    check_near(s->simulation.master.rtol, 1e-5, 0, 0);
     assert_null(s->aero.node);
     assert_null(s->turbine.node);
     check_near(s->gravity[2], -9.80665, 0, 0);
@@ -358,7 +360,7 @@ static void help_covers_scene_and_files(void **state) {
     const char *const lines[] = {
         "\n  - macro_step: (number in s, [1e-7, 1e4]; required; e.g. 20 ms)\n",
         "\n    - scheme: (frozen|gauss-seidel|extrapolated|iterated|ramp|monolithic; default "
-        "ramp; e.g. frozen)\n",
+        "monolithic; e.g. frozen)\n",
         "\n    - axis: (x|y|z; required; with kind: revolute|prismatic|cylindrical|"
         "universal|planar; e.g. x)\n",
         "\n        - alpha: (number in rad; required; e.g. 8 deg)\n",

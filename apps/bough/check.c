@@ -72,8 +72,9 @@ static double beam_mass(const bough_beam *beam) {
 
 static void print_rod(const bough_simulation *s, const bough_beam *beam) {
     const bough_member *rod = &s->rod[beam->port];
-    printf("; %d segments, %d states, %s, rtol %.6g", beam->def.n_segment, rod->system.n_state,
-           rod->solver, bough_scene_micro(s->scene, beam->body)->rtol);
+    printf("; %d segments, %d states", beam->def.n_segment, rod->system.n_state);
+    if (s->master->coupling->whole) return;
+    printf(", %s, rtol %.6g", rod->solver, bough_scene_micro(s->scene, beam->body)->rtol);
 }
 
 static void print_body(const bough_simulation *s, int body) {
@@ -117,10 +118,14 @@ static void print_bodies(const bough_simulation *s) {
         print_body(s, i);
     int moving = bough_simulation_n_joints(s);
     printf("joints: %d moving, %d fixed\n", moving, n - moving);
-    printf("tree: %d state%s (%d of position, %d of speed), %s, rtol %.6g\n", tree->n_q + tree->n_v,
-           plural(tree->n_q + tree->n_v), tree->n_q, tree->n_v, s->leader.solver,
-           s->scene->simulation.master.rtol);
-    printf("states: %d\n", s->master->assembly->n_state);
+    const bough_integrator *whole = s->master->coupling->whole;
+    double rtol = s->scene->simulation.master.rtol;
+    printf("tree: %d state%s (%d of position, %d of speed)", tree->n_q + tree->n_v,
+           plural(tree->n_q + tree->n_v), tree->n_q, tree->n_v);
+    if (!whole) printf(", %s, rtol %.6g", s->leader.solver, rtol);
+    printf("\nstates: %d", s->master->assembly->n_state);
+    putchar('\n');
+    if (whole) printf("integrated as a whole: %s, rtol %.6g\n", whole->ops->title, rtol);
     if (s->scene->n_spring > 0) printf("springs: %d\n", s->scene->n_spring);
     if (s->scene->n_bushing > 0) printf("bushings: %d\n", s->scene->n_bushing);
     if (tree->n_closures > 0) print_closures(tree);

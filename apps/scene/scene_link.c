@@ -411,8 +411,27 @@ static void check_times(bough_schema_reader *r, bough_scene *s) {
     }
 }
 
+static const double default_rtol = 1e-5;
+static const double fine_rtol = 1e-6; // below it BDF's high orders serve better
+
+static bool is_named(const bough_node *map, const char *key) {
+    return map && bough_node_find(map, key);
+}
+
+// Where nothing is said of how bodies are coupled, they are at the stages of a one-step method with error
+// control over the whole: what holds on most scenes.
+static void choose_coupling(bough_scene_simulation *s) {
+    bough_scene_solver *master = &s->master;
+    if (is_named(s->coupling.node, "scheme") || is_named(master->node, "solver")) return;
+    bool tolerance = is_named(master->node, "rtol");
+    if (tolerance && master->rtol < fine_rtol) return;
+    master->solver = BOUGH_ROSENBROCK;
+    if (!tolerance) master->rtol = default_rtol;
+}
+
 void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
     if (!sort_names(r, scene)) return;
+    choose_coupling(&scene->simulation);
     check_times(r, scene);
     link_bodies(r, scene);
     if (bough_arena_exhausted(r->arena)) return;

@@ -145,7 +145,7 @@ def classify(run, truth, rough):
         return "crash", "exit code %d %s" % (run.code, run.said[:150])
     if truth.code != 0 or rough.code != 0:
         return ("unsettled" if run.code == 0 else "diagnosed"), "reference: " + (truth.said or rough.said)[:150]
-    states = {name for name in truth.names if is_state(name)}
+    states = {name for name in truth.names if is_state(name) and (name in run.told or not run.told)}
     settled = error_of(rough, truth, states)
     unsure = max([e for e, _ in settled.values()], default=0)
     errors = error_of(run, truth, states)
@@ -161,7 +161,8 @@ def classify(run, truth, rough):
         return "diagnosed", line
     if unsure > 0.3 * max(error, SMALL):
         return "unsettled", line
-    if not run.told and run.summary.get("scheme") == "monolithic" and error <= GROSS:
+    tells = any(value is not None for value in run.told.values())
+    if not tells and run.summary.get("scheme") == "monolithic" and error <= SMALL:
         return "held", line
     ratios = [(e / t if t > 0 else math.inf, v) for v, (e, t) in errors.items() if e > SMALL and e > 5 * settled.get(v, (0,))[0]]
     ratio, vector = max(ratios, default=(0, None), key=lambda r: r[0])
@@ -184,7 +185,8 @@ def classify(run, truth, rough):
 
 # -- scenes ---------------------------------------------------------------------------------------
 
-MONOLITHIC = ("simulation.coupling={scheme: monolithic}", "simulation.step_control.tolerance=0")
+MONOLITHIC = ("simulation.coupling={scheme: monolithic}", "simulation.step_control.tolerance=0",
+              "simulation.error_estimate=none")
 
 
 def one(arguments, index):
