@@ -281,7 +281,8 @@ static void tell_error(const bough_run *run, FILE *stream) {
     bough_error_verdict v = bough_error_probe_verdict(&run->probe);
     const char *source = bough_master_error_source(run->simulation->master);
     if (v.channel < 0) {
-        fprintf(stream, "error: not estimated\n");
+        bool known = strcmp(source, "not estimated") != 0 && v.unknown == 0;
+        fprintf(stream, "error: %s\n", known ? "none: nothing moves" : "not estimated");
     } else {
         fprintf(stream, "error: %.2g of the range of %s, by %s, same mesh\n", v.relative,
                 run->channels.channel[v.channel].name, source);
