@@ -2,6 +2,8 @@
 
 #include "core/base.h"
 
+#include <string.h>
+
 static void take_members(bough_assembly *a, bough_arena *arena, const bough_assembly_def *def) {
     size_t n = (size_t)def->n_member;
     a->n_member = def->n_member;
@@ -175,6 +177,13 @@ bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *
     status = order_outputs(a, resolved);
     if (bough_is_ok(&status)) *assembly = a;
     return status;
+}
+
+void bough_assembly_states(const bough_assembly *a, double *state) {
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_member *m = a->member[i];
+        memcpy(state + a->state_offset[i], m->state, (size_t)m->system.n_state * sizeof *state);
+    }
 }
 
 void bough_assembly_gather(const bough_assembly *a, int member, const double *output,

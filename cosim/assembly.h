@@ -63,6 +63,9 @@ bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *
 // Outputs and inputs of all members at their current states: output (n_output), input (n_input).
 void bough_assembly_outputs(const bough_assembly *a, double t, double *output, double *input);
 
+// All members' current states: state (n_state).
+void bough_assembly_states(const bough_assembly *a, double *state);
+
 // input[j] = output[source[j]] for the inputs of one member.
 void bough_assembly_gather(const bough_assembly *a, int member, const double *output,
                            double *input);

@@ -25,11 +25,7 @@ bough_status bough_breakdown_create(bough_arena *arena, const bough_assembly *as
 }
 
 void bough_breakdown_keep(bough_breakdown *b) {
-    for (int i = 0; i < b->assembly->n_member; i++) {
-        const bough_system *s = &b->assembly->member[i]->system;
-        memcpy(b->state + b->assembly->state_offset[i], b->assembly->member[i]->state,
-               (size_t)s->n_state * sizeof(double));
-    }
+    bough_assembly_states(b->assembly, b->state);
 }
 
 // Nothing when the judgement fails too: the state may be past judging.

@@ -267,12 +267,20 @@ static bool take(bough_coupled *coupled, bough_arena *arena) {
     size_t n_input = (size_t)a->n_input, n_output = (size_t)a->n_output;
     coupled->status = bough_arena_take(arena, (size_t)a->n_member * sizeof *coupled->status);
     coupled->order = bough_arena_take(arena, (size_t)a->n_member * sizeof *coupled->order);
-    coupled->setup_state = bough_arena_doubles(arena, (size_t)a->n_state);
-    coupled->setup_input = bough_arena_doubles(arena, n_input);
     coupled->input = bough_arena_doubles(arena, n_input);
-    coupled->change = bough_arena_doubles(arena, n_input);
     coupled->output = bough_arena_doubles(arena, n_output);
-    coupled->output_change = bough_arena_doubles(arena, n_output);
+    if (bough_arena_exhausted(arena)) return false;
+    for (int i = 0; i < a->n_member; i++)
+        coupled->order[i] = i;
+    return true;
+}
+
+static bool take_solution(bough_coupled *coupled, bough_arena *arena) {
+    const bough_assembly *a = coupled->assembly;
+    coupled->setup_state = bough_arena_doubles(arena, (size_t)a->n_state);
+    coupled->setup_input = bough_arena_doubles(arena, (size_t)a->n_input);
+    coupled->change = bough_arena_doubles(arena, (size_t)a->n_input);
+    coupled->output_change = bough_arena_doubles(arena, (size_t)a->n_output);
     return !bough_arena_exhausted(arena);
 }
 
@@ -286,15 +294,24 @@ static void order_members(bough_coupled *coupled) {
     }
 }
 
-bough_status bough_coupled_create(bough_arena *arena, const bough_assembly *assembly,
-                                  bough_pool *pool, bough_coupled **coupled) {
+bough_status bough_coupled_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
+                                             bough_pool *pool, bough_coupled **coupled) {
     bough_coupled *a = bough_arena_take(arena, sizeof *a);
     if (!a) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     a->assembly = assembly;
     a->pool = pool;
     if (!take(a, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     *coupled = a;
-    bough_status status = bough_condensed_create(arena, assembly, &a->own);
+    return bough_ok();
+}
+
+bough_status bough_coupled_create(bough_arena *arena, const bough_assembly *assembly,
+                                  bough_pool *pool, bough_coupled **coupled) {
+    bough_status status = bough_coupled_create_evaluation(arena, assembly, pool, coupled);
+    if (!bough_is_ok(&status)) return status;
+    bough_coupled *a = *coupled;
+    if (!take_solution(a, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    status = bough_condensed_create(arena, assembly, &a->own);
     a->interface = a->own;
     if (bough_is_ok(&status)) order_members(a);
     return status;

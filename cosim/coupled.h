@@ -53,6 +53,15 @@ typedef struct bough_coupled {
 bough_status bough_coupled_create(bough_arena *arena, const bough_assembly *assembly,
                                   bough_pool *pool, bough_coupled **coupled);
 
+// The same without factors: for bough_coupled_inputs and the rates only.
+bough_status bough_coupled_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
+                                             bough_pool *pool, bough_coupled **coupled);
+
+// The assembly as a system without ports, from the members' current states on; `name` is borrowed. Its
+// self is a bough_coupled for evaluations. All members' systems are in use while it is asked.
+bough_status bough_coupled_system(bough_arena *arena, const bough_assembly *assembly,
+                                  bough_pool *pool, const char *name, bough_system *system);
+
 // From now on solutions keep these states (n, borrowed): x is 0 there, whatever force that takes.
 bough_status bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n, const int *held);
 

@@ -350,10 +350,7 @@ void bough_coupling_store(const bough_coupling *c, double *z) {
     const bough_assembly *a = c->assembly;
     double *row[4];
     int n = memory_rows(c, row);
-    for (int i = 0; i < a->n_member; i++) {
-        const bough_system *s = &a->member[i]->system;
-        memcpy(z + a->state_offset[i], a->member[i]->state, (size_t)s->n_state * sizeof(double));
-    }
+    bough_assembly_states(a, z);
     for (int p = 0; p < n; p++) {
         memcpy(z + a->n_state + p * a->n_input, row[p], (size_t)a->n_input * sizeof(double));
     }

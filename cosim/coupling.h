@@ -94,7 +94,7 @@ typedef struct bough_coupling {
                             // NaN: not known
 
     // by a scheme that integrates all members as one system; NULL
-    const bough_integrator *whole;
+    bough_member *whole;
 
     long sweeps; // by the iterated scheme: runs of all members over a macro step so far
 } bough_coupling;

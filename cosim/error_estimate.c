@@ -28,7 +28,7 @@ static alpha_method method_of(double h, double radius) {
 
 struct bough_error_estimate {
     const bough_assembly *assembly;
-    const bough_integrator *whole; // all members as one system: no defects, only own errors; or NULL
+    const bough_member *whole; // all members as one system: no defects, only own errors; or NULL
     // the batch
     int n_step;
     double start[BATCH], end[BATCH]; // [s]
@@ -269,10 +269,7 @@ static bool borrow(bough_error_estimate *e, const bough_coupling *c, double h) {
 // Linearises where the members are now.
 static bool linearise(bough_error_estimate *e, bough_coupling *c, double h) {
     const bough_assembly *a = e->assembly;
-    for (int i = 0; i < a->n_member; i++) {
-        const bough_system *s = &a->member[i]->system;
-        memcpy(e->at + a->state_offset[i], a->member[i]->state, (size_t)s->n_state * sizeof(double));
-    }
+    bough_assembly_states(a, e->at);
     if (borrow(e, c, h)) return true;
     e->method = method_of(h, own_radius);
     bough_status status = bough_coupled_setup(e->coupled, c->t1, e->at, c->input, e->method.factor);

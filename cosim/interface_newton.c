@@ -40,10 +40,7 @@ bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coup
     n->length = length;
     n->age = 0;
     const bough_assembly *a = c->assembly;
-    for (int i = 0; i < a->n_member; i++) {
-        const bough_system *s = &a->member[i]->system;
-        memcpy(n->state + a->state_offset[i], a->member[i]->state, (size_t)s->n_state * sizeof(double));
-    }
+    bough_assembly_states(a, n->state);
     bough_status status = bough_ok();
     for (int k = 0; k < n->n_span && bough_is_ok(&status); k++) {
         status = bough_coupled_setup(n->coupled[k], c->t0, n->state, c->input, span[k] * length);

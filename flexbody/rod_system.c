@@ -2,6 +2,7 @@
 
 #include "flexbody/rod_tangent.h"
 
+#include <math.h>
 #include <string.h>
 
 struct bough_rod_body {
@@ -78,14 +79,15 @@ static bool constrain(void *self, double t, double *state) {
     (void)t;
     const bough_rod_body *b = self;
     int n = b->model->n;
-    double *p = state + (size_t)BOUGH_ROD_P * n;
+    double *restrict p = state + (size_t)BOUGH_ROD_P * n;
+#pragma omp simd
     for (int i = 0; i < n; i++) {
-        bough_quaternion unit = bough_quaternion_normalised(
-            (bough_quaternion){p[i], p[n + i], p[2 * n + i], p[3 * n + i]});
-        p[i] = unit.w;
-        p[n + i] = unit.x;
-        p[2 * n + i] = unit.y;
-        p[3 * n + i] = unit.z;
+        double w = p[i], x = p[n + i], y = p[2 * n + i], z = p[3 * n + i];
+        double norm = sqrt(w * w + x * x + y * y + z * z);
+        p[i] = w / norm;
+        p[n + i] = x / norm;
+        p[2 * n + i] = y / norm;
+        p[3 * n + i] = z / norm;
     }
     return false;
 }

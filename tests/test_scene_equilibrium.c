@@ -142,9 +142,9 @@ static void turbine_on_its_tower_stays_at_rest(void **context) {
     bough_simulation *s = scene_build(arena, "apps/turbine/parked.yaml", sets);
     size_t n = (size_t)s->master->assembly->n_state;
     double *before = bough_arena_doubles(arena, 2 * n), *after = before + n;
-    bough_equilibrium_state(s->master->assembly, before);
+    bough_assembly_states(s->master->assembly, before);
     for (int step = 0; step < 30; step++) scene_step(s);
-    bough_equilibrium_state(s->master->assembly, after);
+    bough_assembly_states(s->master->assembly, after);
     for (size_t k = 0; k < n; k++) check_near(after[k], before[k], 0, 1e-6);
     bough_arena_destroy(arena);
 }

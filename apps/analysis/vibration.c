@@ -62,7 +62,7 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, solution *x
     x->mean = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     x->held = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *x->held);
     if (!x->state || !x->mean || !x->held) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_equilibrium_state(a, x->state);
+    bough_assembly_states(a, x->state);
     bough_status status = bough_coupled_create(arena, a, NULL, &x->coupled);
     if (!bough_is_ok(&status)) return status;
     int n_held = bough_equilibrium_held(s->tree, false, x->held);

@@ -118,14 +118,14 @@ static void print_bodies(const bough_simulation *s) {
         print_body(s, i);
     int moving = bough_simulation_n_joints(s);
     printf("joints: %d moving, %d fixed\n", moving, n - moving);
-    const bough_integrator *whole = s->master->coupling->whole;
+    const bough_member *whole = s->master->coupling->whole;
     double rtol = s->scene->simulation.master.rtol;
     printf("tree: %d state%s (%d of position, %d of speed)", tree->n_q + tree->n_v,
            plural(tree->n_q + tree->n_v), tree->n_q, tree->n_v);
     if (!whole) printf(", %s, rtol %.6g", s->leader.solver, rtol);
     printf("\nstates: %d", s->master->assembly->n_state);
     putchar('\n');
-    if (whole) printf("integrated as a whole: %s, rtol %.6g\n", whole->ops->title, rtol);
+    if (whole) printf("integrated as a whole: %s, rtol %.6g\n", whole->solver, rtol);
     if (s->scene->n_spring > 0) printf("springs: %d\n", s->scene->n_spring);
     if (s->scene->n_bushing > 0) printf("bushings: %d\n", s->scene->n_bushing);
     if (tree->n_closures > 0) print_closures(tree);

@@ -208,12 +208,12 @@ static void write_work(bough_summary *s, const bough_statistics *done) {
 
 // The integrator of all bodies together, where the scheme has one.
 static void write_whole(bough_summary *s, const bough_run *run) {
-    const bough_integrator *whole = run->simulation->master->coupling->whole;
+    const bough_member *whole = run->simulation->master->coupling->whole;
     if (whole == NULL) return;
     bough_statistics done =
         bough_run_statistics(run, run->simulation->master->assembly->n_member);
     bough_summary_object(s, "whole");
-    bough_summary_text(s, "solver", whole->ops->title);
+    bough_summary_text(s, "solver", whole->solver);
     write_work(s, &done);
     bough_summary_end(s);
 }

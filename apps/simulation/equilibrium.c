@@ -24,14 +24,6 @@ double bough_equilibrium_time(const bough_simulation *s) {
     return last;
 }
 
-void bough_equilibrium_state(const bough_assembly *assembly, double *state) {
-    for (int i = 0; i < assembly->n_member; i++) {
-        const bough_member *m = assembly->member[i];
-        size_t size = (size_t)m->system.n_state * sizeof *state;
-        memcpy(state + assembly->state_offset[i], m->state, size);
-    }
-}
-
 void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly,
                                  const double *state) {
     for (int i = 0; i < assembly->n_member; i++) {
@@ -217,7 +209,7 @@ static bough_status balance_members(bough_arena *arena, bough_simulation *s,
     if (s->jump != NULL) bough_jump_link_begin(s->jump, time);
     status = bough_coupled_hold(arena, coupled, bough_equilibrium_held(s->tree, true, row), row);
     if (!bough_is_ok(&status)) return status;
-    bough_equilibrium_state(assembly, state);
+    bough_assembly_states(assembly, state);
     bough_tree_prescribe(s->tree, time, state);
     search self = {s, coupled, time, rod_changes(arena, s)};
     if (!self.change) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");

@@ -30,10 +30,7 @@ double bough_equilibrium_time(const bough_simulation *s);
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                           bough_equilibrium_work *work);
 
-// States of all members (n_state) into a row.
-void bough_equilibrium_state(const bough_assembly *assembly, double *state);
-
-// The other way round; the members' clocks are set to 0, and `view` follows.
+// Sets the states of all members (n_state); their clocks are set to 0, and `view` follows.
 void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly,
                                  const double *state);
 

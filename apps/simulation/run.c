@@ -141,12 +141,12 @@ void bough_run_all(bough_run *run) { bough_pool_region(run->simulation->pool, st
 
 bough_statistics bough_run_statistics(const bough_run *run, int member) {
     const bough_master *m = run->simulation->master;
-    const bough_integrator *whole = m->coupling->whole;
+    const bough_member *whole = m->coupling->whole;
     bough_statistics done = {0};
     if (member < m->assembly->n_member) {
         done = bough_member_statistics(m->assembly->member[member]);
     } else if (whole) {
-        whole->ops->statistics(whole->self, &done);
+        done = bough_member_statistics(whole);
     }
     bough_statistics_add(&done, &run->earlier[member]);
     return done;

@@ -1,0 +1,126 @@
+// The coupled members behind the contract of core/system.h. It has no ports.
+#include "cosim/coupled.h"
+
+#include <string.h>
+
+static bool derivative(void *self, double t, const double *state, const double *input,
+                       double *rate) {
+    (void)input;
+    bough_status status = bough_coupled_rate(self, t, state, rate);
+    return bough_is_ok(&status);
+}
+
+static bool derivative_again(void *self, double t, const double *state, const double *input,
+                             double *rate) {
+    (void)input;
+    bough_status status = bough_coupled_rate_again(self, t, state, rate);
+    return bough_is_ok(&status);
+}
+
+static void output(void *self, double t, const double *state, const double *input, double *out) {
+    (void)self, (void)t, (void)state, (void)input, (void)out;
+}
+
+// NOLINTNEXTLINE(readability-function-size): the contract fixes the parameters
+static void output_tangent(void *self, double t, const double *state, const double *input,
+                           const double *state_rate, const double *input_rate, double *rate) {
+    (void)self, (void)t, (void)state, (void)input, (void)state_rate, (void)input_rate, (void)rate;
+}
+
+static void input_columns(void *self, double t, const double *state, const double *input,
+                          double *column) {
+    (void)self, (void)t, (void)state, (void)input, (void)column;
+}
+
+static void *factors(void *self, bough_arena *arena) {
+    const bough_coupled *coupled = self;
+    bough_coupled *own = NULL;
+    bough_status status = bough_coupled_create(arena, coupled->assembly, coupled->pool, &own);
+    return bough_is_ok(&status) ? own : NULL;
+}
+
+static bool linearise(void *self, double t, const double *state, const double *input,
+                      void *factors) {
+    (void)self, (void)input;
+    bough_coupled *own = factors;
+    bough_coupled_inputs(own, t, state);
+    bough_status status = bough_coupled_linearise(own, t, state, own->input);
+    return bough_is_ok(&status);
+}
+
+static bool factor(void *self, void *factors, double gamma) {
+    (void)self;
+    bough_status status = bough_coupled_factor(factors, gamma);
+    return bough_is_ok(&status);
+}
+
+static void solve(void *self, void *factors, double *x) {
+    (void)self;
+    bough_coupled_solve(factors, x);
+}
+
+static bool constrain(void *self, double t, double *state) {
+    const bough_assembly *a = ((const bough_coupled *)self)->assembly;
+    bool far = false;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_system *s = &a->member[i]->system;
+        if (s->ops->constrain == NULL) continue;
+        far = s->ops->constrain(s->self, t, state + a->state_offset[i]) || far;
+    }
+    return far;
+}
+
+static void project(void *self, const double *state, double *x) {
+    const bough_assembly *a = ((const bough_coupled *)self)->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_system *s = &a->member[i]->system;
+        int first = a->state_offset[i];
+        if (s->ops->project) s->ops->project(s->self, state + first, x + first);
+    }
+}
+
+static void hold_loads(void *self, double t0, double t1) {
+    const bough_assembly *a = ((const bough_coupled *)self)->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_system *s = &a->member[i]->system;
+        if (s->ops->hold_loads) s->ops->hold_loads(s->self, t0, t1);
+    }
+}
+
+static const bough_system_ops operations = {
+    .derivative = derivative,
+    .derivative_again = derivative_again,
+    .output = output,
+    .output_tangent = output_tangent,
+    .input_columns = input_columns,
+    .factors = factors,
+    .linearise = linearise,
+    .factor = factor,
+    .solve = solve,
+    .constrain = constrain,
+    .project = project,
+    .hold_loads = hold_loads,
+};
+
+bough_status bough_coupled_system(bough_arena *arena, const bough_assembly *a, bough_pool *pool,
+                                  const char *name, bough_system *system) {
+    bough_coupled *evaluation = NULL;
+    bough_status status = bough_coupled_create_evaluation(arena, a, pool, &evaluation);
+    double *scale = bough_arena_doubles(arena, (size_t)a->n_state);
+    double *initial = bough_arena_doubles(arena, (size_t)a->n_state);
+    if (!bough_is_ok(&status)) return status;
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_system *s = &a->member[i]->system;
+        memcpy(scale + a->state_offset[i], s->scale, (size_t)s->n_state * sizeof *scale);
+    }
+    bough_assembly_states(a, initial);
+    *system = (bough_system){.name = name,
+                             .kind = "coupled",
+                             .n_state = a->n_state,
+                             .scale = scale,
+                             .initial = initial,
+                             .ops = &operations,
+                             .self = evaluation};
+    return status;
+}
