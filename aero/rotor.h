@@ -190,6 +190,9 @@ bough_vec3 bough_rotor_hub_drag(const bough_rotor *rotor, double area, bough_vec
 // The undisturbed wind that it meets.
 const bough_wind *bough_rotor_wind(const bough_rotor *rotor);
 
+// Changes the speed of a wind by a formula [m/s]; the next sample meets it.
+void bough_rotor_set_speed(const bough_rotor *rotor, double speed);
+
 // Whether the wind is known all over a disk: bough_wind_covers.
 bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius);
 

@@ -57,6 +57,19 @@ class Module(unittest.TestCase):
             self.assertAlmostEqual(session.time, 0.1)
             self.assertFalse(session.step())
 
+    def test_inputs_are_set_by_name(self):
+        load = "loads=[{joint: bob, torque: %s}]"
+        with bough.Session(PENDULUM, "simulation.duration=0.5 s", load % "0, input: push") as run:
+            self.assertEqual(run.inputs, {"push": "N m"})
+            run["push"] = "3e-3 kN m"
+            rows = run.advance()
+            with self.assertRaises(bough.Error):
+                run["push"] = "3 kg"
+            with self.assertRaises(KeyError):
+                run["pull"] = 1
+        with bough.Session(PENDULUM, "simulation.duration=0.5 s", load % "3 N m") as other:
+            self.assertEqual(bytes(other.advance()["bobPos"]), bytes(rows["bobPos"]))
+
     def test_errors_say_what_the_program_says(self):
         with self.assertRaises(bough.Error) as caught:
             bough.Session(PENDULUM, "simulation.duratoin=1 s")

@@ -65,6 +65,22 @@ BOUGH_API double bough_session_read(bough_session *session, int channel);
 /* All of them (count), always at the same place; NULL when there are none or a step has failed. */
 BOUGH_API const double *bough_session_values(bough_session *session);
 
+/* Inputs: what the scene leaves to the caller ('input: NAME' of a load, of a joint's motion, of the
+   wind; 'control: {kind: external}'). Their number, names, units (SI), the index of a name (-1:
+   none), the value now (NaN when there is no such input). */
+BOUGH_API int bough_session_inputs(const bough_session *session);
+BOUGH_API const char *bough_session_input_name(const bough_session *session, int input);
+BOUGH_API const char *bough_session_input_unit(const bough_session *session, int input);
+BOUGH_API int bough_session_input(const bough_session *session, const char *name);
+BOUGH_API double bough_session_input_value(const bough_session *session, int input);
+
+/* Sets an input from the next step on, in SI, or as text with any unit that fits ("40 kN m"). A load
+   and the wind have the value from the step's beginning, a joint is there at its end; what is
+   demanded as control is sampled at the control's rate. BOUGH_SESSION_INVALID: no such input, no
+   finite number, a wrong unit; nothing is changed. */
+BOUGH_API int bough_session_set(bough_session *session, int input, double value);
+BOUGH_API int bough_session_set_text(bough_session *session, int input, const char *value);
+
 /* Copies of all that a session goes on from, of `size` bytes (0: not opened), in the caller's
    memory, aligned as malloc aligns; good until the process ends.
 

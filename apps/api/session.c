@@ -1,6 +1,8 @@
 #include "apps/api/bough.h"
 
+#include "apps/config/schema.h"
 #include "apps/scene/fingerprint.h"
+#include "apps/simulation/input_link.h"
 #include "apps/simulation/run.h"
 
 #include <math.h>
@@ -187,6 +189,69 @@ const double *bough_session_values(bough_session *s) {
 double bough_session_read(bough_session *s, int channel) {
     const double *value = known(s, channel) ? bough_session_values(s) : NULL;
     return value ? value[channel] : (double)NAN;
+}
+
+// -- inputs ---------------------------------------------------------------------------------------
+
+static const bough_scene_input *input_at(const bough_session *s, int input) {
+    if (!s->open || input < 0) return NULL;
+    const bough_scene *scene = s->run.simulation->scene;
+    return input < scene->n_input ? &scene->input[input] : NULL;
+}
+
+static double *input_value(const bough_session *s, int input) {
+    return input_at(s, input) ? bough_input_link_values(s->run.simulation->inputs) + input : NULL;
+}
+
+int bough_session_inputs(const bough_session *s) {
+    return s->open ? s->run.simulation->scene->n_input : 0;
+}
+
+const char *bough_session_input_name(const bough_session *s, int input) {
+    const bough_scene_input *x = input_at(s, input);
+    return x ? x->name : "";
+}
+
+const char *bough_session_input_unit(const bough_session *s, int input) {
+    const bough_scene_input *x = input_at(s, input);
+    return x ? bough_dimension_unit((bough_dimension)x->dimension) : "";
+}
+
+int bough_session_input(const bough_session *s, const char *name) {
+    for (int k = 0; k < bough_session_inputs(s); k++) {
+        if (strcmp(input_at(s, k)->name, name) == 0) return k;
+    }
+    return -1;
+}
+
+double bough_session_input_value(const bough_session *s, int input) {
+    const double *value = input_value(s, input);
+    return value ? *value : (double)NAN;
+}
+
+int bough_session_set(bough_session *s, int input, double value) {
+    double *to = input_value(s, input);
+    if (!to) {
+        return conclude(s, bough_fail(BOUGH_INVALID, "the scene has no input of index %d", input));
+    }
+    if (!isfinite(value)) {
+        return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a finite number, got %g",
+                                      input_at(s, input)->name, value));
+    }
+    *to = value;
+    return conclude(s, bough_ok());
+}
+
+int bough_session_set_text(bough_session *s, int input, const char *text) {
+    const bough_scene_input *x = input_at(s, input);
+    double value = (double)NAN;
+    char why[160] = "";
+    if (x && !bough_quantity(text, (bough_dimension)x->dimension, &value, why)) {
+        return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a value in %s, got '%.80s'%s%s",
+                                      x->name, bough_session_input_unit(s, input), text,
+                                      why[0] ? ": " : "", why));
+    }
+    return bough_session_set(s, input, value);
 }
 
 void bough_session_close(bough_session *s) {

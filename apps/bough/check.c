@@ -174,10 +174,11 @@ static void print_vector(const double v[3], const char *unit) {
 
 static void print_load(const bough_scene *scene, const bough_scene_load *load) {
     static const char *const frames[] = {"ground", "body", "section"};
+    const char *input = load->input;
     if (load->joint_name != NULL) {
         bool turns = scene->body[load->joint].joint.kind == BOUGH_JOINT_REVOLUTE;
         printf("load on joint %s: ", load->joint_name);
-        if (load->n_time > 0) {
+        if (load->n_time > 0 && input == NULL) {
             printf("table from %.6g to %.6g s", load->times[0], load->times[load->n_time - 1]);
         } else {
             printf("%.6g %s", load->amount, turns ? "N m" : "N");
@@ -187,9 +188,10 @@ static void print_load(const bough_scene *scene, const bough_scene_load *load) {
         printf("load on %s: %s axes", load->body_name, frames[load->frame]);
         print_vector(load->force, along ? "N/m" : "N");
         print_vector(load->moment, along ? "N m/m" : "N m");
-        if (load->n_time > 0) printf(", by a table over time");
+        if (load->n_time > 0 && input == NULL) printf(", by a table over time");
     }
     if (load->ramp[1] > 0) printf(", ramp from %.6g to %.6g s", load->ramp[0], load->ramp[1]);
+    if (input != NULL) printf(", set by the input %s", input);
     putchar('\n');
 }
 

@@ -136,7 +136,9 @@ static void print_control(const bough_simulation *s, FILE *stream) {
         return;
     }
     fprintf(stream, "control: built, %s%s, %.6g Hz, gear ratio %.6g, generator torque%s, %d event%s\n",
-            c->kind == BOUGH_SCENE_BLADED ? "library " : "variable-speed law",
+            c->kind == BOUGH_SCENE_BLADED         ? "library "
+            : c->kind == BOUGH_SCENE_EXTERNAL ? "by inputs from outside"
+                                              : "variable-speed law",
             c->kind == BOUGH_SCENE_BLADED ? c->library : "", c->rate, c->gear_ratio,
             is_pitched(s->scene) ? " and pitch" : " only", c->n_event, c->n_event == 1 ? "" : "s");
 }

@@ -132,6 +132,9 @@ void bough_schema_help(const bough_schema *schema, int indent, FILE *stream);
 // Writes a JSON Schema that a file which one of the n schemas describes meets.
 void bough_schema_json(const char *title, const bough_schema *const *schema, int n, FILE *stream);
 
+// "rad/s"; "" for a pure number.
+const char *bough_dimension_unit(bough_dimension dimension);
+
 // Writes the SI unit of every dimension and an example with another, as a list in Markdown.
 void bough_schema_help_units(FILE *stream);
 

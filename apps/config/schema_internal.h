@@ -4,9 +4,6 @@
 
 #include "apps/config/schema.h"
 
-// "rad/s"; "" for a pure number.
-const char *bough_dimension_unit(bough_dimension dimension);
-
 // "a length (in m, or with a unit, as '61.5 m')"
 void bough_dimension_expected(bough_dimension dimension, char text[96]);
 

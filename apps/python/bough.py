@@ -7,7 +7,7 @@
 
 Needs nothing beyond Python 3.8; where numpy is installed, values and rows are its arrays, on the
 same memory. The library is the one that BOUGH_LIBRARY names, else the one in the folder above this
-file's, where `cmake --install` puts it, else one that the system finds.
+file's or the next, where `cmake --install` puts it, else one that the system finds.
 """
 import array
 import ctypes
@@ -30,9 +30,11 @@ class Error(Exception):
 
 
 def _load():
-    beside = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "libbough.so.0")
-    path = os.environ.get("BOUGH_LIBRARY") or (beside if os.path.exists(beside) else None)
-    library = ctypes.CDLL(path or "libbough.so.0")
+    here = os.path.dirname(os.path.abspath(__file__))
+    above = [os.path.join(here, *[".."] * up, "libbough.so.0") for up in (1, 2)]
+    found = [path for path in above if os.path.exists(path)]
+    path = os.environ.get("BOUGH_LIBRARY") or (found[0] if found else "libbough.so.0")
+    library = ctypes.CDLL(path)
     session, text, real = ctypes.c_void_p, ctypes.c_char_p, ctypes.c_double
     for name, result, *arguments in (
         ("open", session, text, ctypes.POINTER(text), ctypes.c_int),
@@ -46,6 +48,12 @@ def _load():
         ("name", text, session, ctypes.c_int),
         ("unit", text, session, ctypes.c_int),
         ("values", ctypes.c_void_p, session),
+        ("inputs", ctypes.c_int, session),
+        ("input_name", text, session, ctypes.c_int),
+        ("input_unit", text, session, ctypes.c_int),
+        ("input_value", real, session, ctypes.c_int),
+        ("set", ctypes.c_int, session, ctypes.c_int, real),
+        ("set_text", ctypes.c_int, session, ctypes.c_int, text),
         ("size", ctypes.c_size_t, session),
         ("save", ctypes.c_int, session, ctypes.c_void_p),
         ("restore", ctypes.c_int, session, ctypes.c_void_p),
@@ -89,6 +97,8 @@ class Session:
             words = [self._call(call, i).decode() for i in range(self._call("count"))]
             setattr(self, attribute, words)
         self._index = {name: i for i, name in enumerate(self.names)}
+        inputs = range(self._call("inputs"))
+        self._input = {self._call("input_name", i).decode(): i for i in inputs}
 
     def __enter__(self):
         return self
@@ -141,6 +151,19 @@ class Session:
     def __getitem__(self, name):
         """A channel now: session["RotSpeed"]."""
         return float(self.values[self._index[name]])
+
+    @property
+    def inputs(self):
+        """What the scene leaves to be set: a dictionary of names and units (SI)."""
+        return {name: self._call("input_unit", i).decode() for name, i in self._input.items()}
+
+    def __setitem__(self, name, value):
+        """Sets an input from the next step on: a number in SI, or a text with a unit, "5 kN m"."""
+        i = self._input[name]
+        if isinstance(value, str):
+            self._check(self._call("set_text", i, value.encode()))
+        else:
+            self._check(self._call("set", i, value))
 
     def advance(self, until=None, channels=None):
         """Steps to a time [s] or the end; a row per step of the channels, None for all, and one of

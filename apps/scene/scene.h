@@ -85,6 +85,7 @@ typedef struct bough_scene_step {
 // Of a revolute [rad, rad/s] or prismatic [m, m/s] joint.
 typedef struct bough_scene_motion {
     const bough_node *node; // NULL: moved by forces
+    const char *input;      // in place of the constant of `def`; NULL: none
     bough_motion_def def;
 } bough_scene_motion;
 
@@ -213,6 +214,7 @@ typedef struct bough_scene_load {
     double end_force[3], end_moment[3]; // ALONG: at span[1], linear between; those above when not given
     int frame;              // bough_scene_load_frame
     double ramp[2];         // [s]
+    const char *input;      // NULL: none
     double point[3];        // on a rigid body: in its frame [m]
 } bough_scene_load;
 
@@ -351,6 +353,7 @@ typedef struct bough_scene_wind {
     double direction;             // where it blows to, from ground x about z [rad]
     double vertical;              // upwards [m/s]
     bough_scene_wind_table table; // in place of the speed
+    const char *input;            // in place of the speed; NULL: none
     const char *file;             // of kinds wnd and bts; once checked its path
     double reference_length;      // of the linear shears of a wnd file [m]
     double upflow;                // of the whole wind [rad]
@@ -404,6 +407,7 @@ typedef struct bough_scene_aero {
 typedef enum bough_scene_controller {
     BOUGH_SCENE_VARIABLE_SPEED,
     BOUGH_SCENE_BLADED,
+    BOUGH_SCENE_EXTERNAL, // whoever steps the scene
 } bough_scene_controller;
 
 typedef enum bough_scene_event_kind {
@@ -473,6 +477,24 @@ typedef struct bough_scene_modes {
     bool shapes;            // written too
 } bough_scene_modes;
 
+// What is left to whoever steps the scene: a value by name, set between steps.
+typedef enum bough_scene_input_kind {
+    BOUGH_INPUT_LOAD,   // multiplies a load, or is one along a joint
+    BOUGH_INPUT_MOTION, // where a joint is
+    BOUGH_INPUT_WIND,   // the wind's speed
+    BOUGH_INPUT_TORQUE, // demanded of the generator, on the fast shaft
+    BOUGH_INPUT_PITCH,  // demanded of a blade
+} bough_scene_input_kind;
+
+typedef struct bough_scene_input {
+    const bough_node *node; // where it is named
+    const char *name;
+    bough_scene_input_kind kind;
+    int dimension;  // bough_dimension
+    double initial; // until it is set, SI
+    int index;      // of the load, the body on the joint, or the blade
+} bough_scene_input;
+
 typedef struct bough_scene {
     const bough_node *node;
     const char *file; // path of the scene
@@ -499,6 +521,8 @@ typedef struct bough_scene {
     bough_scene_aero aero; // needs the turbine
     bough_scene_control control; // likewise
     bough_scene_modes modes;
+    int n_input;
+    bough_scene_input *input; // (n_input) of all parts above
 } bough_scene;
 
 // Reads and checks the scene with the replacements `sets` ("bodies[2].pitch=5 deg"). Every error

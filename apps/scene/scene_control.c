@@ -93,10 +93,11 @@ static const bough_schema event_schema = {.name = "an event", .size = sizeof(bou
 
 #define AT(member) .offset = offsetof(bough_scene_control, member)
 static const bough_key control_keys[] = {
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("variable-speed", "bladed"),
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("variable-speed", "bladed", "external"),
      .required = true, AT(kind),
-     .help = "the baseline law of the NREL 5 MW turbine, or a shared library with the function "
-             "DISCON in the style of Bladed"},
+     .help = "the baseline law of the NREL 5 MW turbine; a shared library with the function DISCON "
+             "in the style of Bladed; or whoever steps the scene, by the inputs GenTq, the demanded "
+             "torque on the fast shaft, and BlPitchCom1 to 3, the demanded pitch"},
     {.name = "rate", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_FREQUENCY, .range = "> 0",
      .fallback = "50", AT(rate), .example = "80 Hz",
      .help = "samples; their period is a multiple of the macro step"},

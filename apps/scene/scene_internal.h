@@ -77,6 +77,7 @@ const bough_node *bough_link_value(const bough_node *node, const char *key);
 void bough_link_turbine(bough_schema_reader *r, bough_scene *s);
 void bough_link_aero(bough_schema_reader *r, bough_scene *s);
 void bough_link_control(bough_schema_reader *r, bough_scene *s);
+void bough_link_inputs(bough_schema_reader *r, bough_scene *s);
 
 // Replaces or adds the value that "path.to[2].key=value" names; the new root, or NULL after an
 // error. Nodes that an alias shares are copied before they change.

@@ -467,6 +467,7 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
     if (bough_arena_exhausted(r->arena)) return;
     bough_link_aero(r, scene);
     bough_link_control(r, scene);
+    if (r->errors->n == 0) bough_link_inputs(r, scene);
     link_modes(r, scene);
     bough_link_at(r, "%s", "");
 }

@@ -205,6 +205,9 @@ void bough_scene_check_load(bough_schema_reader *r, void *item) {
         check_body_keys(r, load);
     }
     bough_scene_check_ramp(r, load->node, load->ramp);
+    if (load->input == NULL || (load->n_time == 0 && load->ramp[1] == 0)) return;
+    bough_schema_error(r, bough_node_find(load->node, "input"), "input",
+                       "only without a ramp or a table");
 }
 
 // -- checks against the body ----------------------------------------------------------------------

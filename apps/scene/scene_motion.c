@@ -120,15 +120,21 @@ static void read_speed(bough_schema_reader *r, const bough_node *node, void *fie
 }
 
 #define FORM .form = "a number, {from: 0, to: ..., ramp: [...]} or {times: [...], values: [...]}"
+#define INPUT                                                                                      \
+    {.name = "input", .kind = BOUGH_KEY_TEXT, .offset = offsetof(bough_scene_motion, input),       \
+     .example = "yaw", .help = "with a constant place: name by which it is set between steps"}
 static const bough_key revolute_keys[] = {
     {.name = "speed", .kind = BOUGH_KEY_CUSTOM, .read = read_angular_speed, FORM},
     {.name = "angle", .kind = BOUGH_KEY_CUSTOM, .read = read_angle, FORM},
+    INPUT,
 };
 static const bough_key prismatic_keys[] = {
     {.name = "speed", .kind = BOUGH_KEY_CUSTOM, .read = read_speed, FORM},
     {.name = "position", .kind = BOUGH_KEY_CUSTOM, .read = read_position, FORM},
+    INPUT,
 };
 #undef FORM
+#undef INPUT
 
 static const bough_key cylindrical_keys[] = {
     {.name = "speed", .kind = BOUGH_KEY_CUSTOM, .read = read_speed},
@@ -157,7 +163,12 @@ static void check_motion(bough_schema_reader *r, void *item) {
     if (motion->node == NULL) return;
     motion->def.given = true;
     motion->def.speed = bough_node_find(motion->node, "speed") != NULL;
-    if (motion->node->n == 1) return;
+    bool constant = motion->def.n == 0 && !(motion->def.end > motion->def.start);
+    if (motion->input != NULL && (motion->def.speed || !constant)) {
+        bough_schema_error(r, bough_node_find(motion->node, "input"), "input",
+                           "only with a constant place to start from");
+    }
+    if (motion->node->n == (motion->input != NULL ? 2 : 1)) return;
     bough_schema_error(r, motion->node, "", "expected either the speed or where the joint is");
 }
 

@@ -156,6 +156,9 @@ static const bough_key wind_keys[] = {
      AT(speed), .example = "11.4 m/s",
      .help = "horizontal, at the reference height; required without table and file, but for the "
              "extreme wind (ewm), which the class gives"},
+    {.name = "input", .kind = BOUGH_KEY_TEXT, AT(input), .example = "wind",
+     .help = "of a uniform wind or a law: name by which the speed is set between steps, by another "
+             "program"},
     {.name = "table", .kind = BOUGH_KEY_MAPPING, .of = &wind_table_schema, AT(table),
      .help = "in place of speed: the speed over time, for gusts and ramps"},
     {.name = "exponent", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.2",

@@ -45,6 +45,10 @@ static const bough_key load_keys[] = {
      .help = "axes of a body's load: ground (not of rods whose root moves), body, or follower: a "
              "rod's section axes, with which it turns"},
     RAMP(bough_scene_load),
+    {.name = "input", .kind = BOUGH_KEY_TEXT, AT(input), .example = "brake",
+     .help = "name by which the load is set between steps, by another program: of a joint, its "
+             "torque or force; of a body, with Fx, Fy, Fz, Mx, My, Mz behind it the components of "
+             "force and moment; what stands here is where it starts"},
 };
 #undef AT
 const bough_schema bough_scene_load_schema = {SCHEMA("a load", bough_scene_load, load_keys),

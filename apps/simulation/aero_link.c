@@ -421,6 +421,11 @@ double bough_aero_link_evaluated(const bough_aero_link *link) { return link->eva
 
 void bough_aero_link_renew(bough_aero_link *link) { link->evaluated = (double)NAN; }
 
+void bough_aero_link_set_wind(bough_aero_link *link, double speed) {
+    bough_rotor_set_speed(link->rotor, speed);
+    bough_aero_link_renew(link);
+}
+
 void bough_aero_link_go_on(bough_aero_link *link, double t) {
     bool jumped;
     link->started = false;

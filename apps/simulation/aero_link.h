@@ -33,6 +33,9 @@ void bough_aero_link_restore(bough_aero_link *link, const double *from);
 
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link);
 
+// Changes the speed of a wind by a formula [m/s] from the next sample on.
+void bough_aero_link_set_wind(bough_aero_link *link, double speed);
+
 // The time of that evaluation [s]; NAN: none that is up to date.
 double bough_aero_link_evaluated(const bough_aero_link *link);
 

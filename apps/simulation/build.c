@@ -4,6 +4,7 @@
 #include "apps/simulation/aero_link.h"
 #include "apps/simulation/control_link.h"
 #include "apps/simulation/drag_link.h"
+#include "apps/simulation/input_link.h"
 #include "apps/simulation/jump_link.h"
 #include "apps/simulation/load_link.h"
 #include "apps/simulation/equilibrium.h"
@@ -47,7 +48,8 @@ static void set_loads(bough_builder *b) {
     for (int k = 0; k < b->scene->n_load; k++) {
         const bough_scene_load *load = &b->scene->load[k];
         add_ramp(b, load->ramp);
-        for (int i = 0; i < load->n_time; i++) b->event[b->n_event++] = load->times[i];
+        int corners = load->input == NULL ? load->n_time : 0;
+        for (int i = 0; i < corners; i++) b->event[b->n_event++] = load->times[i];
         if (load->body_name != NULL) continue;
         b->load[b->n_load++] = (bough_joint_load_def){
             load->joint, load->amount, load->ramp[0], load->ramp[1],
@@ -206,7 +208,7 @@ static bough_status build_master(bough_builder *b) {
     bough_simulation *s = b->s;
     const bough_scene_simulation *sim = &b->scene->simulation;
     bough_master_def def = bough_master_def_default();
-    bough_sampled_load load[4];
+    bough_sampled_load load[5];
     def.assembly = (bough_assembly_def){s->n_rod + 1, b->member, b->n_connection,
                                         b->connection};
     def.scheme = scheme_options(b->scene);
@@ -217,6 +219,9 @@ static bough_status build_master(bough_builder *b) {
     def.event = b->event;
     def.n_event = b->n_event;
     def.pool = s->pool;
+    if (s->inputs != NULL) {
+        load[def.n_load++] = bough_input_link_load(s->inputs, sim->macro_step);
+    }
     if (s->aero != NULL) {
         load[def.n_load++] = bough_aero_link_load(s->aero);
     }
@@ -275,6 +280,7 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
     if (bough_is_ok(&status) && scene->control.node != NULL) {
         status = bough_control_link_build(arena, b.s, b.n_load - 1, &b.s->control);
     }
+    if (bough_is_ok(&status)) status = bough_input_link_build(arena, b.s);
     if (bough_is_ok(&status)) status = build_master(&b);
     if (bough_is_ok(&status) && b.s->control != NULL) {
         status = bough_control_link_watch(arena, b.s->control);

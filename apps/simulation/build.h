@@ -12,6 +12,7 @@
 
 struct bough_aero_link;
 struct bough_control_link;
+struct bough_input_link;
 struct bough_drag_link;
 struct bough_validity;
 
@@ -39,6 +40,7 @@ typedef struct bough_simulation {
     bough_member *rod;     // (number of rods) in port order
     int n_rod, n_end;
     struct bough_aero_link *aero; // NULL without an aero block
+    struct bough_input_link *inputs; // NULL without inputs
     struct bough_drag_link *drag; // NULL without drag of tower and hub
     struct bough_control_link *control; // NULL without a control block
     struct bough_jump_link *jump;       // NULL without loads that jump

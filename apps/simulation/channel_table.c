@@ -182,6 +182,12 @@ static const bough_channel_row control[] = {
 static const bough_channel_row pitch[] = {
     {"BldPitch{a}", "deg", "pitch of the blade: its own and its joint's, positive towards feather", "BldPitch{a}"},
 };
+static const bough_channel_row law[] = {
+    {"LawGenSpeed", "rad/s", "speed of the generator at this moment, as a control law takes it, to the last bit", NULL},
+};
+static const bough_channel_row law_pitch[] = {
+    {"LawBldPitch{a}", "rad", "pitch of the blade at this moment, likewise", NULL},
+};
 
 #define N(rows) (int)(sizeof(rows) / sizeof *(rows)), rows
 static const char body[] = "{a}: the body that the joint carries", named[] = "{a}: its name",
@@ -218,6 +224,8 @@ const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS] = {
         "{a}: number of the blade, {b}: of the element with three digits", N(element)},
     [BOUGH_CHANNELS_CONTROL] = {"Control", NULL, N(control)},
     [BOUGH_CHANNELS_PITCH] = {"Control of a turbine's blades", numbered, N(pitch)},
+    [BOUGH_CHANNELS_LAW] = {"Control of kind external", NULL, N(law)},
+    [BOUGH_CHANNELS_LAW_PITCH] = {"Control of kind external, of a turbine's blades", numbered, N(law_pitch)},
 };
 // clang-format on
 

@@ -49,6 +49,8 @@ typedef enum bough_channel_part {
     BOUGH_CHANNELS_ELEMENT,
     BOUGH_CHANNELS_CONTROL,
     BOUGH_CHANNELS_PITCH,
+    BOUGH_CHANNELS_LAW,
+    BOUGH_CHANNELS_LAW_PITCH,
     BOUGH_CHANNEL_PARTS,
 } bough_channel_part;
 

@@ -3,6 +3,7 @@
 #include "aero/discon.h"
 #include "apps/simulation/aero_link.h"
 #include "apps/simulation/events.h"
+#include "apps/simulation/input_link.h"
 #include "core/base.h"
 
 #include <string.h>
@@ -52,6 +53,7 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
     for (int b = 0; b < l->n_blade && l->steers; b++)
         l->now.pitch_joint[b] = joint_point(simulation, blade_body(l, b));
     *link = l;
+    if (l->control->kind == BOUGH_SCENE_EXTERNAL) return bough_ok();
     if (l->control->kind == BOUGH_SCENE_VARIABLE_SPEED) {
         return bough_controller_check(&l->control->law);
     }
@@ -98,10 +100,22 @@ static bough_discon_sensed sense(const bough_control_link *l, double t, double s
     return x;
 }
 
+static bough_status take_inputs(const bough_control_link *l, bough_discon_demand *demand) {
+    const bough_scene *scene = l->simulation->scene;
+    const double *value = bough_input_link_values(l->simulation->inputs);
+    for (int k = 0; k < scene->n_input; k++) {
+        const bough_scene_input *input = &scene->input[k];
+        if (input->kind == BOUGH_INPUT_TORQUE) demand->torque = value[k];
+        if (input->kind == BOUGH_INPUT_PITCH) demand->pitch[input->index] = value[k];
+    }
+    return bough_ok();
+}
+
 static bough_status decide(bough_control_link *l, const bough_discon_sensed *x,
                            bough_discon_demand *demand) {
     if (l->events && bough_events_idle(l->events, l->event)) return bough_ok();
     if (l->discon) return bough_discon_call(l->discon, x, demand);
+    if (l->control->kind == BOUGH_SCENE_EXTERNAL) return take_inputs(l, demand);
     bough_controller_state *law = &l->now.law;
     bough_controller_advance(&l->control->law, x->generator_speed, x->pitch[0], x->step, law);
     demand->torque = law->torque;

@@ -470,6 +470,27 @@ static bough_status add_control(bough_simulation *s, bough_channels *list) {
     return status;
 }
 
+// What a control law outside is told.
+static void sample_law(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    double angle, speed;
+    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
+    value[0] = s->scene->control.gear_ratio * speed;
+    for (int b = 0; b < s->scene->turbine.n_blade; b++) {
+        value[1 + b] =
+            bough_simulation_pitch(s, bough_simulation_beam(s, s->scene->turbine.blade[b]));
+    }
+}
+
+static bough_status add_law(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_law, s);
+    if (bough_is_ok(&status)) status = bough_channel_family_add(list, BOUGH_CHANNELS_LAW, "", "");
+    for (int b = 0; b < s->scene->turbine.n_blade && bough_is_ok(&status); b++)
+        status = add_numbered(list, BOUGH_CHANNELS_LAW_PITCH, b + 1);
+    return status;
+}
+
 bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels) {
     bough_status status = bough_ok();
     if (s->scene->turbine.node != NULL) status = add_rotor(s, channels);
@@ -493,5 +514,9 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     }
     if (bough_is_ok(&status) && s->aero != NULL) status = add_aero(s, channels);
     if (bough_is_ok(&status) && s->control != NULL) status = add_control(s, channels);
+    if (bough_is_ok(&status) && s->scene->control.node != NULL &&
+        s->scene->control.kind == BOUGH_SCENE_EXTERNAL) {
+        status = add_law(s, channels);
+    }
     return status;
 }

@@ -3,6 +3,7 @@
 #include "apps/simulation/build.h"
 #include "apps/simulation/control_link.h"
 #include "apps/simulation/drag_link.h"
+#include "apps/simulation/input_link.h"
 #include "apps/simulation/validity.h"
 
 static void take_aero(bough_aero_link *link, bough_snapshot *s) {
@@ -17,6 +18,12 @@ static void take_drag(bough_drag_link *link, bough_snapshot *s) {
     if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_drag_link_restore(link, room);
 }
 
+static void take_inputs(bough_input_link *link, bough_snapshot *s) {
+    double *room = bough_snapshot_room(s, (size_t)bough_input_link_size(link) * sizeof *room);
+    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_input_link_save(link, room);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_input_link_restore(link, room);
+}
+
 static void take_control(bough_control_link *link, bough_snapshot *s) {
     double *room = bough_snapshot_room(s, (size_t)bough_control_link_size(link) * sizeof *room);
     if (s->move == BOUGH_SNAPSHOT_SAVE) bough_control_link_save(link, room);
@@ -25,6 +32,7 @@ static void take_control(bough_control_link *link, bough_snapshot *s) {
 
 void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot) {
     bough_master_snapshot(s->master, snapshot);
+    if (s->inputs) take_inputs(s->inputs, snapshot);
     if (s->aero) take_aero(s->aero, snapshot);
     if (s->drag) take_drag(s->drag, snapshot);
     if (s->control) take_control(s->control, snapshot);
@@ -33,7 +41,7 @@ void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot) {
 
 bough_status bough_simulation_storable(const bough_simulation *s) {
     const bough_scene_control *control = &s->scene->control;
-    if (!control->node || control->kind == BOUGH_SCENE_VARIABLE_SPEED) return bough_ok();
+    if (!control->node || control->kind != BOUGH_SCENE_BLADED) return bough_ok();
     return bough_fail(BOUGH_INVALID,
                       "the controller %.200s keeps a memory of its own, which cannot be stored",
                       control->library);

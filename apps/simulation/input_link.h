@@ -1,0 +1,24 @@
+// Hands the inputs of a scene, set between steps by whoever steps it, to the parts of the model. A
+// value holds from the next macro step on; a joint with a prescribed motion gets there within it.
+#ifndef BOUGH_APPS_SIMULATION_INPUT_LINK_H
+#define BOUGH_APPS_SIMULATION_INPUT_LINK_H
+
+#include "apps/simulation/build.h"
+
+typedef struct bough_input_link bough_input_link;
+
+// Needs the built tree and rods; s->inputs stays NULL when the scene has none.
+bough_status bough_input_link_build(bough_arena *arena, bough_simulation *s);
+
+// Values now (scene->n_input), SI; to be written between steps.
+double *bough_input_link_values(bough_input_link *link);
+
+// For the macro loop, before all other loads.
+bough_sampled_load bough_input_link_load(bough_input_link *link, double macro_step);
+
+// What the inputs remember as a row of numbers.
+int bough_input_link_size(const bough_input_link *link);
+void bough_input_link_save(const bough_input_link *link, double *to);
+void bough_input_link_restore(bough_input_link *link, const double *from);
+
+#endif
