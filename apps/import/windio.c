@@ -120,6 +120,7 @@ static void convert(bough_windio *w, const char *path) {
     w->root = bough_entry_read(&w->draft, path);
     find_parts(w);
     read_axis(w);
+    if (bough_is_ok(w->draft.status)) bough_windio_shape_read(w);
     read_assembly(w);
     if (!bough_is_ok(w->draft.status)) return;
     bough_draft_note(&w->draft, BOUGH_TAKEN, "%s, in the layout of version %d", path,

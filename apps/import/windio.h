@@ -7,6 +7,22 @@
 #include "apps/import/entry.h"
 #include "apps/import/import.h"
 
+// An airfoil's place on the blade.
+typedef struct bough_windio_place {
+    const bough_node *airfoil; // its entry in the list of airfoils
+    int number;                // in the scene's polars
+    double share, thickness;   // of the blade's reference line; relative to the chord
+} bough_windio_place;
+
+typedef struct bough_windio_shape {
+    bough_windio_place *place; // (n)
+    int n;
+    bool by_thickness; // elements find their airfoils by thickness, not by share
+    bough_curve chord, twist, thickness;
+    bough_curve pitch_axis;         // version 1: share of the chord before the line; else none
+    bough_curve offset_x, offset_y; // version 2: of the chord line [m]
+} bough_windio_shape;
+
 typedef struct bough_windio {
     bough_draft draft;
     const bough_import_options *options;
@@ -17,6 +33,7 @@ typedef struct bough_windio {
     double degree;           // unit of its angles [deg]
     double forward;          // 1: the rotor is upwind of the tower, -1: downwind
     int n_blade;
+    bough_windio_shape outline;      // of the blade
     bough_curve axis[3];             // the blade's reference line over its share [m]
     double blade_length, blade_mass; // along z [m]; [kg]
     double inertia;                  // of the rotor about its axis [kg m2]
@@ -33,6 +50,15 @@ typedef struct bough_windio {
 // one of the latter is in the former. The fallback is in version 1's unit.
 double bough_windio_control(bough_windio *w, const char *first, const char *second,
                             double second_unit, double fallback);
+
+// The blade's shape, into `outline`.
+void bough_windio_shape_read(bough_windio *w);
+
+// The place of the airfoil at a share of the blade or before it: *share of the next one.
+int bough_windio_neighbours(const bough_windio_shape *shape, double at, double *share);
+
+// The reference line's distance from the leading edge, along the chord [m].
+double bough_windio_line(const bough_windio_shape *shape, double at);
 
 // Table of the blade's structure.
 void bough_windio_blade(bough_windio *w);

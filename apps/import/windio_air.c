@@ -6,23 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MOST_AIRFOILS = 200, NAME = 64 };
-
-// An airfoil's place on the blade.
-typedef struct place {
-    const bough_node *airfoil; // its entry in the list of airfoils
-    int number;                // in the scene's polars
-    double share, thickness;   // of the blade's reference line; relative to the chord
-} place;
-
-typedef struct blade_air {
-    place *place; // (n)
-    int n;
-    bool by_thickness; // elements find their airfoils by thickness, not by share
-    bough_curve chord, twist, thickness;
-    bough_curve pitch_axis;         // version 1: share of the chord before the line
-    bough_curve offset_x, offset_y; // version 2: of the chord line [m]
-} blade_air;
+enum { NAME = 64 };
 
 // -- polars ---------------------------------------------------------------------------------------
 
@@ -116,76 +100,10 @@ static void put_airfoil(bough_windio *w, const bough_node *airfoil, int number) 
     }
 }
 
-// -- places ---------------------------------------------------------------------------------------
-
-static double thickness_of(bough_windio *w, const bough_node *airfoil) {
-    return bough_entry_number_or(&w->draft, airfoil, "relative_thickness|rthick", NAN);
-}
-
-static void read_place(bough_windio *w, const bough_node *where, const char *name, double share,
-                       place *p) {
-    const bough_node *list = bough_entry_need(&w->draft, w->root, "airfoils");
-    const bough_node *airfoil = list ? bough_entry_named(list, name) : NULL;
-    if (list && !airfoil) {
-        bough_entry_fail(&w->draft, where, "no airfoil is named '%.60s'", name);
-    }
-    *p = (place){.airfoil = airfoil, .share = share};
-    if (airfoil) p->thickness = thickness_of(w, airfoil);
-}
-
-// Version 1: {grid: [...], labels: [...]}.
-static void read_labels(bough_windio *w, const bough_node *from, blade_air *a) {
-    int n = 0;
-    const double *grid = bough_entry_numbers(&w->draft, from, "grid", &n);
-    const bough_node *labels = bough_entry_need(&w->draft, from, "labels");
-    if (!grid || !labels) return;
-    if (labels->kind != BOUGH_SEQUENCE || labels->n != n || n > MOST_AIRFOILS) {
-        bough_entry_fail(&w->draft, labels, "labels: expected %d names, as the grid has", n);
-        return;
-    }
-    for (a->n = 0; a->n < n && bough_is_ok(w->draft.status); a->n++) {
-        const bough_node *label = labels->value[a->n];
-        const char *name = bough_entry_text(&w->draft, label, "");
-        read_place(w, label, name, grid[a->n], &a->place[a->n]);
-    }
-}
-
-// Version 2: [{name, spanwise_position, ...}, ...].
-static void read_items(bough_windio *w, const bough_node *list, blade_air *a) {
-    if (list->kind != BOUGH_SEQUENCE || list->n < 1 || list->n > MOST_AIRFOILS) {
-        bough_entry_fail(&w->draft, list, "airfoils: expected a list of 1 to %d",
-                         (int)MOST_AIRFOILS);
-        return;
-    }
-    bool mixed = false;
-    for (a->n = 0; a->n < list->n && bough_is_ok(w->draft.status); a->n++) {
-        const bough_node *item = list->value[a->n], *tags = bough_entry(item, "configuration");
-        double share = bough_entry_number_or(&w->draft, item, "spanwise_position", NAN);
-        read_place(w, item, bough_entry_text(&w->draft, item, "name"), share, &a->place[a->n]);
-        mixed = mixed || (tags && tags->kind == BOUGH_SEQUENCE && tags->n > 1);
-    }
-    if (mixed) {
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "airfoils' configurations are not mixed: the first polar of each");
-    }
-}
-
-// Thickness dominates where it is given and falls from place to place.
-static void choose_measure(bough_windio *w, const bough_node *where, blade_air *a) {
-    a->by_thickness = a->thickness.n > 0;
-    for (int i = 0; i < a->n; i++) {
-        double before = i > 0 ? a->place[i - 1].thickness : HUGE_VAL;
-        a->by_thickness = a->by_thickness && a->place[i].thickness <= before;
-    }
-    for (int i = 0; i < a->n && !a->by_thickness; i++) {
-        if (a->place[i].share >= (i > 0 ? a->place[i - 1].share : 0)) continue;
-        bough_entry_fail(&w->draft, where, "airfoil %d: expected shares of the span that grow",
-                         i + 1);
-    }
-}
+// -- airfoils along the blade ---------------------------------------------------------------------
 
 // Numbers the airfoils in the order of the blade, each once, and writes them.
-static void put_airfoils(bough_windio *w, blade_air *a) {
+static void put_airfoils(bough_windio *w, bough_windio_shape *a) {
     int n = 0;
     fputs("polars:\n", w->draft.file[BOUGH_IMPORT_POLARS]);
     for (int i = 0; i < a->n && bough_is_ok(w->draft.status); i++) {
@@ -201,37 +119,18 @@ static void put_airfoils(bough_windio *w, blade_air *a) {
 
 // -- blade elements -------------------------------------------------------------------------------
 
-// The two neighbours of an element: *share of the second.
-static int find_airfoils(const blade_air *a, double at, double *share) {
-    double t = a->by_thickness ? bough_curve_at(&a->thickness, at) : at;
-    int i = 0;
-    *share = 0;
-    for (; i + 1 < a->n; i++) {
-        const place *p = &a->place[i];
-        double from = a->by_thickness ? -p->thickness : p->share;
-        double to = a->by_thickness ? -p[1].thickness : p[1].share;
-        double value = a->by_thickness ? -t : t;
-        if (value >= to) continue;
-        if (value > from && p->airfoil != p[1].airfoil) *share = (value - from) / (to - from);
-        break;
-    }
-    return i;
-}
-
-static double centre_of(bough_windio *w, const place *p) {
+static double centre_of(bough_windio *w, const bough_windio_place *p) {
     return bough_entry_number_or(&w->draft, p->airfoil, "aerodynamic_center", 0.25);
 }
 
-static void put_element(bough_windio *w, const blade_air *a, double at) {
+static void put_element(bough_windio *w, const bough_windio_shape *a, double at) {
     FILE *file = w->draft.file[BOUGH_IMPORT_AERO];
     char name[NAME], other[NAME];
     double share, chord = bough_curve_at(&a->chord, at);
-    int i = find_airfoils(a, at, &share);
-    const place *p = &a->place[i], *q = share > 0 ? p + 1 : p;
+    int i = bough_windio_neighbours(a, at, &share);
+    const bough_windio_place *p = &a->place[i], *q = share > 0 ? p + 1 : p;
     double centre = (1 - share) * centre_of(w, p) + share * centre_of(w, q);
-    double line =
-        w->second ? bough_curve_at(&a->offset_y, at) : bough_curve_at(&a->pitch_axis, at) * chord;
-    double back = centre * chord - line, up = bough_curve_at(&a->offset_x, at);
+    double back = centre * chord - bough_windio_line(a, at), up = bough_curve_at(&a->offset_x, at);
     double twist = bough_curve_at(&a->twist, at) * w->degree, turn = twist * BOUGH_PI / 180;
     airfoil_name(p->airfoil, p->number, name);
     airfoil_name(q->airfoil, q->number, other);
@@ -243,7 +142,7 @@ static void put_element(bough_windio *w, const blade_air *a, double at) {
     if (!(chord > 0)) bough_entry_fail(&w->draft, a->chord.node, "chord: expected a positive one");
 }
 
-static void put_elements(bough_windio *w, const blade_air *a) {
+static void put_elements(bough_windio *w, const bough_windio_shape *a) {
     int n = 0;
     double last = -1;
     fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar, blend, share]\n"
@@ -263,24 +162,7 @@ static void put_elements(bough_windio *w, const blade_air *a) {
 }
 
 void bough_windio_air_tables(bough_windio *w) {
-    bough_draft *d = &w->draft;
-    blade_air a = {.place = bough_arena_take(d->arena, MOST_AIRFOILS * sizeof *a.place)};
-    if (!a.place) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    a.chord = bough_entry_curve(d, w->shape, "chord");
-    a.twist = bough_entry_curve(d, w->shape, "twist");
-    if (w->second) a.offset_y = bough_entry_curve(d, w->shape, "section_offset_y");
-    if (!w->second) a.pitch_axis = bough_entry_curve(d, w->shape, "pitch_axis");
-    if (bough_entry(w->shape, "section_offset_x"))
-        a.offset_x = bough_entry_curve(d, w->shape, "section_offset_x");
-    if (bough_entry(w->shape, "rthick")) a.thickness = bough_entry_curve(d, w->shape, "rthick");
-    const bough_node *airfoils = bough_entry_need(d, w->shape, "airfoil_position|airfoils");
-    if (!bough_is_ok(d->status)) return;
-    if (w->second)
-        read_items(w, airfoils, &a);
-    else
-        read_labels(w, airfoils, &a);
-    if (bough_is_ok(d->status)) choose_measure(w, airfoils, &a);
-    if (!bough_is_ok(d->status)) return;
-    put_airfoils(w, &a);
-    put_elements(w, &a);
+    if (!bough_is_ok(w->draft.status)) return;
+    put_airfoils(w, &w->outline);
+    put_elements(w, &w->outline);
 }

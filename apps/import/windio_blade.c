@@ -3,6 +3,7 @@
 // edgewise, turned by the twist; both matrices about the reference line: those of the scene.
 #include "apps/import/section.h"
 #include "apps/import/windio.h"
+#include "apps/import/windio_layup.h"
 #include "core/symmetric6.h"
 
 #include <math.h>
@@ -243,19 +244,58 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
     }
 }
 
+// The matrices of a row of stations.
+static matrices of_layup(bough_windio *w, const bough_layup *l, const double *from) {
+    matrices m = {w->blade, l->n, l->share, bough_arena_doubles(w->draft.arena, ENTRIES * (size_t)l->n)};
+    if (!m.entry) *w->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    for (int k = 0; m.entry && k < l->n; k++) {
+        for (int i = 0; i < 6; i++) {
+            for (int j = i; j < 6; j++)
+                m.entry[(size_t)bough_symmetric6_index(i, j) * l->n + k] = from[36 * k + 6 * i + j];
+        }
+    }
+    return m;
+}
+
+// From what the blade is made of.
+static void read_layup(bough_windio *w, matrices *stiffness, matrices *inertia) {
+    bough_layup layup;
+    bough_windio_layup(w, &layup);
+    if (!bough_is_ok(w->draft.status)) return;
+    *stiffness = of_layup(w, &layup, layup.stiffness);
+    *inertia = of_layup(w, &layup, layup.mass);
+    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
+                     "blade: stiffness and inertia of thin walls, from layers and webs: plane sections, "
+                     "shear flow in the cells, no coupling by fibre angles");
+}
+
+// The matrices that the file gives; NULL: none.
+static const bough_node *find_matrices(const bough_windio *w) {
+    static const char *const path[] = {"elastic_properties_mb.six_x_six", "structure.elastic_properties",
+                                       "elastic_properties.six_x_six", "elastic_properties"};
+    for (size_t i = 0; i < sizeof path / sizeof *path; i++) {
+        const bough_node *from = bough_entry(w->blade, path[i]);
+        if (bough_entry(from, "stiff_matrix|stiffness_matrix")) return from;
+    }
+    return NULL;
+}
+
 void bough_windio_blade(bough_windio *w) {
-    const bough_node *from = bough_entry(w->blade, "elastic_properties_mb.six_x_six");
-    if (!from) from = bough_entry(w->blade, "structure.elastic_properties");
-    if (!from) from = bough_entry(w->blade, "elastic_properties.six_x_six");
-    if (!from) from = bough_entry(w->blade, "elastic_properties");
-    if (!from) {
+    const bough_node *from = find_matrices(w);
+    matrices stiffness = {0}, inertia = {0};
+    if (!from && !bough_windio_has_layers(w)) {
         bough_entry_fail(&w->draft, w->blade,
                          "expected stiffness and inertia of the blade: "
-                         "'elastic_properties_mb.six_x_six' or 'structure.elastic_properties'; "
-                         "they are not computed from layers");
+                         "'elastic_properties_mb.six_x_six' or 'structure.elastic_properties', or the "
+                         "layers that it is made of");
         return;
     }
-    matrices stiffness = read_stiffness(w, from), inertia = read_inertia(w, from);
+    if (from) {
+        stiffness = read_stiffness(w, from);
+        inertia = read_inertia(w, from);
+    } else {
+        read_layup(w, &stiffness, &inertia);
+    }
     if (bough_is_ok(w->draft.status)) {
         bough_curve_of(&w->draft, stiffness.node, stiffness.grid, stiffness.entry, stiffness.n);
         bough_curve_of(&w->draft, inertia.node, inertia.grid, inertia.entry, inertia.n);
