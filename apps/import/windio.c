@@ -7,7 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-static const double duration = 20; // [s]: the file has none
+static const double duration = 20;  // [s]: the file has none
+static const double usual_tip = 80; // [m/s]
 
 // -- reading --------------------------------------------------------------------------------------
 
@@ -81,9 +82,9 @@ static void choose_start(bough_windio *w) {
         bough_windio_control(w, "torque.VS_maxspd", "rated_rotor_speed|max_rotor_speed", rpm, 0);
     if (!(w->rated_speed > 0)) w->rated_speed = tip / w->radius;
     if (!(w->rated_speed > 0)) {
-        bough_entry_fail(&w->draft, w->root,
-                         "expected a rated speed of the rotor: control.torque.VS_maxspd or "
-                         "control.rated_rotor_speed");
+        w->rated_speed = usual_tip / w->radius;
+        bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
+                         "no rated speed of the rotor: %g m/s at the tip", usual_tip);
     }
     w->speed = 0.75 * w->rated_speed;
     w->wind = ratio > 0 ? w->speed * w->radius / ratio : 8;
@@ -113,7 +114,7 @@ static void note_left(bough_windio *w) {
         bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "%s: the tower's foot is held", part[i]);
     }
     bough_draft_note(&w->draft, BOUGH_LEFT_OUT,
-                     "layers and webs of the blade, shapes of airfoils, strength, costs, site");
+                     "strength, costs, site");
 }
 
 static void convert(bough_windio *w, const char *path) {

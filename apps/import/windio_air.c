@@ -19,31 +19,39 @@ static void airfoil_name(const bough_node *airfoil, int number, char name[NAME])
     name[n] = '\0';
 }
 
-// A coefficient over the angle of attack [deg], from -180 to 180, where it must be the same.
-static bough_curve read_coefficient(bough_windio *w, const bough_node *from, const char *names) {
+// A coefficient over the angle of attack [deg], from -180 to 180, where it is the mean of what the
+// file has at its ends; nothing where the file has none.
+static bough_curve read_coefficient(bough_windio *w, const bough_node *from, const char *names,
+                                    bool needed) {
+    if (!needed && !bough_entry(from, names)) return (bough_curve){0};
     bough_curve c = bough_entry_curve(&w->draft, from, names);
-    double *x = bough_arena_doubles(w->draft.arena, (size_t)c.n + 1);
-    double *y = bough_arena_doubles(w->draft.arena, (size_t)c.n + 1);
+    double *x = bough_arena_doubles(w->draft.arena, (size_t)c.n + 2);
+    double *y = bough_arena_doubles(w->draft.arena, (size_t)c.n + 2);
     if (!x || !y) *w->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!x || !y || c.n == 0) return (bough_curve){0};
-    int last = c.n - 1;
-    for (int i = 0; i <= last; i++) {
-        x[i] = c.x[i] * w->degree;
-        y[i] = c.y[i];
-    }
-    if (fabs(x[0] + 180) > 1 || fabs(x[last] - 180) > 1) {
+    double low = c.x[0] * w->degree, high = c.x[c.n - 1] * w->degree;
+    if (low < -181 || high > 181) {
         bough_entry_fail(&w->draft, c.node,
-                         "grid: expected angles from -180 to 180 deg, got %g to %g", x[0], x[last]);
+                         "grid: expected angles from -180 to 180 deg, got %g to %g", low, high);
     }
-    x[0] = -180; // files often stop at 3.14
-    x[last] = 180;
-    if (fabs(y[0] - y[last]) > 1e-6) {
+    int n = 0;
+    bool whole = low < -179 && high > 179; // files often stop at 3.14
+    for (int i = 0; i < c.n; i++) {
+        bool end = whole && (i == 0 || i == c.n - 1);
+        if (i == 0 && !whole) n++;
+        x[n] = end ? (i == 0 ? -180 : 180) : c.x[i] * w->degree;
+        y[n++] = c.y[i];
+    }
+    n += !whole;
+    x[0] = -180;
+    x[n - 1] = 180;
+    if (fabs(c.y[0] - c.y[c.n - 1]) > 1e-6 || !whole) {
         bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "line %d: %g at -180 deg but %g at 180 deg: the mean", c.node->line, y[0],
-                         y[last]);
+                         "line %d: %g at %.3g deg but %g at %.3g deg: the mean at 180 deg", c.node->line,
+                         c.y[0], low, c.y[c.n - 1], high);
     }
-    y[0] = y[last] = (y[0] + y[last]) / 2;
-    return bough_curve_of(&w->draft, c.node, x, y, c.n);
+    y[0] = y[n - 1] = (c.y[0] + c.y[c.n - 1]) / 2;
+    return bough_curve_of(&w->draft, c.node, x, y, n);
 }
 
 static int compare(const void *a, const void *b) {
@@ -90,9 +98,9 @@ static void put_airfoil(bough_windio *w, const bough_node *airfoil, int number) 
         more = more || sets->n > 1;
         from = sets->value[0];
     }
-    const bough_curve c[] = {read_coefficient(w, from, "c_l|cl"),
-                             read_coefficient(w, from, "c_d|cd"),
-                             read_coefficient(w, from, "c_m|cm")};
+    const bough_curve c[] = {read_coefficient(w, from, "c_l|cl", true),
+                             read_coefficient(w, from, "c_d|cd", true),
+                             read_coefficient(w, from, "c_m|cm", false)};
     put_polar(w, c, name);
     if (more) {
         bough_draft_note(&w->draft, BOUGH_APPROXIMATED,

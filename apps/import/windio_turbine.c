@@ -1,4 +1,6 @@
 // Hub, nacelle and their bearings; wind; the generator's torque.
+#include "aero/discon.h"
+#include "apps/import/wind_given.h"
 #include "apps/import/windio.h"
 #include "core/base.h"
 
@@ -52,7 +54,7 @@ static bool read_lump(bough_windio *w, const bough_node *part, lump *l) {
     const bough_node *from = bough_entry(part, "elastic_properties_mb|elastic_properties");
     if (!bough_entry(from, "system_mass|mass")) return false;
     *l = (lump){.mass = bough_entry_number(d, from, "system_mass|mass")};
-    const bough_node *centre = bough_entry(from, "system_center_mass|location");
+    const bough_node *centre = bough_entry(from, "system_center_mass|center_mass|location");
     int n = 3;
     const double *at = centre ? bough_entry_numbers(d, centre, "", &n) : NULL;
     if (at) memcpy(l->centre, at, sizeof l->centre);
@@ -82,8 +84,39 @@ static lump hub_lump(bough_windio *w) {
     return (lump){hub_per_blade * w->blade_mass, {0}, {inertia, inertia, inertia}};
 }
 
+static double hub_mass(bough_windio *w) {
+    lump l;
+    return read_lump(w, w->hub, &l) ? l.mass : hub_per_blade * w->blade_mass;
+}
+
+// What the rotor-nacelle assembly weighs beyond hub and blades.
+static bool assembly_lump(bough_windio *w, double overhang, lump *l) {
+    const bough_node *part = bough_entry(w->parts, "RNA|rna");
+    lump all;
+    if (!part || !read_lump(w, part, &all)) return false;
+    double head = hub_mass(w) + w->n_blade * w->blade_mass, mass = all.mass - head;
+    if (!(mass > 0)) {
+        bough_entry_fail(&w->draft, part, "mass: %g kg, less than hub and blades weigh: %g kg",
+                         all.mass, head);
+        return false;
+    }
+    double inertia = mass * overhang * overhang / 4;
+    const double at[] = {-w->forward * overhang, 0, w->hub_height};
+    *l = (lump){.mass = mass, .inertia = {inertia, inertia, inertia}};
+    for (int i = 0; i < 3; i++)
+        l->centre[i] = (all.mass * all.centre[i] - head * at[i]) / mass;
+    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
+                     "nacelle: mass and centre of RNA without hub and blades, its radius of gyration "
+                     "half the overhang");
+    return true;
+}
+
 static lump nacelle_lump(bough_windio *w, double overhang) {
     lump l;
+    if (!bough_entry(w->train, "elastic_properties_mb|elastic_properties.system_mass|mass") &&
+        assembly_lump(w, overhang, &l)) {
+        return l;
+    }
     if (read_lump(w, w->train, &l)) {
         if (w->second && !bough_entry(w->train, "elastic_properties.inertia_tt"))
             move_to_centre(&l);
@@ -151,7 +184,7 @@ static void put_hub(bough_windio *w, double overhang, double tilt, double ratio)
 
 static void put_blades(bough_windio *w, double cone, double pitch) {
     FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
-    bool steered = w->rated_power > 0;
+    bool steered = w->rated_power > 0 || w->options->controller;
     for (int k = 1; k <= w->n_blade; k++) {
         fprintf(file,
                 "  - name: blade%d\n    fidelity: rod\n    joint: {%s, parent: hub, "
@@ -181,7 +214,9 @@ void bough_windio_bodies(bough_windio *w) {
     double cone = bough_entry_number_or(d, w->hub, "cone_angle", 0) * w->degree;
     double pitch =
         bough_windio_control(w, "pitch.min_pitch", "fine_pitch|min_pitch_limit", BOUGH_PI / 180, 0);
-    w->hub_height = bough_entry_number(d, from, "distance_tt_hub");
+    double above = bough_entry_number_or(d, w->root, "assembly.hub_height", NAN) - w->tower_top;
+    w->hub_height = w->tower && above > 0 ? bough_entry_number_or(d, from, "distance_tt_hub", above)
+                                          : bough_entry_number(d, from, "distance_tt_hub");
     fflush(d->file[BOUGH_IMPORT_TOWER]);
     bool rod = d->file_size[BOUGH_IMPORT_TOWER] > 0;
     if (!w->tower) w->tower_top -= w->hub_height;
@@ -198,18 +233,31 @@ void bough_windio_bodies(bough_windio *w) {
 
 // -- air ------------------------------------------------------------------------------------------
 
-void bough_windio_air(bough_windio *w) {
+static void put_wind(bough_windio *w) {
     bough_draft *d = &w->draft;
-    if (!bough_is_ok(d->status)) return;
     FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    const char *given = w->options->wind;
     double shear = bough_entry_number_or(d, w->root, "environment.shear_exp", 0);
     double height = w->tower_top + w->hub_height;
-    fprintf(file, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n  wind: {kind: %s, speed: %.6g m/s",
-            1 / d->macro_step, w->density, shear > 0 ? "power" : "uniform", w->wind);
+    if (given) {
+        bough_status status =
+            bough_wind_given(d, bough_wind_form_of(given), given, height, 2 * w->radius);
+        if (bough_is_ok(d->status)) *d->status = status;
+        return;
+    }
+    fprintf(file, "  wind: {kind: %s, speed: %.6g m/s", shear > 0 ? "power" : "uniform", w->wind);
     if (shear > 0) {
         fprintf(file, ", exponent: %.10g, reference_height: %.10g m", shear, height);
         bough_draft_note(d, BOUGH_TAKEN, "wind that grows with height^%g", shear);
     }
+}
+
+void bough_windio_air(bough_windio *w) {
+    bough_draft *d = &w->draft;
+    if (!bough_is_ok(d->status)) return;
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    fprintf(file, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n", 1 / d->macro_step, w->density);
+    put_wind(w);
     fprintf(file,
             "}\n  ramp: [0 s, 2 s]\n  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n"
             "  induction: {high_thrust: smooth, skew: pitt-peters}\n  dynamic_stall: hgm\n",
@@ -253,19 +301,46 @@ static void put_pitch(bough_windio *w, double ratio) {
                      omega, zeta);
 }
 
+static double efficiency_of(bough_windio *w) {
+    const char *path = w->second ? "gearbox.efficiency" : "gearbox_efficiency";
+    double efficiency = bough_entry_number_or(&w->draft, w->train, path, 1);
+    if (!(efficiency > 0 && efficiency <= 1)) {
+        bough_entry_fail(&w->draft, w->train, "efficiency: expected one above 0, at most 1");
+    }
+    return efficiency;
+}
+
+// The library that the user gives.
+static void put_library(bough_windio *w) {
+    bough_draft *d = &w->draft;
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    bough_discon *discon;
+    bough_status status = bough_discon_open(d->arena, w->options->controller, "", &discon);
+    if (!bough_is_ok(&status)) {
+        *d->status = bough_fail(status.code, "--controller: %.200s", status.message);
+        return;
+    }
+    fprintf(file,
+            "control:\n  kind: bladed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n  efficiency: %.10g\n"
+            "  library: ", 1 / d->macro_step, gear_ratio(w), efficiency_of(w));
+    bough_import_path(file, w->options->controller);
+    fputc('\n', file);
+    bough_draft_note(d, BOUGH_TAKEN, "controller: %s, by its path", w->options->controller);
+}
+
 void bough_windio_law(bough_windio *w) {
     bough_draft *d = &w->draft;
     if (!bough_is_ok(d->status)) return;
+    if (w->options->controller) {
+        put_library(w);
+        return;
+    }
     if (!(w->rated_power > 0)) {
         bough_draft_note(d, BOUGH_LEFT_OUT, "no rated_power: no torque acts on the generator");
         return;
     }
     double ratio = gear_ratio(w);
-    const char *path = w->second ? "gearbox.efficiency" : "gearbox_efficiency";
-    double efficiency = bough_entry_number_or(d, w->train, path, 1);
-    if (!(efficiency > 0 && efficiency <= 1)) {
-        bough_entry_fail(d, w->train, "efficiency: expected one above 0, at most 1");
-    }
+    double efficiency = efficiency_of(w);
     double power = w->rated_power / efficiency, held = w->rated_speed * ratio;
     double rated = 0.99 * held; // so that torque and pitch do not compete
     double rate = bough_windio_control(w, "torque.max_torque_rate", "max_torque_rate", 1, 1e9);
