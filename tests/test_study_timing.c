@@ -1,5 +1,6 @@
 // Studies of kind timing: all cells in every turn, their errors, and a clock that changes no bit.
 #include "apps/simulation/build.h"
+#include "apps/study/study_perform.h"
 #include "apps/study/study_timing.h"
 #include "tests/scratch.h"
 

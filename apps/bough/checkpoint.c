@@ -1,6 +1,5 @@
 #include "apps/bough/checkpoint.h"
 
-#include "apps/bough/run.h"
 #include "apps/config/schema.h"
 #include "apps/output/folder.h"
 #include "apps/scene/fingerprint.h"

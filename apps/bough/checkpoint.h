@@ -7,25 +7,12 @@
 #ifndef BOUGH_APPS_BOUGH_CHECKPOINT_H
 #define BOUGH_APPS_BOUGH_CHECKPOINT_H
 
-#include "core/status.h"
-
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-struct bough_job;
-
-typedef struct bough_checkpoint {
-    double interval;           // [s]; 0: none are written
-    uint64_t program, input;   // fingerprints
-    size_t size;               // of a copy [bytes]
-    char *copy;                // (size)
-} bough_checkpoint;
+#include "apps/bough/job.h"
 
 // Reads the options and, to resume, the checkpoint in the run's folder; the simulation is then at
 // its time. BOUGH_INVALID where the interval does not suit the scene, there is no checkpoint, it is
 // damaged or of another program, scene or setting.
-bough_status bough_checkpoint_open(struct bough_job *job);
+bough_status bough_checkpoint_open(bough_job *job);
 
 // After a step of a bough_job: writes a checkpoint where one is due and goes on from it.
 bough_status bough_checkpoint_update(void *job);

@@ -2,7 +2,7 @@
 #ifndef BOUGH_APPS_BOUGH_FORECAST_H
 #define BOUGH_APPS_BOUGH_FORECAST_H
 
-#include "apps/bough/run.h"
+#include "apps/bough/job.h"
 
 // What a run records.
 typedef struct bough_forecast {

@@ -1,6 +1,7 @@
 // bough run: steps a scene through its duration and records its channels.
 #include "apps/bough/run.h"
 
+#include "apps/bough/checkpoint.h"
 #include "apps/bough/forecast.h"
 #include "apps/bough/open.h"
 #include "apps/bough/stop.h"

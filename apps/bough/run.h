@@ -2,29 +2,7 @@
 #ifndef BOUGH_APPS_BOUGH_RUN_H
 #define BOUGH_APPS_BOUGH_RUN_H
 
-#include "apps/bough/checkpoint.h"
-#include "apps/bough/options.h"
-#include "apps/output/recorder.h"
-#include "apps/output/statistics.h"
-#include "apps/output/vertices.h"
-#include "apps/simulation/run.h"
-#include "apps/simulation/shape.h"
-
-typedef struct bough_job {
-    const bough_options *options;
-    bough_arena *arena;
-    bough_run run;
-    bough_channels recorded; // those of the run's channels that are
-    const char *folder;
-    bough_recorder *recorder;
-    bough_sample_statistics *statistics; // (recorded.count) of the rows
-    bough_shape shape;
-    bough_frames *frames;     // NULL: none are stored
-    bough_vertices *vertices; // NULL: none are stored
-    bough_checkpoint checkpoint;
-    bough_kept rows, frames_kept; // at the last checkpoint
-    double build_s;               // wall time of reading and building [s]
-} bough_job;
+#include "apps/bough/job.h"
 
 // Reads and builds the scene of the options, with what the run records and estimates. Errors in the
 // scene are told as by bough_open_scene.

@@ -4,7 +4,7 @@
 #define BOUGH_APPS_SIMULATION_AERO_LINK_H
 
 #include "aero/rotor.h"
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 typedef struct bough_aero_link bough_aero_link;
 

@@ -1,5 +1,5 @@
 // The flexible body of a beam: its rod or the rod reduced to modes, and what both have in common.
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 #include "flexbody/rod_linear.h"
 
 static bough_status build_rod(bough_arena *arena, bough_beam *beam, const double *input,

@@ -2,7 +2,7 @@
 #ifndef BOUGH_APPS_SIMULATION_BLADE_GROUP_H
 #define BOUGH_APPS_SIMULATION_BLADE_GROUP_H
 
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 typedef struct bough_blade_group {
     int n;                    // blades; 0: unequal, not evenly spaced, fewer than three, rigid

@@ -1,7 +1,8 @@
 // The whole of a simulation, part by part: tree, rods, ports, loads, master.
-#include "apps/simulation/build_internal.h"
+#include "apps/simulation/build.h"
 
 #include "apps/simulation/aero_link.h"
+#include "apps/simulation/build_internal.h"
 #include "apps/simulation/control_link.h"
 #include "apps/simulation/drag_link.h"
 #include "apps/simulation/input_link.h"

@@ -2,7 +2,7 @@
 #ifndef BOUGH_APPS_SIMULATION_BUILD_INTERNAL_H
 #define BOUGH_APPS_SIMULATION_BUILD_INTERNAL_H
 
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 #include "apps/simulation/force_link.h"
 
 // What is gathered while building; the pieces point into the arena.

@@ -4,7 +4,7 @@
 #ifndef BOUGH_APPS_SIMULATION_CONTROL_LINK_H
 #define BOUGH_APPS_SIMULATION_CONTROL_LINK_H
 
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 typedef struct bough_control_link bough_control_link;
 

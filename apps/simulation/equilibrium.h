@@ -7,7 +7,7 @@
 #ifndef BOUGH_APPS_SIMULATION_EQUILIBRIUM_H
 #define BOUGH_APPS_SIMULATION_EQUILIBRIUM_H
 
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 typedef struct bough_equilibrium_work {
     int steps;   // of the solution, all samples of the air together

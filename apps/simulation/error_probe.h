@@ -3,7 +3,7 @@
 #ifndef BOUGH_APPS_SIMULATION_ERROR_PROBE_H
 #define BOUGH_APPS_SIMULATION_ERROR_PROBE_H
 
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 typedef struct bough_error_probe {
     bough_simulation *simulation;

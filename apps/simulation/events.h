@@ -4,7 +4,7 @@
 #define BOUGH_APPS_SIMULATION_EVENTS_H
 
 #include "aero/discon.h"
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 enum { BOUGH_MOST_EVENTS = 8 };
 

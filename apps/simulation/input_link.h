@@ -3,7 +3,7 @@
 #ifndef BOUGH_APPS_SIMULATION_INPUT_LINK_H
 #define BOUGH_APPS_SIMULATION_INPUT_LINK_H
 
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 typedef struct bough_input_link bough_input_link;
 

@@ -2,7 +2,7 @@
 #ifndef BOUGH_APPS_SIMULATION_LOAD_LINK_H
 #define BOUGH_APPS_SIMULATION_LOAD_LINK_H
 
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 // Needs the rods and the view of a built simulation.
 bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s);

@@ -1,7 +1,7 @@
 // The channels of a simulation: what each part of the scene gives to be recorded. OpenFAST's names
 // where the quantity is the same.
 #include "apps/simulation/aero_link.h"
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 #include "apps/simulation/channel_table.h"
 #include "apps/simulation/observe.h"
 #include "apps/simulation/control_link.h"

@@ -2,7 +2,7 @@
 #ifndef BOUGH_APPS_SIMULATION_OBSERVE_H
 #define BOUGH_APPS_SIMULATION_OBSERVE_H
 
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 // Motion and section loads of rods at the places of the scene's sensors.
 bough_status bough_observe_sections(bough_arena *arena, bough_simulation *s, bough_channels *list);

@@ -1,5 +1,5 @@
 // What is asked of a simulation between steps: poses, motions of beams, wrenches at their roots.
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 #include "aero/rotor.h"
 #include "core/dynamics.h"

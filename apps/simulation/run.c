@@ -1,5 +1,6 @@
 #include "apps/simulation/run.h"
 
+#include "apps/simulation/build.h"
 #include "apps/simulation/validity.h"
 
 #include <assert.h>

@@ -4,7 +4,7 @@
 #define BOUGH_APPS_SIMULATION_SHAPE_H
 
 #include "apps/output/frames.h"
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 typedef struct bough_shape {
     bough_simulation *simulation;

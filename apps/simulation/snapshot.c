@@ -1,6 +1,6 @@
 // What the parts of a simulation remember, in order.
 #include "apps/simulation/aero_link.h"
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 #include "apps/simulation/control_link.h"
 #include "apps/simulation/drag_link.h"
 #include "apps/simulation/input_link.h"

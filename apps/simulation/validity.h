@@ -2,7 +2,7 @@
 #ifndef BOUGH_APPS_SIMULATION_VALIDITY_H
 #define BOUGH_APPS_SIMULATION_VALIDITY_H
 
-#include "apps/simulation/build.h"
+#include "apps/simulation/simulation.h"
 
 typedef enum bough_limit {
     BOUGH_LIMIT_ATTACK,      // the angle of attack lies where the polar's table has no rows

@@ -2,7 +2,7 @@
 #ifndef BOUGH_APPS_STUDY_LOAD_SET_PERFORM_H
 #define BOUGH_APPS_STUDY_LOAD_SET_PERFORM_H
 
-#include "apps/study/study_perform.h"
+#include "apps/study/study_options.h"
 
 // Runs the cases that the folder does not hold and nobody else runs, one a thread, and when all are
 // there writes the tables. BOUGH_FAILED when cases failed; the others are run.

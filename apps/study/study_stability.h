@@ -4,7 +4,7 @@
 #ifndef BOUGH_APPS_STUDY_STUDY_STABILITY_H
 #define BOUGH_APPS_STUDY_STUDY_STABILITY_H
 
-#include "apps/study/study_perform.h"
+#include "apps/study/study_options.h"
 
 // Runs what the folder does not hold yet, or a part of it. When all is there prints a table and writes
 // table.csv and plot.svg. BOUGH_FAILED when a cell is silent: held, far off, and neither warned of nor

@@ -4,7 +4,7 @@
 #define BOUGH_APPS_STUDY_STUDY_TIMING_H
 
 #include "apps/study/study_clock.h"
-#include "apps/study/study_perform.h"
+#include "apps/study/study_options.h"
 
 // One run of a cell with all channels written.
 typedef struct bough_timing_run {

@@ -1,4 +1,5 @@
 #include "apps/bough/open.h"
+#include "apps/bough/checkpoint.h"
 #include "apps/bough/run.h"
 #include "apps/bough/verb.h"
 #include "tests/fuzz/fuzz.h"
