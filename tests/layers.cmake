@@ -121,7 +121,7 @@ layer(cosim core cosim)
 function(app folder)
   file(GLOB files RELATIVE ${ROOT} ${ROOT}/apps/${folder}/*.[ch])
   foreach(file IN LISTS files)
-    foreach(other config scene output simulation analysis loads report import study api bough)
+    foreach(other config scene output simulation analysis loads report import study api fmu bough)
       if(NOT other STREQUAL folder AND NOT other IN_LIST ARGN)
         forbid(${file} "^[ \t]*#[ \t]*include[ \t]*\"apps/${other}/"
           "apps/${folder}/ may not include apps/${other}/")
@@ -144,6 +144,7 @@ app(analysis config scene output simulation)
 app(report output)
 app(import config scene output simulation)
 app(api config scene output simulation)
+app(fmu api)
 app(loads output)
 app(study config scene output simulation analysis loads)
 
@@ -158,7 +159,7 @@ owned_by("^core/integrator_ida\\.c$" "${include}ida/" "only core/integrator_ida.
 owned_by("^core/[^/]*\\.c$" "${include}(cvode|arkode)/" "only core/*.c uses CVODE and ARKODE")
 owned_by("^core/" "${include}(sundials|nvector|sunmatrix|sunlinsol)"
   "only core/ uses SUNDIALS")
-owned_by("^core/pool\\.c$" "${include}omp\\.h|#[ \t]*pragma[ \t]+omp[ \t]+([^s]|s[^i])|[^a-z_]omp_[a-z]"
+owned_by("^(core/pool|apps/fmu/runtime)\\.c$" "${include}omp\\.h|#[ \t]*pragma[ \t]+omp[ \t]+([^s]|s[^i])|[^a-z_]omp_[a-z]"
   "only core/pool.c uses OpenMP, but for simd loops")
 owned_by("^none$" "pthread_create|thrd_create" "threads are OpenMP's")
 owned_by("^aero/wind_fourier\\.c$" "${include}fftw3\\.h" "only aero/wind_fourier.c uses FFTW")

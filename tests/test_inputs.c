@@ -117,7 +117,7 @@ static void a_law_outside_is_the_law_inside(void **state) {
     bough_scene_read(arena, APPS "turbine/land-operation.yaml", NULL, 0, &errors, &scene);
     bough_controller_def law = scene->control.law;
     bough_controller_state memory = {0};
-    int torque = bough_session_input(b, "GenTq");
+    int torque = bough_session_input(b, "GenTqCom");
     for (int n = 0; n < 75; n++) {
         double step = (n + 1) * 0.04 - n * 0.04; // as rounded there
         double speed = read_channel(b, "LawGenSpeed"), pitch = read_channel(b, "LawBldPitch1");

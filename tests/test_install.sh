@@ -10,7 +10,7 @@ library=$(find "$folder/usr" -name 'libbough.so.0')
 declared=$(grep -o 'bough_session_[a-z]*(' "$source/apps/api/bough.h" | tr -d '(' | sort -u)
 [ "$(nm -D --defined-only "$library" | sed 's/.* //' | sort)" = "$declared" ]
 if python=$(command -v python3) && "$python" -c "import ctypes" 2>/dev/null; then
-    PYTHONPATH=$(dirname "$library")/bough PYTHONDONTWRITEBYTECODE=1 "$python" -c "
+    PYTHONPATH=$(dirname "$(find "$folder/usr" -name bough.py)") PYTHONDONTWRITEBYTECODE=1 "$python" -c "
 import bough
 print('python:', len(bough.Session('$source/apps/mechanisms/pendulum.yaml').names), 'channels')"
 fi

@@ -14,7 +14,9 @@
 
 #include <stddef.h>
 
-#if defined __GNUC__
+#if defined BOUGH_API
+/* as given */
+#elif defined __GNUC__
 #define BOUGH_API __attribute__((visibility("default")))
 #else
 #define BOUGH_API

@@ -29,6 +29,7 @@ bough_status bough_verb_modes(bough_arena *arena, const bough_options *options);
 bough_status bough_verb_study(bough_arena *arena, const bough_options *options);
 bough_status bough_verb_report(bough_arena *arena, const bough_options *options);
 bough_status bough_verb_import(bough_arena *arena, const bough_options *options);
+bough_status bough_verb_export(bough_arena *arena, const bough_options *options);
 bough_status bough_verb_wind(bough_arena *arena, const bough_options *options);
 bough_status bough_verb_help(bough_arena *arena, const bough_options *options);
 bough_status bough_verb_version(bough_arena *arena, const bough_options *options);

@@ -11,6 +11,7 @@ file's or the next, where `cmake --install` puts it, else one that the system fi
 """
 import array
 import ctypes
+import glob
 import os
 
 try:
@@ -32,6 +33,7 @@ class Error(Exception):
 def _load():
     here = os.path.dirname(os.path.abspath(__file__))
     above = [os.path.join(here, *[".."] * up, "libbough.so.0") for up in (1, 2)]
+    above += glob.glob(os.path.join(here, "..", "..", "*", "libbough.so.0"))
     found = [path for path in above if os.path.exists(path)]
     path = os.environ.get("BOUGH_LIBRARY") or (found[0] if found else "libbough.so.0")
     library = ctypes.CDLL(path)

@@ -96,7 +96,7 @@ static const bough_key control_keys[] = {
     {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("variable-speed", "bladed", "external"),
      .required = true, AT(kind),
      .help = "the baseline law of the NREL 5 MW turbine; a shared library with the function DISCON "
-             "in the style of Bladed; or whoever steps the scene, by the inputs GenTq, the demanded "
+             "in the style of Bladed; or whoever steps the scene, by the inputs GenTqCom, the demanded "
              "torque on the fast shaft, and BlPitchCom1 to 3, the demanded pitch"},
     {.name = "rate", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_FREQUENCY, .range = "> 0",
      .fallback = "50", AT(rate), .example = "80 Hz",

@@ -1,0 +1,98 @@
+#include "apps/output/archive.h"
+
+#include "core/input_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LOCAL = 0x04034b50, CENTRAL = 0x02014b50, END = 0x06054b50 };
+enum { DAY = 1 << 5 | 1, VERSION = 20, UTF8 = 1 << 11 }; // 1 January 1980: the same scene, the same file
+
+// The cyclic redundancy check of ISO 3309, bit by bit from a table of bytes.
+static uint32_t checksum(const unsigned char *bytes, size_t size) {
+    uint32_t table[256], sum = 0xffffffffu;
+    for (uint32_t i = 0; i < 256; i++) {
+        uint32_t x = i;
+        for (int k = 0; k < 8; k++) x = x & 1 ? 0xedb88320u ^ x >> 1 : x >> 1;
+        table[i] = x;
+    }
+    for (size_t i = 0; i < size; i++) sum = table[(sum ^ bytes[i]) & 0xff] ^ sum >> 8;
+    return ~sum;
+}
+
+static void put(FILE *file, uint32_t value, int bytes) {
+    for (int i = 0; i < bytes; i++) fputc((int)(value >> 8 * i & 0xff), file);
+}
+
+// What the head of a file and its line in the directory share.
+static void put_entry(const bough_archive *a, int k) {
+    put(a->file, VERSION, 2);
+    put(a->file, UTF8, 2);
+    put(a->file, 0, 2); // stored
+    put(a->file, 0, 2); // midnight
+    put(a->file, DAY, 2);
+    put(a->file, a->entry[k].sum, 4);
+    put(a->file, a->entry[k].size, 4);
+    put(a->file, a->entry[k].size, 4);
+    put(a->file, (uint32_t)strlen(a->entry[k].name), 2);
+    put(a->file, 0, 2);
+}
+
+bough_status bough_archive_add(bough_archive *a, const char *name, const void *bytes, size_t size) {
+    long at = ftell(a->file);
+    if (a->n == BOUGH_ARCHIVE_FILES || at < 0 || size + (size_t)at > UINT32_MAX - (1u << 20)) {
+        return bough_fail(BOUGH_INVALID, "the archive has no room for '%.200s'", name);
+    }
+    int k = a->n++;
+    a->entry[k].name = name;
+    a->entry[k].size = (uint32_t)size;
+    a->entry[k].sum = checksum(bytes, size);
+    a->entry[k].at = (uint32_t)at;
+    put(a->file, LOCAL, 4);
+    put_entry(a, k);
+    fputs(name, a->file);
+    fwrite(bytes, 1, size, a->file);
+    return bough_ok();
+}
+
+bough_status bough_archive_copy(bough_archive *a, const char *name, const char *path) {
+    char why[BOUGH_INPUT_REASON];
+    FILE *from = bough_input_open(path, BOUGH_INPUT_DATA, why);
+    if (!from) return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
+    fseek(from, 0, SEEK_END);
+    long size = ftell(from);
+    rewind(from);
+    void *bytes = malloc(size > 0 ? (size_t)size : 1);
+    bough_status status = bough_ok();
+    if (!bytes || size < 0 || fread(bytes, 1, (size_t)size, from) != (size_t)size) {
+        status = bough_fail(BOUGH_IO, "cannot read '%.200s'", path);
+    } else {
+        status = bough_archive_add(a, name, bytes, (size_t)size);
+    }
+    free(bytes);
+    fclose(from);
+    return status;
+}
+
+void bough_archive_end(bough_archive *a) {
+    uint32_t at = (uint32_t)ftell(a->file);
+    for (int k = 0; k < a->n; k++) {
+        put(a->file, CENTRAL, 4);
+        put(a->file, VERSION, 2);
+        put_entry(a, k);
+        put(a->file, 0, 2); // comment
+        put(a->file, 0, 2);
+        put(a->file, 0, 2);
+        put(a->file, 0, 4);
+        put(a->file, a->entry[k].at, 4);
+        fputs(a->entry[k].name, a->file);
+    }
+    uint32_t size = (uint32_t)ftell(a->file) - at;
+    put(a->file, END, 4);
+    put(a->file, 0, 4);
+    put(a->file, (uint32_t)a->n, 2);
+    put(a->file, (uint32_t)a->n, 2);
+    put(a->file, size, 4);
+    put(a->file, at, 4);
+    put(a->file, 0, 2);
+}

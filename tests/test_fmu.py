@@ -1,0 +1,195 @@
+"""An exported FMU as an importer meets it: test_fmu.py BOUGH SOURCE, with the module bough in the path.
+
+The archive, its description against the rules of FMI 3.0, the library by dlopen with all functions of
+the standard, its run against bough's own to the bit.
+"""
+import ctypes
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as xml
+import zipfile
+
+import bough
+
+PROGRAM, SOURCE = sys.argv[1:3]
+TURBINE = SOURCE + "/apps/turbine/runup.yaml"
+SETTINGS = ["bodies[3-5].rod.segments=8", "aero.wind.input=wind",
+            "loads=[{joint: hub, torque: -2 MN m, input: brake}]", "simulation.threads=1"]
+
+TYPES = "Float32 Float64 Int8 UInt8 Int16 UInt16 Int32 UInt32 Int64 UInt64 Boolean String Binary Clock"
+FUNCTIONS = ["fmi3" + name for name in """
+    GetVersion SetDebugLogging InstantiateModelExchange InstantiateCoSimulation
+    InstantiateScheduledExecution FreeInstance EnterInitializationMode ExitInitializationMode
+    EnterEventMode Terminate Reset GetNumberOfVariableDependencies GetVariableDependencies GetFMUState
+    SetFMUState FreeFMUState SerializedFMUStateSize SerializeFMUState DeserializeFMUState
+    GetDirectionalDerivative GetAdjointDerivative EnterConfigurationMode ExitConfigurationMode
+    GetIntervalDecimal GetIntervalFraction GetShiftDecimal GetShiftFraction SetIntervalDecimal
+    SetIntervalFraction SetShiftDecimal SetShiftFraction EvaluateDiscreteStates UpdateDiscreteStates
+    EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates
+    GetContinuousStateDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
+    GetNumberOfEventIndicators GetNumberOfContinuousStates EnterStepMode GetOutputDerivatives DoStep
+    ActivateModelPartition""".split()]
+FUNCTIONS += ["fmi3%s%s" % (verb, name) for verb in ("Get", "Set") for name in TYPES.split()]
+
+OK, ERROR = 0, 3
+REAL, REFERENCE, SIZE = ctypes.c_double, ctypes.c_uint32, ctypes.c_size_t
+LOG = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_char_p)
+
+
+def setUpModule():
+    global folder, root, library
+    folder = tempfile.TemporaryDirectory()
+    sets = [word for s in SETTINGS for word in ("--set", s)]
+    subprocess.run([PROGRAM, "export", "fmu", TURBINE, "--out", folder.name, *sets], check=True,
+                   stdout=subprocess.DEVNULL)
+    with zipfile.ZipFile(folder.name + "/bough.fmu") as archive:
+        assert archive.testzip() is None
+        archive.extractall(folder.name + "/x")
+    root = xml.parse(folder.name + "/x/modelDescription.xml").getroot()
+    library = ctypes.CDLL(folder.name + "/x/binaries/x86_64-linux/bough.so")
+    library.fmi3GetVersion.restype = ctypes.c_char_p
+    library.fmi3InstantiateCoSimulation.restype = ctypes.c_void_p
+
+
+def tearDownModule():
+    folder.cleanup()
+
+
+class Instance:
+    def __init__(self, token=None):
+        self.messages = []
+        self.log = LOG(lambda environment, status, category, text: self.messages.append(text.decode()))
+        resources = (folder.name + "/x/resources/").encode()
+        token = (token or root.get("instantiationToken")).encode()
+        self.pointer = library.fmi3InstantiateCoSimulation(
+            b"one", token, resources, False, True, False, False, None, SIZE(0), None, self.log, None)
+        self.pointer = self.pointer and ctypes.c_void_p(self.pointer)
+
+    def start(self, stop=None):
+        return (library.fmi3EnterInitializationMode(self.pointer, False, REAL(0), REAL(0),
+                                                    stop is not None, REAL(stop or 0)),
+                library.fmi3ExitInitializationMode(self.pointer))
+
+    def get(self, references):
+        values = (REAL * len(references))()
+        array = (REFERENCE * len(references))(*references)
+        status = library.fmi3GetFloat64(self.pointer, array, SIZE(len(references)), values,
+                                        SIZE(len(references)))
+        return list(values) if status == OK else status
+
+    def set(self, reference, value):
+        return library.fmi3SetFloat64(self.pointer, (REFERENCE * 1)(reference), SIZE(1),
+                                      (REAL * 1)(value), SIZE(1))
+
+    def step(self, time, size):
+        flags, reached = [ctypes.c_bool() for _ in range(3)], REAL()
+        status = library.fmi3DoStep(self.pointer, REAL(time), REAL(size), False,
+                                    *(ctypes.byref(x) for x in (*flags, reached)))
+        return status, reached.value
+
+    def free(self):
+        library.fmi3FreeInstance(self.pointer)
+
+
+def variables(causality):
+    return {v.get("name"): int(v.get("valueReference")) for v in root.find("ModelVariables")
+            if v.get("causality") == causality}
+
+
+class Fmu(unittest.TestCase):
+    def test_the_library_shows_all_functions_and_needs_libc_only(self):
+        self.assertEqual(len(set(FUNCTIONS)), 75)
+        for name in FUNCTIONS:
+            self.assertTrue(hasattr(library, name), name)
+        self.assertEqual(library.fmi3GetVersion(), b"3.0")
+        path = folder.name + "/x/binaries/x86_64-linux/bough.so"
+        needs = subprocess.run(["ldd", path], capture_output=True, text=True).stdout
+        for line in needs.splitlines():
+            self.assertRegex(line, r"^\s*(linux-vdso|libm\.so\.6|libc\.so\.6|/lib64/ld-linux)")
+
+    def test_the_description_follows_the_standard(self):
+        self.assertEqual((root.tag, root.get("fmiVersion")), ("fmiModelDescription", "3.0"))
+        order = [child.tag for child in root]
+        rules = ["CoSimulation", "UnitDefinitions", "LogCategories", "DefaultExperiment",
+                 "ModelVariables", "ModelStructure"]
+        self.assertEqual(order, rules)
+        kind = root.find("CoSimulation")
+        self.assertEqual(kind.get("modelIdentifier"), "bough")
+        every = list(root.find("ModelVariables"))
+        for key in "name", "valueReference":
+            values = [v.get(key) for v in every]
+            self.assertEqual(len(set(values)), len(values), key)
+        units = {u.get("name") for u in root.find("UnitDefinitions")}
+        for v in every:
+            self.assertIn(v.get("causality"), ("independent", "input", "output"))
+            self.assertEqual(v.get("variability"), "continuous")
+            self.assertEqual(v.get("start") is not None, v.get("causality") == "input")
+            self.assertIn(v.get("unit"), units)
+        self.assertEqual(list(variables("independent")), ["time"])
+        outputs = set(variables("output").values())
+        structure = root.find("ModelStructure")
+        for tag in "Output", "InitialUnknown":
+            listed = [int(x.get("valueReference")) for x in structure.findall(tag)]
+            self.assertEqual(set(listed), outputs)
+            self.assertEqual(len(listed), len(outputs))
+        self.assertEqual(set(variables("input")), {"wind", "brake"})
+
+    def test_its_run_is_boughs_own_to_the_bit(self):
+        inputs, outputs = variables("input"), variables("output")
+        fmu = Instance()
+        self.assertEqual(fmu.start(), (OK, OK))
+        with bough.Session(TURBINE, *SETTINGS) as own:
+            self.assertEqual(set(own.names), set(outputs))
+            for k in range(20):
+                wind, brake = 20 - 0.1 * k, -2e6 - 1e4 * k
+                own["wind"], own["brake"] = wind, brake
+                self.assertEqual(fmu.set(inputs["wind"], wind), OK)
+                self.assertEqual(fmu.set(inputs["brake"], brake), OK)
+                for _ in range(2):
+                    own.step()
+                self.assertEqual(fmu.step(0.04 * k, 0.04)[0], OK, fmu.messages)
+                self.assertEqual(fmu.get([outputs[name] for name in own.names]), list(own.values))
+                self.assertEqual(fmu.get([0]), [own.time])
+        self.assertEqual(library.fmi3Terminate(fmu.pointer), OK)
+        fmu.free()
+
+    def test_a_state_is_gone_back_to(self):
+        fmu, place = Instance(), ctypes.c_void_p()
+        fmu.start()
+        fmu.step(0, 0.2)
+        self.assertEqual(library.fmi3GetFMUState(fmu.pointer, ctypes.byref(place)), OK, fmu.messages)
+        every = sorted(variables("output").values())
+        fmu.step(0.2, 0.2)
+        once = fmu.get(every)
+        fmu.set(variables("input")["wind"], 5)
+        fmu.step(0.4, 0.2)
+        self.assertEqual(library.fmi3SetFMUState(fmu.pointer, place), OK)
+        self.assertAlmostEqual(fmu.get([0])[0], 0.2)
+        fmu.step(0.2, 0.2)
+        self.assertEqual(fmu.get(every), once)
+        self.assertEqual(library.fmi3FreeFMUState(fmu.pointer, ctypes.byref(place)), OK)
+        self.assertEqual(library.fmi3Reset(fmu.pointer), OK)
+        self.assertEqual(fmu.get([0]), [0])
+        fmu.free()
+
+    def test_what_is_wrong_is_told(self):
+        self.assertIsNone(Instance("another").pointer)
+        fmu = Instance()
+        self.assertEqual(fmu.step(0, 0.02)[0], ERROR)  # not initialised
+        fmu.start()
+        self.assertEqual(fmu.step(0, 0.03)[0], ERROR)
+        self.assertIn("no whole number of macro steps", fmu.messages[-1])
+        self.assertEqual(fmu.set(0, 1), ERROR)
+        self.assertEqual(fmu.get([100000]), ERROR)
+        fmu.free()
+        longer = Instance()
+        self.assertEqual(longer.start(50.0), (OK, OK))  # beyond the scene's own duration
+        self.assertEqual(longer.step(0, 0.02)[0], OK)
+        longer.free()
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
