@@ -423,6 +423,12 @@ modes() {
     has ../stdout '^rod blade3: .* turning at 12.1 rpm about (0.996195, 0, -0.0871557)'
     near ../stdout '^ *1 ' 2 0.7349 0.001
     missing turning/shapes.csv
+    expect 0 modes "$turbine" --set 'modes={count: 3, of: scene, at: undeformed}' --out campbell \
+        --sweep 'gravity=[0, 0, -9], [0, 0, 0]' --sweep 'simulation.master.rtol=1e-5, 1e-6'
+    [ "$(wc -l <campbell/campbell.csv)" -eq 7 ] || fail "$said: campbell.csv has not 7 lines"
+    has campbell/campbell.csv '^1,"\[0, 0, -9\]","1e-5",'
+    has campbell/campbell.svg '^</svg>'
+    rm -r campbell
     expect 0 modes "$turbine" --set 'modes={count: 3, at: undeformed, shapes: true}' --out whole
     has ../stdout '^whole scene: .*, rotor at 4.77465 rpm, seen by an observer at rest, rotor free to turn; the air'
     has ../stdout '^ *1 .* blades .* flap .* backward '
@@ -434,6 +440,8 @@ modes() {
     has ../stdout '^unstable beam: mode [23] grows at '
     rm -r out turning
     refused 'no revolute joint carries it' modes "$blade" --set 'modes.speed=1 rad/s'
+    refused "'b=1' has 1 values, the first 2" modes "$turbine" --sweep 'a=1, 2' --sweep 'b=1'
+    refused "expects KEY=V1, V2" modes "$turbine" --sweep 'gravity'
     refused "modes.about: the joint of 'nacelle' must be revolute" modes "$turbine" \
         --set 'modes.about=nacelle'
     refused "modes.speed: only used with 'of: rods'" modes "$turbine" \

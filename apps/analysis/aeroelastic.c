@@ -6,6 +6,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+// Of a mode's residual, relative; what is worse belongs to the rest of the basis.
+static const double converged = 1e-3;
+// Real eigenvalues closer than this, relative, are one twice.
+static const double twins = 1e-4;
+
 enum { SWEEPS = 12 }; // of the simultaneous iteration, on twice as many vectors as are kept
 
 // Of a mode's participation; below it is one of the air, in which the bodies hardly take part.
@@ -20,6 +25,7 @@ typedef struct work {
     int *pivot;            // (n)
     double *right, *left;  // bases (n × k)
     double *image, *small; // (n × k), (k × k)
+    double *turned_basis, *mode, *mode_image; // (n × k)
 } work;
 
 static bool take(bough_arena *arena, work *w) {
@@ -31,6 +37,9 @@ static bool take(bough_arena *arena, work *w) {
     w->left = bough_arena_doubles(arena, n * k);
     w->image = bough_arena_doubles(arena, n * k);
     w->small = bough_arena_doubles(arena, k * k);
+    w->turned_basis = bough_arena_doubles(arena, n * k);
+    w->mode = bough_arena_doubles(arena, n * k);
+    w->mode_image = bough_arena_doubles(arena, n * k);
     return !bough_arena_exhausted(arena);
 }
 
@@ -47,14 +56,21 @@ static void invert(work *w) {
     }
 }
 
+// A joint that nothing holds moves on at its speed: the eigenvalue 0 twice, with one vector. Joints'
+// coordinates that go back this slowly, against the point, have two.
+static const double going_back = 1e-6;
+
 // I + γ P S
-static bool turn(work *w) {
+static bool turn(work *w, int n_coordinate) {
     const bough_modes_def *def = w->def;
     size_t n = (size_t)w->n;
     int parts = def->n_part;
     double *rate = w->image; // (parts × parts)
     memset(w->turned, 0, n * n * sizeof *w->turned);
     for (size_t j = 0; j < n; j++) w->turned[j * n + j] = 1;
+    for (size_t j = 0; j < (size_t)n_coordinate; j++) {
+        for (size_t i = 0; i < n; i++) w->turned[j * n + i] += going_back * w->inverse[j * n + i];
+    }
     if (def->spin == 0) return bough_dense_factor(w->n, w->turned, w->pivot);
     bough_modes_rate(def, rate);
     for (int l = 0; l < parts; l++) {
@@ -132,6 +148,7 @@ static void find_subspaces(work *w) {
 typedef struct ritz {
     double *matrix, *value, *vector, *room; // (k × k), (2 × k), (k × k), (8 k)
     int *order;                             // (k) by the size of the inverse's eigenvalue
+    bool *good, *taken;                     // (k) converged, and in use
 } ritz;
 
 static bool take_ritz(bough_arena *arena, int k, ritz *r) {
@@ -141,6 +158,8 @@ static bool take_ritz(bough_arena *arena, int k, ritz *r) {
     r->vector = bough_arena_doubles(arena, n * n);
     r->room = bough_arena_doubles(arena, 8 * n);
     r->order = bough_arena_take(arena, n * sizeof *r->order);
+    r->good = bough_arena_take(arena, n * sizeof *r->good);
+    r->taken = bough_arena_take(arena, n * sizeof *r->taken);
     return !bough_arena_exhausted(arena);
 }
 
@@ -159,52 +178,135 @@ static void sort_ritz(int k, ritz *r) {
     }
 }
 
-// (Wᵀ U)⁻¹ Wᵀ into w->image, as (k × n), and of the inverse the matrix that it has in the basis.
-static bool project(work *w, ritz *r) {
-    int n = w->n, k = w->k;
-    apply(w, w->right, w->image);
-    bough_dense_product((bough_product){k, k, n, true, 1, 0}, w->left, w->right, w->small);
-    bough_dense_product((bough_product){k, k, n, true, 1, 0}, w->left, w->image, r->matrix);
-    if (!bough_dense_factor(k, w->small, w->pivot)) return false;
-    bough_dense_solve(k, k, w->small, w->pivot, r->matrix);
-    for (int i = 0; i < k; i++) {
-        for (int j = 0; j < n; j++) {
-            w->image[(size_t)j * (size_t)k + (size_t)i] = w->left[(size_t)i * (size_t)n + (size_t)j];
-        }
+// What is left of M v − μ v, of the first of a pair or a real one, against μ v; image (n × k) is M v.
+static double residual(const work *w, const ritz *r, int at, const double *modes,
+                       const double *images) {
+    size_t n = (size_t)w->n;
+    const double *v = modes + (size_t)at * n, *image = images + (size_t)at * n;
+    double re = r->value[at], im = r->value[w->k + at], defect = 0, size = 0;
+    const double *other = im > 0 ? v + n : v; // its imaginary part
+    for (size_t i = 0; i < n; i++) {
+        double expected = re * v[i] - (im > 0 ? im * other[i] : 0), off = image[i] - expected;
+        defect += off * off;
+        size += (re * re + im * im) * (v[i] * v[i] + (im > 0 ? other[i] * other[i] : 0));
     }
-    bough_dense_solve(k, n, w->small, w->pivot, w->image);
-    return bough_dense_eigen(k, r->matrix, r->value, r->vector, r->room);
+    return sqrt(defect / size);
 }
 
-// u of the modes with the largest eigenvalues μ of the inverse, so that left · shape is the unit matrix,
-// and their rates (1 − 1/μ)/γ; of a pair in its real and imaginary part.
-static bool set_motion(bough_arena *arena, work *w, bough_aeroelastic *to) {
-    ritz r;
-    int n = w->n, k = w->k, kept = to->n_motion;
-    if (!take_ritz(arena, k, &r) || !project(w, &r)) return false;
-    sort_ritz(k, &r);
-    const double *imaginary = r.value + k;
-    if (kept < k && imaginary[r.order[kept - 1]] > 0) to->n_motion = --kept; // its conjugate is next
+// Puts the modes of a basis (n × k) in its place; its image under the inverse or its transpose is in
+// w->image.
+static bool find_ritz(work *w, double *basis, ritz *r) {
+    int n = w->n, k = w->k;
+    bough_dense_product((bough_product){k, k, n, true, 1, 0}, basis, w->image, r->matrix);
+    if (!bough_dense_eigen(k, r->matrix, r->value, r->vector, r->room)) return false;
+    bough_dense_product((bough_product){n, k, k, false, 1, 0}, basis, r->vector, w->mode);
+    bough_dense_product((bough_product){n, k, k, false, 1, 0}, w->image, r->vector, w->mode_image);
+    sort_ritz(k, r);
     for (int i = 0; i < k; i++) {
-        memcpy(w->small + (size_t)i * (size_t)k, r.vector + (size_t)r.order[i] * (size_t)k,
-               (size_t)k * sizeof(double));
+        r->good[i] = residual(w, r, i, w->mode, w->mode_image) < converged;
     }
-    bough_dense_product((bough_product){n, kept, k, false, 1, 0}, w->right, w->small, to->shape);
-    if (!bough_dense_factor(k, w->small, w->pivot)) return false;
-    bough_dense_solve(k, n, w->small, w->pivot, w->image);
-    for (int j = 0; j < n; j++) {
-        memcpy(to->left + (size_t)j * (size_t)kept, w->image + (size_t)j * (size_t)k,
-               (size_t)kept * sizeof(double));
+    memcpy(basis, w->mode, (size_t)n * (size_t)k * sizeof *basis);
+    return true;
+}
+
+// The left mode of the same eigenvalue, −1: none has converged.
+static int partner(int k, const ritz *right, int at, const ritz *left) {
+    double re = right->value[at], im = right->value[k + at], nearest = converged * hypot(re, im);
+    int found = -1;
+    for (int i = 0; i < k; i++) {
+        double off = hypot(left->value[i] - re, left->value[k + i] - im);
+        if (!left->good[i] || left->taken[i] || off > nearest) continue;
+        nearest = off;
+        found = i;
     }
-    for (int i = 0; i < kept; i++) {
-        int at = r.order[i];
-        double re = r.value[at], im = imaginary[at], size = re * re + im * im;
-        double *column = to->motion + (size_t)i * (size_t)kept;
-        column[i] = w->def->point * (1 - re / size);
-        if (im > 0) column[i + 1] = -w->def->point * im / size;
-        if (im < 0) column[i - 1] = -w->def->point * im / size;
+    return found;
+}
+
+// Keeps the modes that have converged on both sides, largest eigenvalues first, no pair in part: their
+// number. block[i]: size of the block of modes that begins at i, a pair or a double real one.
+static int keep(work *w, const ritz *right, ritz *left, int most, int *block) {
+    size_t n = (size_t)w->n, bytes = n * sizeof(double);
+    int kept = 0;
+    double last = 0; // eigenvalue of a real mode alone before
+    for (int i = 0; i < w->k; i++) {
+        int at = right->order[i], size = right->value[w->k + at] > 0 ? 2 : 1;
+        if (right->value[w->k + at] < 0 || kept + size > most || !right->good[at]) continue;
+        int other = partner(w->k, right, at, left);
+        if (other < 0) continue;
+        left->taken[other] = true;
+        double value = right->value[at];
+        bool twin = size == 1 && fabs(value - last) < twins * fabs(value);
+        block[twin ? kept - 1 : kept] = twin ? 2 : size;
+        last = size == 1 && !twin ? value : 0;
+        for (int c = 0; c < size; c++, kept++) {
+            memcpy(w->mode + (size_t)kept * n, w->right + (size_t)(at + c) * n, bytes);
+            memcpy(w->mode_image + (size_t)kept * n, w->left + (size_t)(other + c) * n, bytes);
+        }
+    }
+    memcpy(w->right, w->mode, (size_t)kept * bytes);
+    memcpy(w->left, w->mode_image, (size_t)kept * bytes);
+    return kept;
+}
+
+// Two columns (n) made orthonormal: of the double eigenvalue 0 of a rotor that turns freely the modes are
+// next to parallel, and what is not is the second motion.
+static void part(size_t n, double *a) {
+    double *b = a + n, aa = 0, ab = 0, bb = 0;
+    for (size_t i = 0; i < n; i++) aa += a[i] * a[i];
+    for (size_t i = 0; i < n; i++) ab += a[i] * b[i];
+    for (size_t i = 0; i < n; i++) b[i] -= ab / aa * a[i];
+    for (size_t i = 0; i < n; i++) bb += b[i] * b[i];
+    for (size_t i = 0; i < n; i++) a[i] /= sqrt(aa), b[i] /= sqrt(bb);
+}
+
+// Of the block of `size` modes from `first` on: (Wᵀ U)⁻¹ Wᵀ, and the motion in it,
+// (E − (L (I − γ(J − S))⁻¹ U)⁻¹)/γ. Left and right modes of different blocks are orthogonal.
+static bool set_block(work *w, int first, int size, bough_aeroelastic *to) {
+    size_t n = (size_t)w->n, k = (size_t)to->n_motion, at = (size_t)first;
+    double *right = w->right + at * n, *left = w->left + at * n, small[4], row[2], image[4];
+    int pivot[2];
+    if (size == 2) part(n, right), part(n, left);
+    bough_dense_product((bough_product){size, size, w->n, true, 1, 0}, left, right, small);
+    if (!bough_dense_factor(size, small, pivot)) return false;
+    for (size_t i = 0; i < n; i++) {
+        for (int c = 0; c < size; c++) row[c] = left[(size_t)c * n + i];
+        bough_dense_solve(size, 1, small, pivot, row);
+        for (int c = 0; c < size; c++) to->left[i * k + at + (size_t)c] = row[c];
+    }
+    memcpy(w->mode, right, (size_t)size * n * sizeof *right);
+    w->k = size;
+    apply(w, w->mode, w->mode_image);
+    bough_dense_product((bough_product){size, size, w->n, true, 1, 0}, left, w->mode_image, image);
+    bough_dense_solve(size, size, small, pivot, image);
+    if (!bough_dense_factor(size, image, pivot)) return false;
+    for (int j = 0; j < size; j++) {
+        row[0] = row[1] = 0;
+        row[j] = 1;
+        bough_dense_solve(size, 1, image, pivot, row);
+        for (int i = 0; i < size; i++) {
+            to->motion[(at + (size_t)j) * k + at + (size_t)i] = w->def->point * ((i == j) - row[i]);
+        }
     }
     return true;
+}
+
+// Modes on both sides, and the motion in them.
+static bool set_motion(bough_arena *arena, work *w, bough_aeroelastic *to) {
+    ritz right, left;
+    if (!take_ritz(arena, w->k, &right) || !take_ritz(arena, w->k, &left)) return false;
+    int *size = bough_arena_take(arena, (size_t)w->k * sizeof *size);
+    if (!size) return false;
+    apply(w, w->right, w->image);
+    if (!find_ritz(w, w->right, &right)) return false;
+    memcpy(w->turned_basis, w->left, (size_t)w->n * (size_t)w->k * sizeof(double));
+    apply_transposed(w, w->turned_basis, w->image);
+    if (!find_ritz(w, w->left, &left)) return false;
+    to->n_motion = keep(w, &right, &left, to->n_motion, size);
+    for (int i = 0; i < to->n_motion; i += size[i]) {
+        if (!set_block(w, i, size[i], to)) return false;
+    }
+    memcpy(to->shape, w->right, (size_t)w->n * (size_t)to->n_motion * sizeof(double));
+    return to->n_motion > 0;
 }
 
 static void add_block(const double *block, int rows, int columns, int first_row, int first_column,
@@ -279,7 +381,7 @@ bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation
         bough_coupled_setup(coupled, def->time, def->state, def->input, 1 / def->point);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
     invert(&w);
-    bool done = turn(&w);
+    bool done = turn(&w, s->tree->n_q);
     if (done) find_subspaces(&w);
     if (!done || !set_motion(arena, &w, reduced)) {
         return bough_fail(BOUGH_FAILED, "the motion in the air cannot be reduced to %d states",

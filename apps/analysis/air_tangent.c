@@ -4,6 +4,7 @@
 #include "apps/simulation/drag_link.h"
 #include "apps/simulation/equilibrium.h"
 
+#include <math.h>
 #include <string.h>
 
 // Differences, in units of the states' scales; of the air's states, absolute; over so long a time a rate of
@@ -208,5 +209,11 @@ bool bough_air_tangent_average(bough_arena *arena, const bough_simulation *s,
     average(&(blocks){n, t->n, group->n_row, m, group->row, air}, t->lift);
     average(&(blocks){n, t->n_air, m, group->n_row, air, group->row}, t->drive);
     average(&(blocks){n, t->n_air, m, m, air, air}, t->lag);
+    if (fabs(group->speed) > 0) { // over a revolution the mean of a slope in azimuth is none
+        int azimuth, speed;
+        bough_tree_joint_rows(s->tree, s->scene->turbine.rotor, &azimuth, &speed);
+        memset(t->motion + (size_t)azimuth * (size_t)t->n, 0, (size_t)t->n * sizeof(double));
+        memset(t->drive + (size_t)azimuth * (size_t)t->n_air, 0, (size_t)t->n_air * sizeof(double));
+    }
     return true;
 }

@@ -24,7 +24,7 @@ const bough_verb bough_verbs[] = {
      "finds the shape of rods and joints at rest under gravity, loads and air",
      bough_verb_static},
     {"modes",
-     {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET | BOUGH_OPTION_OUT},
+     {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET | BOUGH_OPTION_OUT | BOUGH_OPTION_SWEEP},
      "finds frequencies, damping and shapes of the whole, or of each rod, at rest or turning",
      bough_verb_modes},
     {"study",

@@ -2,6 +2,7 @@
 // clamped at its root, about equilibrium at rest or in steady rotation.
 #include "apps/analysis/steady.h"
 #include "apps/analysis/vibration.h"
+#include "apps/bough/modes_sweep.h"
 #include "apps/bough/modes_whole.h"
 #include "apps/bough/open.h"
 #include "apps/bough/verb.h"
@@ -138,6 +139,7 @@ static bough_status solve_all(bough_arena *arena, const bough_simulation *s, rod
 }
 
 bough_status bough_verb_modes(bough_arena *arena, const bough_options *options) {
+    if (options->n_sweep > 0) return bough_modes_sweep(arena, options);
     bough_simulation *s;
     bough_status status = bough_open(arena, options, &s);
     if (!bough_is_ok(&status)) return status;

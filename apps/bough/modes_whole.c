@@ -9,7 +9,7 @@ static const double unstable = 1e-6; // growth relative to |λ| above it is no r
 // -- words ----------------------------------------------------------------------------------------
 
 // Rods that are no blades bend along their axes, rigid bodies move along the ground's.
-static const char *shape_of(const bough_simulation *s, const bough_scene_mode *mode) {
+const char *bough_modes_shape(const bough_simulation *s, const bough_scene_mode *mode) {
     static const char *const blade[] = {"flap", "edge", "axial", "torsion"};
     static const char *const rod[] = {"x", "y", "z", "torsion"};
     static const char *const rigid[] = {"x", "y", "z", "turn"};
@@ -22,7 +22,7 @@ static const char *shape_of(const bough_simulation *s, const bough_scene_mode *m
     return (is_blade ? blade : rod)[mode->direction];
 }
 
-static const char *body_of(const bough_simulation *s, const bough_scene_mode *mode) {
+const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode) {
     return mode->blades ? "blades" : s->scene->body[mode->body].name;
 }
 
@@ -62,7 +62,7 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
         printf("%4d %12.6g %12.6g %11.5f  %-12s %-8s %-12s", k + 1, m->frequency,
-               m->damped_frequency, 100 * m->damping, body_of(s, m), shape_of(s, m),
+               m->damped_frequency, 100 * m->damping, bough_modes_body(s, m), bough_modes_shape(s, m),
                bough_pattern_names[m->pattern]);
         for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
         if (rotor_is_free(s) && turns_rotor(m)) printf("  free rotor");
@@ -87,7 +87,7 @@ static void write_modes(FILE *file, const bough_simulation *s, const bough_vibra
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
         fprintf(file, "%d,%.10g,%.10g,%.10g,%s,%s,%s", k + 1, m->frequency, m->damped_frequency,
-                m->damping, body_of(s, m), shape_of(s, m), bough_pattern_names[m->pattern]);
+                m->damping, bough_modes_body(s, m), bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
         for (int c = 0; c < 3; c++) fprintf(file, ",%.6g", m->whirl[c]);
         for (int i = 0; i < n_body; i++) fprintf(file, ",%.6g", m->share[i]);
         fputc('\n', file);

@@ -21,6 +21,8 @@ static const option_row rows[] = {
      BOUGH_OPTION_SET, true},
     {"out", "DIR", "folder for the results; default out/<name of the scene>", BOUGH_OPTION_OUT,
      false},
+    {"sweep", "KEY=V1, V2, ...", "modes over operating points; more than one go together",
+     BOUGH_OPTION_SWEEP, true},
     {"threads", "N", "1 to 64, instead of what the scene says", BOUGH_OPTION_THREADS, false},
     {"part", "K/N", "of a study (stability, sweep, load-set) only the K-th of N shares of its runs",
      BOUGH_OPTION_PART, false},
@@ -109,6 +111,7 @@ static bough_status take_part(const char *text, bough_options *options) {
 static bough_status take_option(bough_option_flag flag, const char *text, bough_options *options) {
     switch (flag) {
     case BOUGH_OPTION_SET: options->set[options->n_set++] = text; break;
+    case BOUGH_OPTION_SWEEP: options->sweep[options->n_sweep++] = text; break;
     case BOUGH_OPTION_OUT: options->out = text; break;
     case BOUGH_OPTION_THREADS: return take_threads(text, options);
     case BOUGH_OPTION_PART: return take_part(text, options);
@@ -147,8 +150,9 @@ static bough_status take(const bough_syntax *syntax, int code, const char *word,
 
 bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
                                 const bough_syntax *syntax, bough_options *options) {
-    *options = (bough_options){.set = bough_arena_take(arena, (size_t)argc * sizeof(char *))};
-    if (!options->set) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the arguments");
+    *options = (bough_options){.set = bough_arena_take(arena, (size_t)argc * sizeof(char *)),
+                               .sweep = bough_arena_take(arena, (size_t)argc * sizeof(char *))};
+    if (!options->set || !options->sweep) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the arguments");
     struct option list[N_ROW + 2] = {{0}};
     list_options(syntax, list);
     bough_status status = bough_ok();

@@ -22,6 +22,7 @@ typedef enum bough_option_flag {
     BOUGH_OPTION_CONTROLLER = 1 << 9,
     BOUGH_OPTION_CLAMP_BASE = 1 << 10,
     BOUGH_OPTION_JSON = 1 << 11,
+    BOUGH_OPTION_SWEEP = 1 << 12,
 } bough_option_flag;
 
 typedef enum bough_operand {
@@ -43,6 +44,8 @@ typedef struct bough_options {
     const char *second;  // of two operands
     int n_set;
     const char **set; // (n_set) replacements "key=value", in their order
+    int n_sweep;
+    const char **sweep; // (n_sweep) "key=value, value, ..."
     const char *out;  // NULL: named after the scene
     int threads;      // 0: as the scene says
     const char *only; // load case of a study; NULL: all
