@@ -9,7 +9,7 @@
 #include <string.h>
 
 // Room beyond the records of the interface for what controllers log there.
-enum { RECORDS = 8192, TEXT = 1024 };
+enum { RECORDS = 8192, LOGGED = 1000, TEXT = 1024 };
 
 typedef void call(float *swap, int *fail, char *input, char *output, char *message);
 
@@ -26,18 +26,22 @@ enum {
     STATUS = 1, TIME, STEP, PITCH,
     SHAFT_POWER = 14, ELECTRICAL_POWER,
     GENERATOR_SPEED = 20, ROTOR_SPEED,
-    TORQUE = 23,
+    TORQUE = 23, YAW_ERROR,
     WIND = 27,
     PITCH_CONTROL, // 0 collective, 1 individual
     ROOT_MOMENT = 30,
     PITCH_2 = 33, PITCH_3,
     CONTACTOR = 35, // of the generator: 1 main
+    HEADING = 37,
     DEMANDED_PITCH = 42,
     COLLECTIVE_PITCH = 45,
     DEMANDED_TORQUE = 47,
     MESSAGE_SIZE = 49, INPUT_SIZE, OUTPUT_SIZE,
-    AZIMUTH = 60, BLADES,
-    LOG_FIRST = 63, LOG_SIZE,
+    FORE_AFT = 53, SIDE_SIDE,
+    AZIMUTH = 60, BLADES, LOG_MOST, LOG_FIRST, NAMES_SIZE,
+    IN_PLANE = 69,
+    NODDING = 83,
+    RECORDS_SIZE = 129,
 };
 
 static bough_status find_function(const char *library, call **function) {
@@ -87,23 +91,32 @@ static void tell(bough_discon *d, const bough_discon_sensed *s) {
     r[PITCH] = (float)s->pitch[0];
     r[PITCH_2] = (float)s->pitch[1];
     r[PITCH_3] = (float)s->pitch[2];
-    r[PITCH_CONTROL] = 0;
+    r[PITCH_CONTROL] = s->individual;
     r[SHAFT_POWER] = (float)s->shaft_power;
     r[ELECTRICAL_POWER] = (float)s->electrical_power;
     r[GENERATOR_SPEED] = (float)s->generator_speed;
     r[ROTOR_SPEED] = (float)s->rotor_speed;
     r[TORQUE] = (float)s->torque;
+    r[YAW_ERROR] = (float)s->yaw_error;
     r[WIND] = (float)s->wind;
-    for (int b = 0; b < BOUGH_DISCON_BLADES; b++)
+    r[HEADING] = (float)s->heading;
+    r[FORE_AFT] = (float)s->acceleration[0];
+    r[SIDE_SIDE] = (float)s->acceleration[1];
+    r[NODDING] = (float)s->nodding;
+    for (int b = 0; b < BOUGH_DISCON_BLADES; b++) {
         r[ROOT_MOMENT + b] = (float)s->root_moment[b];
+        r[IN_PLANE + b] = (float)s->in_plane[b];
+    }
     r[CONTACTOR] = 1;
     r[MESSAGE_SIZE] = TEXT;
     r[INPUT_SIZE] = (float)strlen(d->input);
     r[OUTPUT_SIZE] = (float)strlen(d->output);
     r[AZIMUTH] = (float)s->azimuth;
     r[BLADES] = (float)s->n_blade;
-    r[LOG_FIRST] = RECORDS - 1000;
-    r[LOG_SIZE] = 1000;
+    r[LOG_MOST] = LOGGED;
+    r[LOG_FIRST] = RECORDS - LOGGED;
+    r[NAMES_SIZE] = TEXT;
+    r[RECORDS_SIZE] = RECORDS;
     d->message[0] = '\0';
 }
 

@@ -3,6 +3,8 @@
 //     void DISCON(float *avrSWAP, int *aviFAIL, char *accINFILE, char *avcOUTNAME, char *avcMSG)
 // reads and writes numbered records. Here records count from 1, as its manual does.
 //
+// docs/import.md lists the records that are served.
+//
 // The library keeps its own memory: a run's samples cannot be repeated, and one process can use a
 // library in one run at a time.
 #ifndef BOUGH_AERO_DISCON_H
@@ -20,6 +22,12 @@ typedef struct bough_discon_sensed {
     int n_blade;             // 1 to 3
     double pitch[BOUGH_DISCON_BLADES];       // [rad]
     double root_moment[BOUGH_DISCON_BLADES]; // out of plane [N m]
+    double in_plane[BOUGH_DISCON_BLADES];    // the other one [N m]
+    bool individual;         // each blade is to follow its own demand
+    double yaw_error;        // wind's direction less the nacelle's [rad]
+    double heading;          // of the nacelle, from ground x about z [rad]
+    double acceleration[2];  // of the nacelle's origin, fore-aft and side-side [m/s2]
+    double nodding;          // its angular acceleration about the nacelle's y [rad/s2]
     double generator_speed, rotor_speed;     // [rad/s]
     double torque;           // of the generator [N m]
     double shaft_power, electrical_power;    // [W]

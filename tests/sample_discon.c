@@ -2,6 +2,7 @@
 // input file's name says what else it does.
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 void DISCON(float *swap, int *fail, char *input, char *output, char *message);
@@ -17,6 +18,7 @@ void DISCON(float *swap, int *fail, char *input, char *output, char *message) {
     if (n != (int)strlen(input)) *fail = -1;
     if (strcmp(input, "individual") == 0) swap[27] = 1;
     if (strcmp(input, "count") == 0) swap[46] = swap[0];
+    if (strncmp(input, "record ", 7) == 0) swap[46] = swap[atoi(input + 7) - 1];
     if (strcmp(input, "nan") == 0) swap[46] = NAN;
     if (strcmp(input, "warn") == 0) *fail = 1;
     if (strcmp(input, "fail") == 0 && swap[1] > 0.5f) {

@@ -72,6 +72,30 @@ static void library_steers_the_turbine(void **state) {
     bough_arena_destroy(f.arena);
 }
 
+// A turbine that looks along x in a wind of 10° across; a tower that bends moves its nacelle.
+static void library_is_told_of_the_nacelle(void **state) {
+    (void)state;
+    static const char *const sets[] = {RIGID, BLADED, "aero.wind.direction=10 deg", NULL};
+    static const char *const record[] = {"record 24", "record 37", "record 53", "record 70"};
+    for (int i = 0; i < 4; i++) {
+        fixture f = {.arena = bough_arena_create()};
+        bough_scene *scene = scene_read(f.arena, turbine, sets);
+        scene->control.input = record[i];
+        bough_status status = bough_simulation_build(f.arena, scene, &f.s);
+        assert_int_equal(status.code, BOUGH_OK);
+        f.channels = bough_channels_start(f.arena);
+        status = bough_simulation_channels(f.s, &f.channels);
+        assert_int_equal(status.code, BOUGH_OK);
+        run_until(&f, 1);
+        double told = 1000 * channel(&f, "GenTq"); // kN m
+        if (i == 0) check_near(told, 10 * BOUGH_PI / 180, 0, 5e-3);
+        if (i == 1) check_near(told, 0, 0, 5e-3);
+        if (i == 2) assert_true(fabs(told) < 2);
+        if (i == 3) check_near(told, 0, 0, 0); // rigid blades have no root moments
+        bough_arena_destroy(f.arena);
+    }
+}
+
 static void library_may_pitch_each_blade(void **state) {
     (void)state;
     static const char *const sets[] = {RIGID, BLADED, "control.law={pitch_rate: 1 rad/s}", NULL};
@@ -158,6 +182,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(law_holds_speed_and_power),
         cmocka_unit_test(library_steers_the_turbine),
+        cmocka_unit_test(library_is_told_of_the_nacelle),
         cmocka_unit_test(library_may_pitch_each_blade),
         cmocka_unit_test(failing_library_ends_the_run),
         cmocka_unit_test(memory_is_saved_and_restored),

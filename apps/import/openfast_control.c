@@ -250,6 +250,9 @@ static void put_library(bough_openfast *o) {
             "  efficiency: %.10g\n  library: ",
             1 / step, bough_deck_number(o->elasto, "GBRatio"), efficiency);
     bough_import_path(file, o->library);
+    if (o->servo && bough_deck_whole_or(o->servo, "Ptch_Cntrl", 0) == 1) {
+        fputs("\n  individual_pitch: true", file);
+    }
     if (o->servo && bough_deck_line(o->servo, "DLL_InFile") >= 0) {
         const char *input = bough_deck_path(o->servo, "DLL_InFile");
         fputs("\n  input: ", file);

@@ -444,6 +444,7 @@ typedef struct bough_scene_control {
     double gear_ratio;      // generator speed over rotor speed
     double efficiency;      // electrical over mechanical power
     bool pitch;             // of the blades too
+    bool individual;        // BLADED: each blade follows its own demand
     const char *library, *input; // BLADED: paths; no input: ""
     int n_event;
     bough_scene_event *event; // (n_event)

@@ -16,6 +16,7 @@ typedef struct memory {
     double torque;                            // of the generator, reached at the next sample [N m]
     double speed;                             // of the generator at the last sample [rad/s]
     bough_motion_point pitch_joint[BLADES];   // reached at the next sample
+    double nacelle[4];                        // its motion at the last sample: see nacelle_motion
     double started;
 } memory;
 
@@ -66,11 +67,13 @@ bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *li
 
 // -- sample ---------------------------------------------------------------------------------------
 
-static double root_moment(const bough_control_link *l, int b, double t) {
+// Moments of a blade on its root out of the plane of rotation and in it.
+static void root_moments(const bough_control_link *l, int b, double t, double *out, double *in) {
     const bough_beam *beam = bough_simulation_beam(l->simulation, blade_body(l, b));
     double root[BOUGH_ROD_MOST_OUTPUTS], pitch = bough_simulation_pitch(l->simulation, beam);
     bough_simulation_root(l->simulation, beam, t, root);
-    return root[4] * cos(pitch) - root[3] * sin(pitch);
+    *out = root[4] * cos(pitch) - root[3] * sin(pitch);
+    *in = root[3] * cos(pitch) + root[4] * sin(pitch);
 }
 
 static double hub_wind(const bough_simulation *s) {
@@ -79,13 +82,48 @@ static double hub_wind(const bough_simulation *s) {
     return bough_norm(bough_aero_link_data(s->aero, &factor)->disk_wind);
 }
 
-static bough_discon_sensed sense(const bough_control_link *l, double t, double step, double speed,
+// How the body that carries the rotor moves: velocity of its origin in ground axes, and its angular
+// velocity about its own y.
+static void nacelle_motion(const bough_simulation *s, double motion[4]) {
+    int body = s->scene->body[s->scene->turbine.rotor].joint.parent;
+    memset(motion, 0, 4 * sizeof *motion);
+    if (body == BOUGH_GROUND) return;
+    const bough_frame *frame = &s->tree->bodies[body];
+    bough_vec3 v = bough_tree_frame_velocity(s->view, frame).linear;
+    motion[0] = v.x, motion[1] = v.y, motion[2] = v.z;
+    motion[3] = bough_tree_frame_twist(s->view, frame).angular.y;
+}
+
+// Where nacelle and wind look, and the nacelle's accelerations, as differences over the last sample.
+static void sense_nacelle(bough_control_link *l, double t, bough_discon_sensed *x) {
+    const bough_simulation *s = l->simulation;
+    bough_vec3 axis = bough_simulation_rotor(s).axis;
+    double motion[4], *last = l->now.nacelle;
+    x->heading = atan2(axis.y, axis.x);
+    if (s->aero != NULL) {
+        bough_vec3 wind = bough_aero_link_hub_wind(s->aero, t);
+        if (wind.x != 0 || wind.y != 0)
+            x->yaw_error = remainder(atan2(wind.y, wind.x) - x->heading, 2 * BOUGH_PI);
+    }
+    nacelle_motion(s, motion);
+    if (l->now.started != 0) {
+        double c = cos(x->heading), sine = sin(x->heading);
+        double ax = (motion[0] - last[0]) / x->step, ay = (motion[1] - last[1]) / x->step;
+        x->acceleration[0] = ax * c + ay * sine;
+        x->acceleration[1] = ay * c - ax * sine;
+        x->nodding = (motion[3] - last[3]) / x->step;
+    }
+    memcpy(last, motion, sizeof motion);
+}
+
+static bough_discon_sensed sense(bough_control_link *l, double t, double step, double speed,
                                  double azimuth) {
     const bough_simulation *s = l->simulation;
     bough_discon_sensed x = {.time = t,
                              .step = step,
                              .last = t + step > s->master->duration - 1e-6 * step,
                              .n_blade = l->n_blade,
+                             .individual = l->control->individual,
                              .generator_speed = speed,
                              .rotor_speed = speed / l->control->gear_ratio,
                              .torque = l->now.torque,
@@ -95,8 +133,9 @@ static bough_discon_sensed sense(const bough_control_link *l, double t, double s
                              .azimuth = azimuth - 2 * BOUGH_PI * floor(azimuth / 2 / BOUGH_PI)};
     for (int b = 0; b < l->n_blade; b++) {
         x.pitch[b] = bough_simulation_pitch(s, bough_simulation_beam(s, blade_body(l, b)));
-        x.root_moment[b] = root_moment(l, b, t);
+        root_moments(l, b, t, &x.root_moment[b], &x.in_plane[b]);
     }
+    if (l->discon) sense_nacelle(l, t, &x);
     return x;
 }
 
