@@ -222,9 +222,9 @@ bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_roto
         if (bough_tower_reaches(&rotor->tower, place)) {
             x.distance = fmin(x.distance, bough_tower_distance(&rotor->tower, place));
         }
-        if (x.untold || r->speed[j] < slow) continue;
-        x.untold = bough_polar_untold(rotor->station.polar[j], r->alpha[j]);
-        if (x.untold) x.alpha = r->alpha[j];
+        if (x.outside_table || r->speed[j] < slow) continue;
+        x.outside_table = bough_polar_outside_table(rotor->station.polar[j], r->alpha[j]);
+        if (x.outside_table) x.alpha = r->alpha[j];
     }
     return x;
 }

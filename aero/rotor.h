@@ -157,7 +157,7 @@ bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int s
 
 // What of a blade's last sample is furthest from what the tables and the model hold for.
 typedef struct bough_rotor_extremes {
-    bool untold;     // some angle of attack lies where its polar has no rows, …
+    bool outside_table;     // some angle of attack lies where its polar has no rows, …
     double alpha;    // … this one [rad]
     double speed;    // the largest relative speed [m/s]
     double distance; // the least from the tower's axis, in radii there [-]

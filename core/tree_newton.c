@@ -280,10 +280,10 @@ static void eliminate(const bough_tree_newton *w, const double *a, const double 
         by = bough_wrench_add(by, turned_end(n, turn));
         wrench up = bough_wrench_add(by, bough_wrench_cross(turn, n->force));
         if (link->motion == NULL) {
-            double asked[N];
-            bough_joint_force(&link->joint, by, asked);
+            double required[N];
+            bough_joint_force(&link->joint, by, required);
             for (int k = 0; k < link->n_speeds; k++)
-                n->speeds[k] = x[w->tree->n_q + link->first_speed + k] - asked[k];
+                n->speeds[k] = x[w->tree->n_q + link->first_speed + k] - required[k];
             if (link->n_speeds == 1) n->speeds[0] -= n->tau_q * eta[0];
             bough_dense_solve(link->n_speeds, 1, n->factor, n->pivot, n->speeds);
             for (int k = 0; k < link->n_speeds; k++) {

@@ -46,7 +46,7 @@ typedef struct bough_condensed {
     double *work;       // (n_state) scratch of each member
 } bough_condensed;
 
-// Members of stage 0 lead, and those that are connected with one that is not.
+// Leaders are the members of stage 0, and others that are connected with one that is not of it.
 bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *assembly,
                                     bough_condensed **condensed);
 

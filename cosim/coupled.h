@@ -1,6 +1,6 @@
 // All members of an assembly as one system ẏ = F(t, y), the inputs found from the outputs: its
-// rate, and solutions of (I − γ ∂F/∂y) x = r. That matrix has the shape of an arrow, solved by
-// static condensation,
+// rate, and solutions of (I − γ ∂F/∂y) x = r. It is an arrowhead matrix, solved by static
+// condensation,
 //     (I − γJ_i) x_i = r_i + γ B_i δu_i,   δo_i = C_i x_i + D_i δu_i,   δu = P δo,
 // so each member is factored by itself and the interface system is that of condense.h.
 #ifndef BOUGH_COSIM_COUPLED_H

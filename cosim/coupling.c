@@ -93,39 +93,39 @@ bough_status bough_coupling_each(bough_coupling *c, int stage,
     return first_failure(c);
 }
 
-typedef struct leader_list {
+typedef struct staged_list {
     bough_coupling *coupling;
-    bough_leader_work work;
+    bough_staged_work work;
     int n_leader, n_follow, shift;
-} leader_list;
+} staged_list;
 
 // Leaders; what followers prepare, gone round by as many, so that with one leader each keeps the
 // thread that it has in a list without leaders; followers.
-static void run_leading(void *data, int k) {
-    const leader_list *w = data;
+static void run_staged(void *data, int k) {
+    const staged_list *w = data;
     bough_coupling *c = w->coupling;
     const int *follower = c->turn + w->n_leader;
     int place = k - w->n_leader, follow = place - w->n_follow;
     if (place < 0) {
-        w->work.lead(c, c->turn[k]);
+        w->work.advance_leader(c, c->turn[k]);
     } else if (follow < 0) {
         w->work.prepare(c, follower[(place + w->shift) % w->n_follow]);
     } else {
         int prepared = (follow + w->n_follow - w->shift) % w->n_follow;
-        for (int lead = 0; lead < w->n_leader; lead++) bough_pool_await(c->pool, lead);
+        for (int l = 0; l < w->n_leader; l++) bough_pool_await(c->pool, l);
         bough_pool_await(c->pool, w->n_leader + prepared);
-        if (bough_is_ok(&c->status[follower[follow]])) w->work.follow(c, follower[follow]);
+        if (bough_is_ok(&c->status[follower[follow]])) w->work.advance_follower(c, follower[follow]);
     }
 }
 
-bough_status bough_coupling_each_leading(bough_coupling *c, bough_leader_work work) {
+bough_status bough_coupling_each_staged(bough_coupling *c, bough_staged_work work) {
     int n = c->assembly->n_member;
-    leader_list w = {.coupling = c, .work = work, .n_leader = list_stage(c, 0)};
+    staged_list w = {.coupling = c, .work = work, .n_leader = list_stage(c, 0)};
     for (int i = 0; i < n; i++) {
         if (!in_stage(c, 0, i)) c->turn[w.n_leader + w.n_follow++] = i;
     }
     if (w.n_follow > 0) w.shift = w.n_leader % w.n_follow;
-    bough_pool_run(c->pool, w.n_leader + 2 * w.n_follow, run_leading, &w);
+    bough_pool_run(c->pool, w.n_leader + 2 * w.n_follow, run_staged, &w);
     return first_failure(c);
 }
 
@@ -217,7 +217,7 @@ static bool signal_rate(bough_coupling *c, int member, double t, double *output_
                                       output_rate + a->output_offset[member]);
 }
 
-static void lead(bough_coupling *c, int member, bool restart) {
+static void advance_leader(bough_coupling *c, int member, bool restart) {
     const bough_assembly *a = c->assembly;
     const bough_system *s = &a->member[member]->system;
     if (!signal_rate(c, member, c->t0, c->start_rate)) {
@@ -234,16 +234,16 @@ static void lead(bough_coupling *c, int member, bool restart) {
                    c->end_output + a->output_offset[member]);
 }
 
-static void lead_kept(bough_coupling *c, int member) {
-    lead(c, member, false);
+static void advance_leader_kept(bough_coupling *c, int member) {
+    advance_leader(c, member, false);
 }
 
-static void lead_restarted(bough_coupling *c, int member) {
-    lead(c, member, true);
+static void advance_leader_restarted(bough_coupling *c, int member) {
+    advance_leader(c, member, true);
 }
 
 bough_status bough_coupling_advance_leaders(bough_coupling *c, int stage, bool restart) {
-    return bough_coupling_each(c, stage, restart ? lead_restarted : lead_kept);
+    return bough_coupling_each(c, stage, restart ? advance_leader_restarted : advance_leader_kept);
 }
 
 static void interpolate_polynomial(bough_coupling *c, bough_signal *s, int local, int j) {

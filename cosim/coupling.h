@@ -114,14 +114,14 @@ enum { BOUGH_ALL_STAGES = -1 };
 bough_status bough_coupling_each(bough_coupling *c, int stage,
                                  void (*work)(bough_coupling *c, int member));
 
-// The same for lead(c, member) of the leaders (stage 0) beside prepare(c, member) of all others, and then
-// follow(c, member) of those. Nobody follows who has failed to prepare.
-typedef struct bough_leader_work {
-    void (*lead)(bough_coupling *c, int member);
+// The same for advance_leader(c, member) of the leaders (stage 0) beside prepare(c, member) of all
+// others, and then advance_follower(c, member) of those whose preparation has not failed.
+typedef struct bough_staged_work {
+    void (*advance_leader)(bough_coupling *c, int member);
     void (*prepare)(bough_coupling *c, int member);
-    void (*follow)(bough_coupling *c, int member);
-} bough_leader_work;
-bough_status bough_coupling_each_leading(bough_coupling *c, bough_leader_work work);
+    void (*advance_follower)(bough_coupling *c, int member);
+} bough_staged_work;
+bough_status bough_coupling_each_staged(bough_coupling *c, bough_staged_work work);
 
 // Sets the span of every signal to the step.
 void bough_coupling_begin(bough_coupling *c);

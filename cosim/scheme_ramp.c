@@ -194,8 +194,8 @@ static bough_status predict(bough_coupling *c) {
     r->middle = c->t0 + r->gamma;
     c->interface = r->interface;
     c->interface_gamma = r->gamma;
-    bough_leader_work work = {predict_leader, prepare_follower, predict_follower};
-    bough_status status = bough_coupling_each_leading(c, work);
+    bough_staged_work work = {predict_leader, prepare_follower, predict_follower};
+    bough_status status = bough_coupling_each_staged(c, work);
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < a->n_member; i++) {
         if (leads(c, i)) expect_inputs(c, i);

@@ -10,7 +10,7 @@ enum { W8 = 8 };
 
 static const double most_turn = 0.5; // of a vertex in one Newton step [rad]
 
-enum { SHORTENED = 8 }; // steps of an increment; more lead astray, to other equilibria
+enum { SHORTENED = 8 }; // steps of an increment; more end in other equilibria
 
 enum { EASY = 8 }; // iterations of an increment that encourage a larger one
 

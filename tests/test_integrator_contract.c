@@ -117,7 +117,7 @@ static void every_method_integrates_every_system(void **state) {
     bough_arena *arena = bough_arena_create();
     fixture tree = everything(1e-6);
     bough_two_mass assembly;
-    bough_oscillator mass = bough_oscillator_told_motion((bough_spring_mass){1, 20, .3}, 10, .5, .2);
+    bough_oscillator mass = bough_oscillator_motion_in((bough_spring_mass){1, 20, .3}, 10, .5, .2);
     const double motion[2] = {0.3, -0.1};
     const specimen specimens[] = {
         {"tree", tree.s, some_input},

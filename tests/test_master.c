@@ -108,8 +108,8 @@ static bough_status star_build(star *s, bough_master_def def) {
     for (int i = 0; i < N_FOLLOWER; i++) {
         bough_oscillator *follower = &s->mass[1 + i];
         *follower =
-            bough_oscillator_told_motion((bough_spring_mass){1 + i, 20, .3}, 10, .5, .5 - .2 * i);
-        s->mass[0] = bough_oscillator_told_force((bough_spring_mass){1, 10, .2}, 1, 0);
+            bough_oscillator_motion_in((bough_spring_mass){1 + i, 20, .3}, 10, .5, .5 - .2 * i);
+        s->mass[0] = bough_oscillator_force_in((bough_spring_mass){1, 10, .2}, 1, 0);
         oscillator_widen(&s->mass[0], follower);
         connection[2 * i] = (bough_connection){.to = 1 + i, .count = 3, .kinematic = true};
         connection[2 * i + 1] = (bough_connection){.from = 1 + i, .to_offset = i, .count = 1};
@@ -187,7 +187,7 @@ static void algebraic_loops_are_refused(void **state) {
     bough_assembly_member part[2];
     bough_connection connection[2];
     for (int i = 0; i < 2; i++) {
-        mass[i] = bough_oscillator_told_motion((bough_spring_mass){1, 20, .3}, 10, .5, 0);
+        mass[i] = bough_oscillator_motion_in((bough_spring_mass){1, 20, .3}, 10, .5, 0);
         mass[i].n_output = 2;
         bough_oscillator_member(&mass[i], "mass", &member[i]);
         part[i] = (bough_assembly_member){&member[i], i};

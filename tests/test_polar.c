@@ -169,12 +169,12 @@ static void gaps_are_known(void **state) {
     bough_polar whole = build(arena, nrel5mw_polars + 4), mixed;
     for (int k = -4; k <= 4; k++) {
         double turned = 2 * BOUGH_PI * k;
-        assert_false(bough_polar_untold(&a, turned - 19.9 * degree));
-        assert_false(bough_polar_untold(&a, turned + 24.9 * degree));
-        assert_true(bough_polar_untold(&a, turned + 25.1 * degree));
-        assert_true(bough_polar_untold(&a, turned - 20.1 * degree));
+        assert_false(bough_polar_outside_table(&a, turned - 19.9 * degree));
+        assert_false(bough_polar_outside_table(&a, turned + 24.9 * degree));
+        assert_true(bough_polar_outside_table(&a, turned + 25.1 * degree));
+        assert_true(bough_polar_outside_table(&a, turned - 20.1 * degree));
         for (double d = -180; d <= 180; d += 7.5) {
-            assert_false(bough_polar_untold(&whole, turned + d * degree));
+            assert_false(bough_polar_outside_table(&whole, turned + d * degree));
         }
     }
     bough_status status = bough_polar_blend(arena, &a, &b, 0.5, &mixed);

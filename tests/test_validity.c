@@ -46,7 +46,7 @@ static void a_fast_section_is_told_once(void **state) {
     for (int k = 0; k < 4; k++) scene_step(s), bough_validity_check(s);
     check_near(s->validity->limit[BOUGH_LIMIT_MACH].time, 0.02, 1e-12, 0);
     char text[200];
-    bough_validity_tell(s, BOUGH_LIMIT_MACH, text, sizeof text);
+    bough_validity_describe(s, BOUGH_LIMIT_MACH, text, sizeof text);
     assert_non_null(strstr(text, "blade1 at 0.02 s: a section meets the air at "));
     bough_arena_destroy(arena);
 }

@@ -195,6 +195,6 @@ bough_status bough_verb_run(bough_arena *arena, const bough_options *options) {
     if (!bough_is_ok(&status)) return status;
     step_all(&job);
     status = close_results(&job);
-    bough_run_tell(&job, stdout);
+    bough_run_report(&job, stdout);
     return status;
 }

@@ -12,6 +12,6 @@ bough_status bough_job_build(bough_job *job);
 bough_status bough_run_summarise(const bough_job *job);
 
 // Tells the user how it went: a few lines "key: value".
-void bough_run_tell(bough_job *job, FILE *stream);
+void bough_run_report(bough_job *job, FILE *stream);
 
 #endif

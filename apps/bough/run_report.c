@@ -46,7 +46,7 @@ static void write_warnings(bough_summary *s, const bough_run *run) {
         const bough_passing *p = &run->simulation->validity->limit[k];
         char text[LINE];
         if (!p->passed) continue;
-        bough_validity_tell(run->simulation, k, text, sizeof text);
+        bough_validity_describe(run->simulation, k, text, sizeof text);
         bough_summary_object(s, NULL);
         bough_summary_text(s, "limit", bough_limit_name(k));
         bough_summary_text(s, "body", run->simulation->scene->body[p->body].name);
@@ -307,12 +307,12 @@ static void tell_warnings(const bough_run *run, FILE *stream) {
     for (int k = 0; k < BOUGH_LIMITS; k++) {
         char text[LINE];
         if (!run->simulation->validity->limit[k].passed) continue;
-        bough_validity_tell(run->simulation, k, text, sizeof text);
+        bough_validity_describe(run->simulation, k, text, sizeof text);
         fprintf(stream, "warning: %s\n", text);
     }
 }
 
-void bough_run_tell(bough_job *job, FILE *stream) {
+void bough_run_report(bough_job *job, FILE *stream) {
     bough_run *run = &job->run;
     fprintf(stream, "status: %s\n", outcome_name(run));
     fprintf(stream, "time: %.9g s\n", run->simulation->master->time);

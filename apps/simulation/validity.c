@@ -40,7 +40,7 @@ static void check_air(bough_simulation *s) {
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
         bough_rotor_extremes x = bough_rotor_look(rotor, data, b);
         int body = s->scene->turbine.blade[b];
-        if (x.untold) {
+        if (x.outside_table) {
             bough_validity_pass(s->validity, BOUGH_LIMIT_ATTACK, body, time,
                                 x.alpha * (180 / BOUGH_PI));
         }
@@ -69,7 +69,7 @@ void bough_validity_check(bough_simulation *s) {
     check_speed(s);
 }
 
-void bough_validity_tell(const bough_simulation *s, bough_limit limit, char *text, size_t size) {
+void bough_validity_describe(const bough_simulation *s, bough_limit limit, char *text, size_t size) {
     const bough_passing *p = &s->validity->limit[limit];
     int n = snprintf(text, size, "%s at %.6g s: ", s->scene->body[p->body].name, p->time);
     if (n < 0 || (size_t)n >= size) return;

@@ -33,6 +33,6 @@ void bough_validity_check(bough_simulation *s);
 
 // The name of a limit in summary.json, and the sentence about its passing, at most `size` bytes.
 const char *bough_limit_name(bough_limit limit);
-void bough_validity_tell(const bough_simulation *s, bough_limit limit, char *text, size_t size);
+void bough_validity_describe(const bough_simulation *s, bough_limit limit, char *text, size_t size);
 
 #endif

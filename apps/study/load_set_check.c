@@ -29,7 +29,7 @@ static const bough_node *origin(const bough_load_set *s, const bough_load_case *
     return found ? found->node : g->node;
 }
 
-static bool is_told(const bough_errors *errors, const char *text) {
+static bool is_reported(const bough_errors *errors, const char *text) {
     for (int i = 0; i < errors->n; i++)
         if (strcmp(errors->item[i].text, text) == 0) return true;
     return false;
@@ -40,7 +40,7 @@ static void tell(const bough_load_set *s, const bough_load_case *c, const bough_
                  bough_errors *errors) {
     bough_node where = {.file = e->file, .line = e->line, .column = e->column};
     if (e->line == 0 && strcmp(e->file, c->scene) != 0) where = *origin(s, c, e);
-    if (!is_told(errors, e->text)) bough_errors_add(errors, &where, e->path, "%s", e->text);
+    if (!is_reported(errors, e->text)) bough_errors_add(errors, &where, e->path, "%s", e->text);
 }
 
 // -- channels -------------------------------------------------------------------------------------
@@ -109,7 +109,7 @@ static void check_from(const bough_load_set *s, const bough_scene *scene, const 
     snprintf(text, sizeof text, "%g s is not before the end, %g s, of %.100s", s->from,
              scene->simulation.duration, c->scene);
     const bough_node *node = bough_node_find(s->node, "from");
-    if (!is_told(errors, text)) bough_errors_add(errors, node, "from", "%s", text);
+    if (!is_reported(errors, text)) bough_errors_add(errors, node, "from", "%s", text);
 }
 
 static bough_status check_case(bough_arena *arena, bough_load_set *s, int i, uint64_t program,

@@ -81,7 +81,7 @@ static const bough_node *origin(const bough_study *s, const bough_study_cell *ce
                  : bough_node_find(s->node, cell->index[0] < 0 ? "reference" : "grid");
 }
 
-static bool is_told(const bough_errors *errors, const bough_error *e) {
+static bool is_reported(const bough_errors *errors, const bough_error *e) {
     for (int i = 0; i < errors->n; i++) {
         const bough_error *old = &errors->item[i];
         if (old->line == e->line && old->column == e->column && strcmp(old->file, e->file) == 0 &&
@@ -102,7 +102,7 @@ static void tell(const bough_study *s, const bough_study_cell *cell, const bough
     moved.file = where.file;
     moved.line = where.line;
     moved.column = where.column;
-    if (!is_told(errors, &moved)) bough_errors_add(errors, &where, e->path, "%s", e->text);
+    if (!is_reported(errors, &moved)) bough_errors_add(errors, &where, e->path, "%s", e->text);
 }
 
 static bough_scene *read_scene(bough_arena *arena, const bough_study *s,

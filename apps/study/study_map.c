@@ -48,7 +48,7 @@ static void draw_cell(FILE *svg, const bough_map *m, const bough_map_cell *c, do
     if (c->kind == BOUGH_MAP_EMPTY) return;
     bool dark = c->kind == BOUGH_MAP_STOPPED || c->shade > 0.5;
     fprintf(svg, "<g><title>");
-    put_text(svg, c->told ? c->told : c->text);
+    put_text(svg, c->hint ? c->hint : c->text);
     fprintf(svg, "</title><rect x=\"%.1f\" y=\"%.1f\" width=\"%d\" height=\"%d\" fill=\"", x, y,
             m->column_width, ROW);
     put_colour(svg, c);

@@ -9,7 +9,7 @@ typedef struct bough_map_cell {
     enum { BOUGH_MAP_EMPTY, BOUGH_MAP_GOOD, BOUGH_MAP_STOPPED } kind;
     double shade;   // of a good one: 0 pale to 1 dark
     char text[24];  // shown in it, where there is room
-    const char *told; // shown when pointed at; NULL: the text
+    const char *hint; // shown when pointed at; NULL: the text
 } bough_map_cell;
 
 typedef struct bough_map {

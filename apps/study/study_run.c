@@ -120,7 +120,7 @@ static bough_status read_scene(bough_arena *arena, const bough_study *study,
                       errors.n > 0 ? ": " : "", errors.n > 0 ? errors.item[0].text : "");
 }
 
-void bough_study_tell_cheaply(bough_scene *scene) {
+void bough_study_estimate_cheaply(bough_scene *scene) {
     int *estimate = &scene->simulation.error_estimate;
     if (*estimate != BOUGH_ERROR_BY_BEST) return;
     int scheme = scene->simulation.coupling.scheme;
@@ -134,7 +134,7 @@ static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell
     if (!bough_is_ok(&status)) return status;
     if (r->study->kind == BOUGH_STUDY_STABILITY) scene->simulation.threads = 1;
     else if (r->study->threads > 0) scene->simulation.threads = r->study->threads;
-    bough_study_tell_cheaply(scene);
+    bough_study_estimate_cheaply(scene);
     status = bough_run_create(arena, scene, &r->run);
     if (bough_is_ok(&status)) status = find_channels(arena, r);
     return status;

@@ -33,7 +33,7 @@ typedef struct bough_study_drive {
 
 // What a cell tells of its error stands beside the true error, against the reference: the estimate by the
 // linearised members will do where the scene does not ask for another, and none beside one system.
-void bough_study_tell_cheaply(bough_scene *scene);
+void bough_study_estimate_cheaply(bough_scene *scene);
 
 bough_study_series bough_study_series_take(bough_arena *arena, const bough_study *study);
 

@@ -164,7 +164,7 @@ static void name_row(const bough_study *s, const bough_study_cell *cell, char *t
 static void paint(const bough_study_result *r, bough_map_cell *cell) {
     cell->kind = held(r) ? BOUGH_MAP_GOOD : BOUGH_MAP_STOPPED;
     cell->shade = -log10(fmax(r->error[0], 1e-12)) / 4;
-    cell->told = held(r) ? NULL : r->outcome.message;
+    cell->hint = held(r) ? NULL : r->outcome.message;
     if (!held(r)) {
         snprintf(cell->text, sizeof cell->text, "%.3g s", r->time);
     } else if (isfinite(r->error[0])) {

@@ -28,7 +28,7 @@ static bough_status build(bough_arena *arena, const bough_study_cell *cell, time
     bough_scene *scene;
     bough_status status =
         bough_scene_read(arena, t->study->scene, cell->set, cell->n_set, &errors, &scene);
-    if (bough_is_ok(&status)) bough_study_tell_cheaply(scene);
+    if (bough_is_ok(&status)) bough_study_estimate_cheaply(scene);
     if (bough_is_ok(&status)) status = bough_run_create(arena, scene, &t->run);
     if (!bough_is_ok(&status)) return status;
     bough_run_record rows = {t->study->interval, true, .sample = record, .self = t};

@@ -170,7 +170,7 @@ void bough_oscillator_member(bough_oscillator *o, const char *name, bough_member
 
 // -- kinds ----------------------------------------------------------------------------------------
 
-bough_oscillator bough_oscillator_told_force(bough_spring_mass s, double sign, double x) {
+bough_oscillator bough_oscillator_force_in(bough_spring_mass s, double sign, double x) {
     return (bough_oscillator){.a = {{0, 1}, {-s.k / s.m, -s.c / s.m}},
                               .b = {{0}, {sign / s.m}},
                               .c = {{0, 1}, {1, 0}},
@@ -180,7 +180,7 @@ bough_oscillator bough_oscillator_told_force(bough_spring_mass s, double sign, d
                               .y = {x, 0}};
 }
 
-bough_oscillator bough_oscillator_told_motion(bough_spring_mass s, double k, double c, double x) {
+bough_oscillator bough_oscillator_motion_in(bough_spring_mass s, double k, double c, double x) {
     return (bough_oscillator){.a = {{0, 1}, {-(s.k + k) / s.m, -(s.c + c) / s.m}},
                               .b = {{0}, {c / s.m, k / s.m}},
                               .c = {{k, c}},
@@ -191,7 +191,7 @@ bough_oscillator bough_oscillator_told_motion(bough_spring_mass s, double k, dou
                               .y = {x, 0}};
 }
 
-bough_oscillator bough_oscillator_telling_motion(bough_spring_mass s, double k, double c,
+bough_oscillator bough_oscillator_motion_in_and_out(bough_spring_mass s, double k, double c,
                                                  double x) {
     return (bough_oscillator){.a = {{0, 1}, {-(s.k + k) / s.m, -(s.c + c) / s.m}},
                               .b = {{0}, {c / s.m, k / s.m}},

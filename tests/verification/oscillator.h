@@ -25,13 +25,13 @@ typedef struct bough_spring_mass {
 } bough_spring_mass;
 
 // Told the force on it, times `sign`; tells (v, x). At x, at rest.
-bough_oscillator bough_oscillator_told_force(bough_spring_mass s, double sign, double x);
+bough_oscillator bough_oscillator_force_in(bough_spring_mass s, double sign, double x);
 
 // Told the other's (v, x), holds the coupling spring (k, c); tells the force on the other.
-bough_oscillator bough_oscillator_told_motion(bough_spring_mass s, double k, double c, double x);
+bough_oscillator bough_oscillator_motion_in(bough_spring_mass s, double k, double c, double x);
 
 // The same, but tells its own (v, x).
-bough_oscillator bough_oscillator_telling_motion(bough_spring_mass s, double k, double c, double x);
+bough_oscillator bough_oscillator_motion_in_and_out(bough_spring_mass s, double k, double c, double x);
 
 // The coupling spring alone: told (v, x) of the first mass and of the second, tells the force on the
 // first.

@@ -43,13 +43,13 @@ void bough_two_mass_at(const bough_two_mass *m, double t, double y[4]) {
 static void make_masses(bough_two_mass *m) {
     const double *y = m->y0;
     if (m->cut == BOUGH_CUT_DISPLACEMENT_DISPLACEMENT) {
-        m->mass[0] = bough_oscillator_telling_motion(m->s1, m->k, m->c, y[0]);
-        m->mass[1] = bough_oscillator_telling_motion(m->s2, m->k, m->c, y[2]);
+        m->mass[0] = bough_oscillator_motion_in_and_out(m->s1, m->k, m->c, y[0]);
+        m->mass[1] = bough_oscillator_motion_in_and_out(m->s2, m->k, m->c, y[2]);
     } else {
-        m->mass[0] = bough_oscillator_told_force(m->s1, 1, y[0]);
+        m->mass[0] = bough_oscillator_force_in(m->s1, 1, y[0]);
         m->mass[1] = m->cut == BOUGH_CUT_FORCE_FORCE
-                         ? bough_oscillator_told_force(m->s2, -1, y[2])
-                         : bough_oscillator_told_motion(m->s2, m->k, m->c, y[2]);
+                         ? bough_oscillator_force_in(m->s2, -1, y[2])
+                         : bough_oscillator_motion_in(m->s2, m->k, m->c, y[2]);
     }
     m->mass[2] = bough_oscillator_link(m->k, m->c);
     m->mass[0].y[1] = y[1];
@@ -114,7 +114,7 @@ void bough_two_mass_history(bough_two_mass *m) {
     }
 }
 
-static double told_error(const bough_two_mass *m) {
+static double estimated_error(const bough_two_mass *m) {
     const bough_error_estimate *e = m->master->estimate;
     const double *error = e ? bough_error_estimate_states(e) : NULL;
     return error ? BOUGH_ERROR_SAFETY * fmax(fabs(error[0]), fabs(error[2])) : (double)NAN;
@@ -124,14 +124,14 @@ bough_status bough_two_mass_error(bough_two_mass *m, double *worst, double *told
     double y[4];
     memcpy(y, m->y0, sizeof y);
     *worst = 0;
-    if (told) *told = told_error(m);
+    if (told) *told = estimated_error(m);
     while (!bough_master_done(m->master)) {
         double t = m->master->time;
         bough_status status = bough_step(m->master);
         if (!bough_is_ok(&status)) return status;
         bough_two_mass_exact(m, m->master->time - t, y);
         *worst = fmax(*worst, fmax(fabs(m->mass[0].y[0] - y[0]), fabs(m->mass[1].y[0] - y[2])));
-        if (told) *told = fmax(*told, told_error(m));
+        if (told) *told = fmax(*told, estimated_error(m));
     }
     return bough_ok();
 }
