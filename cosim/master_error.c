@@ -15,6 +15,8 @@ static const double tight = 1e-7; // tolerance of other monolithic methods from 
 static const int many_states = 600;
 static const double heavy_interface = 0.25;
 
+static const double most_halvings = 6; // of the macro step that are worth trying
+
 // Beside one system under the Rosenbrock method, its own kind with other steps; beside another method,
 // or a coupling, one that is far finer.
 static bough_second_solution_def choose(const bough_master *m) {
@@ -116,9 +118,15 @@ void bough_master_advise(const bough_master *m, double factor, char text[BOUGH_M
     const bough_integrator_options *own = &c->options.integrator;
     if (!c->scheme->one_system) {
         double order = bough_scheme_defect_order(c->scheme, &c->options);
-        double step = m->macro_step * pow(0.5, ceil(log2(2 * factor) / order));
-        snprintf(text, BOUGH_MASTER_ADVICE, "macro_step: %.2g s or, coupled at the stages, "
-                 "scheme: monolithic with master.solver: rosenbrock", step);
+        double halvings = ceil(log2(2 * factor) / order);
+        if (halvings <= most_halvings) {
+            snprintf(text, BOUGH_MASTER_ADVICE, "macro_step: %.2g s or, coupled at the stages, "
+                     "scheme: monolithic with master.solver: rosenbrock",
+                     m->macro_step * pow(0.5, halvings));
+        } else {
+            snprintf(text, BOUGH_MASTER_ADVICE, "scheme: monolithic with master.solver: rosenbrock, which "
+                     "couples at the stages");
+        }
     } else if (own->kind == BOUGH_ROSENBROCK) {
         snprintf(text, BOUGH_MASTER_ADVICE, "master.rtol: %.1g", 0.1 * own->rtol / fmin(factor, 1e3));
     } else {

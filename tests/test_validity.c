@@ -51,6 +51,22 @@ static void a_fast_section_is_told_once(void **state) {
     bough_arena_destroy(arena);
 }
 
+// A cantilever whose tip moment rolls it up to a circle: 60 deg in each of six segments, 30 of twelve.
+static void a_turned_segment_is_told(void **state) {
+    (void)state;
+    static const char *const coarse[] = {"bodies[0].rod.segments=6", "simulation.initial=equilibrium", NULL};
+    static const char *const fine[] = {"bodies[0].rod.segments=12", "simulation.initial=equilibrium", NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = scene_build(arena, "apps/beams/roll-up.yaml", fine);
+    bough_validity_check(s);
+    assert_int_equal(passed(s), 0);
+    s = scene_build(arena, "apps/beams/roll-up.yaml", coarse);
+    bough_validity_check(s);
+    assert_int_equal(passed(s), 1 << BOUGH_LIMIT_TURN);
+    check_near(s->validity->limit[BOUGH_LIMIT_TURN].value, 60, 1, 0);
+    bough_arena_destroy(arena);
+}
+
 // The hub on the tower's axis, without tilt: the hanging blade stands in the tower.
 static void a_blade_in_the_tower_is_told(void **state) {
     (void)state;
@@ -69,6 +85,7 @@ int main(void) {
         cmocka_unit_test(within_the_limits_nothing_is_told),
         cmocka_unit_test(a_fast_section_is_told_once),
         cmocka_unit_test(a_blade_in_the_tower_is_told),
+        cmocka_unit_test(a_turned_segment_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,6 +8,9 @@
 // Incompressible polars err by a seventh in the slope of lift there.
 static const double most_mach = 0.5, speed_of_sound = 340;
 static const double most_over_rated = 2;
+// A segment has one strain: what turns by more is a coarse picture of it, and there is none beyond 120°.
+static const double most_turn = 0.25 * BOUGH_PI;
+static const double small_turn = 0.98; // cosine of a quarter of most_turn
 
 // Each sentence ends with the value in its unit.
 static const struct {
@@ -21,6 +24,8 @@ static const struct {
                                                 " rated speed"},
     [BOUGH_LIMIT_TOWER] = {"tower_strike", "the blade is inside the tower, %.3g of its radius"
                                         " from the axis: nothing stops it there"},
+    [BOUGH_LIMIT_TURN] = {"segment_turn", "a segment turns its ends against each other by %.3g deg, more"
+                                          " than 45 deg: take more segments"},
 };
 
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
@@ -64,8 +69,40 @@ static void check_speed(bough_simulation *s) {
                         speed * (30 / BOUGH_PI));
 }
 
+static double dot(bough_quaternion p, bough_quaternion q) {
+    return p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
+}
+
+// How far the ends of a segment turn against each other beyond what they did at rest [rad].
+static double turn_of(bough_quaternion p, bough_quaternion q, bough_quaternion p0, bough_quaternion q0) {
+    if (fabs(dot(p, q)) > small_turn && fabs(dot(p0, q0)) > small_turn) return 0;
+    bough_quaternion now = bough_quaternion_product(bough_quaternion_conjugate(p), q);
+    bough_quaternion rest = bough_quaternion_product(bough_quaternion_conjugate(p0), q0);
+    return 2 * acos(fmin(fabs(dot(now, rest)), 1));
+}
+
+static void check_turns(bough_simulation *s) {
+    for (int i = 0; i < s->n_beam; i++) {
+        const bough_beam *beam = &s->beam[i];
+        if (!beam->rod || s->validity->limit[BOUGH_LIMIT_TURN].passed) continue;
+        const bough_rod_model *m = bough_rod_body_model(beam->rod);
+        const double *p = bough_beam_state(s, beam, 0) + (size_t)BOUGH_ROD_P * (size_t)m->n;
+        bough_quaternion before = m->rotation0[0];
+        for (int k = 0; k < m->n; k++) {
+            bough_quaternion at = {p[k], p[m->n + k], p[2 * m->n + k], p[3 * m->n + k]};
+            double turn = turn_of(before, at, m->rotation0[k], m->rotation0[k + 1]);
+            before = at;
+            if (turn <= most_turn) continue;
+            bough_validity_pass(s->validity, BOUGH_LIMIT_TURN, (int)(beam->body - s->scene->body),
+                                s->master->time, turn * (180 / BOUGH_PI));
+            break;
+        }
+    }
+}
+
 void bough_validity_check(bough_simulation *s) {
     if (s->aero) check_air(s);
+    check_turns(s);
     check_speed(s);
 }
 

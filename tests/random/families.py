@@ -365,7 +365,73 @@ def turbine(rng, scene):
                                "ramp": ["0 s", "%.3g s" % rng.uniform(0.1, 1)]})
 
 
-FAMILIES = [rotor, arm, hung, carrying, tower, four_bar, mechanism, driven, light, loaded, drive_train, turbine]
+def gale(rng, scene):
+    """The same in winds beyond its operation: outside the polars and the models, but not outside the promise."""
+    turbine(rng, scene)
+    scene["extra"]["aero"]["wind"] = {"kind": "uniform", "speed": rng.choice([30, 45, 60, 90])}
+
+
+def portal(rng, scene):
+    """Two flexible masts whose heads a rigid beam joins to a loop, pushed aside."""
+    length, mass, width = decades(rng, -0.3, 1.3), decades(rng, -1, 2), rng.uniform(0.4, 1.5)
+    one, width = rod(rng, length, mass, rng.randint(2, 4)), digits(width * length)
+    for k in range(2):
+        placed = ["move x %.4g m" % (k * width)]
+        name, parent = "mast%d" % (k + 1), "ground"
+        if k == 1 and rng.random() < 0.4:
+            joint = {"kind": "revolute", "axis": "y", "parent": "ground", "placement": placed}
+            scene["bodies"].append(rigid("foot", joint, mass * decades(rng, -3, 0), 0.1 * length, rng))
+            parent, placed = "foot", []
+        scene["bodies"].append({"name": name, "fidelity": "rod", "rod": one,
+                                "joint": {"kind": "fixed", "parent": parent, "placement": placed}})
+        scene["bodies"].append(rigid("head%d" % (k + 1), {"kind": "fixed", "parent": name}, mass * decades(rng, -3, 0.5),
+                                     0.1 * length, rng))
+    beam = mass * decades(rng, -2, 1)
+    thin = [digits(beam * width ** 2 * x) for x in (1e-3, 0.084, 0.084)]
+    scene["bodies"].append({"name": "beam", "fidelity": "rigid", "mass": digits(beam), "inertia": thin,
+                            "centre_of_mass": [0.5 * width, 0, 0],
+                            "joint": {"kind": "revolute", "axis": "y", "parent": "head1"}})
+    scene["closures"] = [{"name": "pin", "kind": "spherical", "from": "beam", "from_placement": ["move x %.4g m" % width],
+                          "to": "head2"}]
+    push = digits(one["stiffness"][3] / length ** 2 * decades(rng, -2, -0.3))
+    scene["loads"].append({"body": "beam", "force": [push, digits(0.1 * push), 0], "frame": "ground",
+                           "ramp": ["0 s", "%.3g s" % rng.uniform(0.02, 0.5)]})
+
+
+def slider_crank(rng, scene):
+    """A flexible connecting rod between a crank and a piston on a guide."""
+    length, mass = decades(rng, -0.5, 0.7), decades(rng, -1, 1)
+    radius = digits(length * rng.uniform(0.1, 0.4))
+    speed = rng.choice([-1, 1]) * rng.uniform(1, 10)
+    crank = mass * decades(rng, -0.5, 1.5)
+    scene["bodies"] += [
+        rigid("crank", {"kind": "revolute", "axis": "y", "parent": "ground", "speed": turn(speed)}, crank, radius, rng),
+        rigid("pin", {"kind": "revolute", "axis": "y", "parent": "crank", "placement": ["move z %.4g m" % radius]},
+              mass * decades(rng, -3, -0.5), 0.1 * length, rng),
+        {"name": "conrod", "fidelity": "rod", "rod": dict(rod(rng, length, mass, rng.randint(2, 4)), length=digits(length)),
+         "joint": {"kind": "fixed", "parent": "pin", "placement": ["rotate y 90 deg"]}},
+        rigid("piston", {"kind": "revolute", "axis": "y", "parent": "conrod"}, mass * decades(rng, -2, 1), 0.1 * length, rng)]
+    scene["closures"] = [{"name": "guide", "kind": "prismatic", "axis": "x", "from": "ground",
+                          "from_placement": ["move x %.4g m" % digits(length), "move z %.4g m" % radius], "to": "piston",
+                          "to_placement": ["rotate y -90 deg"]}]
+
+
+def spin_up(rng, scene):
+    """A beam that is brought to turn fast: growth that the mechanics makes."""
+    length, mass = decades(rng, -0.3, 1.2), decades(rng, -1, 2)
+    one = rod(rng, length, mass, rng.choice([3, 6, 10]))
+    first = 3.516 * math.sqrt(one["stiffness"][3] / one["mass"][0]) / length ** 2
+    speed = {"from": 0, "to": turn(rng.uniform(0.2, 2) * first), "ramp": ["0 s", "%.3g s" % scene["duration"]]}
+    joint = {"kind": "revolute", "axis": rng.choice("xy"), "parent": "ground", "motion": {"speed": speed}}
+    scene["bodies"].append({"name": "axle", "fidelity": "rigid", "joint": joint, "mass": digits(mass),
+                            "inertia": [digits(mass)] * 3})
+    for k in range(rng.randint(1, 2)):
+        scene["bodies"].append({"name": "beam%d" % (k + 1), "fidelity": "rod", "rod": one,
+                                "joint": {"kind": "fixed", "parent": "axle", "placement": ["rotate x %d deg" % (180 * k)]}})
+
+
+FAMILIES = [rotor, arm, hung, carrying, tower, four_bar, mechanism, driven, light, loaded, drive_train, turbine, gale,
+            portal, slider_crank, spin_up]
 
 
 # -- settings -------------------------------------------------------------------------------------
@@ -397,7 +463,7 @@ MACRO_STEPS = [1, 2, 2, 5, 5, 10, 10, 10, 20, 20, 20, 40, 80]  # [ms]
 def make(rng, family, schemes, defaults, stage_coupled):
     """The scene's text as values and the word under which its scheme is counted."""
     step = rng.choice(MACRO_STEPS)
-    if family is turbine:
+    if family in (turbine, gale):
         step = rng.choice([5, 10, 20, 20])
     span = {1: 0.2, 2: 0.4, 5: 0.6, 10: 0.8}.get(step, 1.2)
     count = max(8, round(span * 1000 / step * rng.uniform(0.5, 1)))
@@ -422,7 +488,7 @@ def make(rng, family, schemes, defaults, stage_coupled):
             chosen["theta"] = digits(rng.uniform(0.5, 1))
         if word not in ("monolithic", "stages") and rng.random() < 0.15:
             simulation["step_control"] = {"tolerance": decades(rng, -4, -1.5)}
-    if rng.random() < 0.15 and family not in (driven, turbine):
+    if rng.random() < 0.15 and family not in (driven, turbine, gale, spin_up):
         simulation["initial"] = "equilibrium"
     scene = {"title": "%s, %s" % (family.__name__, word), "simulation": simulation, "bodies": draft["bodies"]}
     for key in ("loads", "closures", "springs", "gravity"):

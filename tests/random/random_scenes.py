@@ -37,19 +37,19 @@ CLASSES = ("held", "warned", "diagnosed", "gross", "silent", "too little", "too 
 BROKEN = ("silent", "too little", "gross", "crash", "hang")
 GROSS, SMALL, WARNED = 0.05, 1e-3, 0.01
 FLOOR = 1e-3  # of the largest range with that unit: what moves less is not judged
-TIMEOUT = 60  # s of CPU
+TIMEOUT, REFERENCE_TIMEOUT = 60, 15  # s of CPU
 
 
 class Run:
     """One run of the program: its exit code, channels, and what it told of its errors."""
 
-    def __init__(self, bough, scene, folder, settings=()):
+    def __init__(self, bough, scene, folder, settings=(), seconds=TIMEOUT):
         words = [bough, "run", scene, "--quiet", "--threads", "1", "--out", folder]
         for setting in settings:
             words += ["--set", setting]
         try:
             done = subprocess.run(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                  timeout=20 * TIMEOUT, preexec_fn=limit, text=True, errors="replace")
+                                  timeout=40 * seconds, preexec_fn=lambda: limit(seconds), text=True, errors="replace")
             self.code, self.said = done.returncode, done.stderr.strip()
         except subprocess.TimeoutExpired:
             self.code, self.said = -24, "timeout"
@@ -80,8 +80,8 @@ class Run:
         return self.code == 3 and "error bound" in self.said
 
 
-def limit():
-    resource.setrlimit(resource.RLIMIT_CPU, (TIMEOUT, TIMEOUT + 2))
+def limit(seconds):
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 2))
     resource.setrlimit(resource.RLIMIT_AS, (2 << 30, 2 << 30))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
@@ -211,7 +211,7 @@ def one(arguments, index):
         if run.code == 2:
             return index, family.__name__, word, "refused", run.said[:200]
         reference = [Run(arguments.bough, path, os.path.join(folder, "reference%d" % k),
-                         MONOLITHIC + ("simulation.master={solver: ida, rtol: %g}" % rtol,))
+                         MONOLITHIC + ("simulation.master={solver: ida, rtol: %g}" % rtol,), REFERENCE_TIMEOUT)
                      for k, rtol in enumerate((1e-6, 1e-8))]
         verdict, line = classify(run, reference[1], reference[0])
         if arguments.keep:
@@ -252,12 +252,13 @@ def main():
     arguments = parser.parse_args()
     arguments.bough, arguments.source = os.path.abspath(arguments.bough), os.path.abspath(arguments.source)
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
-    with ThreadPoolExecutor(arguments.jobs) as pool:
-        results = [r for r in pool.map(lambda i: one(arguments, i), range(arguments.first, arguments.first + arguments.count)) if r]
-    if arguments.list:
-        with open(arguments.list, "w") as file:
-            for result in results:
+    results = []
+    with ThreadPoolExecutor(arguments.jobs) as pool, open(arguments.list or os.devnull, "w") as file:
+        for result in pool.map(lambda i: one(arguments, i), range(arguments.first, arguments.first + arguments.count)):
+            if result:
+                results.append(result)
                 file.write("%d\t%s\t%s\t%s\t%s\n" % result)
+                file.flush()
     table(results, 1)
     table(results, 2)
     broken = [r for r in results if r[3] in BROKEN or (r[3] == "false stop" and r[2] in ("monolithic", "stages"))]
