@@ -106,6 +106,9 @@ long bough_master_errors(const bough_master *m);
 // What the states err by now (n_state), in their units; NULL where it cannot be told.
 const double *bough_master_state_error(const bough_master *m);
 
+// The same of the inputs (n_input); NULL where it is not known.
+const double *bough_master_inputs_error(const bough_master *m);
+
 // What is told to people is the error times this.
 double bough_master_error_safety(const bough_master *m);
 

@@ -92,6 +92,10 @@ const double *bough_master_state_error(const bough_master *m) {
     return m->estimate ? bough_error_estimate_states(m->estimate) : NULL;
 }
 
+const double *bough_master_inputs_error(const bough_master *m) {
+    return bough_master_measures(m) ? bough_second_solution_input_error(m->second) : NULL;
+}
+
 double bough_master_error_safety(const bough_master *m) {
     return bough_master_measures(m) ? 1 : BOUGH_ERROR_SAFETY;
 }

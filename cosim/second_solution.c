@@ -13,7 +13,7 @@ struct bough_second_solution {
     bough_coupled *evaluation; // of it
     double share;
     double *error;                 // (n_state)
-    double *input_worst;           // (n_input) largest difference of an input
+    double *input_error, *input_worst; // (n_input) of what inputs should be given: now, largest
     bool lost;
     long taken; // macro steps
 };
@@ -23,6 +23,7 @@ struct bough_second_solution {
 static bool take(bough_second_solution *s, bough_arena *arena) {
     size_t n = (size_t)s->assembly->n_state, n_input = (size_t)s->assembly->n_input;
     s->error = bough_arena_doubles(arena, n);
+    s->input_error = bough_arena_doubles(arena, n_input);
     s->input_worst = bough_arena_doubles(arena, n_input);
     return !bough_arena_exhausted(arena);
 }
@@ -58,8 +59,8 @@ static void compare(bough_second_solution *s, const bough_coupling *c) {
     for (int k = 0; k < a->n_state; k++) s->error[k] = s->share * (s->error[k] - s->whole.state[k]);
     bough_coupled_inputs(s->evaluation, c->t1, s->whole.state);
     for (int j = 0; j < a->n_input; j++) {
-        double difference = s->share * fabs(c->input[j] - s->evaluation->input[j]);
-        s->input_worst[j] = fmax(s->input_worst[j], difference);
+        s->input_error[j] = s->share * (c->input[j] - s->evaluation->input[j]);
+        s->input_worst[j] = fmax(s->input_worst[j], fabs(s->input_error[j]));
     }
 }
 
@@ -75,6 +76,10 @@ const double *bough_second_solution_error(const bough_second_solution *s) {
     return s->lost ? NULL : s->error;
 }
 
+const double *bough_second_solution_input_error(const bough_second_solution *s) {
+    return s->lost ? NULL : s->input_error;
+}
+
 double bough_second_solution_input(const bough_second_solution *s, int j) {
     return s->lost ? (double)NAN : s->input_worst[j];
 }
@@ -83,6 +88,7 @@ void bough_second_solution_snapshot(bough_second_solution *s, bough_snapshot *sn
     const bough_assembly *a = s->assembly;
     bough_member_snapshot(&s->whole, snapshot);
     bough_snapshot_doubles(snapshot, s->error, a->n_state);
+    bough_snapshot_doubles(snapshot, s->input_error, a->n_input);
     bough_snapshot_doubles(snapshot, s->input_worst, a->n_input);
     bough_snapshot_take(snapshot, &s->lost, sizeof s->lost);
     bough_snapshot_take(snapshot, &s->taken, sizeof s->taken);

@@ -35,6 +35,9 @@ void bough_second_solution_step(bough_second_solution *s, const bough_coupling *
 // What the run's states err by (n_state), in their units; NULL when the second solution broke down.
 const double *bough_second_solution_error(const bough_second_solution *s);
 
+// What the inputs should be given errs by (n_input), in the ports' units; NULL likewise.
+const double *bough_second_solution_input_error(const bough_second_solution *s);
+
 // Largest error so far of what input j should be given, in the port's unit; NaN when broken down.
 double bough_second_solution_input(const bough_second_solution *s, int j);
 

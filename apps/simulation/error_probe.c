@@ -1,7 +1,24 @@
 #include "apps/simulation/error_probe.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+// A controller moves its joints by what the run does, in both solutions alike: their errors are not known.
+static void leave_steered_joints(bough_error_probe *p) {
+    static const char *const parts[] = {"Pos", "Vel", "Trq"};
+    const bough_scene *scene = p->simulation->scene;
+    if (!scene->control.node || !scene->control.pitch) return;
+    for (int b = 0; b < scene->turbine.n_blade; b++) {
+        const bough_scene_body *body = &scene->body[scene->turbine.blade[b]];
+        for (int k = 0; k < 3 && body->joint.motion.node; k++) {
+            char name[128];
+            snprintf(name, sizeof name, "%.100s%s", body->name, parts[k]);
+            int channel = bough_channels_find(p->channels, name);
+            if (channel >= 0) p->largest[channel] = (double)NAN;
+        }
+    }
+}
 
 bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s,
                                       const bough_channels *channels, bough_error_probe *probe) {
@@ -18,6 +35,7 @@ bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s,
     probe->vector = bough_arena_take(arena, (n + 1) * sizeof *probe->vector);
     probe->own = bough_arena_take(arena, (size_t)s->master->assembly->n_member * sizeof *probe->own);
     probe->state = bough_arena_doubles(arena, (size_t)s->master->assembly->n_state);
+    probe->input = bough_arena_doubles(arena, (size_t)s->master->assembly->n_input);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (size_t i = 0; i < n; i++) {
         probe->low[i] = HUGE_VAL;
@@ -27,6 +45,7 @@ bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s,
         probe->passed[i] = -1;
     }
     bough_error_probe_find_vectors(channels, probe->vector);
+    leave_steered_joints(probe);
     return bough_master_watch(s->master, arena);
 }
 
@@ -51,7 +70,13 @@ static void sample_corrected(bough_error_probe *p, const double *error) {
         }
         member(s, i)->state = state;
     }
+    double *input = s->master->coupling->input;
+    const double *input_error = bough_master_inputs_error(s->master);
+    size_t size = (size_t)a->n_input * sizeof *input;
+    memcpy(p->input, input, size);
+    for (int j = 0; input_error && j < a->n_input; j++) input[j] -= input_error[j];
     sample(p, p->difference);
+    memcpy(input, p->input, size);
     for (int i = 0; i < a->n_member; i++) member(s, i)->state = p->own[i];
 }
 

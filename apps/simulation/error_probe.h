@@ -18,6 +18,7 @@ typedef struct bough_error_probe {
     int *vector;        // (channels.count) first of the channels X, Y, Z that it is one of
     double **own;        // (n_member) scratch
     double *state;      // (n_state) scratch
+    double *input;      // (n_input) scratch
     double *value;      // (channels.count) scratch
 } bough_error_probe;
 
