@@ -58,6 +58,7 @@ typedef struct bough_scene_step_control {
 typedef enum bough_scene_initial {
     BOUGH_SCENE_UNDEFORMED,
     BOUGH_SCENE_IN_EQUILIBRIUM, // under the loads at time 0
+    BOUGH_SCENE_IN_OPERATION,   // in equilibrium at the control law's speed and pitch
 } bough_scene_initial;
 
 typedef struct bough_scene_simulation {

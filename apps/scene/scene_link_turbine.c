@@ -180,7 +180,26 @@ static void link_event(bough_schema_reader *r, bough_scene *s, int i) {
     }
 }
 
+// Steady operation needs a law, air from the start on, and a rotor that is free to turn.
+static void check_operation(bough_schema_reader *r, const bough_scene *s) {
+    if (s->simulation.initial != BOUGH_SCENE_IN_OPERATION) return;
+    const bough_node *given = bough_link_value(s->simulation.node, "initial");
+    bool law = s->control.node != NULL && s->control.kind == BOUGH_SCENE_VARIABLE_SPEED;
+    bough_link_at(r, "simulation");
+    if (!law || s->aero.node == NULL || s->turbine.node == NULL) {
+        bough_schema_error(r, given, "initial", "operation needs 'aero' and 'control: {kind: "
+                           "variable-speed}'; else give the rotor's speed and 'equilibrium'");
+    } else if (s->aero.ramp[1] > 0) {
+        bough_schema_error(r, given, "initial", "operation needs the air from the start on: leave out "
+                           "'aero.ramp'");
+    } else if (s->turbine.rotor >= 0 && s->body[s->turbine.rotor].joint.motion.node != NULL) {
+        bough_schema_error(r, given, "initial", "the motion of '%s' leaves no speed to be found",
+                           s->turbine.rotor_name);
+    }
+}
+
 void bough_link_control(bough_schema_reader *r, bough_scene *s) {
+    check_operation(r, s);
     if (s->control.node == NULL) return;
     bough_link_at(r, "control");
     if (s->turbine.node == NULL) {

@@ -130,11 +130,11 @@ static const bough_key simulation_keys[] = {
     {.name = "step_control", .kind = BOUGH_KEY_MAPPING, .of = &step_control_schema,
      AT(step_control),
      .help = "halves of the macro step, and their halves, where the coupling errs"},
-    {.name = "initial", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("undeformed", "equilibrium"),
+    {.name = "initial", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("undeformed", "equilibrium", "operation"),
      .fallback = "undeformed", AT(initial),
-     .help = "start as the scene says, or from equilibrium with the loads at time 0; a joint "
-             "with a "
-             "speed keeps it"},
+     .help = "start as the scene says, or from equilibrium with the loads at time 0, in which a joint "
+             "with a speed keeps it, or in steady operation: equilibrium at the rotor speed and the pitch "
+             "at which the air's torque is that of 'control: {kind: variable-speed}'"},
     {.name = "coupling", .kind = BOUGH_KEY_MAPPING, .of = &coupling_schema, AT(coupling),
      .help = "the coupling scheme"},
     {.name = "master", .kind = BOUGH_KEY_MAPPING, .of = &master_schema, AT(master),

@@ -7,6 +7,7 @@
 #include "apps/simulation/drag_link.h"
 #include "apps/simulation/input_link.h"
 #include "apps/simulation/jump_link.h"
+#include "apps/simulation/trim.h"
 #include "apps/simulation/load_link.h"
 #include "apps/simulation/equilibrium.h"
 #include "apps/simulation/validity.h"
@@ -198,9 +199,14 @@ static bough_status find_equilibrium(const bough_assembly_def *def, bough_simula
     bough_arena *arena = bough_arena_create();
     bough_assembly *assembly;
     bough_equilibrium_work work;
+    bough_trim trim;
     if (arena == NULL) return out_of_memory();
     bough_status status = bough_assembly_build(arena, def, &assembly);
-    if (bough_is_ok(&status)) status = bough_simulation_equilibrium(s, assembly, 0, &work);
+    if (bough_is_ok(&status) && s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION) {
+        status = bough_simulation_trim(s, assembly, &trim);
+    } else if (bough_is_ok(&status)) {
+        status = bough_simulation_equilibrium(s, assembly, 0, &work);
+    }
     bough_arena_destroy(arena);
     return status;
 }
@@ -230,7 +236,7 @@ static bough_status build_master(bough_builder *b) {
     if (s->control != NULL) load[def.n_load++] = bough_control_link_load(s->control);
     if (s->jump != NULL) load[def.n_load++] = bough_jump_link_load(s->jump, sim->macro_step);
     def.load = load;
-    if (sim->initial == BOUGH_SCENE_IN_EQUILIBRIUM) {
+    if (sim->initial != BOUGH_SCENE_UNDEFORMED) {
         bough_status status = find_equilibrium(&def.assembly, s);
         if (!bough_is_ok(&status)) return status;
     }

@@ -65,6 +65,23 @@ bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *li
     return bough_events_build(arena, link->simulation, &link->events);
 }
 
+bool bough_control_link_pitches(const bough_control_link *link) { return link->steers; }
+
+void bough_control_link_stand(bough_control_link *link, double speed, double pitch) {
+    bough_simulation *s = link->simulation;
+    double gear = link->control->gear_ratio;
+    double torque = bough_controller_torque(&link->control->law, gear * speed, pitch);
+    bough_tree_steer_load(s->tree, link->load, 0, 1, -gear * torque, -gear * torque);
+    for (int b = 0; b < link->n_blade && link->steers; b++) {
+        int body = blade_body(link, b);
+        bough_motion_point at = {s->scene->body[body].pitch - pitch, 0, 0};
+        bough_tree_steer(s->tree, body, 0, 1, at, at);
+        link->now.pitch_joint[b] = at;
+    }
+    link->now.torque = torque;
+    link->now.speed = gear * speed;
+}
+
 // -- sample ---------------------------------------------------------------------------------------
 
 // Moments of a blade on its root out of the plane of rotation and in it.

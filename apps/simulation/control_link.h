@@ -15,6 +15,13 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
 // Takes the scene's events into account; called when all else is built.
 bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *link);
 
+// Whether it turns the blades on their pitch joints.
+bool bough_control_link_pitches(const bough_control_link *link);
+
+// Pitch joints and the generator's torque as in steady operation at a speed of the rotor [rad/s] and a
+// pitch [rad]; the law starts from there.
+void bough_control_link_stand(bough_control_link *link, double speed, double pitch);
+
 // The sampled load for the master's loop.
 bough_sampled_load bough_control_link_load(bough_control_link *link);
 
