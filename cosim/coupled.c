@@ -2,6 +2,7 @@
 
 #include "core/linalg.h"
 
+#include <assert.h>
 #include <string.h>
 
 enum { FOLLOWERS, LEADERS, ALL };
@@ -134,6 +135,7 @@ bough_status bough_coupled_linearise(bough_coupled *coupled, double t, const dou
 }
 
 bough_status bough_coupled_factor(bough_coupled *coupled, double gamma) {
+    assert(coupled->own != NULL && coupled->interface == coupled->own);
     coupled->gamma = gamma;
     bough_status status = each(coupled, LEADERS, factor_leader);
     if (!bough_is_ok(&status)) return status;

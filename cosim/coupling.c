@@ -130,6 +130,7 @@ bough_status bough_coupling_each_staged(bough_coupling *c, bough_staged_work wor
 }
 
 void bough_coupling_begin(bough_coupling *c) {
+    assert(c->t0 < c->t1);
     memset(c->followed, 0, (size_t)c->assembly->n_input * sizeof *c->followed);
     for (int i = 0; i < c->assembly->n_member; i++) {
         c->signal[i].t0 = c->t0;

@@ -3,6 +3,7 @@
 #include "cosim/coupled.h"
 #include "cosim/port.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -155,6 +156,7 @@ static const double whole_share = 2.5;
 // Before the step is counted.
 static void keep_own_errors(bough_error_estimate *e) {
     const bough_assembly *a = e->assembly;
+    assert(e->n_step < BATCH);
     const double share = e->whole ? whole_share : 1;
     double *slot = e->own + (size_t)e->n_step * (size_t)a->n_state;
     for (int i = 0; i < a->n_member; i++) {

@@ -1,5 +1,6 @@
 #include "cosim/member.h"
 
+#include <assert.h>
 #include <string.h>
 
 // -- the system under its inputs, as an integrator sees it ----------------------------------------
@@ -81,6 +82,7 @@ bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
     size_t size = (size_t)m->system.n_state * sizeof(double);
     double t = m->time;
     bough_status status = bough_ok();
+    assert(t <= t1 && pause <= t1 && (input == NULL || input->n == m->system.n_input));
     m->signal = input;
     if (!m->paused) {
         memcpy(m->integrated, m->state, size);
@@ -93,6 +95,7 @@ bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
                                             restart || !m->started, m->integrated);
     }
     m->started = bough_is_ok(&status);
+    assert(!m->started || (t >= pause && t <= t1));
     m->paused = m->started && t < t1;
     if (!m->paused) hold_loads(m, t1, t1);
     if (!m->started) return status;

@@ -6,6 +6,8 @@
 #include "cosim/port.h"
 #include "cosim/scheme.h"
 
+#include <assert.h>
+
 static bough_status create(bough_coupling *c, bough_arena *arena) {
     bough_member *whole = c->whole = bough_arena_take(arena, sizeof *whole);
     if (whole == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
@@ -24,6 +26,7 @@ static bough_status step(bough_coupling *c) {
         bough_assembly_states(a, whole->state);
         bough_member_set(whole, c->t0, whole->state);
     }
+    assert(whole->time == c->t0);
     bough_status status = bough_member_advance(whole, c->t1, NULL, c->restart);
     if (!bough_is_ok(&status)) return status;
     for (int i = 0; i < a->n_member; i++) {

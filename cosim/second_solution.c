@@ -2,6 +2,7 @@
 
 #include "cosim/coupled.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -66,6 +67,7 @@ static void compare(bough_second_solution *s, const bough_coupling *c) {
 
 void bough_second_solution_step(bough_second_solution *s, const bough_coupling *c) {
     if (s->lost) return;
+    assert(s->whole.time == c->t0);
     bough_status status = bough_member_advance(&s->whole, c->t1, NULL, c->restart);
     s->lost = !bough_is_ok(&status) || works_too_hard(s);
     s->taken++;
