@@ -7,7 +7,7 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
 opens() {
-    "$bough" report "$1"
+    "$bough" report "$@"
     "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$folder/profile" \
         --virtual-time-budget=3000 --dump-dom "file://$1/report.html" >"$folder/dom" 2>/dev/null
     grep -q '<body data-ready="yes"' "$folder/dom" || {
@@ -22,6 +22,11 @@ opens "$folder/run"
 grep -q "\[deg\]" "$folder/dom" # its channels can be picked
 grep -q '<section id="motion">' "$folder/dom"
 grep -q '<th class="words">interface</th>' "$folder/dom"
+
+"$bough" run "$source/apps/mechanisms/pendulum.yaml" --out "$folder/other" --quiet \
+    --set 'gravity=[0, 0, -1.62]' >/dev/null
+opens "$folder/run" "$folder/other"
+grep -q "<td class=\"words\">bobPos $folder/other</td>" "$folder/dom" || grep -q "bobPos [^<]*other</td>" "$folder/dom"
 
 mkdir "$folder/study"
 echo 'a table' >"$folder/study/table.txt"

@@ -465,6 +465,14 @@ shown() {
     [ "$(find out/frames | wc -l)" -eq 5 ] || fail "$said: three frames and what is not ours"
     missing out/report.html # of the run before
     rm out/frames/mine.vtp
+    expect 0 run "$bar" --set 'simulation.duration=10 ms' --out other
+    expect 0 report out other
+    has ../stdout '^report: out/report.html$'
+    has out/report.html '^{name: "other", channels: '
+    mkdir nothing
+    expect 2 report out nothing
+    has ../stderr "'nothing' holds no run's results"
+    rm -r other nothing
     expect 0 run "$bar" --set 'simulation.duration=20 ms' --out out
     missing out/frames
     missing out/frames.pvd

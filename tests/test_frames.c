@@ -69,7 +69,7 @@ static void page_carries_all_data(void **context) {
     write_frames(folder);
     write_text(folder, "channels.out", channels);
     write_text(folder, "summary.json", "{\"title\": \"a </script> trap\"}\n");
-    bough_status status = bough_report_write(folder);
+    bough_status status = bough_report_write(1, &folder);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
     char *page = scratch_read(folder, "report.html");
     has(page, "<!DOCTYPE html>");
@@ -86,11 +86,11 @@ static void page_carries_all_data(void **context) {
 
 static void what_is_not_results_is_refused(void **context) {
     const char *folder = *context;
-    bough_status status = bough_report_write(folder);
+    bough_status status = bough_report_write(1, &folder);
     assert_int_equal(status.code, BOUGH_INVALID);
     has(status.message, "holds no results");
     write_text(folder, "channels.out", "\n\n\n\n\n\nTime\tA\n(s)\t(m)\n0.0 1.0\n0.1\n");
-    status = bough_report_write(folder);
+    status = bough_report_write(1, &folder);
     assert_int_equal(status.code, BOUGH_INVALID);
     has(status.message, "channels.out:10: not a row");
     assert_false(scratch_has(folder, "report.html"));
@@ -100,7 +100,7 @@ static void a_lost_frame_is_told(void **context) {
     const char *folder = *context;
     write_frames(folder);
     write_text(folder, "frames/000001.vtp", "<DataArray>\nnothing\n");
-    bough_status status = bough_report_write(folder);
+    bough_status status = bough_report_write(1, &folder);
     assert_int_equal(status.code, BOUGH_INVALID);
     has(status.message, "frames/000001.vtp");
 }

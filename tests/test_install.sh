@@ -7,7 +7,7 @@ trap 'rm -rf "$folder"' EXIT
 cmake --install "$build" --prefix "$folder/usr" >/dev/null
 "$folder/usr/bin/bough" --version
 library=$(find "$folder/usr" -name 'libbough.so.0')
-declared=$(grep -o 'bough_session_[a-z]*(' "$source/apps/api/bough.h" | tr -d '(' | sort -u)
+declared=$(grep -o 'bough_session_[a-z_]*(' "$source/apps/api/bough.h" | tr -d '(' | sort -u)
 [ "$(nm -D --defined-only "$library" | sed 's/.* //' | sort)" = "$declared" ]
 if python=$(command -v python3) && "$python" -c "import ctypes" 2>/dev/null; then
     PYTHONPATH=$(dirname "$(find "$folder/usr" -name bough.py)") PYTHONDONTWRITEBYTECODE=1 "$python" -c "

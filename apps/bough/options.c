@@ -80,6 +80,11 @@ static bough_status take_operand(const bough_syntax *syntax, const char *word,
         options->second = word;
         return bough_ok();
     }
+    if (syntax->operand == BOUGH_OPERAND_SOME) {
+        options->operands[options->n_operand++] = word;
+        options->operand = options->operands[0];
+        return bough_ok();
+    }
     if (syntax->operand == BOUGH_OPERAND_NONE || options->operand) {
         return bough_fail(BOUGH_INVALID, "unexpected argument '%.200s'", word);
     }
@@ -151,8 +156,11 @@ static bough_status take(const bough_syntax *syntax, int code, const char *word,
 bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
                                 const bough_syntax *syntax, bough_options *options) {
     *options = (bough_options){.set = bough_arena_take(arena, (size_t)argc * sizeof(char *)),
-                               .sweep = bough_arena_take(arena, (size_t)argc * sizeof(char *))};
-    if (!options->set || !options->sweep) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the arguments");
+                               .sweep = bough_arena_take(arena, (size_t)argc * sizeof(char *)),
+                               .operands = bough_arena_take(arena, (size_t)argc * sizeof(char *))};
+    if (!options->set || !options->sweep || !options->operands) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the arguments");
+    }
     struct option list[N_ROW + 2] = {{0}};
     list_options(syntax, list);
     bough_status status = bough_ok();
@@ -166,7 +174,7 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
         status = take_operand(syntax, argv[optind], options); // after "--"
     }
     const char *last = syntax->operand == BOUGH_OPERAND_TWO ? options->second : options->operand;
-    bool needed = syntax->operand == BOUGH_OPERAND_REQUIRED || syntax->operand == BOUGH_OPERAND_TWO;
+    bool needed = syntax->operand != BOUGH_OPERAND_NONE && syntax->operand != BOUGH_OPERAND_OPTIONAL;
     if (bough_is_ok(&status) && needed && !last && !options->help) {
         return bough_fail(BOUGH_INVALID, "%s: missing %s; see --help", argv[0],
                           syntax->operand_name);
@@ -179,6 +187,7 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
 void bough_options_usage(const bough_syntax *syntax, FILE *stream) {
     if (syntax->operand == BOUGH_OPERAND_REQUIRED || syntax->operand == BOUGH_OPERAND_TWO)
         fprintf(stream, " %s", syntax->operand_name);
+    if (syntax->operand == BOUGH_OPERAND_SOME) fprintf(stream, " %s...", syntax->operand_name);
     if (syntax->operand == BOUGH_OPERAND_OPTIONAL) fprintf(stream, " [%s]", syntax->operand_name);
     for (int i = 0; i < N_ROW; i++) {
         if (!(syntax->options & rows[i].flag)) continue;

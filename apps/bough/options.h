@@ -30,6 +30,7 @@ typedef enum bough_operand {
     BOUGH_OPERAND_OPTIONAL,
     BOUGH_OPERAND_REQUIRED,
     BOUGH_OPERAND_TWO,
+    BOUGH_OPERAND_SOME, // one or more
 } bough_operand;
 
 // What a command accepts.
@@ -42,6 +43,8 @@ typedef struct bough_syntax {
 typedef struct bough_options {
     const char *operand; // the scene or the topic; NULL: not given
     const char *second;  // of two operands
+    int n_operand;
+    const char **operands; // (n_operand) of one or more
     int n_set;
     const char **set; // (n_set) replacements "key=value", in their order
     int n_sweep;

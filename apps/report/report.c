@@ -93,17 +93,48 @@ static bough_status add_data(const char *folder, FILE *out) {
                       "channels.out, a study a table", folder);
 }
 
-bough_status bough_report_write(const char *folder) {
+// A folder's name as a text of the page's script.
+static void put_name(const char *folder, FILE *out) {
+    fputc('"', out);
+    for (const char *c = folder; *c; c++) {
+        if (*c == '"' || *c == '\\') fputc('\\', out);
+        if ((unsigned char)*c >= 0x20) put(*c, out);
+    }
+    fputc('"', out);
+}
+
+static bough_status add_others(int n, const char *const *folder, FILE *out) {
+    bough_status status = bough_ok();
+    fputs("data.name = ", out);
+    put_name(folder[0], out);
+    fputs(";\ndata.others = [\n", out);
+    for (int k = 1; k < n && bough_is_ok(&status); k++) {
+        bool found = false;
+        fputs("{name: ", out);
+        put_name(folder[k], out);
+        fputs(", channels: ", out);
+        status = bough_report_channels(folder[k], out, &found);
+        fputs("},\n", out);
+        if (!bough_is_ok(&status) || found) continue;
+        return bough_fail(BOUGH_INVALID, "'%.200s' holds no run's results: no channels.out",
+                          folder[k]);
+    }
+    fputs("];\n", out);
+    return status;
+}
+
+bough_status bough_report_write(int n, const char *const *folder) {
     static const char mark[] = "@DATA@";
     const char *page = (const char *)bough_report_page, *data = strstr(page, mark);
     char path[BOUGH_PATH_MAX];
     FILE *out;
-    bough_status status = bough_folder_path(folder, "report.html", path);
+    bough_status status = bough_folder_path(folder[0], "report.html", path);
     if (!bough_is_ok(&status)) return status;
     status = bough_folder_open_partial(path, &out);
     if (!bough_is_ok(&status)) return status;
     fwrite(page, 1, (size_t)(data - page), out);
-    status = add_data(folder, out);
+    status = add_data(folder[0], out);
+    if (bough_is_ok(&status)) status = add_others(n, folder, out);
     if (!bough_is_ok(&status)) {
         bough_folder_discard(path, out);
         return status;

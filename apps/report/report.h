@@ -11,9 +11,10 @@
 // The page with a line "@DATA@" where the data go; ends with a zero.
 extern const unsigned char bough_report_page[];
 
-// Writes folder/report.html, complete or not at all. BOUGH_INVALID when the folder holds neither a
-// run's nor a study's results, or when they are damaged: the message names the file.
-bough_status bough_report_write(const char *folder);
+// Writes report.html into the first of n folders, complete or not at all: of its results, with the
+// channels of the other folders, which hold runs, beside its own. BOUGH_INVALID when a folder holds no
+// results, or when they are damaged: the message names the file.
+bough_status bough_report_write(int n, const char *const *folder);
 
 // -- parts of the data, each a JavaScript expression; none when *found is false ------------------
 
