@@ -196,9 +196,4 @@ void bough_rotor_set_speed(const bough_rotor *rotor, double speed);
 // Whether the wind is known all over a disk: bough_wind_covers.
 bool bough_rotor_in_wind(const bough_rotor *rotor, bough_vec3 hub, double radius);
 
-// The number of blades, stations per blade and vertices per blade.
-int bough_rotor_n_blade(const bough_rotor *rotor);
-int bough_rotor_n_station(const bough_rotor *rotor);
-int bough_rotor_n_vertex(const bough_rotor *rotor);
-
 #endif

@@ -19,10 +19,6 @@ bough_rotor_def bough_rotor_def_default(void) {
                              .wind = bough_wind_def_default()};
 }
 
-int bough_rotor_n_blade(const bough_rotor *rotor) { return rotor->n_blade; }
-int bough_rotor_n_station(const bough_rotor *rotor) { return rotor->n_station; }
-int bough_rotor_n_vertex(const bough_rotor *rotor) { return rotor->n_vertex; }
-
 // -- build ----------------------------------------------------------------------------------------
 
 static bough_status check_station(const bough_rotor_def *def, int j) {

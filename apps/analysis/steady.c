@@ -8,15 +8,6 @@ int bough_steady_rods(const bough_simulation *s) {
     return n;
 }
 
-const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_beam *beam) {
-    const bough_scene_body *body = beam->body;
-    while (body->joint.kind == BOUGH_JOINT_FIXED) {
-        if (body->joint.parent == BOUGH_GROUND) return NULL;
-        body = &s->scene->body[body->joint.parent];
-    }
-    return body;
-}
-
 static bool carries(const bough_scene *scene, int ancestor, const bough_scene_body *body) {
     for (; body != &scene->body[ancestor]; body = &scene->body[body->joint.parent]) {
         if (body->joint.parent == BOUGH_GROUND) return false;

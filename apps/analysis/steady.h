@@ -31,9 +31,6 @@ bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *b
 // How many bodies are rods.
 int bough_steady_rods(const bough_simulation *s);
 
-// The body whose joint moves the rod's root; NULL when its root is at rest.
-const bough_scene_body *bough_beam_mover(const bough_simulation *s, const bough_beam *beam);
-
 // Equilibrium of the rod in the simulation's initial pose under gravity and its loads, each grown to
 // the whole. In rotation gravity is taken in its mean over a revolution, along the axis.
 bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,
