@@ -74,6 +74,19 @@ static inline bough_coefficients bough_polar_at(const bough_polar *polar, double
                                 k.moment + d * d * (c[4] + d * c[5])};
 }
 
+// Their derivatives by the angle there [1/rad]; at a knot those of the side above.
+static inline bough_coefficients bough_polar_slope(const bough_polar *polar, double alpha) {
+    int knot = bough_polar_knot(polar, &alpha);
+    const double *r = polar->row + BOUGH_POLAR_ROW * knot;
+    bough_coefficients k = {r[4], r[5], r[6]};
+    if (!polar->curve) return k;
+    const double *c = polar->curve + 6 * knot;
+    double d = alpha - r[0];
+    return (bough_coefficients){k.lift + d * (2 * c[0] + 3 * d * c[1]),
+                                k.drag + d * (2 * c[2] + 3 * d * c[3]),
+                                k.moment + d * (2 * c[4] + 3 * d * c[5])};
+}
+
 // Whether an angle of attack lies in the gap that the rows leave to the full turn.
 static inline bool bough_polar_outside_table(const bough_polar *polar, double alpha) {
     double above = remainder(alpha - polar->low, 2 * BOUGH_PI);

@@ -77,6 +77,9 @@ static void induce(const bough_rotor *rotor, const bough_rotor_motion *motion, i
     }
 }
 
+// With dynamic stall, the share of a change of lift that comes within a sample, the wake's part later.
+static const double prompt = 0.58;
+
 // Lift, drag and moment coefficients: of the static polars, or what dynamic stall makes of them.
 static void ask_polars(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data) {
     const blade_rows *r = data->scratch->blade + blade;
@@ -93,6 +96,17 @@ static void ask_polars(const bough_rotor *rotor, double time, int blade, bough_r
         r->lift[j] = k.lift;
         r->drag[j] = k.drag;
         r->moment[j] = k.moment;
+    }
+}
+
+// How the coefficients follow the angle of attack.
+static void ask_slopes(const bough_rotor *rotor, int blade, bough_rotor_data *data) {
+    const blade_rows *r = data->scratch->blade + blade;
+    for (int j = 0; j < rotor->n_station; j++) {
+        bough_coefficients k = bough_polar_slope(rotor->station.polar[j], r->alpha[j]);
+        r->lift_slope[j] = data->memory.stall ? prompt * k.lift : k.lift;
+        r->drag_slope[j] = k.drag;
+        r->moment_slope[j] = k.moment;
     }
 }
 
@@ -123,17 +137,110 @@ static void load_stations(const bough_rotor *rotor, const blade_rows *rows) {
     }
 }
 
-// The line loads of the stations by n rows of the mapping: on the vertices, or along the segments.
-static void spread(int n, const vertex_row *rows, const double *restrict line,
-                   double *restrict load) {
+// How the flow along the shaft follows the wind, and the angle of attack the section's rotation, with
+// the induction in balance: 4 F (V − u) u = σ Cn' α W², W α = u − W θ. `load` is σ Cn' W/(4 F V).
+typedef struct response {
+    double flow, angle;
+} response;
+
+static inline response in_balance(double axial, double load) {
+    double free = 1 - 2 * axial, sum = free + load, scale = 1 / (sum > 0.3 ? sum : 0.3);
+    return (response){lane_clamp((1 - axial) * scale, 0, 1.2), lane_clamp(free * scale, 0, 1.2)};
+}
+
+// At the very tip and root the loss factor holds the induction, dynamic inflow holds it everywhere.
+static inline response section_response(const bough_rotor *rotor, blade_rows r, bool delayed, int j,
+                                        double lift_slope) {
+    double wind = fabs(r.inflow_x[j]), loss = r.loss[j] > 1e-3 ? r.loss[j] : 1e-3;
+    double load = r.solidity[j] * r.speed[j] * lift_slope / (4 * loss * (wind > 1 ? wind : 1));
+    response k = in_balance(r.axial[j], load);
+    bool free = rotor->station.free[j] > 0;
+    k.flow = delayed ? 1 : free ? k.flow : 1 - r.axial[j];
+    k.angle = delayed ? 1 : free ? k.angle : 0;
+    return k;
+}
+
+// Derivatives of force and pitching moment per length along two directions of the section's plane …
+typedef struct plane {
+    double normal, chord, moment;
+} plane;
+
+static inline void store_slope(double *restrict to, plane d, bough_vec3 n, bough_vec3 c,
+                               bough_vec3 arm, bough_vec3 z) {
+    bough_vec3 force = bough_axpy(d.chord, c, bough_scale(d.normal, n));
+    to[0] = force.x;
+    to[4] = force.y;
+    to[8] = arm.x * force.y - arm.y * force.x + d.moment * z.z;
+}
+
+// … by the velocity of the vertices, and by the section's rotation about its normal and its rate.
+static void slope_stations(const bough_rotor *rotor, const blade_rows *rows,
+                           const bough_rotor_memory *memory) {
+    bool delayed = memory->station != NULL, stall = memory->stall != NULL;
+    const blade_rows r = *rows;
+    const double *restrict chord = rotor->station.chord;
+    double density = rotor->density, pitching = rotor->pitching_moment ? 1 : 0;
+    int s = rotor->stride;
+    double *restrict out = r.slope;
+#pragma omp simd
+    for (int j = 0; j < s; j++) {
+        double q = 0.5 * density * r.speed[j] * chord[j], nose = pitching * chord[j];
+        sine_cosine k = lane_sine_cosine(lane_remainder(r.alpha[j]));
+        plane f = {r.lift[j] * k.cosine + r.drag[j] * k.sine,
+                   r.drag[j] * k.cosine - r.lift[j] * k.sine, nose * r.moment[j]};
+        plane g = {r.lift_slope[j] * k.cosine + r.drag_slope[j] * k.sine + f.chord,
+                   r.drag_slope[j] * k.cosine - r.lift_slope[j] * k.sine - f.normal,
+                   nose * r.moment_slope[j]}; // by the angle of attack
+        plane dn = {q * (2 * f.normal * k.sine + g.normal * k.cosine),
+                    q * (2 * f.chord * k.sine + g.chord * k.cosine),
+                    q * (2 * f.moment * k.sine + g.moment * k.cosine)}; // by the flow's normal part
+        plane dc = {q * (2 * f.normal * k.cosine - g.normal * k.sine),
+                    q * (2 * f.chord * k.cosine - g.chord * k.sine),
+                    q * (2 * f.moment * k.cosine - g.moment * k.sine)}; // and along the chord
+        response to = section_response(rotor, r, delayed, j, g.normal);
+        bough_vec3 n = lane_load(r.normal, s, j), c = lane_load(r.chord, s, j);
+        bough_vec3 x = lane_load(r.x, s, j), y = lane_load(r.y, s, j), z = lane_load(r.z, s, j);
+        bough_vec3 arm = lane_load(r.arm, s, j);
+        double nx = to.flow * bough_dot(n, x), ny = bough_dot(n, y);
+        double cx = to.flow * bough_dot(c, x), cy = bough_dot(c, y);
+        bough_vec3 un = bough_axpy(nx, x, bough_scale(ny, y)); // the flow's parts by the velocity
+        bough_vec3 uc = bough_axpy(cx, x, bough_scale(cy, y));
+        bough_vec3 way = bough_cross(z, arm); // of the centre by the rotation
+        double rn = bough_dot(un, way), rc = bough_dot(uc, way), w = q * r.speed[j];
+        plane by_x = {-dn.normal * un.x - dc.normal * uc.x, -dn.chord * un.x - dc.chord * uc.x,
+                      -dn.moment * un.x - dc.moment * uc.x};
+        plane by_y = {-dn.normal * un.y - dc.normal * uc.y, -dn.chord * un.y - dc.chord * uc.y,
+                      -dn.moment * un.y - dc.moment * uc.y};
+        plane by_rate = {-dn.normal * rn - dc.normal * rc, -dn.chord * rn - dc.chord * rc,
+                         -dn.moment * rn - dc.moment * rc};
+        // with dynamic stall the rotation's rate counts at three quarters of the chord, and as added mass
+        double late = stall ? w * chord[j] / (2 * (r.speed[j] > 1 ? r.speed[j] : 1)) : 0;
+        double lift = late * (to.angle * r.lift_slope[j] + BOUGH_PI);
+        by_rate.normal += lift * k.cosine;
+        by_rate.chord -= lift * k.sine;
+        by_rate.moment += late * nose * (r.moment_slope[j] - BOUGH_PI / 2);
+        // the force turns with the section: z×n = c, z×c = −n
+        plane by_angle = {w * (to.angle * g.normal - f.chord), w * (to.angle * g.chord + f.normal),
+                          w * to.angle * g.moment};
+        store_slope(out + SLOPE * j, by_x, n, c, arm, z);
+        store_slope(out + SLOPE * j + 1, by_y, n, c, arm, z);
+        store_slope(out + SLOPE * j + 2, by_angle, n, c, arm, z);
+        store_slope(out + SLOPE * j + 3, by_rate, n, c, arm, z);
+    }
+}
+
+// What stations have per length (`width` numbers each, whole vectors) by n rows of the mapping, the
+// first `count` of them: on the vertices, or along the segments.
+static inline void spread(int n, const vertex_row *rows, int width, int count,
+                          const double *restrict line, double *restrict load) {
     for (int i = 0; i < n; i++) {
         vertex_row row = rows[i];
-        double sum[LOAD] = {0};
+        double sum[SLOPE] = {0};
         for (int k = 0; k < row.count; k++) {
-            const double *from = line + LOAD * (row.first + k);
-            for (int c = 0; c < LOAD; c++) sum[c] += row.weight[k] * from[c];
+            const double *from = line + width * (row.first + k);
+            for (int c = 0; c < width; c++) sum[c] += row.weight[k] * from[c];
         }
-        for (int c = 0; c < 6; c++) load[c * n + i] = sum[c];
+        for (int c = 0; c < count; c++) load[c * n + i] = sum[c];
     }
 }
 
@@ -164,8 +271,14 @@ void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion
     ask_polars(rotor, motion->time, blade, data);
     load_stations(rotor, r);
     int n = rotor->n_vertex;
-    spread(n, rotor->row, r->load, data->load + 6 * blade * n);
-    spread(n - 1, rotor->segment_row, r->load, data->line + 6 * blade * (n - 1));
+    spread(n, rotor->row, LOAD, 6, r->load, data->load + 6 * blade * n);
+    spread(n - 1, rotor->segment_row, LOAD, 6, r->load, data->line + 6 * blade * (n - 1));
+    if (rotor->slopes) {
+        ask_slopes(rotor, blade, data);
+        slope_stations(rotor, r, &data->memory);
+        spread(n, rotor->row, SLOPE, BOUGH_SLOPES, r->slope,
+               data->slope + BOUGH_SLOPES * blade * n);
+    }
     sum_blade(rotor, motion, blade, data);
 }
 

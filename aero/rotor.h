@@ -35,7 +35,8 @@ typedef struct bough_rotor_def {
     double density;    // of air [kg/m³]
     double hub_radius; // from the shaft axis to the blade roots [m]
     bool pitching_moment;
-    bool skew; // Pitt–Peters correction of the axial induction
+    bool skew;   // Pitt–Peters correction of the axial induction
+    bool slopes; // loads tell how they follow the vertices' motion
     bough_induction_options induction;
     bough_inflow_def inflow;
     bough_stall_kind stall;
@@ -69,6 +70,8 @@ enum {
     BOUGH_BLADE_SPIN = 10,     // absolute angular velocity, in section axes [rad/s]
     BOUGH_BLADE_ROWS = 13,
 };
+
+enum { BOUGH_SLOPES = 12 }; // per vertex
 
 typedef struct bough_blade_motion {
     bough_transform frame; // in ground axes
@@ -112,6 +115,10 @@ typedef struct bough_rotor_data {
                   // the blade's frame [N, N m]
     double *line; // (n_blade × 6 × (n_vertex − 1)) the same loads per length, their mean over each
                   // segment between two vertices, same axes [N/m, N]
+    double *slope; // (n_blade × BOUGH_SLOPES × n_vertex) how the loads follow the vertices' own
+                   // motion: row 4 c + j, c of forces along x and y and moment about z of the blade's
+                   // frame, j of velocities along x and y, rotation about the section's normal and
+                   // its rate [N s/m, N, N s; N s, N m, N m s]
     double thrust;        // along the shaft [N]
     double torque;        // about the shaft [N m]
     bough_vec3 disk_wind; // mean of the disturbed wind over all stations [m/s]

@@ -228,6 +228,7 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                            .density = def->density,
                            .pitching_moment = def->pitching_moment,
                            .skew = def->skew,
+                           .slopes = def->slopes,
                            .induction = def->induction,
                            .inflow = def->inflow,
                            .row = row,
@@ -277,13 +278,15 @@ static void take_rows(bough_arena *arena, int stride, blade_rows *rows) {
         &rows->radius,      &rows->twist,      &rows->turning,  &rows->solidity, &rows->cone,
         &rows->skew_normal, &rows->skew_chord, &rows->inflow_x, &rows->inflow_y, &rows->axial,
         &rows->tangential,  &rows->loss,       &rows->phi,      &rows->alpha,    &rows->speed,
-        &rows->lift,        &rows->drag,       &rows->moment,   &rows->force_x,  &rows->force_y};
+        &rows->lift,        &rows->drag,       &rows->moment,   &rows->force_x,  &rows->force_y,
+        &rows->lift_slope,  &rows->drag_slope, &rows->moment_slope};
     size_t n = (size_t)stride;
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
         *vectors[i] = bough_arena_doubles(arena, 3 * n);
     for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++)
         *scalars[i] = bough_arena_doubles(arena, n);
     rows->load = bough_arena_doubles(arena, LOAD * n);
+    rows->slope = bough_arena_doubles(arena, SLOPE * n);
 }
 
 bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor,
@@ -291,6 +294,8 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
     size_t n_blade = (size_t)rotor->n_blade;
     *data = (bough_rotor_data){0};
     data->load = bough_arena_doubles(arena, 6 * n_blade * (size_t)rotor->n_vertex);
+    size_t slopes = rotor->slopes ? BOUGH_SLOPES : 0;
+    data->slope = bough_arena_doubles(arena, slopes * n_blade * (size_t)rotor->n_vertex);
     data->line = bough_arena_doubles(arena, 6 * n_blade * (size_t)(rotor->n_vertex - 1));
     struct bough_rotor_scratch *s = bough_arena_take(arena, sizeof *s);
     data->scratch = s;

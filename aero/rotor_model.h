@@ -26,7 +26,7 @@ typedef struct vertex_row {
 struct bough_rotor {
     int n_blade, n_station, n_vertex, stride;
     double density;
-    bool pitching_moment, skew;
+    bool pitching_moment, skew, slopes;
     bough_induction_options induction;
     bough_inflow_def inflow;
     bough_wind wind;
@@ -38,6 +38,7 @@ struct bough_rotor {
 };
 
 enum { LOAD = 8 }; // force, moment per length and two zeros: one vector
+enum { SLOPE = 16 }; // BOUGH_SLOPES and four zeros: whole vectors
 
 // Of one blade, in its frame's axes; y is tangential, x normal, z along the blade.
 typedef struct blade_rows {
@@ -52,8 +53,10 @@ typedef struct blade_rows {
     double *axial, *tangential, *loss; // (stride)
     double *phi, *alpha, *speed;     // (stride) [rad], [rad], [m/s]
     double *lift, *drag, *moment;    // (stride) coefficients
+    double *lift_slope, *drag_slope, *moment_slope; // (stride) by the angle [1/rad]
     double *force_x, *force_y;       // (stride) [N/m]
     double *load;                    // (stride × LOAD) [N/m], [N]
+    double *slope;                   // (stride × SLOPE) bough_rotor_data.slope, per length
 } blade_rows;
 
 struct bough_rotor_scratch {

@@ -142,6 +142,9 @@ bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
     loads->value = bough_rod_vertex_rows(arena, model, 6);
     loads->rate = bough_rod_vertex_rows(arena, model, 6);
     loads->curve = bough_rod_vertex_rows(arena, model, 6);
+    loads->damped = false;
+    loads->slope = bough_rod_vertex_rows(arena, model, 12);
+    loads->angle = bough_rod_vertex_rows(arena, model, 4);
     loads->rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
     loads->rest_rate = bough_arena_doubles(arena, 6 * (size_t)model->stride);
     loads->moving = false;

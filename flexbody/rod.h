@@ -111,13 +111,18 @@ typedef struct bough_rod_ramped_load {
     bool along;    // there is such a part
 } bough_rod_ramped_load;
 
-// Loads on the vertices: value + τ·(rate + τ·curve), τ = t − start, resolved in BRF axes, and all
-// ramped loads.
+// Loads on the vertices: value + τ·(rate + τ·curve), τ = t − start, resolved in BRF axes, what the
+// vertices' own motion adds to them (`damped`), and all ramped loads.
 typedef struct bough_rod_loads {
     double start;  // [s]
     double *value; // force then moment (6 × stride), vertex 0 included [N, N m]
     double *rate;  // (6 × stride) [N/s, N m/s]
     double *curve; // (6 × stride) [N/s², N m/s²]
+    bool damped;   // forces along x and y and moment about z of the BRF, c, follow the vertex' velocity
+                   // along x and y, its section's rotation about the normal and W₃, j …
+    double *slope; // … by this, row 4 c + j (12 × stride) [N s/m, N, N s; N s, N m, N m s]; 0 at
+                   // vertices that move as the input says
+    double *angle; // that rotation is this row times the vertex' quaternion (4 × stride)
     double *rest;  // strains without stress: e⁰ + D q of loads along the segments (6 × stride) …
     double *rest_rate; // … and its rate [1/s, 1/(m s)], both set by bough_rod_loads_along
     bool moving;       // the rate is not zero

@@ -160,6 +160,26 @@ static void move_rest(const bough_rod_model *m, const bough_rod_loads *loads, do
     scratch->rest = now;
 }
 
+// Adds what the vertices' own motion makes of the loads.
+static void add_damping(const bough_rod_model *m, const bough_rod_loads *loads,
+                        bough_rod_scratch *scratch) {
+    int s = m->stride, last = m->n_segment;
+    const double *restrict u = scratch->vertex + BOUGH_ROD_U * s, *restrict slope = loads->slope;
+    const double *restrict p = scratch->vertex + BOUGH_ROD_P * s, *restrict angle = loads->angle;
+    const double *restrict w = scratch->vertex + (BOUGH_ROD_W + 2) * s;
+    double *restrict load = scratch->load;
+#pragma omp simd
+    for (int i = 1; i <= last; i++) {
+        double phi = angle[i] * p[i] + angle[s + i] * p[s + i] + angle[2 * s + i] * p[2 * s + i] +
+                     angle[3 * s + i] * p[3 * s + i];
+        double x = u[i], y = u[s + i], z = w[i];
+        const double *restrict fx = slope + i, *restrict fy = fx + 4 * s, *restrict mz = fx + 8 * s;
+        load[i] += fx[0] * x + fx[s] * y + fx[2 * s] * phi + fx[3 * s] * z;
+        load[s + i] += fy[0] * x + fy[s] * y + fy[2 * s] * phi + fy[3 * s] * z;
+        load[5 * s + i] += mz[0] * x + mz[s] * y + mz[2 * s] * phi + mz[3 * s] * z;
+    }
+}
+
 void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                     bough_rod_scratch *scratch) {
     double elapsed = t - loads->start; // all that bough_rod_vertex_rows took: whole registers
@@ -171,6 +191,7 @@ void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, doub
     for (int k = 1 - BOUGH_LANES; k <= count; k++) {
         load[k] = value[k] + elapsed * (rate[k] + elapsed * curve[k]);
     }
+    if (loads->damped) add_damping(m, loads, scratch);
     scratch->time = t;
     scratch->rest = loads->rest;
     scratch->turning = false;

@@ -87,6 +87,37 @@ static void velocity_columns(const bough_rod_model *m, const bough_rod_tangent *
     }
 }
 
+typedef struct vertex_load {
+    bough_vec3 f, l; // force in BRF axes, moment in section axes
+} vertex_load;
+
+// Row j of the loads' slopes.
+static inline vertex_load slope_at(const double *restrict slope, int s, int i, int j, bough_mat3 r) {
+    const double *restrict row = slope + j * s + i;
+    return (vertex_load){{row[0], row[4 * s], 0}, bough_mat3_tmul(r, bough_v3(0, 0, row[8 * s]))};
+}
+
+// Adds what the loads change with velocity along x and y and with W₃.
+static void damping_columns(const bough_rod_model *m, const bough_rod_loads *loads,
+                            const bough_rod_tangent *k, int first, double *restrict out) {
+    static const int row[3] = {0, 1, 3}, column[3] = {0, 1, 5};
+    int s = m->stride;
+    const double *restrict kept = k->vertex + first + 1, *restrict slope = loads->slope + first + 1;
+    for (int j = 0; j < 3; j++) {
+        double *restrict to = out + column[j] * LANES;
+        int from = row[j];
+#pragma omp simd
+        for (int l = 0; l < LANES; l++) {
+            vertex_load f = slope_at(slope, s, l, from, load_matrix(kept + KEPT_R * s, s, l));
+            to[l] += f.f.x;
+            to[6 * LANES + l] += f.f.y;
+            to[18 * LANES + l] += f.l.x;
+            to[24 * LANES + l] += f.l.y;
+            to[30 * LANES + l] += f.l.z;
+        }
+    }
+}
+
 // What the rotation of a vertex changes, from the accelerations `rate` (6 n: u̇, Ẇ): the moment of
 // a load in BRF axes and the first moment's forces turn with it.
 static void rotation_columns(const bough_rod_model *m, const double *restrict rate,
@@ -140,9 +171,23 @@ static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scr
     }
 }
 
+// Adds what they change with the rotation about the section's normal.
+static void add_turning(const bough_rod_model *m, const bough_rod_loads *loads,
+                        bough_rod_tangent *k) {
+    int s = m->stride;
+    const double *restrict kept = k->vertex, *restrict slope = loads->slope;
+    double *restrict out = k->local_position + 12 * s;
+#pragma omp simd
+    for (int v = 1; v <= m->n; v++) {
+        vertex_load f = slope_at(slope, s, v, 2, load_matrix(kept + KEPT_R * s, s, v));
+        store3(out, s, v, bough_add(load3(out, s, v), f.f));
+        store3(out + 3 * s, s, v, bough_add(load3(out + 3 * s, s, v), f.l));
+    }
+}
+
 // Segments first..first + 7 and the vertices at their right ends.
-static void linearise_eight(const bough_rod_model *m, const bough_rod_scratch *scratch, int first,
-                            bough_rod_tangent *k) {
+static void linearise_eight(const bough_rod_model *m, const bough_rod_loads *loads,
+                            const bough_rod_scratch *scratch, int first, bough_rod_tangent *k) {
     _Alignas(64) double base[BOUGH_ROD_BASE * LANES];
     bough_rod_eight eight;
     eight.first = first;
@@ -154,6 +199,7 @@ static void linearise_eight(const bough_rod_model *m, const bough_rod_scratch *s
         mass_columns(m, k, first, j, eight.mass);
         velocity_columns(m, k, first, j, eight.own_velocity);
     }
+    if (loads->damped) damping_columns(m, loads, k, first, eight.own_velocity);
     bough_rod_form_blocks(m, k, &eight);
 }
 
@@ -166,8 +212,9 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
     keep_vertices(m, state, scratch->vertex, k);
     rotation_columns(m, rate + (size_t)BOUGH_ROD_U * m->n, input, scratch, k);
     if (bough_rod_loads_follow(loads)) add_followers(m, scratch, k);
+    if (loads->damped) add_turning(m, loads, k);
     for (int first = 0; first < m->n_segment; first += LANES) {
-        linearise_eight(m, scratch, first, k);
+        linearise_eight(m, loads, scratch, first, k);
     }
     return true;
 }

@@ -245,8 +245,9 @@ static void check_share(const signal *now, const signal *whole, double value, do
 // The motion stands still, so that loads grow with the ramp: linearly, to its end at sample 25.
 static void linear_hold_is_continuous_and_exact_for_linear_loads(void **context) {
     (void)context;
-    static const char *const ramped[] = {NULL};
-    static const char *const full[] = {"aero.ramp=[0 s, 0 s]", NULL};
+#define STILL "bodies[2].joint.speed=0 rad/s"
+    static const char *const ramped[] = {STILL, NULL};
+    static const char *const full[] = {STILL, "aero.ramp=[0 s, 0 s]", NULL};
     fixture f = open_turbine(ramped), g = open_turbine(full);
     sample(&g, 0, period);
     const signal whole[2] = {signal_of(&g, FLEXIBLE), signal_of(&g, RIGID)};
@@ -264,6 +265,47 @@ static void linear_hold_is_continuous_and_exact_for_linear_loads(void **context)
     for (int b = 0; b < 2; b++) check_share(&last[b], &whole[b], 1, 0);
     close_turbine(&f);
     close_turbine(&g);
+}
+
+// What the flexible blade gets in all, with what its motion adds; along x and y.
+static void whole_load(const fixture *f, double t, double load[2 * SEGMENTS]) {
+    const bough_rod_loads *l = bough_rod_body_loads(f->s->beam[FLEXIBLE].rod);
+    const double *state = bough_beam_state(f->s, &f->s->beam[FLEXIBLE], 1);
+    int s = bough_rod_body_model(f->s->beam[FLEXIBLE].rod)->stride, n = SEGMENTS;
+    double dt = t - l->start;
+    for (int c = 0; c < 2; c++) {
+        for (int i = 0; i < n; i++) {
+            const double *slope = l->slope + 4 * c * s + i + 1, *p = state + BOUGH_ROD_P * n + i;
+            double angle = 0, norm = 0;
+            for (int k = 0; k < 4; k++) {
+                angle += l->angle[k * s + i + 1] * p[k * n];
+                norm += p[k * n] * p[k * n];
+            }
+            int at = c * s + i + 1;
+            load[c * n + i] = l->value[at] + dt * (l->rate[at] + dt * l->curve[at]) +
+                              slope[0] * state[BOUGH_ROD_U * n + i] +
+                              slope[s] * state[(BOUGH_ROD_U + 1) * n + i] +
+                              slope[2 * s] * angle / sqrt(norm) +
+                              slope[3 * s] * state[(BOUGH_ROD_W + 2) * n + i];
+        }
+    }
+}
+
+// In motion the slopes change from sample to sample and the loads do not jump.
+static void loads_that_follow_the_motion_are_continuous(void **context) {
+    (void)context;
+    static const char *const sets[] = {"bodies[2].joint.speed=1 rad/s", NULL};
+    fixture f = open_turbine(sets);
+    double before[2 * SEGMENTS], after[2 * SEGMENTS];
+    for (int k = 0; k < 80; k++) scene_step(f.s);
+    for (int k = 0; k < 5; k++) {
+        whole_load(&f, 0.8 + k * period, before);
+        sample(&f, 0.8 + k * period, 0.82 + k * period);
+        whole_load(&f, 0.8 + k * period, after);
+        double most = largest(before, 2 * SEGMENTS);
+        for (int i = 0; i < 2 * SEGMENTS; i++) check_near(after[i], before[i], 0, 1e-10 * most);
+    }
+    close_turbine(&f);
 }
 
 static void constant_hold_takes_each_sample_at_once(void **context) {
@@ -416,6 +458,7 @@ int main(void) {
         cmocka_unit_test(wind_of_a_file_reaches_the_rotor),
         cmocka_unit_test(inflow_of_the_scene_reaches_the_rotor),
         cmocka_unit_test(linear_hold_is_continuous_and_exact_for_linear_loads),
+        cmocka_unit_test(loads_that_follow_the_motion_are_continuous),
         cmocka_unit_test(constant_hold_takes_each_sample_at_once),
         cmocka_unit_test(sampling_errs_by_the_third_order),
         cmocka_unit_test(loads_are_sampled_at_their_rate),

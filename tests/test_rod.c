@@ -227,6 +227,23 @@ static void newton_solution_knows_follower_loads(void **context) {
     check_newton(f);
 }
 
+// Loads that follow the vertices' motion, about the rotations of the state.
+static void newton_solution_knows_loads_that_follow_the_motion(void **context) {
+    fixture *f = *context;
+    unsigned seed = 27;
+    int s = f->model->stride;
+    f->loads.damped = true;
+    for (int v = 1; v <= N; v++) {
+        for (int k = 0; k < 12; k++) f->loads.slope[k * s + v] = 5 * sample_random(&seed);
+        const double *p = f->state + BOUGH_ROD_P * N + v - 1;
+        double w = p[0], x = p[N], y = p[2 * N], z = p[3 * N];
+        double scale = 2 / sqrt(w * w + x * x + y * y + z * z);
+        const double row[4] = {-scale * z, scale * y, -scale * x, scale * w};
+        for (int k = 0; k < 4; k++) f->loads.angle[k * s + v] = row[k];
+    }
+    check_newton(f);
+}
+
 // Random loads along all segments, dead ones and followers, and strains by them.
 static void lay_along(fixture *f) {
     unsigned seed = 23;
@@ -386,6 +403,8 @@ int main(void) {
         cmocka_unit_test(second_evaluation_at_a_state_is_the_same),
         cmocka_unit_test_setup_teardown(newton_solution_knows_follower_loads, setup, teardown),
         cmocka_unit_test_setup_teardown(newton_solution_knows_loads_along_segments, setup, teardown),
+        cmocka_unit_test_setup_teardown(newton_solution_knows_loads_that_follow_the_motion, setup,
+                                        teardown),
         cmocka_unit_test_setup_teardown(second_evaluation_knows_loads_along_segments, setup,
                                         teardown),
         cmocka_unit_test_setup_teardown(wrench_tangent_knows_loads_along_segments, setup, teardown),

@@ -6,6 +6,7 @@
 #include "tests/nrel5mw_aero.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 static const double degree = BOUGH_PI / 180, rpm = BOUGH_PI / 30;
 
@@ -465,6 +466,70 @@ static void sample_is_a_function_of_motion(void **state) {
 }
 
 // Calm, locked, feathered, turning backwards, overspeeding, blown from behind.
+// Loads on the vertices (force x, y and moment z in the frame's axes) of the first blade.
+static void fetch_rows(const rig *r, double row[3][VERTICES]) {
+    static const int place[3] = {0, 1, 5};
+    for (int c = 0; c < 3; c++)
+        memcpy(row[c], r->data.load + place[c] * VERTICES, sizeof row[c]);
+}
+
+// How far the slopes are from what a motion of all vertices of the first blade changes, per direction
+// of the motion, relative to the largest change on the blade: the whole blade moves along x or y, or
+// turns about its span.
+static void measure_slopes(rig *r, double off[4]) {
+    static double before[3][VERTICES], after[3][VERTICES];
+    static const double step[4] = {0.05, 0.05, 2e-4, 2e-3};
+    double *rows = r->vertex[0];
+    sample(r, 0.7);
+    for (int j = 0; j < 4; j++) {
+        double most = 0, worst = 0;
+        for (int side = 0; side < 2; side++) {
+            double d = side == 0 ? -step[j] : step[j];
+            sample(r, 0.7);
+            for (int i = 0; i < VERTICES; i++) {
+                double *p = rows + BOUGH_BLADE_ROTATION * VERTICES + i;
+                double w = p[0], x = p[VERTICES], y = p[2 * VERTICES], z = p[3 * VERTICES];
+                if (j < 2) rows[(BOUGH_BLADE_VELOCITY + j) * VERTICES + i] += d;
+                if (j == 3) rows[(BOUGH_BLADE_SPIN + 2) * VERTICES + i] += d;
+                if (j != 2) continue;
+                p[0] = w - d / 2 * z; // p ∘ (1, 0, 0, d/2)
+                p[VERTICES] = x + d / 2 * y;
+                p[2 * VERTICES] = y - d / 2 * x;
+                p[3 * VERTICES] = z + d / 2 * w;
+            }
+            bough_rotor_sample(r->rotor, &r->motion, &r->data);
+            fetch_rows(r, side == 0 ? before : after);
+        }
+        sample(r, 0.7);
+        for (int c = 0; c < 2; c++) {
+            for (int i = 0; i < VERTICES; i++) {
+                double change = (after[c][i] - before[c][i]) / (2 * step[j]);
+                double slope = r->data.slope[(4 * c + j) * VERTICES + i];
+                most = fmax(most, fabs(change));
+                worst = fmax(worst, fabs(change - slope));
+            }
+        }
+        off[j] = worst / most;
+    }
+}
+
+// Slopes are those of the momentum balance without drag, skew and changes of the loss: near enough for
+// loads that go on from sample to sample.
+static void loads_follow_the_motion_by_their_slopes(void **state) {
+    (void)state;
+    static const double wind[3] = {8, 12, 20}, pitch[3] = {0, 3, 6.5}, speed[3] = {9, 12.1, 14};
+    for (int k = 0; k < 3; k++) {
+        rig *r = create_rig(false);
+        r->def.slopes = true;
+        operate(r, wind[k], pitch[k], speed[k]);
+        double off[4];
+        measure_slopes(r, off);
+        print_message("wind %g m/s: %.2f %.2f %.2f %.2f\n", wind[k], off[0], off[1], off[2], off[3]);
+        for (int j = 0; j < 4; j++) assert_true(off[j] < (j == 2 ? 0.55 : 0.3));
+        destroy_rig(r);
+    }
+}
+
 static void odd_states_are_finite(void **state) {
     (void)state;
     static const double wind[] = {-15, 0, 1e-9, 8, 60}, pitch[] = {-180, -30, 0, 90};
@@ -653,6 +718,7 @@ int main(void) {
         cmocka_unit_test(rigid_translation_changes_nothing),
         cmocka_unit_test(blades_are_alike),
         cmocka_unit_test(sample_is_a_function_of_motion),
+        cmocka_unit_test(loads_follow_the_motion_by_their_slopes),
         cmocka_unit_test(odd_states_are_finite),
         cmocka_unit_test(pitch_step_matches_reference),
         cmocka_unit_test(inflow_is_saved_and_restored),

@@ -1,93 +1,60 @@
 #include "apps/simulation/aero_link.h"
 
+#include "apps/simulation/aero_motion.h"
+#include "apps/simulation/aero_signal.h"
 #include "core/base.h"
 #include "core/force.h"
-#include "flexbody/rod_load.h"
 
 #include <math.h>
 #include <string.h>
 
-// A blade's loads at the last sample and the value the load signal has reached. Of a rod per vertex
-// force and moment in the body's axes (6 × vertices), then the same per length along each segment in
-// the axes of its middle (6 × segments); on a rigid body the resultant (6).
-typedef struct blade_loads {
-    const bough_beam *beam;
-    double *sampled, *reached; // (n)
-    double *value, *rate, *curve; // (n) of the signal that the body has, since the last sample
-    double *fresh;             // (n)
-    double *along;             // per length (6 × segments): its rate, of a modal body itself
-    double *strain, *lumped;   // of a modal body, D q and the loads of it (6 × the mesh's stride)
-    int n;
-} blade_loads;
-
 struct bough_aero_link {
     bough_simulation *simulation;
     const bough_rotor *rotor;
-    bough_rotor_data data;
-    bough_rotor_motion motion;
-    bough_blade_motion *moving; // (n_blade), what `motion` points to …
-    double *vertex;             // (n_blade × BOUGH_BLADE_ROWS × n_vertex) … and these
     int n_blade, n_vertex;
-    blade_loads *blade; // (n_blade)
-    double factor;      // of the ramp at the last sample
-    double evaluated;   // time of what `data` holds [s]; NAN: none that a sample may use
-    bough_vec3 hub;     // at the start, ground axes [m]
-    double start, span; // of the signals, from the last sample to the next [s]
+    const bough_beam **beam;    // (n_blade)
+    bough_aero_signal **signal; // (n_blade)
+    bough_aero_motion *motion;
+    // Two evaluations: of the last sample, and of the one ahead. Both have the first one's memory.
+    bough_rotor_data data[2];
+    double time[2];   // what they are of [s]; NAN: of nothing
+    double factor[2]; // of the ramp there
+    int shown;        // which is of the last sample
+    int found;        // which is in hand
+    bough_vec3 hub;   // at the start, ground axes [m]
     bool started;
 };
 
 // -- build ----------------------------------------------------------------------------------------
 
 static bough_status same_mesh(const bough_aero_link *l, const bough_beam *beam) {
-    const bough_beam *first = l->blade[0].beam;
+    const bough_beam *first = l->beam[0];
     if (beam->def.n_segment == first->def.n_segment) return bough_ok();
     return bough_fail(BOUGH_INVALID, "blades %s and %s have %d and %d segments; the aerodynamics"
                       " wants the same mesh on all blades", first->body->name, beam->body->name,
                       first->def.n_segment, beam->def.n_segment);
 }
 
-// How many numbers a blade's loads are, and what only some bodies need.
-static void take_kind(bough_arena *arena, int n_vertex, blade_loads *blade) {
-    const bough_beam *beam = blade->beam;
-    size_t segments = (size_t)n_vertex - 1;
-    blade->n = beam->port < 0 ? 6 : 6 * n_vertex;
-    if (beam->port >= 0) blade->along = bough_arena_doubles(arena, 6 * segments);
-    if (beam->rod != NULL) blade->n += 6 * (int)segments;
-    if (beam->modal == NULL) return;
-    size_t stride = (size_t)bough_beam_mesh(beam)->stride;
-    blade->strain = bough_arena_doubles(arena, 6 * stride);
-    blade->lumped = bough_arena_doubles(arena, 6 * stride);
-}
-
 static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
     const bough_scene_turbine *turbine = &l->simulation->scene->turbine;
     l->n_blade = turbine->n_blade;
-    l->blade = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->blade);
-    if (l->blade == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
-    for (int b = 0; b < l->n_blade; b++) {
-        blade_loads *blade = &l->blade[b];
-        blade->beam = bough_simulation_beam(l->simulation, turbine->blade[b]);
-        bough_status status = same_mesh(l, blade->beam);
-        if (!bough_is_ok(&status)) return status;
-        l->n_vertex = blade->beam->def.n_segment + 1;
-        take_kind(arena, l->n_vertex, blade);
-        blade->fresh = bough_arena_doubles(arena, (size_t)blade->n);
-        blade->sampled = bough_arena_doubles(arena, (size_t)blade->n);
-        blade->reached = bough_arena_doubles(arena, (size_t)blade->n);
-        blade->value = bough_arena_doubles(arena, (size_t)blade->n);
-        blade->rate = bough_arena_doubles(arena, (size_t)blade->n);
-        blade->curve = bough_arena_doubles(arena, (size_t)blade->n);
+    l->beam = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->beam);
+    l->signal = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->signal);
+    if (bough_arena_exhausted(arena)) {
+        return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
     }
-    return bough_ok();
-}
-
-static void take_motion(bough_arena *arena, bough_aero_link *l) {
-    size_t n = (size_t)l->n_vertex * BOUGH_BLADE_ROWS;
-    l->moving = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->moving);
-    l->vertex = bough_arena_doubles(arena, (size_t)l->n_blade * n);
-    l->motion.blade = l->moving;
-    for (int b = 0; l->moving && l->vertex && b < l->n_blade; b++)
-        l->moving[b].vertex = l->vertex + (size_t)b * n;
+    for (int b = 0; b < l->n_blade; b++) {
+        l->beam[b] = bough_simulation_beam(l->simulation, turbine->blade[b]);
+        bough_status status = same_mesh(l, l->beam[b]);
+        if (bough_is_ok(&status)) {
+            status = bough_aero_signal_build(arena, l->simulation, l->beam[b], &l->signal[b]);
+        }
+        if (!bough_is_ok(&status)) return status;
+    }
+    l->n_vertex = l->beam[0]->def.n_segment + 1;
+    l->motion = bough_aero_motion_build(arena, l->simulation, l->beam);
+    if (l->motion) return bough_ok();
+    return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
 }
 
 // Tables of the scene in the rotor's form.
@@ -131,7 +98,7 @@ static bool take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
         t->drag[i] = aero->tower.drag[aero->tower.n_drag == 1 ? 0 : i];
     }
     for (int i = 0; i < l->n_vertex; i++) {
-        t->rotation[i] = bough_rotation_matrix(l->blade[0].beam->def.rotation[i]);
+        t->rotation[i] = bough_rotation_matrix(l->beam[0]->def.rotation[i]);
     }
     return true;
 }
@@ -202,12 +169,13 @@ static bough_wind_def wind_def(const bough_scene *scene) {
 
 static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     const bough_scene_aero *aero = &l->simulation->scene->aero;
-    const bough_rod_def *mesh = &l->blade[0].beam->def;
+    const bough_rod_def *mesh = &l->beam[0]->def;
     bough_rotor_def def = bough_rotor_def_default();
     def.n_blade = l->n_blade;
     def.density = aero->air_density;
     def.hub_radius = aero->hub_radius;
     def.skew = aero->induction.skew != 0;
+    def.slopes = aero->hold != BOUGH_SCENE_CONSTANT;
     def.induction = aero->induction.options;
     def.induction.axial_drag = def.induction.tangential_drag = aero->induction.drag;
     def.inflow = aero->induction.inflow;
@@ -247,14 +215,16 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
     l->simulation = simulation;
     bough_status status = take_blades(arena, l);
     if (!bough_is_ok(&status)) return status;
-    take_motion(arena, l);
     if (!take_tables(arena, l, &t)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
     }
     bough_rotor_def def = rotor_def(l, &t);
     status = bough_rotor_build(arena, &def, &l->rotor);
     if (bough_is_ok(&status)) status = check_reach(l);
-    if (bough_is_ok(&status)) status = bough_rotor_data_build(arena, l->rotor, &l->data);
+    for (int i = 0; i < 2 && bough_is_ok(&status); i++) {
+        status = bough_rotor_data_build(arena, l->rotor, &l->data[i]);
+    }
+    l->data[1].memory = l->data[0].memory;
     bough_aero_link_renew(l);
     if (bough_is_ok(&status)) *link = l;
     return status;
@@ -262,191 +232,156 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
 
 // -- sample ---------------------------------------------------------------------------------------
 
-static void gather_rotor(bough_aero_link *l, double t) {
-    bough_simulation *s = l->simulation;
-    const bough_scene_turbine *turbine = &s->scene->turbine;
-    bough_simulation_update(s);
-    bough_transform rotor = bough_tree_frame_pose(s->view, &s->tree->bodies[turbine->rotor]);
-    const bough_vec3 axes[3] = {rotor.rotation.c1, rotor.rotation.c2, rotor.rotation.c3};
-    l->motion.time = t;
-    l->motion.hub = rotor.position;
-    l->motion.shaft = axes[s->scene->body[turbine->rotor].joint.axis];
+// Of the ramp at t; a jump is followed by a sample at its time, up to rounding.
+static double ramp_factor(const double ramp[2], double t) {
+    bool jump = ramp[1] <= ramp[0];
+    return bough_ramp_factor(ramp[0], ramp[1], jump ? t * (1 + 1e-12) : t);
 }
 
-static void gather_blade(bough_aero_link *l, int b) {
-    bough_simulation *s = l->simulation;
-    const bough_beam *beam = l->blade[b].beam;
-    l->moving[b].frame = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
-    bough_simulation_beam_rows(s, beam, l->vertex + b * BOUGH_BLADE_ROWS * l->n_vertex);
-}
+// An evaluation in stages, whose tasks are a blade each.
+typedef struct evaluation {
+    bough_aero_link *link;
+    const bough_rotor_motion *motion;
+    bough_rotor_data *data;
+    void (*move)(bough_aero_motion *m, int blade);
+} evaluation;
 
-// The height of τ(1 − τ) that gives what the error 1 of an extrapolation has left out, half of it for
-// the step to the sample itself and 5/12 for the period before, times 6.
-static const double debt = 5.5;
-
-// The signal of fresh loads until the next sample. Linear: continuous, from what was reached to the value
-// extrapolated from the last two samples. In between it runs above or below the straight line by what
-// the last extrapolation has left out: 5/12 of its error times the span, by Adams' formula with the
-// sample before. So impulses are right to the third order, one sample late at most.
-static void follow(const bough_aero_link *l, blade_loads *blade) {
-    bool held = l->simulation->scene->aero.hold == BOUGH_SCENE_CONSTANT || !l->started;
-    double *restrict value = blade->value, *restrict rate = blade->rate;
-    double *restrict reached = blade->reached, *restrict sampled = blade->sampled;
-    double *restrict curve = blade->curve;
-    const double *restrict fresh = blade->fresh;
-    double factor = l->factor, span = l->span;
-    for (int k = 0; k < blade->n; k++) {
-        double now = factor * fresh[k], before = held ? now : reached[k];
-        double next = held ? now : 2 * now - sampled[k], bump = debt * (now - before);
-        value[k] = before;
-        rate[k] = (next - before + bump) / span;
-        curve[k] = -bump / (span * span);
-        reached[k] = next;
-        sampled[k] = now;
-    }
-}
-
-// Hands a blade's signal to its body.
-static void put(bough_aero_link *l, int b) {
-    blade_loads *blade = &l->blade[b];
-    if (blade->beam->port < 0) {
-        bough_tree_set_wrench(l->simulation->tree, blade->beam->marker, l->start, blade->value,
-                              blade->rate, blade->curve);
-        return;
-    }
-    bough_rod_loads *rod = bough_beam_loads(blade->beam);
-    size_t stride = (size_t)bough_beam_mesh(blade->beam)->stride, n = (size_t)l->n_vertex;
-    for (size_t c = 0; c < 6; c++) {
-        memcpy(rod->value + c * stride, blade->value + c * n, n * sizeof(double));
-        memcpy(rod->rate + c * stride, blade->rate + c * n, n * sizeof(double));
-        memcpy(rod->curve + c * stride, blade->curve + c * n, n * sizeof(double));
-    }
-    rod->start = l->start;
-    if (blade->beam->rod == NULL) return;
-    size_t first = 6 * n; // along the segments: on the straight line
-    for (size_t k = first; k < (size_t)blade->n; k++) {
-        blade->along[k - first] = (blade->reached[k] - blade->value[k]) / l->span;
-    }
-    bough_rod_loads_along(bough_beam_mesh(blade->beam), blade->value + first, blade->along, rod);
-}
-
-// The resultant of the loads on a rigid blade's vertices.
-static void sum_loads(const bough_aero_link *l, int b, double sum[6]) {
-    const double *load = l->data.load + 6 * b * l->n_vertex;
-    bough_wrench total = {{0, 0, 0}, {0, 0, 0}};
-    for (int i = 0; i < l->n_vertex; i++) {
-        double here[6];
-        for (int c = 0; c < 6; c++) here[c] = load[c * l->n_vertex + i];
-        bough_transform at = {l->blade[b].beam->def.position[i], bough_mat3_identity()};
-        total = bough_wrench_add(total, bough_wrench_to_parent(&at, bough_wrench_load(here)));
-    }
-    bough_wrench_store(total, sum);
-}
-
-// The loads on a rod's vertices and along its segments.
-static void take_loads(const bough_aero_link *l, int b, blade_loads *blade) {
-    int n = l->n_vertex;
-    const double *line = l->data.line + 6 * b * (n - 1);
-    const double *rotation = l->moving[b].vertex + BOUGH_BLADE_ROTATION * n;
-    memcpy(blade->fresh, l->data.load + 6 * b * n, 6 * (size_t)n * sizeof(double));
-    bough_rod_line_axes(n - 1, rotation, line,
-                        blade->beam->rod != NULL ? blade->fresh + 6 * n : blade->along);
-}
-
-// A modal body knows loads on vertices only.
-static void lump_line(const bough_aero_link *l, blade_loads *blade) {
-    const bough_rod_model *m = bough_beam_mesh(blade->beam);
-    int n = l->n_vertex, s = m->stride;
-    memset(blade->lumped, 0, 6 * (size_t)s * sizeof(double));
-    bough_rod_line_strain(m, blade->along, blade->strain);
-    bough_rod_lump_strain(m, blade->strain, blade->lumped);
-    for (int c = 0; c < 6; c++) {
-        for (int i = 0; i < n; i++) blade->fresh[c * n + i] += blade->lumped[c * s + i];
-    }
-}
-
-static void apply(bough_aero_link *l, int b) {
-    blade_loads *blade = &l->blade[b];
-    if (blade->beam->port < 0) {
-        sum_loads(l, b, blade->fresh);
-    } else {
-        take_loads(l, b, blade);
-        if (blade->beam->modal != NULL) lump_line(l, blade);
-    }
-    follow(l, blade);
-    put(l, b);
-}
-
-// Tasks, a blade each.
 static void approach_blade(void *self, int b, bough_part part) {
-    bough_aero_link *l = self;
+    const evaluation *e = self;
     if (part != BOUGH_SECOND_HALF) {
-        gather_blade(l, b);
-        bough_rotor_approach(l->rotor, &l->motion, b, &l->data);
+        e->move(e->link->motion, b);
+        bough_rotor_approach(e->link->rotor, e->motion, b, e->data);
     }
-    if (part != BOUGH_FIRST_HALF) bough_rotor_induce(l->rotor, &l->motion, b, &l->data);
+    if (part != BOUGH_FIRST_HALF) bough_rotor_induce(e->link->rotor, e->motion, b, e->data);
 }
 
 static void load_blade(void *self, int b) {
-    bough_aero_link *l = self;
-    bough_rotor_load(l->rotor, &l->motion, b, &l->data);
+    const evaluation *e = self;
+    bough_rotor_load(e->link->rotor, e->motion, b, e->data);
+}
+
+// Of the motion that was found for the rotor; `move` finds it for a blade.
+static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_motion *, int)) {
+    bough_pool *pool = l->simulation->pool;
+    evaluation e = {l, bough_aero_motion_found(l->motion), &l->data[to], move};
+    bough_pool_run_turns(pool, l->n_blade, approach_blade, &e);
+    bough_rotor_survey(l->rotor, e.motion, e.data);
+    bough_pool_run(pool, l->n_blade, load_blade, &e);
+    bough_rotor_conclude(l->rotor, e.motion, e.data);
+    l->time[to] = e.motion->time;
+    l->factor[to] = ramp_factor(l->simulation->scene->aero.ramp, e.motion->time);
+    l->found = to;
+}
+
+static void evaluate_present(bough_aero_link *l, double t) {
+    bough_aero_motion_rotor(l->motion, t);
+    evaluate_rotor(l, l->shown, bough_aero_motion_blade);
+}
+
+// The sample before has looked ahead to this one; times are equal but for rounding.
+static bool looked_ahead(const bough_aero_link *l, double t) {
+    return fabs(l->time[1 - l->shown] - t) <= 1e-9 * (fabs(t) + 1e-3);
 }
 
 static void evaluate(void *self, double t) {
     bough_aero_link *l = self;
-    bough_pool *pool = l->simulation->pool;
-    const double *ramp = l->simulation->scene->aero.ramp;
-    bool jump = ramp[1] <= ramp[0]; // which a sample at its time follows, up to rounding
-    l->factor = bough_ramp_factor(ramp[0], ramp[1], jump ? t * (1 + 1e-12) : t);
-    gather_rotor(l, t);
-    bough_pool_run_turns(pool, l->n_blade, approach_blade, l);
-    bough_rotor_survey(l->rotor, &l->motion, &l->data);
-    bough_pool_run(pool, l->n_blade, load_blade, l);
-    bough_rotor_conclude(l->rotor, &l->motion, &l->data);
-    l->evaluated = t;
+    if (l->time[l->shown] == t) return;
+    if (looked_ahead(l, t)) {
+        l->shown = 1 - l->shown;
+        l->time[l->shown] = t;
+        l->time[1 - l->shown] = (double)NAN;
+    } else {
+        evaluate_present(l, t);
+    }
+}
+
+static bough_aero_fresh fresh_loads(const bough_aero_link *l, int b) {
+    const bough_rotor_data *data = &l->data[l->found];
+    size_t n = (size_t)l->n_vertex, blade = (size_t)b;
+    bool slopes = l->simulation->scene->aero.hold != BOUGH_SCENE_CONSTANT;
+    return (bough_aero_fresh){.load = data->load + 6 * n * blade,
+                              .line = data->line + 6 * (n - 1) * blade,
+                              .slope = slopes ? data->slope + BOUGH_SLOPES * n * blade : NULL,
+                              .factor = l->factor[l->found]};
+}
+
+static bough_aero_course course_of(const bough_aero_link *l, int b) {
+    return (bough_aero_course){.before = bough_aero_motion_before(l->motion, b),
+                               .now = bough_aero_motion_now(l->motion, b),
+                               .next = bough_aero_motion_found(l->motion)->blade[b].vertex};
+}
+
+// The present loads stay from t on.
+static void hold(bough_aero_link *l, double t) {
+    if (l->time[l->shown] != t || l->found != l->shown) evaluate_present(l, t);
+    for (int b = 0; b < l->n_blade; b++)
+        bough_aero_signal_hold(l->signal[b], fresh_loads(l, b), course_of(l, b), t);
+}
+
+typedef struct interval {
+    bough_aero_link *link;
+    double start, span; // [s]
+} interval;
+
+static void follow_blade(void *self, int b) {
+    const interval *i = self;
+    const bough_aero_link *l = i->link;
+    bough_aero_signal_follow(l->signal[b], fresh_loads(l, b), course_of(l, b), i->start, i->span);
 }
 
 static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     bough_aero_link *l = self;
-    if (l->evaluated != t) evaluate(l, t);
-    l->start = t;
-    l->span = t_next - t;
-    for (int b = 0; b < l->n_blade; b++) apply(l, b);
-    *jumped = !l->started || l->simulation->scene->aero.hold == BOUGH_SCENE_CONSTANT;
+    bool constant = l->simulation->scene->aero.hold == BOUGH_SCENE_CONSTANT;
+    *jumped = !l->started || constant;
+    if (*jumped) {
+        hold(l, t);
+    } else if (looked_ahead(l, t)) {
+        evaluate(l, t);
+    }
     l->started = true;
+    if (constant) return bough_ok();
+    interval next = {l, t, t_next - t};
+    bough_aero_motion_expect_rotor(l->motion, t, next.span);
+    evaluate_rotor(l, 1 - l->shown, bough_aero_motion_expect_blade);
+    bough_pool_run(l->simulation->pool, l->n_blade, follow_blade, &next);
     return bough_ok();
 }
 
-double bough_aero_link_evaluated(const bough_aero_link *link) { return link->evaluated; }
+double bough_aero_link_evaluated(const bough_aero_link *link) { return link->time[link->shown]; }
 
-void bough_aero_link_renew(bough_aero_link *link) { link->evaluated = (double)NAN; }
+void bough_aero_link_renew(bough_aero_link *link) {
+    link->time[0] = link->time[1] = (double)NAN;
+}
 
 void bough_aero_link_set_wind(bough_aero_link *link, double speed) {
     bough_rotor_set_speed(link->rotor, speed);
     bough_aero_link_renew(link);
 }
 
+static void begin_anew(bough_aero_link *link) {
+    link->started = false;
+    bough_aero_motion_forget(link->motion);
+    bough_aero_link_renew(link);
+}
+
 void bough_aero_link_go_on(bough_aero_link *link, double t) {
-    bool jumped;
-    link->started = false;
-    bough_aero_link_renew(link);
-    sample(link, t, t + 1, &jumped); // constant: there is none before it
-    link->started = false;
-    bough_aero_link_renew(link);
+    begin_anew(link);
+    hold(link, t);
+    begin_anew(link);
 }
 
 void bough_aero_link_hold(bough_aero_link *link, double t) {
-    bough_rotor_forget(link->rotor, &link->data);
+    bough_rotor_forget(link->rotor, &link->data[0]);
     bough_aero_link_go_on(link, t);
-    bough_rotor_forget(link->rotor, &link->data);
+    bough_rotor_forget(link->rotor, &link->data[0]);
 }
 
 void bough_aero_link_remember(const bough_aero_link *link, double *to) {
-    bough_rotor_save(link->rotor, &link->data, to);
+    bough_rotor_save(link->rotor, &link->data[0], to);
 }
 
 void bough_aero_link_remind(bough_aero_link *link, const double *from) {
-    bough_rotor_restore(link->rotor, from, &link->data);
+    bough_rotor_restore(link->rotor, from, &link->data[0]);
 }
 
 bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
@@ -456,8 +391,8 @@ bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link) { return link->rotor; }
 
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor) {
-    *factor = link->factor;
-    return &link->data;
+    *factor = link->factor[link->shown];
+    return &link->data[link->shown];
 }
 
 bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t) {
@@ -466,43 +401,33 @@ bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t) {
 
 // -- saving ---------------------------------------------------------------------------------------
 
-enum { SCALARS = 4, PER_LOAD = 5 };
+enum { SCALARS = 2 };
 
 int bough_aero_link_size(const bough_aero_link *link) {
-    int n = SCALARS + bough_rotor_memory_size(link->rotor);
-    for (int b = 0; b < link->n_blade; b++)
-        n += PER_LOAD * link->blade[b].n;
+    int n = SCALARS + bough_aero_motion_size(link->motion) + bough_rotor_memory_size(link->rotor);
+    for (int b = 0; b < link->n_blade; b++) n += bough_aero_signal_size(link->signal[b]);
     return n;
 }
 
 void bough_aero_link_save(const bough_aero_link *link, double *to) {
-    *to++ = link->factor;
-    *to++ = link->start;
-    *to++ = link->span;
+    *to++ = link->factor[link->shown];
     *to++ = link->started;
     for (int b = 0; b < link->n_blade; b++) {
-        const blade_loads *blade = &link->blade[b];
-        const double *const part[PER_LOAD] = {blade->sampled, blade->reached, blade->value,
-                                              blade->rate, blade->curve};
-        for (int i = 0; i < PER_LOAD; i++, to += blade->n)
-            memcpy(to, part[i], (size_t)blade->n * sizeof *to);
+        bough_aero_signal_save(link->signal[b], to);
+        to += bough_aero_signal_size(link->signal[b]);
     }
-    bough_rotor_save(link->rotor, &link->data, to);
+    bough_aero_motion_save(link->motion, to);
+    bough_rotor_save(link->rotor, &link->data[0], to + bough_aero_motion_size(link->motion));
 }
 
 void bough_aero_link_restore(bough_aero_link *link, const double *from) {
-    link->factor = *from++;
-    link->start = *from++;
-    link->span = *from++;
+    link->factor[link->shown] = *from++;
     link->started = *from++ != 0;
     for (int b = 0; b < link->n_blade; b++) {
-        const blade_loads *blade = &link->blade[b];
-        double *const part[PER_LOAD] = {blade->sampled, blade->reached, blade->value, blade->rate,
-                                        blade->curve};
-        for (int i = 0; i < PER_LOAD; i++, from += blade->n)
-            memcpy(part[i], from, (size_t)blade->n * sizeof *from);
-        if (link->started) put(link, b);
+        bough_aero_signal_restore(link->signal[b], from);
+        from += bough_aero_signal_size(link->signal[b]);
     }
-    bough_rotor_restore(link->rotor, from, &link->data);
+    bough_aero_motion_restore(link->motion, from);
+    bough_rotor_restore(link->rotor, from + bough_aero_motion_size(link->motion), &link->data[0]);
     bough_aero_link_renew(link);
 }

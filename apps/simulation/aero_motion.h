@@ -1,0 +1,40 @@
+// How a rotor's blades move: as they do at present, and as expected at the next sample of the air.
+#ifndef BOUGH_APPS_SIMULATION_AERO_MOTION_H
+#define BOUGH_APPS_SIMULATION_AERO_MOTION_H
+
+#include "aero/rotor.h"
+#include "apps/simulation/build.h"
+
+typedef struct bough_aero_motion bough_aero_motion;
+
+// NULL when memory is exhausted. `beam` (n_blade) must stay.
+bough_aero_motion *bough_aero_motion_build(bough_arena *arena, bough_simulation *simulation,
+                                           const bough_beam *const *beam);
+
+// The motion as it is at the present time t. First the whole rotor's, then each blade's, which may be
+// given to different threads.
+void bough_aero_motion_rotor(bough_aero_motion *m, double t);
+void bough_aero_motion_blade(bough_aero_motion *m, int blade);
+
+// The same as expected at t + ahead, the time of the next such call: what is seen in each blade's frame
+// goes on by the parabola through this call and the last two, and the frame by its velocity, integrated
+// by Adams' formula of third order; by lower orders where these would have foretold this call better.
+void bough_aero_motion_expect_rotor(bough_aero_motion *m, double t, double ahead);
+void bough_aero_motion_expect_blade(bough_aero_motion *m, int blade);
+
+// What was found last; its blades are filled by the calls above.
+const bough_rotor_motion *bough_aero_motion_found(const bough_aero_motion *m);
+
+// A blade's rows, BOUGH_BLADE_ROWS × n_vertex, at this call and the one before (this, if there is none).
+const double *bough_aero_motion_now(const bough_aero_motion *m, int blade);
+const double *bough_aero_motion_before(const bough_aero_motion *m, int blade);
+
+// Makes the next call the first.
+void bough_aero_motion_forget(bough_aero_motion *m);
+
+// All that the next calls depend on, as a row of numbers.
+int bough_aero_motion_size(const bough_aero_motion *m);
+void bough_aero_motion_save(const bough_aero_motion *m, double *to);
+void bough_aero_motion_restore(bough_aero_motion *m, const double *from);
+
+#endif

@@ -1,0 +1,41 @@
+// The loads of the air on one blade as a signal that its body has between two samples.
+#ifndef BOUGH_APPS_SIMULATION_AERO_SIGNAL_H
+#define BOUGH_APPS_SIMULATION_AERO_SIGNAL_H
+
+#include "apps/simulation/build.h"
+
+// Of a rod per vertex force and moment in the body's axes (6 × vertices), then the same per length
+// along each segment in the axes of its middle (6 × segments); of a modal body the former, on a rigid
+// body the resultant (6).
+typedef struct bough_aero_signal bough_aero_signal;
+
+// A rotor's loads on the blade: on vertices (6 × n), per length of segments (6 × n − 1), both in the
+// axes of the blade's frame; their slopes (bough_rotor_data.slope; NULL: none); all by a factor.
+typedef struct bough_aero_fresh {
+    const double *load, *line, *slope;
+    double factor;
+} bough_aero_fresh;
+
+// A blade's motion, rows as in bough_blade_motion.
+typedef struct bough_aero_course {
+    const double *before, *now, *next; // at the sample before, now, and as expected at the next
+} bough_aero_course;
+
+bough_status bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation,
+                                     const bough_beam *beam, bough_aero_signal **signal);
+
+// The loads stay as they are from `start` on. `next` is the motion that they belong to.
+void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course,
+                            double start);
+
+// They go from what they are now to the fresh ones over the span [s]. A signal that has been held or
+// followed before is continuous.
+void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh,
+                              bough_aero_course course, double start, double span);
+
+// All that the signal depends on, as a row of numbers; restoring gives it to the body.
+int bough_aero_signal_size(const bough_aero_signal *s);
+void bough_aero_signal_save(const bough_aero_signal *s, double *to);
+void bough_aero_signal_restore(bough_aero_signal *s, const double *from);
+
+#endif
