@@ -272,7 +272,9 @@ void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion
     load_stations(rotor, r);
     int n = rotor->n_vertex;
     spread(n, rotor->row, LOAD, 6, r->load, data->load + 6 * blade * n);
-    spread(n - 1, rotor->segment_row, LOAD, 6, r->load, data->line + 6 * blade * (n - 1));
+    double *line = data->line + 12 * blade * (n - 1);
+    spread(n - 1, rotor->mean, LOAD, 6, r->load, line);
+    spread(n - 1, rotor->slope, LOAD, 6, r->load, line + 6 * (n - 1));
     if (rotor->slopes) {
         ask_slopes(rotor, blade, data);
         slope_stations(rotor, r, &data->memory);

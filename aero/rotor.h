@@ -113,8 +113,8 @@ typedef struct bough_rotor_data {
     // computed by bough_rotor_sample
     double *load; // (n_blade × 6 × n_vertex) force on each vertex, moment about it, in the axes of
                   // the blade's frame [N, N m]
-    double *line; // (n_blade × 6 × (n_vertex − 1)) the same loads per length, their mean over each
-                  // segment between two vertices, same axes [N/m, N]
+    double *line; // (n_blade × 12 × (n_vertex − 1)) the same loads per length, their mean over each
+                  // segment between two vertices [N/m, N] and their slope [N/m², N/m], same axes
     double *slope; // (n_blade × BOUGH_SLOPES × n_vertex) how the loads follow the vertices' own
                    // motion: row 4 c + j, c of forces along x and y and moment about z of the blade's
                    // frame, j of velocities along x and y, rotation about the section's normal and

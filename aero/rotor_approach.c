@@ -42,6 +42,32 @@ static bough_vec3 any_normal(bough_vec3 v) {
     return bough_scale(1 / bough_norm(n), n);
 }
 
+// How the vertices are turned by deformation, and its second difference along the blade. At the ends
+// that of the neighbour.
+static void turn_vertices(const bough_rotor *rotor, const double *restrict vertex,
+                          blade_rows *restrict to) {
+    int n = rotor->n_vertex;
+    double *restrict turn = to->turn, *restrict bend = to->bend;
+    for (int i = 0; i < n; i++) {
+        bough_quaternion d = bough_quaternion_product(
+            section_at(vertex, n, i), bough_quaternion_conjugate(rotor->undeformed[i]));
+        lane_store(turn, n, i, bough_scale(copysign(2.0, d.w), bough_v3(d.x, d.y, d.z)));
+    }
+    for (int i = 0; i < n; i++) {
+        int k = n < 3 ? 0 : i == 0 ? 1 : i == n - 1 ? n - 2 : i;
+        bough_vec3 sum = bough_add(lane_load(turn, n, k > 0 ? k - 1 : 0), lane_load(turn, n, k + 1));
+        bough_vec3 second = bough_axpy(-2, lane_load(turn, n, k), sum);
+        lane_store(bend, n, i, n < 3 ? bough_v3(0, 0, 0) : second);
+    }
+}
+
+// R turned by the small rotation phi.
+static inline bough_mat3 turned_by(bough_vec3 phi, bough_mat3 r) {
+    return (bough_mat3){bough_add(r.c1, bough_cross(phi, r.c1)),
+                        bough_add(r.c2, bough_cross(phi, r.c2)),
+                        bough_add(r.c3, bough_cross(phi, r.c3))};
+}
+
 // Where the stations of a blade are, how they stand and move.
 static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
                           blade_rows *restrict to) {
@@ -54,12 +80,16 @@ static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *mo
     int n = rotor->n_vertex, s = rotor->stride;
     const double *restrict velocity = vertex + BOUGH_BLADE_VELOCITY * n;
     const double *restrict spin = vertex + BOUGH_BLADE_SPIN * n;
+    turn_vertices(rotor, vertex, to);
+    const double *restrict bend = to->bend;
 #pragma omp simd
     for (int j = 0; j < s; j++) {
         int a = m.vertex[j], b = a + 1;
         double w = m.weight[j];
         bough_quaternion p = section_at(vertex, n, a), q = section_at(vertex, n, b);
-        bough_mat3 structure = rotation_between(p, q, w);
+        bough_vec3 second = bough_add(lane_load(bend, n, a), lane_load(bend, n, b));
+        bough_vec3 beside = bough_scale(-0.25 * w * (1 - w), second);
+        bough_mat3 structure = turned_by(beside, rotation_between(p, q, w));
         bough_mat3 section = bough_mat3_product(structure, load_matrix(m.section, s, j));
         bough_vec3 arm = bough_mat3_mul(structure, lane_load(m.centre, s, j));
         bough_vec3 axis = vector_between(lane_load(vertex, n, a), lane_load(vertex, n, b), w);

@@ -123,10 +123,16 @@ static void place_stations(const bough_rotor_def *def, const bough_polar *polar,
     }
 }
 
-// Adds ∫ hat_i N_j ds and ∫ N_j ds/h over [a, b], on which all are linear; by Simpson's rule, exact
-// for products.
+// What a station's line load N_j of the stations' hat functions gives, dense by rows of n_station.
+typedef struct mappings {
+    double *vertex; // to each vertex: ∫ hat_i N_j ds [m] (n_vertex)
+    double *mean;   // over each segment: ∫ N_j ds/h (n_vertex − 1)
+    double *slope;  // the slope of the line that has the same moments: ∫ N_j σ ds 12/h³ [1/m]
+} mappings;
+
+// Adds what [a, b] gives, on which all are linear; by Simpson's rule, exact for products.
 static void add_interval(const bough_rotor_def *def, double a, double b, int vertex, int station,
-                         double *dense, double *mean) {
+                         const mappings *to) {
     const double *x = def->vertex_span;
     double x0 = x[vertex], dx = x[vertex + 1] - x0;
     double y0 = def->station[station].span, dy = def->station[station + 1].span - y0;
@@ -134,19 +140,21 @@ static void add_interval(const bough_rotor_def *def, double a, double b, int ver
     for (int k = 0; k < 3; k++) {
         double hat = bough_clamp((point[k] - x0) / dx, 0, 1), load = (point[k] - y0) / dy;
         double w = weight[k] * (b - a);
-        double *here = dense + vertex * def->n_station + station, *next = here + def->n_station;
+        int at = vertex * def->n_station + station;
+        double *here = to->vertex + at, *next = here + def->n_station;
+        double slope = 12 * (hat - 0.5) / (dx * dx);
         here[0] += w * (1 - hat) * (1 - load);
         here[1] += w * (1 - hat) * load;
         next[0] += w * hat * (1 - load);
         next[1] += w * hat * load;
-        mean[vertex * def->n_station + station] += w / dx * (1 - load);
-        mean[vertex * def->n_station + station + 1] += w / dx * load;
+        to->mean[at] += w / dx * (1 - load);
+        to->mean[at + 1] += w / dx * load;
+        to->slope[at] += w * slope * (1 - load);
+        to->slope[at + 1] += w * slope * load;
     }
 }
 
-// dense (n_vertex × n_station): what each vertex takes of each station's line load [m]; mean
-// (n_vertex − 1 × n_station): its share in the mean over a segment.
-static void fill_mapping(const bough_rotor_def *def, double *dense, double *mean) {
+static void fill_mappings(const bough_rotor_def *def, const mappings *to) {
     int vertex = 0, last = def->n_vertex - 2;
     for (int j = 0; j + 1 < def->n_station; j++) {
         double a = def->station[j].span, end = def->station[j + 1].span;
@@ -154,7 +162,7 @@ static void fill_mapping(const bough_rotor_def *def, double *dense, double *mean
             while (vertex < last && def->vertex_span[vertex + 1] <= a)
                 vertex++;
             double b = vertex < last ? fmin(end, def->vertex_span[vertex + 1]) : end;
-            add_interval(def, a, b, vertex, j, dense, mean);
+            add_interval(def, a, b, vertex, j, to);
             a = b;
         }
     }
@@ -214,12 +222,16 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
     if (!bough_is_ok(&status)) return status;
     size_t n_station = (size_t)def->n_station, n_vertex = (size_t)def->n_vertex;
     bough_rotor *rotor = bough_arena_take(arena, sizeof *rotor);
-    vertex_row *row = bough_arena_take(arena, n_vertex * sizeof *row);
-    vertex_row *segment_row = bough_arena_take(arena, (n_vertex - 1) * sizeof *segment_row);
-    double *dense = bough_arena_doubles(arena, n_vertex * n_station);
-    double *mean = bough_arena_doubles(arena, (n_vertex - 1) * n_station);
-    if (!rotor || !row || !segment_row || !dense || !mean) {
+    vertex_row *row = bough_arena_take(arena, (3 * n_vertex - 2) * sizeof *row);
+    bough_quaternion *undeformed = bough_arena_take(arena, n_vertex * sizeof *undeformed);
+    const mappings map = {bough_arena_doubles(arena, n_vertex * n_station),
+                          bough_arena_doubles(arena, (n_vertex - 1) * n_station),
+                          bough_arena_doubles(arena, (n_vertex - 1) * n_station)};
+    if (bough_arena_exhausted(arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's aerodynamics.");
+    }
+    for (size_t i = 0; i < n_vertex; i++) {
+        undeformed[i] = bough_quaternion_of_matrix(def->vertex_rotation[i]);
     }
     *rotor = (bough_rotor){.n_blade = def->n_blade,
                            .n_station = def->n_station,
@@ -231,8 +243,10 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                            .slopes = def->slopes,
                            .induction = def->induction,
                            .inflow = def->inflow,
+                           .undeformed = undeformed,
                            .row = row,
-                           .segment_row = segment_row};
+                           .mean = row + n_vertex,
+                           .slope = row + 2 * n_vertex - 1};
     if (!take_stations(arena, rotor->stride, &rotor->station)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's stations.");
     }
@@ -242,9 +256,10 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
     if (bough_is_ok(&status)) status = bough_tower_build(arena, &def->tower, &rotor->tower);
     if (!bough_is_ok(&status)) return status;
     place_stations(def, polar, rotor);
-    fill_mapping(def, dense, mean);
-    compress_rows(def->n_vertex, def->n_station, dense, row);
-    compress_rows(def->n_vertex - 1, def->n_station, mean, segment_row);
+    fill_mappings(def, &map);
+    compress_rows(def->n_vertex, def->n_station, map.vertex, rotor->row);
+    compress_rows(def->n_vertex - 1, def->n_station, map.mean, rotor->mean);
+    compress_rows(def->n_vertex - 1, def->n_station, map.slope, rotor->slope);
     if (def->stall != BOUGH_STALL_NONE) status = prepare_stall(arena, rotor);
     if (bough_is_ok(&status)) *result = rotor;
     return status;
@@ -271,7 +286,7 @@ static void take_memory(bough_arena *arena, const bough_rotor *rotor, bough_roto
     if (rotor->airfoil) memory->stall = bough_arena_take(arena, n * sizeof *memory->stall);
 }
 
-static void take_rows(bough_arena *arena, int stride, blade_rows *rows) {
+static void take_rows(bough_arena *arena, const bough_rotor *rotor, blade_rows *rows) {
     double **const vectors[] = {&rows->arm, &rows->x, &rows->y, &rows->z, &rows->velocity,
                                 &rows->wind, &rows->place, &rows->normal, &rows->chord};
     double **const scalars[] = {
@@ -280,13 +295,15 @@ static void take_rows(bough_arena *arena, int stride, blade_rows *rows) {
         &rows->tangential,  &rows->loss,       &rows->phi,      &rows->alpha,    &rows->speed,
         &rows->lift,        &rows->drag,       &rows->moment,   &rows->force_x,  &rows->force_y,
         &rows->lift_slope,  &rows->drag_slope, &rows->moment_slope};
-    size_t n = (size_t)stride;
+    size_t n = (size_t)rotor->stride;
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
         *vectors[i] = bough_arena_doubles(arena, 3 * n);
     for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++)
         *scalars[i] = bough_arena_doubles(arena, n);
     rows->load = bough_arena_doubles(arena, LOAD * n);
     rows->slope = bough_arena_doubles(arena, SLOPE * n);
+    rows->turn = bough_arena_doubles(arena, 3 * (size_t)rotor->n_vertex);
+    rows->bend = bough_arena_doubles(arena, 3 * (size_t)rotor->n_vertex);
 }
 
 bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor,
@@ -296,7 +313,7 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
     data->load = bough_arena_doubles(arena, 6 * n_blade * (size_t)rotor->n_vertex);
     size_t slopes = rotor->slopes ? BOUGH_SLOPES : 0;
     data->slope = bough_arena_doubles(arena, slopes * n_blade * (size_t)rotor->n_vertex);
-    data->line = bough_arena_doubles(arena, 6 * n_blade * (size_t)(rotor->n_vertex - 1));
+    data->line = bough_arena_doubles(arena, 12 * n_blade * (size_t)(rotor->n_vertex - 1));
     struct bough_rotor_scratch *s = bough_arena_take(arena, sizeof *s);
     data->scratch = s;
     if (s) {
@@ -306,7 +323,7 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
         s->torque = bough_arena_doubles(arena, n_blade);
     }
     for (int b = 0; s && s->blade && b < rotor->n_blade; b++)
-        take_rows(arena, rotor->stride, s->blade + b);
+        take_rows(arena, rotor, s->blade + b);
     take_memory(arena, rotor, &data->memory);
     if (bough_arena_exhausted(arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's loads.");

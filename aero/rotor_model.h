@@ -32,8 +32,9 @@ struct bough_rotor {
     bough_wind wind;
     bough_tower tower;
     station_rows station;
+    const bough_quaternion *undeformed; // section axes of the vertices (n_vertex)
     vertex_row *row;                    // (n_vertex)
-    vertex_row *segment_row;            // (n_vertex − 1) the mean over a segment, weights [-]
+    vertex_row *mean, *slope; // (n_vertex − 1) over a segment, weights [-], [1/m]
     const bough_stall_airfoil *airfoil; // (n_station); NULL: static polars
 };
 
@@ -57,6 +58,8 @@ typedef struct blade_rows {
     double *force_x, *force_y;       // (stride) [N/m]
     double *load;                    // (stride × LOAD) [N/m], [N]
     double *slope;                   // (stride × SLOPE) bough_rotor_data.slope, per length
+    double *turn;                    // (3 × n_vertex) rotation by deformation, of vertices
+    double *bend;                    // (3 × n_vertex) its second difference
 } blade_rows;
 
 struct bough_rotor_scratch {

@@ -25,9 +25,10 @@ static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
     m->length = bough_arena_doubles(arena, s);
     m->inverse_length = bough_arena_doubles(arena, s);
     m->strain0 = bough_arena_doubles(arena, 6 * s);
+    m->bend0 = bough_arena_doubles(arena, 3 * s);
     m->stiffness = bough_arena_doubles(arena, 21 * s);
     m->damping = bough_arena_doubles(arena, 21 * s);
-    m->line = bough_arena_doubles(arena, 36 * s);
+    m->line = bough_arena_doubles(arena, 72 * s);
     m->mass = bough_arena_doubles(arena, s);
     m->moment = bough_arena_doubles(arena, 3 * s);
     m->inertia = bough_arena_doubles(arena, 6 * s);
@@ -51,7 +52,7 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
         m->stiffness[k * s + n] = def->stiffness[21 * n + k];
         m->damping[k * s + n] = def->damping[21 * n + k];
     }
-    for (int k = 0; k < 36 && def->line != NULL; k++) m->line[k * s + n] = def->line[36 * n + k];
+    for (int k = 0; k < 72 && def->line != NULL; k++) m->line[k * s + n] = def->line[72 * n + k];
     vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
     vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
     segment_geometry shape = segment_shape(left, right, 1 / h);
@@ -59,6 +60,10 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
         return bough_fail(BOUGH_INVALID, "rod %s: the undeformed section turns by more than 120°"
                           " over segment %d; use more segments", m->name, n + 1);
     }
+    bough_vec3 bend = bough_sub(bough_rotation_matrix(right.p).c3, bough_rotation_matrix(left.p).c3);
+    bend = bough_mat3_tmul(shape.r, bend);
+    const double bend0[3] = {bend.x, bend.y, bend.z};
+    for (int k = 0; k < 3; k++) m->bend0[k * s + n] = bend0[k];
     const double e0[6] = {shape.stretch.x,  shape.stretch.y,  shape.stretch.z,
                           shape.phi.x / h, shape.phi.y / h, shape.phi.z / h};
     for (int k = 0; k < 6; k++) m->strain0[k * s + n] = e0[k];
@@ -131,7 +136,7 @@ bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
     scratch->time = 0;
     scratch->rest = model->strain0;
     scratch->turning = false;
-    scratch->along = bough_arena_doubles(arena, 6 * (size_t)model->stride);
+    scratch->along = bough_arena_doubles(arena, 12 * (size_t)model->stride);
     scratch->own_rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
     return !bough_arena_exhausted(arena);
 }
@@ -161,7 +166,7 @@ static bough_rod_ramped_load *add_load(bough_rod_loads *loads, bough_arena *aren
     *fresh = (bough_rod_ramped_load){.next = loads->ramped,
                                      .follower = follower,
                                      .value = bough_rod_vertex_rows(arena, model, 6),
-                                     .line = bough_arena_doubles(arena, 6 * (size_t)model->stride)};
+                                     .line = bough_arena_doubles(arena, 12 * (size_t)model->stride)};
     if (fresh->value == NULL || fresh->line == NULL) return NULL;
     loads->ramped = fresh;
     return fresh;
@@ -195,7 +200,9 @@ void bough_rod_line_strain(const bough_rod_model *m, const double *line, double 
 #pragma omp simd
         for (int k = 0; k < n; k++) {
             double sum = 0;
-            for (int j = 0; j < 6; j++) sum += d[j * s + k] * line[j * n + k];
+            for (int j = 0; j < 6; j++) {
+                sum += d[j * s + k] * line[j * n + k] + d[(36 + j) * s + k] * line[(6 + j) * n + k];
+            }
             row[k] = sum;
         }
     }

@@ -53,8 +53,9 @@ typedef struct bough_rod_def {
                                           // (N × 21) [N, N m, N m²]; order V₁V₂V₃U₁U₂U₃
     const double *damping;                // likewise (N × 21) [N s, N m s, N m² s]
     const bough_vertex_inertia *inertia;  // (N + 1)
-    const double *line;                   // D per segment, 6×6 by rows (N × 36) [1/N, 1/N m …]:
-                                          // mean strain per load along it; NULL: none
+    const double *line;                   // D per segment, 6×12 in two 6×6 by rows (N × 72): mean
+                                          // strain per load along it and per slope of the load
+                                          // [1/N, 1/N m …]; NULL: none
     bool carries; // bodies at its end: the last vertex belongs to them as the root to the carrier
 } bough_rod_def;
 
@@ -70,9 +71,10 @@ typedef struct bough_rod_model {
     double *length;             // segment length h (stride) [m]
     double *inverse_length;     // 1/h (stride) [1/m]
     double *strain0;            // V⁰, U⁰ (6 × stride)
+    double *bend0;              // change of the undeformed tangent over a segment (3 × stride)
     double *stiffness;          // C (21 × stride)
     double *damping;            // (21 × stride)
-    double *line;               // D (36 × stride), by rows
+    double *line;               // D (72 × stride), two 6×6 by rows
     double *mass;               // of moving vertices (stride) [kg]
     double *moment;             // first moment s = mζ of moving vertices (3 × stride) [kg m]
     double *inertia;            // of moving vertices (6 × stride) [kg m²]
@@ -91,9 +93,10 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
 }
 
 // A load along the rod acts twice (THEORY 6): lumped to the vertices by hat functions, which is all
-// that the balances see, and as the strain D q of each segment under a load q per length, by which
-// its elastic law, stress = C (e − e⁰ − D q), is that of the loaded segment. Linear statics is then
-// exact at the vertices for loads that are uniform over each segment. Weight and slow inertia forces
+// that the balances see, and as the strain D q of each segment under a load per length, by which its
+// elastic law, stress = C (e − e⁰ − D q), is that of the loaded segment. q are the load's mean over
+// the segment and its slope. Linear statics is then exact at the vertices for loads that are linear
+// over each segment. Weight and slow inertia forces
 // need no such strain: the vertices' shares of mass and first moment account for them (section.c).
 
 // Loads that change over time: value × factor, the factor that of a table or of a ramp as in
@@ -107,7 +110,7 @@ typedef struct bough_rod_ramped_load {
     bool follower;
     double *value; // on vertices: force then moment (6 × stride), vertex 0 included [N, N m]
     double *line;  // the part of `value` that is spread along whole segments, per length: force then
-                   // moment (6 × stride) [N/m, N]
+                   // moment, and their slopes (12 × stride) [N/m, N, N/m², N/m]
     bool along;    // there is such a part
 } bough_rod_ramped_load;
 
@@ -140,7 +143,7 @@ typedef struct bough_rod_scratch {
     double time;        // of the loads [s]
     const double *rest; // strains without stress (6 × stride); before any loads e⁰
     bool turning;       // part of it is made by dead loads along the segments and turns with them:
-    double *along;      // these in the axes of the segments' middles (6 × stride) [N/m, N]
+    double *along;      // these in the axes of the segments' middles (12 × stride)
     double *own_rest;   // (6 × stride)
 } bough_rod_scratch;
 
@@ -171,8 +174,8 @@ bough_rod_ramped_load *bough_rod_loads_tabled(bough_rod_loads *loads, bough_aren
 // Share of a ramped load at time t.
 double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t);
 
-// Sets the strains for loads along the segments, given per length (6 × n_segment: force, then moment
-// [N/m, N]) in the axes of a segment's middle (bough_rod_line_axes), and at which rate they change;
+// Sets the strains for loads along the segments, given per length (12 × n_segment: force and moment
+// [N/m, N], then their slopes) in the axes of a segment's middle (bough_rod_take_line), and at which rate they change;
 // their vertex loads and loads->start are the caller's. They should be continuous from one call to
 // the next: a jump is a jump of stress, which every integrator then resolves.
 void bough_rod_loads_along(const bough_rod_model *m, const double *line, const double *rate,

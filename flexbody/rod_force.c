@@ -125,25 +125,24 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
     int s = m->stride;
     size_t bytes = 6 * (size_t)s * sizeof(double);
     if (!loads->moving) memcpy(scratch->own_rest, loads->rest, bytes);
-    memset(scratch->along, 0, bytes);
+    memset(scratch->along, 0, 2 * bytes);
     scratch->rest = scratch->own_rest;
     for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
         double factor = bough_rod_ramp_factor(l, t);
         if (!l->along) continue;
         scratch->turning = scratch->turning || !l->follower;
         for (int n = 0; n < m->n_segment; n++) {
-            bough_vec3 f = bough_scale(factor, load3(l->line, s, n));
-            bough_vec3 moment = bough_scale(factor, load3(l->line + 3 * s, s, n));
-            if (!l->follower) {
-                bough_mat3 r = middle_of(m, scratch, n);
-                f = bough_mat3_tmul(r, f);
-                moment = bough_mat3_tmul(r, moment);
-                store3(scratch->along, s, n, bough_add(load3(scratch->along, s, n), f));
-                store3(scratch->along + 3 * s, s, n,
-                       bough_add(load3(scratch->along + 3 * s, s, n), moment));
+            bough_mat3 r = middle_of(m, scratch, n);
+            bough_vec3 q[4];
+            for (int part = 0; part < 4; part++) {
+                double *along = scratch->along + 3 * part * s;
+                q[part] = bough_scale(factor, load3(l->line + 3 * part * s, s, n));
+                if (l->follower) continue;
+                q[part] = bough_mat3_tmul(r, q[part]);
+                store3(along, s, n, bough_add(load3(along, s, n), q[part]));
             }
             double *rest = scratch->own_rest;
-            strain e = line_strain(m->line, s, n, f, moment);
+            strain e = line_strain(m->line, s, n, q);
             store3(rest, s, n, bough_add(load3(rest, s, n), e.v));
             store3(rest + 3 * s, s, n, bough_add(load3(rest + 3 * s, s, n), e.u));
         }
@@ -368,8 +367,9 @@ void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch
     segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
     strain e = strain_of(m, scratch, n), s = symmetric_times(m->stiffness, m->stride, n, e);
     segment_force f = stress_force(shape, s, m->length[n]);
-    bough_vec3 half = bough_scale(0.5 * m->length[n], shape.stretch);
-    bough_vec3 moment = bough_sub(half_backward(shape.v, shape.t, f.ll), bough_cross(half, s.v));
+    bough_vec3 half = bough_scale(0.5 * m->length[n], shape.chord);
+    bough_vec3 force = along_axis(shape.v, s.v);
+    bough_vec3 moment = bough_sub(half_backward(shape.v, shape.t, f.ll), bough_cross(half, force));
     const double values[6] = {s.v.x, s.v.y, s.v.z, moment.x, moment.y, moment.z};
     memcpy(stress, values, sizeof values);
 }

@@ -50,14 +50,15 @@ static inline strain elastic_strain(segment_geometry shape, double inverse_h,
                                bough_scale(-1, load3(rest + 3 * s, s, n)))};
 }
 
-// D q of a load per length in the axes of the segment's middle
-static inline strain line_strain(const double *restrict line, int s, int n, bough_vec3 force,
-                                 bough_vec3 moment) {
-#define D(i, j) line[(6 * (i) + (j)) * s + n]
-#define ROW(i)                                                                                     \
-    (D(i, 0) * force.x + D(i, 1) * force.y + D(i, 2) * force.z + D(i, 3) * moment.x +              \
-     D(i, 4) * moment.y + D(i, 5) * moment.z)
+// D q of a load per length in the axes of the segment's middle: force, moment, and their slopes
+static inline strain line_strain(const double *restrict line, int s, int n, const bough_vec3 q[4]) {
+#define D(part, i, j) line[(36 * (part) + 6 * (i) + (j)) * s + n]
+#define HALF(part, i, f, m)                                                                        \
+    (D(part, i, 0) * (f).x + D(part, i, 1) * (f).y + D(part, i, 2) * (f).z +                       \
+     D(part, i, 3) * (m).x + D(part, i, 4) * (m).y + D(part, i, 5) * (m).z)
+#define ROW(i) (HALF(0, i, q[0], q[1]) + HALF(1, i, q[2], q[3]))
     return (strain){{ROW(0), ROW(1), ROW(2)}, {ROW(3), ROW(4), ROW(5)}};
+#undef HALF
 #undef ROW
 #undef D
 }
@@ -65,9 +66,11 @@ static inline strain line_strain(const double *restrict line, int s, int n, boug
 // Change of the elastic strain where dead loads `along` the segment turn against its middle.
 static inline strain add_turned(strain change, const double *restrict line,
                                 const double *restrict along, int s, int n, bough_vec3 middle) {
-    bough_vec3 force = bough_cross(load3(along, s, n), middle);
-    bough_vec3 moment = bough_cross(load3(along + 3 * s, s, n), middle);
-    strain e = line_strain(line, s, n, force, moment);
+    const bough_vec3 q[4] = {bough_cross(load3(along, s, n), middle),
+                             bough_cross(load3(along + 3 * s, s, n), middle),
+                             bough_cross(load3(along + 6 * s, s, n), middle),
+                             bough_cross(load3(along + 9 * s, s, n), middle)};
+    strain e = line_strain(line, s, n, q);
     return (strain){bough_sub(change.v, e.v), bough_sub(change.u, e.u)};
 }
 

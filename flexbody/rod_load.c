@@ -99,7 +99,10 @@ void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const doubl
         }
         if (!whole) continue;
         load->along = true;
-        for (int c = 0; c < 6; c++) load->line[c * m->stride + n] += middle[c];
+        for (int c = 0; c < 6; c++) {
+            load->line[c * m->stride + n] += middle[c];
+            load->line[(6 + c) * m->stride + n] += slope[c] / h;
+        }
     }
 }
 
@@ -140,30 +143,46 @@ void bough_rod_lump_line(const bough_rod_model *m, bough_rod_ramped_load *load) 
         vertex_state l = {.x = m->position0[n], .p = m->rotation0[n]};
         vertex_state r = {.x = m->position0[n + 1], .p = m->rotation0[n + 1]};
         bough_mat3 middle = segment_shape(l, r, m->inverse_length[n]).r;
-        bough_vec3 f = load3(load->line, s, n), moment = load3(load->line + 3 * s, s, n);
-        if (!load->follower) {
-            f = bough_mat3_tmul(middle, f);
-            moment = bough_mat3_tmul(middle, moment);
+        bough_vec3 q[4];
+        for (int part = 0; part < 4; part++) {
+            q[part] = load3(load->line + 3 * part * s, s, n);
+            if (!load->follower) q[part] = bough_mat3_tmul(middle, q[part]);
         }
-        lump_stress(m, n, line_strain(m->line, s, n, f, moment), load->follower, load->value);
+        lump_stress(m, n, line_strain(m->line, s, n, q), load->follower, load->value);
     }
-    memset(load->line, 0, 6 * (size_t)s * sizeof *load->line);
+    memset(load->line, 0, 12 * (size_t)s * sizeof *load->line);
     load->along = false;
 }
 
-void bough_rod_line_axes(int n_segment, const double *rotation, const double *line,
-                         double *turned) {
-    int n = n_segment, v = n + 1;
+static bough_quaternion section_at(int v, const double *rotation, int i) {
+    const double *q = rotation + i;
+    return bough_quaternion_normalised((bough_quaternion){q[0], q[v], q[2 * v], q[3 * v]});
+}
+
+static bough_vec3 tangent_of(bough_quaternion p) {
+    return (bough_vec3){2 * (p.x * p.z + p.w * p.y), 2 * (p.y * p.z - p.w * p.x),
+                        1 - 2 * (p.x * p.x + p.y * p.y)};
+}
+
+void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const double *line,
+                         double *turned, double *load) {
+    int n = m->n_segment, v = n + 1;
+    bough_quaternion q = section_at(v, rotation, 0);
     for (int k = 0; k < n; k++) {
-        bough_quaternion p[2];
-        for (int side = 0; side < 2; side++) {
-            const double *q = rotation + k + side;
-            p[side] = bough_quaternion_normalised(
-                (bough_quaternion){q[0], q[v], q[2 * v], q[3 * v]});
+        bough_quaternion p = q;
+        q = section_at(v, rotation, k + 1);
+        double dot = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
+        bough_mat3 r = mid_frame(p, q, copysign(1.0, dot), 1 / (1 + fabs(dot)));
+        for (int part = 0; part < 12 * n; part += 3 * n) {
+            store3(turned + part, n, k, bough_mat3_tmul(r, load3(line + part, n, k)));
         }
-        double dot = p[0].w * p[1].w + p[0].x * p[1].x + p[0].y * p[1].y + p[0].z * p[1].z;
-        bough_mat3 r = mid_frame(p[0], p[1], copysign(1.0, dot), 1 / (1 + fabs(dot)));
-        store3(turned, n, k, bough_mat3_tmul(r, load3(line, n, k)));
-        store3(turned + 3 * n, n, k, bough_mat3_tmul(r, load3(line + 3 * n, n, k)));
+        // between tangents a and b the axis lies beside the chord, in the mean by −(h/12) (b − a)
+        bough_vec3 turn = bough_sub(tangent_of(q), tangent_of(p));
+        turn = bough_sub(turn, bough_mat3_mul(r, load3(m->bend0, m->stride, k)));
+        bough_vec3 moment = bough_cross(turn, load3(line, n, k));
+        moment = bough_scale(-m->length[k] * m->length[k] / 24, moment);
+        double *left = load + 3 * v, *right = left + 1;
+        store3(left, v, k, bough_add(load3(left, v, k), moment));
+        store3(right, v, k, bough_add(load3(right, v, k), moment));
     }
 }

@@ -24,8 +24,11 @@ void bough_rod_lump_line(const bough_rod_model *m, bough_rod_ramped_load *load);
 // The same of a strain D q (6 × stride) on a dead load: adds to value (6 × stride).
 void bough_rod_lump_strain(const bough_rod_model *m, const double *line_strain, double *value);
 
-// Loads per length in the axes of the segments' middles (6 × n_segment) from those in BRF axes (same);
-// `rotation` are the vertices' quaternions, of about unit length (4 × (n_segment + 1)).
-void bough_rod_line_axes(int n_segment, const double *rotation, const double *line, double *turned);
+// Loads per length in the axes of the segments' middles (12 × n_segment) from those in BRF axes (same);
+// `rotation` are the vertices' quaternions, of about unit length (4 × (n_segment + 1)). Adds to the
+// loads on the vertices (6 × (n_segment + 1), BRF axes) the moments about the segments' chords of what
+// acts on the axis, which bends away from them under load.
+void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const double *line,
+                         double *turned, double *load);
 
 #endif

@@ -51,15 +51,14 @@ double bough_rod_turn(const bough_rod_model *m, const double *change) {
     return turn;
 }
 
-// The chord in the mid frame, and how it changes along the step to first order.
-static bough_vec3 stretched(const segment_geometry *s, const vertex_state *l, const vertex_state *r,
+// The chord that gives a segment of the shape `after` the strain of the one before and its change
+// along the step to first order.
+static bough_vec3 stretched(const segment_geometry *before, const segment_geometry *after, double h,
                             vertex_variation dl, vertex_variation dr) {
-    bough_vec3 a = half_backward(s->v, s->t, dl.phi), b = half_forward(s->v, s->t, dr.phi);
-    bough_vec3 turn = bough_scale(
-        0.5, bough_add(bough_add(a, b), bough_cross(bough_sub(b, a), s->t)));
-    bough_vec3 chord = bough_mat3_tmul(s->r, bough_sub(r->x, l->x));
-    bough_vec3 change = bough_mat3_tmul(s->r, bough_sub(dr.x, dl.x));
-    return bough_add(chord, bough_sub(change, bough_cross(turn, chord)));
+    segment_variation change = shape_variation(*before, dl, dr, 1 / h);
+    bough_vec3 y = bough_add(before->stretch, change.stretch), v = after->v;
+    bough_vec3 bow = bough_cross(v, bough_cross(v, y)); // the inverse of along_axis
+    return bough_scale(h, bough_axpy(1 / (6 + bough_dot(v, v)), bow, y));
 }
 
 static void put_vertex(double *to, int stride, const vertex_state *v) {
@@ -80,7 +79,8 @@ void bough_rod_move(const bough_rod_model *m, const double *change, double share
             bough_quaternion_product(r.p, bough_quaternion_exponential(dr.phi)));
         segment_geometry before = segment_shape(old, r, m->inverse_length[i]);
         segment_geometry after = segment_shape(now, moved, m->inverse_length[i]);
-        moved.x = bough_add(now.x, bough_mat3_mul(after.r, stretched(&before, &old, &r, dl, dr)));
+        bough_vec3 chord = stretched(&before, &after, m->length[i], dl, dr);
+        moved.x = bough_add(now.x, bough_mat3_mul(after.r, chord));
         put_vertex(i < m->n ? state + i : end, row.stride, &moved);
         old = r;
         now = moved;

@@ -8,6 +8,8 @@
 //     exp(φ/2) y = y + v×y + t×(v×y)
 //     δφ_mid = ½(a + b) + ½ (b − a)×t,                 a, b: vertex rotations in the mid frame
 //     δφ = H (b − a),  H = ½ (c E − g v vᵀ),  g = (c − 2)/(1 − w²)
+// The chord y = R_midᵀ Δx/h of a bent segment is shorter than its axis: V = y − v×(v×y)/6, that of
+// constant strains to fourth order in φ. So tension stiffens the bow within a segment.
 #ifndef BOUGH_FLEXBODY_ROD_SEGMENT_H
 #define BOUGH_FLEXBODY_ROD_SEGMENT_H
 
@@ -32,6 +34,7 @@ typedef struct segment_geometry {
     bough_vec3 v, t; // sin θ/2 n, tan θ/4 n
     double w, c, g;  // cos θ/2 >= 0
     double e, slope; // 1/(1 + w), dg/dw
+    bough_vec3 chord;   // R_midᵀ Δx/h
     bough_vec3 stretch; // V
     bough_vec3 phi;     // φ
 } segment_geometry;
@@ -93,6 +96,31 @@ static inline bough_mat3 mid_frame(bough_quaternion l, bough_quaternion r, doubl
                         {s * (x * z + w * y), s * (y * z - w * x), 1 - s * (x * x + y * y)}};
 }
 
+// y − v×(v×y)/6, and its variations with y and with v, that with v also as what n works on δv.
+static inline bough_vec3 along_axis(bough_vec3 v, bough_vec3 y) {
+    return bough_axpy(-1. / 6 * bough_dot(v, y), v, bough_scale(1 + 1. / 6 * bough_dot(v, v), y));
+}
+
+static inline bough_vec3 along_axis_turned(bough_vec3 v, bough_vec3 dv, bough_vec3 y) {
+    bough_vec3 sum = bough_axpy(bough_dot(dv, y), v, bough_scale(bough_dot(v, y), dv));
+    return bough_axpy(-1. / 6, sum, bough_scale(1. / 3 * bough_dot(v, dv), y));
+}
+
+static inline bough_vec3 bow_moment(bough_vec3 v, bough_vec3 y, bough_vec3 n) {
+    bough_vec3 sum = bough_axpy(bough_dot(v, n), y, bough_scale(bough_dot(v, y), n));
+    return bough_axpy(-1. / 6, sum, bough_scale(1. / 3 * bough_dot(y, n), v));
+}
+
+static inline bough_vec3 along_axis_variation(bough_vec3 v, bough_vec3 dv, bough_vec3 y,
+                                              bough_vec3 dy) {
+    return bough_add(along_axis(v, dy), along_axis_turned(v, dv, y));
+}
+
+// δv for the rotations of the ends, `turn` their difference b − a.
+static inline bough_vec3 half_turn(bough_vec3 v, bough_vec3 t, bough_vec3 turn) {
+    return bough_scale(0.5, bough_axpy(-bough_dot(v, turn), t, turn));
+}
+
 static inline segment_geometry segment_shape(vertex_state l, vertex_state r, double inverse_h) {
     segment_geometry s;
     bough_quaternion d = bough_quaternion_product(bough_quaternion_conjugate(l.p), r.p);
@@ -106,7 +134,8 @@ static inline segment_geometry segment_shape(vertex_state l, vertex_state r, dou
     s.c = 2 + s.g * bough_dot(s.v, s.v);
     s.phi = bough_scale(s.c, s.v);
     s.r = mid_frame(l.p, r.p, sign, s.e);
-    s.stretch = bough_scale(inverse_h, bough_mat3_tmul(s.r, bough_sub(r.x, l.x)));
+    s.chord = bough_scale(inverse_h, bough_mat3_tmul(s.r, bough_sub(r.x, l.x)));
+    s.stretch = along_axis(s.v, s.chord);
     return s;
 }
 
@@ -121,9 +150,15 @@ static inline segment_rate segment_motion(segment_geometry s, vertex_state l, ve
     return m;
 }
 
-// ė: (R_midᵀ Δu)/h + V×ω_mid and H (b − a)/h; a rigid motion gives zero.
+// ẏ = (R_midᵀ Δu)/h + y×ω_mid
+static inline bough_vec3 chord_rate(segment_geometry s, segment_rate m, double inverse_h) {
+    return bough_axpy(inverse_h, m.du, bough_cross(s.chord, m.middle));
+}
+
+// ė by ẏ and H (b − a)/h; a rigid motion gives zero.
 static inline strain strain_rate(segment_geometry s, segment_rate m, double inverse_h) {
-    bough_vec3 v = bough_axpy(inverse_h, m.du, bough_cross(s.stretch, m.middle));
+    bough_vec3 turning = half_turn(s.v, s.t, m.relative);
+    bough_vec3 v = along_axis_variation(s.v, turning, s.chord, chord_rate(s, m, inverse_h));
     bough_vec3 u = bough_scale(inverse_h, rotation_tangent(s.c, s.g, s.v, m.relative));
     return (strain){v, u};
 }
@@ -144,13 +179,15 @@ static inline strain symmetric_times(const double *c, int stride, int n, strain 
 
 // Vertex forces of the stress (n, m): virtual work n·δ(h V) + m·δφ.
 static inline segment_force stress_force(segment_geometry s, strain stress, double h) {
-    bough_vec3 tau = bough_scale(0.5 * h, bough_cross(stress.v, s.stretch));
-    bough_vec3 twist = bough_cross(s.t, tau);
+    bough_vec3 n = along_axis(s.v, stress.v);
+    bough_vec3 tau = bough_scale(0.5 * h, bough_cross(n, s.chord));
+    bough_vec3 bow = bow_moment(s.v, s.chord, stress.v);
     bough_vec3 bend = rotation_tangent(s.c, s.g, s.v, stress.u);
-    bough_vec3 conjugate = bough_add(twist, bend);
+    bend = bough_axpy(0.5 * h, bough_axpy(-bough_dot(s.t, bow), s.v, bow), bend);
+    bough_vec3 conjugate = bough_add(bough_cross(s.t, tau), bend);
     bough_vec3 a = bough_sub(tau, conjugate), b = bough_add(tau, conjugate);
     segment_force f;
-    f.f = bough_mat3_mul(s.r, stress.v);
+    f.f = bough_mat3_mul(s.r, n);
     f.ll = bough_scale(-1, half_forward(s.v, s.t, a));
     f.lr = bough_scale(-1, half_backward(s.v, s.t, b));
     return f;
@@ -162,8 +199,7 @@ static inline segment_force stress_force(segment_geometry s, strain stress, doub
 typedef struct segment_variation {
     bough_vec3 v, t, middle; // of v, of t, rotation of the mid frame
     double w, c, g;
-    bough_vec3 stretch, phi;
-    strain rate;
+    bough_vec3 chord, stretch, phi;
 } segment_variation;
 
 // δ of half_forward(v, t, y) and half_backward with δy given
@@ -197,14 +233,23 @@ static inline segment_variation shape_variation(segment_geometry s, vertex_varia
     bough_vec3 turn = bough_sub(b, a);
     d.middle = bough_scale(0.5, bough_add(bough_add(a, b), bough_cross(turn, s.t)));
     d.w = -0.5 * bough_dot(s.v, turn);
-    d.v = bough_scale(0.5, bough_axpy(-bough_dot(s.v, turn), s.t, turn));
+    d.v = half_turn(s.v, s.t, turn);
     d.t = bough_scale(s.e, bough_axpy(-d.w, s.t, d.v));
     d.c = (s.g - s.c * s.e) * d.w;
     d.g = s.slope * d.w;
     d.phi = rotation_tangent(s.c, s.g, s.v, turn);
-    d.stretch = bough_axpy(inverse_h, bough_mat3_tmul(s.r, bough_sub(r.x, l.x)),
-                           bough_cross(s.stretch, d.middle));
+    d.chord = bough_axpy(inverse_h, bough_mat3_tmul(s.r, bough_sub(r.x, l.x)),
+                         bough_cross(s.chord, d.middle));
+    d.stretch = along_axis_variation(s.v, d.v, s.chord, d.chord);
     return d;
+}
+
+// δ of half_turn, its `turn` varying by dturn
+static inline bough_vec3 half_turn_variation(segment_geometry s, segment_variation d, bough_vec3 turn,
+                                             bough_vec3 dturn) {
+    double dot = bough_dot(s.v, turn), change = bough_dot(d.v, turn) + bough_dot(s.v, dturn);
+    bough_vec3 sum = bough_axpy(-change, s.t, bough_axpy(-dot, d.t, dturn));
+    return bough_scale(0.5, sum);
 }
 
 static inline strain rate_variation(segment_geometry s, segment_rate m, segment_variation d,
@@ -217,8 +262,14 @@ static inline strain rate_variation(segment_geometry s, segment_rate m, segment_
     bough_vec3 middle = bough_scale(0.5, bough_add(bough_add(da, db), twist));
     bough_vec3 du = bough_add(bough_mat3_tmul(s.r, bough_sub(r->u, l->u)),
                               bough_cross(m.du, d.middle));
-    bough_vec3 v = bough_axpy(inverse_h, du, bough_add(bough_cross(d.stretch, m.middle),
-                                                       bough_cross(s.stretch, middle)));
+    bough_vec3 y = bough_axpy(inverse_h, du, bough_add(bough_cross(d.chord, m.middle),
+                                                       bough_cross(s.chord, middle)));
+    bough_vec3 turning = half_turn(s.v, s.t, m.relative);
+    bough_vec3 dturning = half_turn_variation(s, d, m.relative, relative);
+    bough_vec3 v = along_axis_variation(s.v, d.v, chord_rate(s, m, inverse_h), y);
+    v = bough_add(v, along_axis_turned(s.v, dturning, s.chord));
+    v = bough_add(v, along_axis_turned(s.v, turning, d.chord));
+    v = bough_add(v, along_axis_turned(d.v, turning, s.chord));
     bough_vec3 u = bough_scale(inverse_h, tangent_variation(s, d, m.relative, relative));
     return (strain){v, u};
 }
@@ -226,17 +277,25 @@ static inline strain rate_variation(segment_geometry s, segment_rate m, segment_
 // δ of stress_force with δ(stress) given
 static inline segment_force force_variation(segment_geometry s, segment_variation d, strain stress,
                                             strain dstress, double h) {
-    bough_vec3 tau = bough_scale(0.5 * h, bough_cross(stress.v, s.stretch));
-    bough_vec3 dtau = bough_scale(0.5 * h, bough_add(bough_cross(dstress.v, s.stretch),
-                                                     bough_cross(stress.v, d.stretch)));
-    bough_vec3 conjugate = bough_add(bough_cross(s.t, tau),
-                                     rotation_tangent(s.c, s.g, s.v, stress.u));
-    bough_vec3 dconjugate = bough_add(bough_add(bough_cross(d.t, tau), bough_cross(s.t, dtau)),
-                                      tangent_variation(s, d, stress.u, dstress.u));
+    bough_vec3 n = along_axis(s.v, stress.v);
+    bough_vec3 dn = along_axis_variation(s.v, d.v, stress.v, dstress.v);
+    bough_vec3 tau = bough_scale(0.5 * h, bough_cross(n, s.chord));
+    bough_vec3 dtau = bough_scale(0.5 * h, bough_add(bough_cross(dn, s.chord),
+                                                     bough_cross(n, d.chord)));
+    bough_vec3 bow = bow_moment(s.v, s.chord, stress.v), dbow = bow_moment(d.v, s.chord, stress.v);
+    dbow = bough_add(dbow, bow_moment(s.v, d.chord, stress.v));
+    dbow = bough_add(dbow, bow_moment(s.v, s.chord, dstress.v));
+    double dot = bough_dot(s.t, bow), ddot = bough_dot(d.t, bow) + bough_dot(s.t, dbow);
+    bough_vec3 bend = rotation_tangent(s.c, s.g, s.v, stress.u);
+    bend = bough_axpy(0.5 * h, bough_axpy(-dot, s.v, bow), bend);
+    bough_vec3 dbend = bough_axpy(-dot, d.v, bough_axpy(-ddot, s.v, dbow));
+    dbend = bough_axpy(0.5 * h, dbend, tangent_variation(s, d, stress.u, dstress.u));
+    bough_vec3 conjugate = bough_add(bough_cross(s.t, tau), bend);
+    bough_vec3 dconjugate = bough_add(bough_add(bough_cross(d.t, tau), bough_cross(s.t, dtau)), dbend);
     bough_vec3 a = bough_sub(tau, conjugate), da = bough_sub(dtau, dconjugate);
     bough_vec3 b = bough_add(tau, conjugate), db = bough_add(dtau, dconjugate);
     segment_force f;
-    f.f = bough_mat3_mul(s.r, bough_add(dstress.v, bough_cross(d.middle, stress.v)));
+    f.f = bough_mat3_mul(s.r, bough_add(dn, bough_cross(d.middle, n)));
     f.ll = bough_scale(-1, half_forward_variation(s, d, a, da));
     f.lr = bough_scale(-1, half_backward_variation(s, d, b, db));
     return f;

@@ -32,7 +32,7 @@ static double rounding_of(const bough_rod_model *m) {
 
 static bool take_ramped(bough_arena *arena, const bough_rod_model *m, bough_rod_ramped_load *load) {
     load->value = bough_arena_doubles(arena, 6 * (size_t)m->stride);
-    load->line = bough_arena_doubles(arena, 6 * (size_t)m->stride);
+    load->line = bough_arena_doubles(arena, 12 * (size_t)m->stride);
     return load->value != NULL && load->line != NULL;
 }
 
@@ -138,7 +138,7 @@ static bool sum_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
     size_t count = 6 * (size_t)m->stride;
     bool any = false;
     memset(sum->value, 0, count * sizeof(double));
-    memset(sum->line, 0, count * sizeof(double));
+    memset(sum->line, 0, 2 * count * sizeof(double));
     sum->along = false;
     for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
         if (l->follower != sum->follower) continue;
@@ -146,7 +146,7 @@ static bool sum_ramped(const bough_rod_model *m, const bough_rod_loads *loads, d
         sum->along = sum->along || l->along;
         double factor = share * (l->n > 0 ? l->factors[l->n - 1] : 1);
         for (size_t k = 0; k < count; k++) sum->value[k] += factor * l->value[k];
-        for (size_t k = 0; k < count; k++) sum->line[k] += factor * l->line[k];
+        for (size_t k = 0; k < 2 * count; k++) sum->line[k] += factor * l->line[k];
     }
     return any;
 }

@@ -9,7 +9,7 @@ enum {
     BASE_R = 0,
     BASE_V = 9,
     BASE_T = 12,
-    BASE_STRETCH = 15,
+    BASE_CHORD = 15,
     BASE_RELATIVE = 18,
     BASE_MIDDLE = 21,
     BASE_DU = 24,
@@ -23,7 +23,7 @@ static inline void store_shape(double *restrict base, int l, segment_geometry s)
     store3(base + LANES * (BASE_R + 6), LANES, l, s.r.c3);
     store3(base + LANES * BASE_V, LANES, l, s.v);
     store3(base + LANES * BASE_T, LANES, l, s.t);
-    store3(base + LANES * BASE_STRETCH, LANES, l, s.stretch);
+    store3(base + LANES * BASE_CHORD, LANES, l, s.chord);
     store3(base + LANES * BASE_W, LANES, l, (bough_vec3){s.w, s.c, s.g});
     base[LANES * (BASE_W + 3) + l] = s.e;
     base[LANES * (BASE_W + 4) + l] = s.slope;
@@ -34,7 +34,7 @@ static inline segment_geometry load_shape(const double *restrict base, int l) {
     s.r = load_matrix(base + LANES * BASE_R, LANES, l);
     s.v = load3(base + LANES * BASE_V, LANES, l);
     s.t = load3(base + LANES * BASE_T, LANES, l);
-    s.stretch = load3(base + LANES * BASE_STRETCH, LANES, l);
+    s.chord = load3(base + LANES * BASE_CHORD, LANES, l);
     s.w = base[LANES * BASE_W + l];
     s.c = base[LANES * (BASE_W + 1) + l];
     s.g = base[LANES * (BASE_W + 2) + l];

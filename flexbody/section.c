@@ -54,13 +54,15 @@ static void carry(double distance, matrix6 t) {
     t[4][0] = -distance;
 }
 
-// The stress that a load per length, uniform over a segment of length h, adds to the one carried from
-// the middle: n = −f σ, m = d₃×f (σ² − h²/4)/2 − m σ. Its moments vanish at both ends, where the
-// vertices take the halves of the load.
-static void line_stress(double distance, double h, matrix6 stress) {
-    double bend = 0.5 * (distance * distance - 0.25 * h * h);
+// The stress that a load per length adds to the one carried from the middle of a segment of length h,
+// its vertices taking their shares by hat functions. Its moments vanish at both ends.
+//     uniform load f, m:     n = −f σ,               m = d₃×f (σ² − h²/4)/2 − m σ
+//     load f σ, m σ:         n = f (h²/24 − σ²/2),   m = d₃×f (σ³ − h²σ/4)/6 + m (h²/24 − σ²/2)
+static void line_stress(double sigma, double h, bool slope, matrix6 stress) {
+    double square = sigma * sigma, along = slope ? h * h / 24 - 0.5 * square : -sigma;
+    double bend = (slope ? sigma / 6 : 0.5) * (square - 0.25 * h * h);
     memset(stress, 0, sizeof(matrix6));
-    for (int i = 0; i < 6; i++) stress[i][i] = -distance;
+    for (int i = 0; i < 6; i++) stress[i][i] = along;
     stress[3][1] = -bend;
     stress[4][0] = bend;
 }
@@ -121,7 +123,7 @@ typedef struct segment_sum {
     double middle, twist; // of the segment's mid frame [m, rad]
     double compliance[21]; // ∫ Tᵀ F T
     double loss[21];       // ∫ Tᵀ F D F T
-    matrix6 line;          // ∫ Tᵀ F S, S of line_stress
+    matrix6 line[2];       // ∫ Tᵀ F S, S of line_stress
     matrix6 weight;        // the same of weight_stress, three columns
     bool definite;
 } segment_sum;
@@ -187,8 +189,10 @@ static void add_compliance(void *context, double s, double weight) {
         }
     }
     add_congruent(weight, ft, d, c->loss);
-    line_stress(s - c->middle, c->length, line);
-    add_product(weight, ft, line, c->line);
+    for (int slope = 0; slope < 2; slope++) {
+        line_stress(s - c->middle, c->length, slope == 1, line);
+        add_product(weight, ft, line, c->line[slope]);
+    }
     weight_stress(c, s, line);
     add_product(weight, ft, line, c->weight);
 }
@@ -220,23 +224,29 @@ static bough_section_share best_gain(segment_sum *c) {
 
 // The rod's strains by the mean strains of a straight, untwisted segment, e = Q (γ, κ), linearised at
 // the undeformed one: with a and b the rotations of the ends in the middle's axes,
-//     κ = (b − a)/h,  U = H κ,  γ = Δx/h + V×(a + b)/2,  V = γ + (h/2) V×(κ×t)    (rod_segment.h).
+//     κ = (b − a)/h,  U = H κ,  γ = Δx/h + y×(a + b)/2,  y = γ + (h/2) y×(κ×t),
+// and V by y and by δv of h κ (rod_segment.h).
 static void strain_map(segment_geometry shape, double h, matrix6 q) {
     const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     memset(q, 0, sizeof(matrix6));
     for (int j = 0; j < 3; j++) {
-        bough_vec3 shear = bough_cross(shape.stretch, bough_cross(unit[j], shape.t));
+        bough_vec3 own = along_axis(shape.v, unit[j]);
+        bough_vec3 chord = bough_cross(shape.chord, bough_cross(unit[j], shape.t));
+        bough_vec3 turn = half_turn(shape.v, shape.t, unit[j]);
+        bough_vec3 shear = along_axis_variation(shape.v, turn, shape.chord, bough_scale(0.5, chord));
         bough_vec3 bend = rotation_tangent(shape.c, shape.g, shape.v, unit[j]);
-        const double column[6] = {0.5 * h * shear.x, 0.5 * h * shear.y, 0.5 * h * shear.z,
+        const double column[6] = {h * shear.x, h * shear.y, h * shear.z,
                                   bend.x, bend.y, bend.z};
-        q[j][j] = 1;
+        q[0][j] = own.x;
+        q[1][j] = own.y;
+        q[2][j] = own.z;
         for (int i = 0; i < 6; i++) q[i][3 + j] = column[i];
     }
 }
 
 // Sums over a segment divided by its length, in the rod's strains.
 static void change_strains(segment_sum *c, matrix6 q) {
-    matrix6 turned, compliance, line = {{0}};
+    matrix6 turned, compliance;
     double f[21] = {0};
     for (int i = 0; i < 36; i++) turned[i / 6][i % 6] = q[i % 6][i / 6];
     unpack(c->compliance, compliance);
@@ -246,14 +256,17 @@ static void change_strains(segment_sum *c, matrix6 q) {
     memset(f, 0, sizeof f);
     add_congruent(1 / c->length, turned, compliance, f);
     memcpy(c->loss, f, sizeof f);
-    add_product(1 / c->length, turned, c->line, line);
-    memcpy(c->line, line, sizeof line);
+    for (int slope = 0; slope < 2; slope++) {
+        matrix6 line = {{0}};
+        add_product(1 / c->length, turned, c->line[slope], line);
+        memcpy(c->line[slope], line, sizeof line);
+    }
 }
 
 // What a segment is discretised to.
 typedef struct segment_law {
     double *stiffness, *damping; // (21)
-    double *line;                // (36) by rows
+    double *line;                // (72): two matrices by rows
     bough_section_share *gain;
 } segment_law;
 
@@ -303,7 +316,7 @@ static arrays take_arrays(bough_arena *arena, int n) {
     arrays a = {.span = bough_arena_doubles(arena, vertices),
                 .stiffness = bough_arena_doubles(arena, 21 * (size_t)n),
                 .damping = bough_arena_doubles(arena, 21 * (size_t)n),
-                .line = bough_arena_doubles(arena, 36 * (size_t)n),
+                .line = bough_arena_doubles(arena, 72 * (size_t)n),
                 .gain = bough_arena_take(arena, (size_t)n * sizeof(bough_section_share)),
                 .position = bough_arena_take(arena, vertices * sizeof(bough_vec3)),
                 .rotation = bough_arena_take(arena, vertices * sizeof(bough_quaternion)),
@@ -335,7 +348,7 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
     }
     for (int k = 0; k < n_segment; k++) {
         segment_law law = {m.stiffness + 21 * (size_t)k, m.damping + 21 * (size_t)k,
-                           m.line + 36 * (size_t)k, m.gain + k};
+                           m.line + 72 * (size_t)k, m.gain + k};
         if (!segment_matrices(&a, def, k, law)) {
             return bough_fail(BOUGH_INVALID, "rod %s: the stiffness between %g m and %g m is not"
                               " positive definite", table->name, m.span[k], m.span[k + 1]);

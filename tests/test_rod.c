@@ -45,7 +45,7 @@ static void derivative(fixture *f, const double *state, const double *input, dou
 
 // (f(y + εd) − f(y − εd))/2ε
 static void directional(fixture *f, const double *dstate, const double *dinput, double *d) {
-    const double eps = 1e-6;
+    const double eps = 3e-6;
     double yp[STATES], ym[STATES], up[BOUGH_ROD_INPUTS], um[BOUGH_ROD_INPUTS], fm[STATES];
     for (int k = 0; k < STATES; k++) {
         yp[k] = f->state[k] + eps * dstate[k];

@@ -6,6 +6,7 @@
 #include "apps/output/recorder.h"
 #include "apps/output/statistics.h"
 #include "apps/output/vertices.h"
+#include "apps/simulation/error_shares.h"
 #include "apps/simulation/run.h"
 #include "apps/simulation/shape.h"
 
@@ -31,6 +32,7 @@ typedef struct bough_job {
     bough_vertices *vertices; // NULL: none are stored
     bough_checkpoint checkpoint;
     bough_kept rows, frames_kept; // at the last checkpoint
+    bough_error_shares shares;    // of mesh and air
     double build_s;               // wall time of reading and building [s]
 } bough_job;
 

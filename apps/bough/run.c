@@ -16,6 +16,7 @@ static bough_status sample_row(void *self, double t) {
     bough_job *job = self;
     bough_status status = bough_recorder_sample(job->recorder, t);
     bough_error_probe_widen(&job->run.probe, bough_recorder_values(job->recorder));
+    bough_error_shares_note(&job->shares, &job->run);
     const bough_simulation *s = job->run.simulation;
     if (t < s->scene->simulation.output.from - 1e-6 * s->master->macro_step) return status;
     const double *value = bough_recorder_values(job->recorder);
@@ -121,6 +122,8 @@ bough_status bough_job_build(bough_job *job) {
     size_t n = (size_t)job->recorded.count;
     job->statistics = bough_arena_take(job->arena, (n + 1) * sizeof *job->statistics);
     if (!job->statistics) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    status = bough_error_shares_create(job->arena, &job->run, scene->simulation.output.interval,
+                                       &job->shares);
     job->build_s = bough_wall_clock() - began;
     return status;
 }
@@ -194,6 +197,10 @@ bough_status bough_verb_run(bough_arena *arena, const bough_options *options) {
     status = open_results(&job);
     if (!bough_is_ok(&status)) return status;
     step_all(&job);
+    if (bough_is_ok(&job.run.outcome)) {
+        double interval = job.run.simulation->scene->simulation.output.interval;
+        bough_error_shares_find(&job.shares, &job.run, interval);
+    }
     status = close_results(&job);
     bough_run_report(&job, stdout);
     return status;

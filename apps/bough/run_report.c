@@ -245,6 +245,7 @@ bough_status bough_run_summarise(const bough_job *job) {
     write_interfaces(&s, run);
     write_verdict(&s, run);
     write_estimates(&s, run);
+    bough_run_write_shares(&s, job);
     write_statistics(&s, job);
     write_whole(&s, run);
     const bough_assembly *assembly = run->simulation->master->assembly;
@@ -258,10 +259,11 @@ bough_status bough_run_summarise(const bough_job *job) {
 // -- closing lines --------------------------------------------------------------------------------
 
 // Channels worth a line: the turbine's main ones, or else the first few.
-static void tell_channels(bough_run *run, FILE *stream) {
+static void tell_channels(bough_job *job, FILE *stream) {
     static const char *const main_channels[] = {"RotSpeed",  "RtAeroFxh", "RtAeroMxh",
                                                 "RtAeroPwr", "OoPDefl1",  "IPDefl1"};
     enum { MAIN = sizeof main_channels / sizeof *main_channels, FIRST_FEW = 4 };
+    bough_run *run = &job->run;
     const bough_channels *c = &run->channels;
     const double *value = bough_run_values(run);
     if (!value) return; // after a failure the state means nothing
@@ -270,6 +272,7 @@ static void tell_channels(bough_run *run, FILE *stream) {
         int k = turbine ? bough_channels_find(c, main_channels[i]) : i;
         if (k < 0 || k >= c->count) continue;
         fprintf(stream, "%s: %.6g %s\n", c->channel[k].name, value[k], c->channel[k].unit);
+        bough_run_tell_channel_shares(job, k, stream);
         if (!bough_error_probe_knows(&run->probe, k)) continue;
         fprintf(stream, "%s_coupling_error: %.2g %s\n", c->channel[k].name,
                 run->probe.largest[k], c->channel[k].unit);
@@ -319,8 +322,9 @@ void bough_run_report(bough_job *job, FILE *stream) {
     fprintf(stream, "real_time_factor: %.3g\n", real_time_factor(run));
     fprintf(stream, "wall_s: %.3g\n", run->wall_s);
     fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);
-    tell_channels(run, stream);
+    tell_channels(job, stream);
     tell_error(run, stream);
+    bough_run_tell_shares(job, stream);
     tell_energy(run, stream);
     tell_warnings(run, stream);
     fprintf(stream, "out: %s\n", job->folder);

@@ -71,6 +71,7 @@ typedef struct bough_scene_simulation {
     bough_scene_solver master, micro;
     double error_bound; // of a channel's error relative to its range; 0: none
     int error_estimate; // bough_error_source
+    bool error_shares;  // of mesh and air, by two more runs
     int threads;
     bough_scene_output output;
 } bough_scene_simulation;

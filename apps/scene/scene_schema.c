@@ -149,6 +149,9 @@ static const bough_key simulation_keys[] = {
      .choices = CHOICES("auto", "second-solution", "linearised", "none"),
      .help = "how the run knows its error: from a second solution beside it, or from its own defects "
              "taken through the linearised members; auto: linearised where that is known to serve"},
+    {.name = "error_shares", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(error_shares),
+     .help = "tells the shares of mesh and air as well, by two more runs after this one: with half the "
+             "segments of each rod, and with twice the air's rate"},
     {.name = "threads", .kind = BOUGH_KEY_INTEGER, .range = "[0, 1024]", .fallback = "0",
      AT(threads), .example = "2",
      .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not "

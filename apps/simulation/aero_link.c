@@ -300,7 +300,7 @@ static bough_aero_fresh fresh_loads(const bough_aero_link *l, int b) {
     size_t n = (size_t)l->n_vertex, blade = (size_t)b;
     bool slopes = l->simulation->scene->aero.hold != BOUGH_SCENE_CONSTANT;
     return (bough_aero_fresh){.load = data->load + 6 * n * blade,
-                              .line = data->line + 6 * (n - 1) * blade,
+                              .line = data->line + 12 * (n - 1) * blade,
                               .slope = slopes ? data->slope + BOUGH_SLOPES * n * blade : NULL,
                               .factor = l->factor[l->found]};
 }

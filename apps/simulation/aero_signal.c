@@ -32,7 +32,7 @@ struct bough_aero_signal {
     double *fresh;           // (n)
     double *now, *before;    // S·motion (3 × n_vertex)
     double *whole, *last;    // (n) at the present sample and the one before
-    double *along;           // per length (6 × segments): its rate, of a modal body itself
+    double *along;           // per length (12 × segments): its rate, of a modal body itself
     double *strain, *lumped; // of a modal body, D q and the loads of it (6 × the mesh's stride)
 };
 
@@ -53,7 +53,7 @@ static void take(bough_arena *arena, bough_aero_signal *s) {
     s->last = bough_arena_doubles(arena, n);
     s->now = bough_arena_doubles(arena, 3 * vertices);
     s->before = bough_arena_doubles(arena, 3 * vertices);
-    if (s->beam->port >= 0) s->along = bough_arena_doubles(arena, 6 * segments);
+    if (s->beam->port >= 0) s->along = bough_arena_doubles(arena, 12 * segments);
     if (s->beam->modal == NULL) return;
     size_t stride = (size_t)bough_beam_mesh(s->beam)->stride;
     s->strain = bough_arena_doubles(arena, 6 * stride);
@@ -68,7 +68,7 @@ bough_status bough_aero_signal_build(bough_arena *arena, bough_simulation *simul
     s->beam = beam;
     s->n_vertex = beam->def.n_segment + 1;
     s->n = beam->port < 0 ? 6 : 6 * s->n_vertex;
-    if (beam->rod != NULL) s->n += 6 * (s->n_vertex - 1);
+    if (beam->rod != NULL) s->n += 12 * (s->n_vertex - 1);
     take(arena, s);
     if (bough_arena_exhausted(arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
@@ -111,8 +111,8 @@ static void take_fresh(bough_aero_signal *s, bough_aero_fresh fresh, const doubl
         sum_loads(s, row, s->fresh);
     } else {
         memcpy(s->fresh, fresh.load, 6 * (size_t)n * sizeof(double));
-        bough_rod_line_axes(n - 1, rows + BOUGH_BLADE_ROTATION * n, fresh.line,
-                            s->beam->rod != NULL ? s->fresh + 6 * n : s->along);
+        bough_rod_take_line(bough_beam_mesh(s->beam), rows + BOUGH_BLADE_ROTATION * n, fresh.line,
+                            s->beam->rod != NULL ? s->fresh + 6 * n : s->along, s->fresh);
         if (s->beam->modal != NULL) lump_line(s);
     }
     for (int k = 0; k < s->n; k++) s->fresh[k] *= fresh.factor;

@@ -1,0 +1,165 @@
+#include "apps/simulation/error_shares.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+// Orders at which the error falls with a segment's length and with the time between samples of the air:
+// those of the rod's segments and of the signal between samples (docs/theory.md).
+static const double mesh_order = 2, linear_air_order = 3, held_air_order = 1;
+
+const char *bough_error_share_name(bough_error_share_kind kind) {
+    return kind == BOUGH_SHARE_MESH ? "mesh" : "air";
+}
+
+static void unknown(bough_error_share *share, const char *format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(share->unknown, sizeof share->unknown, format, arguments);
+    va_end(arguments);
+}
+
+bough_status bough_error_shares_create(bough_arena *arena, const bough_run *run, double interval,
+                                       bough_error_shares *shares) {
+    const bough_simulation *s = run->simulation;
+    *shares = (bough_error_shares){.n_channel = s->n_motion_channel};
+    for (int k = 0; k < BOUGH_SHARES; k++) {
+        unknown(&shares->share[k], "simulation.error_shares does not ask for it");
+    }
+    if (!s->scene->simulation.error_shares) return bough_ok();
+    double rows = ceil(s->master->duration / interval) + 2;
+    if (rows * shares->n_channel > 1e8) {
+        return bough_fail(BOUGH_INVALID, "simulation.error_shares: %.3g rows of %d channels do not fit"
+                          " into memory; a longer simulation.output.interval", rows, shares->n_channel);
+    }
+    size_t n = (size_t)shares->n_channel + 1;
+    shares->most = (int)rows;
+    shares->row = bough_arena_doubles(arena, (size_t)shares->most * n);
+    for (int k = 0; k < BOUGH_SHARES; k++) shares->share[k].largest = bough_arena_doubles(arena, n);
+    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    return bough_ok();
+}
+
+void bough_error_shares_note(bough_error_shares *shares, bough_run *run) {
+    if (!shares->row || shares->n_row >= shares->most) return;
+    size_t n = (size_t)shares->n_channel;
+    const double *value = bough_run_values(run);
+    if (value) memcpy(shares->row + n * (size_t)shares->n_row++, value, n * sizeof *value);
+}
+
+// -- the second run -------------------------------------------------------------------------------
+
+// A run beside which the first one's rows pass.
+typedef struct follower {
+    const bough_error_shares *shares;
+    bough_error_share *share;
+    bough_run run;
+    int row;
+} follower;
+
+static bough_status compare_row(void *self, double t) {
+    follower *f = self;
+    (void)t;
+    const double *value = bough_run_values(&f->run);
+    if (!value || f->row >= f->shares->n_row) return bough_ok();
+    const double *first = f->shares->row + (size_t)f->row++ * (size_t)f->shares->n_channel;
+    for (int i = 0; i < f->shares->n_channel; i++) {
+        double error = f->share->part * fabs(value[i] - first[i]);
+        f->share->largest[i] = fmax(f->share->largest[i], error);
+    }
+    return bough_ok();
+}
+
+// Half the segments; the part of the error is that of the rod that loses least.
+static bool coarsen_mesh(bough_arena *arena, bough_scene *scene, bough_error_share *share) {
+    size_t n = (size_t)scene->n_body;
+    bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
+    double least = HUGE_VAL;
+    if (!body) return false;
+    memcpy(body, scene->body, n * sizeof *body);
+    for (size_t i = 0; i < n; i++) {
+        int all = body[i].rod.n_segment, half = (all + 1) / 2;
+        if (!body[i].rod.node || body[i].fidelity == BOUGH_SCENE_RIGID) continue;
+        if (body[i].fidelity != BOUGH_SCENE_ROD || all < 4) {
+            unknown(share, body[i].fidelity == BOUGH_SCENE_ROD ? "%s has too few segments to halve them"
+                    : "%s is a modal body, whose shapes have errors of their own", body[i].name);
+            return false;
+        }
+        body[i].rod.n_segment = half;
+        least = fmin(least, (double)all / half);
+    }
+    if (least == HUGE_VAL) {
+        unknown(share, "no body has a mesh");
+        return false;
+    }
+    share->part = 1 / (pow(least, mesh_order) - 1);
+    scene->body = body;
+    return true;
+}
+
+// Twice the samples: half of them may be too few to be stable. Where that takes macro steps of half the
+// length, part of the coupling's error is told as the air's.
+static bool refine_air(bough_scene *scene, bough_error_share *share) {
+    bough_scene_simulation *simulation = &scene->simulation;
+    if (!scene->aero.node) {
+        unknown(share, "the scene has no air");
+        return false;
+    }
+    long steps = lround(1 / (scene->aero.rate * simulation->macro_step));
+    double finer = pow(2, scene->aero.hold == BOUGH_SCENE_CONSTANT ? held_air_order : linear_air_order);
+    if (steps % 2 != 0) {
+        simulation->macro_step /= 2;
+        simulation->micro.step = fmin(simulation->micro.step, simulation->macro_step);
+        simulation->master.step = fmin(simulation->master.step, simulation->macro_step);
+    }
+    scene->aero.rate *= 2;
+    share->part = finer / (finer - 1);
+    return true;
+}
+
+static bool change(bough_arena *arena, bough_error_share_kind kind, bough_scene *scene,
+                    bough_error_share *share) {
+    scene->simulation.error_estimate = BOUGH_ERROR_NOT_TOLD;
+    scene->simulation.error_bound = 0;
+    scene->simulation.error_shares = false;
+    if (scene->control.node && scene->control.kind == BOUGH_SCENE_BLADED) {
+        unknown(share, "the controller's library keeps a state that a second run would change");
+        return false;
+    }
+    return kind == BOUGH_SHARE_MESH ? coarsen_mesh(arena, scene, share) : refine_air(scene, share);
+}
+
+static void find(bough_arena *arena, bough_error_share_kind kind, const bough_run *run, double interval,
+                 bough_error_shares *shares) {
+    bough_error_share *share = &shares->share[kind];
+    bough_scene scene = *run->simulation->scene;
+    follower f = {.shares = shares, .share = share};
+    share->unknown[0] = '\0';
+    if (!change(arena, kind, &scene, share)) return;
+    bough_status status = bough_run_create(arena, &scene, &f.run);
+    if (bough_is_ok(&status)) {
+        f.run.stop = run->stop;
+        bough_run_record_at(&f.run, (bough_run_record){interval, true, .sample = compare_row, .self = &f});
+        bough_run_all(&f.run);
+        status = f.run.outcome;
+        share->cpu_s = f.run.cpu_s;
+    }
+    if (!bough_is_ok(&status)) {
+        unknown(share, "the run that would tell it failed: %.100s", status.message);
+    } else if (f.row != shares->n_row) {
+        unknown(share, "the run was resumed: its rows before are not in memory");
+    }
+}
+
+void bough_error_shares_find(bough_error_shares *shares, const bough_run *run, double interval) {
+    for (int k = 0; k < BOUGH_SHARES && shares->row; k++) {
+        bough_arena *arena = bough_arena_create();
+        if (arena) {
+            find(arena, (bough_error_share_kind)k, run, interval, shares);
+        } else {
+            unknown(&shares->share[k], "out of memory");
+        }
+        bough_arena_destroy(arena);
+    }
+}

@@ -1,0 +1,42 @@
+// The shares of mesh and air in what the channels of a run err by, measured: the scene is run again
+// with half the segments in each rod, and with twice the samples of the air; the run's own error is a
+// known part of the difference, by the order at which each converges.
+#ifndef BOUGH_APPS_SIMULATION_ERROR_SHARES_H
+#define BOUGH_APPS_SIMULATION_ERROR_SHARES_H
+
+#include "apps/simulation/run.h"
+
+typedef enum bough_error_share_kind {
+    BOUGH_SHARE_MESH,
+    BOUGH_SHARE_AIR,
+    BOUGH_SHARES,
+} bough_error_share_kind;
+
+typedef struct bough_error_share {
+    char unknown[160]; // why it is not estimated; "": it is
+    double *largest;   // (n_channel) largest error of each channel in the run, in its unit
+    double part;       // this run's error by the difference between the two [1]
+    double cpu_s;      // of the second run [s]
+} bough_error_share;
+
+typedef struct bough_error_shares {
+    int n_channel;   // the run's channels that follow from the states
+    int n_row, most; // rows noted, and how many there is room for
+    double *row;     // (most × n_channel); NULL: nobody asks
+    bough_error_share share[BOUGH_SHARES];
+} bough_error_shares;
+
+const char *bough_error_share_name(bough_error_share_kind kind);
+
+// For the rows that the run records every `interval` [s]; with memory from the arena only if the scene
+// asks for the shares.
+bough_status bough_error_shares_create(bough_arena *arena, const bough_run *run, double interval,
+                                       bough_error_shares *shares);
+
+// Notes a recorded row of the run.
+void bough_error_shares_note(bough_error_shares *shares, bough_run *run);
+
+// After a complete run: runs the scene again for each share. What cannot be estimated says why.
+void bough_error_shares_find(bough_error_shares *shares, const bough_run *run, double interval);
+
+#endif
