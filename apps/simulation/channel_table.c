@@ -36,6 +36,25 @@ static const bough_channel_row planar[] = {
     {"{a}AngPos", "deg", "angle about the normal", NULL},
     {"{a}AngVel", "deg/s", "its rate", NULL},
 };
+static const bough_channel_row free_body[] = {
+    {"{a}PosX", "m", "place of the body's frame, ground axes", NULL},
+    {"{a}PosY", "m", "likewise", NULL},
+    {"{a}PosZ", "m", "likewise", NULL},
+    {"{a}VelX", "m/s", "its velocity, ground axes", NULL},
+    {"{a}VelY", "m/s", "likewise", NULL},
+    {"{a}VelZ", "m/s", "likewise", NULL},
+};
+static const bough_channel_row turning_body[] = {
+    {"{a}DirXx", "-", "direction of the body's x axis, ground axes", NULL},
+    {"{a}DirXy", "-", "likewise", NULL},
+    {"{a}DirXz", "-", "likewise", NULL},
+    {"{a}DirZx", "-", "direction of the body's z axis, ground axes", NULL},
+    {"{a}DirZy", "-", "likewise", NULL},
+    {"{a}DirZz", "-", "likewise", NULL},
+    {"{a}OmegaX", "deg/s", "angular velocity of the body, ground axes", NULL},
+    {"{a}OmegaY", "deg/s", "likewise", NULL},
+    {"{a}OmegaZ", "deg/s", "likewise", NULL},
+};
 static const bough_channel_row drive_torque[] = {
     {"{a}Trq", "N-m", "torque that the motion takes, on the body, about the axis", NULL},
 };
@@ -199,6 +218,8 @@ const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS] = {
     [BOUGH_CHANNELS_CYLINDRICAL] = {"Cylindrical joint", body, N(cylindrical)},
     [BOUGH_CHANNELS_UNIVERSAL] = {"Universal joint", body, N(universal)},
     [BOUGH_CHANNELS_PLANAR] = {"Planar joint", body, N(planar)},
+    [BOUGH_CHANNELS_FREE] = {"Body on a free joint", body, N(free_body)},
+    [BOUGH_CHANNELS_TURNING] = {"Body on a free or a spherical joint", body, N(turning_body)},
     [BOUGH_CHANNELS_DRIVE_TORQUE] = {"Prescribed turn of a joint", body, N(drive_torque)},
     [BOUGH_CHANNELS_DRIVE_FORCE] = {"Prescribed displacement of a joint", body, N(drive_force)},
     [BOUGH_CHANNELS_DRIVE_UNIVERSAL] = {"Prescribed turn of a universal joint",

@@ -96,6 +96,51 @@ static bough_status add_joints(bough_simulation *s, bough_channels *list) {
     return status;
 }
 
+static bool is_free(const bough_scene_body *body) { return body->joint.kind == BOUGH_JOINT_FREE; }
+
+static bool turns_freely(const bough_scene_body *body) {
+    return is_free(body) || body->joint.kind == BOUGH_JOINT_SPHERICAL;
+}
+
+static double *put_vector(bough_vec3 x, double unit, double *value) {
+    value[0] = x.x / unit, value[1] = x.y / unit, value[2] = x.z / unit;
+    return value + 3;
+}
+
+// Directions in place of angles: they know no jump.
+static void sample_free_bodies(void *self, double t, double *value) {
+    (void)t;
+    const bough_simulation *s = self;
+    for (int i = 0; i < s->scene->n_body; i++) {
+        const bough_scene_body *body = &s->scene->body[i];
+        if (!turns_freely(body)) continue;
+        const bough_frame *frame = &s->tree->bodies[i];
+        bough_transform pose = bough_tree_frame_pose(s->view, frame);
+        bough_twist velocity = bough_tree_frame_velocity(s->view, frame);
+        if (is_free(body)) {
+            value = put_vector(pose.position, 1, value);
+            value = put_vector(velocity.linear, 1, value);
+        }
+        value = put_vector(pose.rotation.c1, 1, value);
+        value = put_vector(pose.rotation.c3, 1, value);
+        value = put_vector(velocity.angular, DEGREE, value);
+    }
+}
+
+static bough_status add_free_bodies(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_free_bodies, s);
+    for (int i = 0; i < s->scene->n_body && bough_is_ok(&status); i++) {
+        const bough_scene_body *body = &s->scene->body[i];
+        if (is_free(body)) {
+            status = bough_channel_family_add(list, BOUGH_CHANNELS_FREE, body->name, "");
+        }
+        if (bough_is_ok(&status) && turns_freely(body)) {
+            status = bough_channel_family_add(list, BOUGH_CHANNELS_TURNING, body->name, "");
+        }
+    }
+    return status;
+}
+
 static bough_status add_rotor(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_rotor, s);
     if (bough_is_ok(&status)) {
@@ -495,6 +540,7 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     bough_status status = bough_ok();
     if (s->scene->turbine.node != NULL) status = add_rotor(s, channels);
     if (bough_is_ok(&status)) status = add_joints(s, channels);
+    if (bough_is_ok(&status)) status = add_free_bodies(s, channels);
     if (bough_is_ok(&status) && has_motion(s->scene)) status = add_drives(s, channels);
     if (bough_is_ok(&status) && s->scene->n_spring > 0) status = add_springs(s, channels);
     if (bough_is_ok(&status) && s->scene->n_bushing > 0) status = add_bushings(s, channels);
