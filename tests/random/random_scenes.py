@@ -132,7 +132,7 @@ def error_of(run, truth, told_of=None):
 
 
 def is_state(name):
-    return not any(word in name for word in ("Trq", "Frc", "Fx", "Fy", "Fz", "Mx", "My", "Mz", "Aero", "Root", "Gen", "BldPitch"))
+    return not any(word in name for word in ("Fx", "Fy", "Fz", "Mx", "My", "Mz", "Aero", "Root", "Gen", "BldPitch"))
 
 
 def classify(run, truth, rough):
