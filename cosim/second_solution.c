@@ -6,7 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double most_steps = 20000; // a macro step on average: beyond it nobody would wait
+// Steps that it may take: beyond them nobody would wait.
+static const double most_steps = 100000;
+static const double most_ratio = 30; // besides, for each step of the run
 
 struct bough_second_solution {
     const bough_assembly *assembly;
@@ -16,7 +18,8 @@ struct bough_second_solution {
     double *error;                 // (n_state)
     double *input_error, *input_worst; // (n_input) of what inputs should be given: now, largest
     bool lost;
-    long taken; // macro steps
+    double left; // steps that it may still take
+    double seen, seen_run; // steps of both that are counted in it, of this process
 };
 
 // -- building -------------------------------------------------------------------------------------
@@ -37,6 +40,7 @@ bough_status bough_second_solution_create(bough_arena *arena, const bough_coupli
     const bough_assembly *a = s->assembly = c->assembly;
     s->share = def->share;
     if (!take(s, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    s->left = most_steps;
     *second = s;
     bough_system system;
     bough_status status = bough_coupled_system(arena, a, c->pool, "second solution", &system);
@@ -49,9 +53,23 @@ bough_status bough_second_solution_create(bough_arena *arena, const bough_coupli
 
 // -- stepping -------------------------------------------------------------------------------------
 
-static bool works_too_hard(const bough_second_solution *s) {
-    bough_statistics sum = bough_member_statistics(&s->whole);
-    return (double)(sum.steps + sum.failed_steps) > most_steps * (double)(s->taken + 1);
+static double steps_of(const bough_member *m) {
+    bough_statistics sum = bough_member_statistics(m);
+    return (double)(sum.steps + sum.failed_steps);
+}
+
+static double steps_of_run(const bough_coupling *c) {
+    double steps = c->whole ? steps_of(c->whole) : 0;
+    for (int i = 0; i < c->assembly->n_member; i++) steps += steps_of(c->assembly->member[i]);
+    return steps;
+}
+
+static bool works_too_hard(bough_second_solution *s, const bough_coupling *c) {
+    double own = steps_of(&s->whole), run = steps_of_run(c);
+    s->left += most_ratio * (run - s->seen_run) - (own - s->seen);
+    s->seen = own;
+    s->seen_run = run;
+    return s->left < 0;
 }
 
 static void compare(bough_second_solution *s, const bough_coupling *c) {
@@ -69,8 +87,7 @@ void bough_second_solution_step(bough_second_solution *s, const bough_coupling *
     if (s->lost) return;
     assert(s->whole.time == c->t0);
     bough_status status = bough_member_advance(&s->whole, c->t1, NULL, c->restart);
-    s->lost = !bough_is_ok(&status) || works_too_hard(s);
-    s->taken++;
+    s->lost = !bough_is_ok(&status) || works_too_hard(s, c);
     if (!s->lost) compare(s, c);
 }
 
@@ -93,5 +110,5 @@ void bough_second_solution_snapshot(bough_second_solution *s, bough_snapshot *sn
     bough_snapshot_doubles(snapshot, s->input_error, a->n_input);
     bough_snapshot_doubles(snapshot, s->input_worst, a->n_input);
     bough_snapshot_take(snapshot, &s->lost, sizeof s->lost);
-    bough_snapshot_take(snapshot, &s->taken, sizeof s->taken);
+    bough_snapshot_take(snapshot, &s->left, sizeof s->left);
 }
