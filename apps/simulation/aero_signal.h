@@ -5,12 +5,12 @@
 #include "apps/simulation/build.h"
 
 // Of a rod per vertex force and moment in the body's axes (6 × vertices), then the same per length
-// along each segment in the axes of its middle (6 × segments); of a modal body the former, on a rigid
-// body the resultant (6).
+// along each segment in the axes of its middle, mean and slope (12 × segments); of a modal body the
+// former, on a rigid body the resultant (6).
 typedef struct bough_aero_signal bough_aero_signal;
 
-// A rotor's loads on the blade: on vertices (6 × n), per length of segments (6 × n − 1), both in the
-// axes of the blade's frame; their slopes (bough_rotor_data.slope; NULL: none); all by a factor.
+// A rotor's loads on the blade: on vertices (6 × n), mean and slope per length of segments
+// (12 × (n − 1)), both in the axes of the blade's frame; their slopes (bough_rotor_data.slope; NULL: none); all by a factor.
 typedef struct bough_aero_fresh {
     const double *load, *line, *slope;
     double factor;
