@@ -131,7 +131,8 @@ static void bodies_receive_what_the_rotor_gives(void **context) {
     check_near(factor, 1, 0, 0);
     moment = bough_sub(moment, bough_cross(hub.position, force)); // about the hub
     check_near(bough_dot(force, shaft), data->thrust, 1e-9, 0);
-    check_near(bough_dot(moment, shaft), data->torque, 1e-9, 0);
+    // the rod takes its loads beside the chords of bent segments, the rotor's sum does not
+    check_near(bough_dot(moment, shaft), data->torque, 1e-6, 0);
     assert_true(data->thrust > 1000 && fabs(data->torque) > 100);
     assert_true(f.s->rod[f.s->beam[FLEXIBLE].port].state[SEGMENTS - 1] > 5e-4);
     close_turbine(&f);

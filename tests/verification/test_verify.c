@@ -86,11 +86,11 @@ static void a_case_that_does_not_hold_is_a_failure(void **state) {
     free(csv);
 }
 
-// The elastica converges at second order.
+// The elastica converges at fourth order.
 static void order_is_observed_over_three_meshes(void **state) {
     char table[4096];
     perform(*state, HEAD ELASTICA("1e-6"), table);
-    assert_true(says(table, " 2.0"));
+    assert_true(says(table, " 4.0"));
 }
 
 static void a_diagnosis_is_expected_or_missed(void **state) {
