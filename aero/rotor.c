@@ -324,6 +324,45 @@ bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int s
                            .force_y = r->force_y[j]};
 }
 
+enum { TOLD = 14, SUMS = 5 };
+
+static void told_rows(const blade_rows *r, double *row[TOLD]) {
+    double *const rows[TOLD] = {r->radius, r->inflow_x, r->inflow_y, r->axial, r->tangential,
+                                r->alpha,  r->phi,      r->twist,    r->speed, r->lift,
+                                r->drag,   r->moment,   r->force_x,  r->force_y};
+    memcpy(row, rows, sizeof rows);
+}
+
+int bough_rotor_told_size(const bough_rotor *rotor) {
+    return SUMS + TOLD * rotor->n_blade * rotor->n_station;
+}
+
+void bough_rotor_told_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to) {
+    const double sums[SUMS] = {data->thrust, data->torque, data->disk_wind.x, data->disk_wind.y,
+                               data->disk_wind.z};
+    size_t n = (size_t)rotor->n_station;
+    memcpy(to, sums, sizeof sums);
+    to += SUMS;
+    for (int b = 0; b < rotor->n_blade; b++) {
+        double *row[TOLD];
+        told_rows(data->scratch->blade + b, row);
+        for (int k = 0; k < TOLD; k++, to += n) memcpy(to, row[k], n * sizeof *to);
+    }
+}
+
+void bough_rotor_told_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data) {
+    size_t n = (size_t)rotor->n_station;
+    data->thrust = from[0];
+    data->torque = from[1];
+    data->disk_wind = bough_v3(from[2], from[3], from[4]);
+    from += SUMS;
+    for (int b = 0; b < rotor->n_blade; b++) {
+        double *row[TOLD];
+        told_rows(data->scratch->blade + b, row);
+        for (int k = 0; k < TOLD; k++, from += n) memcpy(row[k], from, n * sizeof *from);
+    }
+}
+
 // Slower than this the angle of attack does not matter [m/s].
 static const double slow = 1;
 

@@ -401,17 +401,25 @@ bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t) {
 
 // -- saving ---------------------------------------------------------------------------------------
 
-enum { SCALARS = 2 };
+// Of the evaluations only what they tell is stored: the shown one and the one at the sample ahead.
+enum { SCALARS = 5 };
 
 int bough_aero_link_size(const bough_aero_link *link) {
-    int n = SCALARS + bough_aero_motion_size(link->motion) + bough_rotor_memory_size(link->rotor);
+    int n = SCALARS + bough_aero_motion_size(link->motion) + bough_rotor_memory_size(link->rotor) +
+            2 * bough_rotor_told_size(link->rotor);
     for (int b = 0; b < link->n_blade; b++) n += bough_aero_signal_size(link->signal[b]);
     return n;
 }
 
 void bough_aero_link_save(const bough_aero_link *link, double *to) {
-    *to++ = link->factor[link->shown];
     *to++ = link->started;
+    for (int i = 0; i < 2; i++) {
+        int k = i == 0 ? link->shown : 1 - link->shown;
+        *to++ = link->factor[k];
+        *to++ = link->time[k];
+        bough_rotor_told_save(link->rotor, &link->data[k], to);
+        to += bough_rotor_told_size(link->rotor);
+    }
     for (int b = 0; b < link->n_blade; b++) {
         bough_aero_signal_save(link->signal[b], to);
         to += bough_aero_signal_size(link->signal[b]);
@@ -421,13 +429,19 @@ void bough_aero_link_save(const bough_aero_link *link, double *to) {
 }
 
 void bough_aero_link_restore(bough_aero_link *link, const double *from) {
-    link->factor[link->shown] = *from++;
     link->started = *from++ != 0;
+    link->shown = 0;
+    link->found = -1; // loads are not stored
+    for (int k = 0; k < 2; k++) {
+        link->factor[k] = *from++;
+        link->time[k] = *from++;
+        bough_rotor_told_restore(link->rotor, from, &link->data[k]);
+        from += bough_rotor_told_size(link->rotor);
+    }
     for (int b = 0; b < link->n_blade; b++) {
         bough_aero_signal_restore(link->signal[b], from);
         from += bough_aero_signal_size(link->signal[b]);
     }
     bough_aero_motion_restore(link->motion, from);
     bough_rotor_restore(link->rotor, from + bough_aero_motion_size(link->motion), &link->data[0]);
-    bough_aero_link_renew(link);
 }
