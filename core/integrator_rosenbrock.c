@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { STAGES = 4, MOST_STEPS = 500000 };
+enum { STAGES = 4, MOST_STEPS = 20000 };
 enum { YOUNG = 8 };     // tangents that a failed step does not blame
 enum { MOST_DRIFTED = 4 }; // the same of ∂f/∂t, and anew in every macro step
 enum { MOST_AGE = 24 }; // steps with the same tangents; on a blade, up to 64 cost no accuracy

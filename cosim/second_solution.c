@@ -7,8 +7,8 @@
 #include <string.h>
 
 // Steps that it may take: beyond them nobody would wait.
-static const double most_steps = 100000;
-static const double most_ratio = 30; // besides, for each step of the run
+static const double most_steps = 20000;
+static const double most_ratio = 4; // besides, for each step of the run
 
 struct bough_second_solution {
     const bough_assembly *assembly;
