@@ -118,7 +118,7 @@ static void uniform_beam_needs_no_table(void **state) {
     assert_int_equal(s->simulation.threads, 0);
     assert_string_equal(bough_scheme_name(s->simulation.coupling.scheme), "monolithic");
     assert_int_equal(s->simulation.master.solver, BOUGH_ROSENBROCK);
-    check_near(s->simulation.master.rtol, 3e-4, 0, 0);
+    check_near(s->simulation.master.rtol, 1e-5, 0, 0);
     assert_null(s->aero.node);
     assert_null(s->turbine.node);
     check_near(s->gravity[2], -9.80665, 0, 0);

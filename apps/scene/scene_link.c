@@ -411,7 +411,7 @@ static void check_times(bough_schema_reader *r, bough_scene *s) {
     }
 }
 
-static const double default_rtol = 3e-4;
+static const double default_rtol = 1e-5;
 static const double fine_rtol = 1e-6; // below it BDF's high orders serve better
 
 static bool is_named(const bough_node *map, const char *key) {

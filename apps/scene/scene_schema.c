@@ -51,7 +51,7 @@ static const bough_key coupling_keys[] = {
     {.name = "scheme", .kind = BOUGH_KEY_CHOICE, .fallback = "monolithic",
      .choice = bough_scheme_name, .offset = offsetof(bough_scene_coupling, scheme),
      .help = "how sub-systems exchange their values. A scene that names none is integrated as a whole, by "
-             "rosenbrock to rtol 3e-4 where master names neither a solver nor an rtol below 1e-6"},
+             "rosenbrock to rtol 1e-5 where master names neither a solver nor an rtol below 1e-6"},
     {.name = "order", .kind = BOUGH_KEY_INTEGER, .range = "[0, 2]", .fallback = "1",
      AT(order), .example = "2", .help = "of extrapolated and of iterated end values: degree of the polynomial"},
     {.name = "theta", .kind = BOUGH_KEY_NUMBER, .word = "auto", .range = "[0.5, 1]",
