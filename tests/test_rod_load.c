@@ -35,7 +35,7 @@ static bough_rod_ramped_load empty(bough_arena *arena, const bough_rod_model *m,
     size_t count = 6 * (size_t)m->stride;
     return (bough_rod_ramped_load){.follower = follower,
                                    .value = bough_arena_doubles(arena, count),
-                                   .line = bough_arena_doubles(arena, count)};
+                                   .line = bough_arena_doubles(arena, 2 * count)};
 }
 
 static void resultant_of_a_point_load_is_the_load(void **context) {
