@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { STAGES = 4, MOST_STEPS = 20000 };
+enum { STAGES = 4, MOST_STEPS = 100000 };
 enum { YOUNG = 8 };     // tangents that a failed step does not blame
 enum { MOST_DRIFTED = 4 }; // the same of ∂f/∂t, and anew in every macro step
 enum { MOST_AGE = 24 }; // steps with the same tangents; on a blade, up to 64 cost no accuracy
@@ -225,13 +225,20 @@ static void accept(rosenbrock *m, double *restrict y) {
 }
 
 // Equal parts of the way that is left, none longer than allowed. A step that fails with old tangents
-// is tried with new ones first.
-static bool cross(rosenbrock *m, double *t, double pause, double t1, double *y) {
+// is tried with new ones first. NULL, or why it cannot go on.
+static const char *cross(rosenbrock *m, double *t, double pause, double t1, double *y) {
     for (int n = 0; *t < pause; n++) {
         double parts = ceil((t1 - *t) / m->longest * (1 - 1e-12));
         double h = (t1 - *t) / fmax(parts, 1);
         double error = try_step(m, *t, h, y);
-        if (n == MOST_STEPS || (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3))) return false;
+        if (n == MOST_STEPS) {
+            return "100000 steps do not reach the end of the macro step: it follows vibrations that fast,"
+                   " which damping of rods or a larger rtol would end";
+        }
+        if (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3)) {
+            return "the error test fails down to the smallest step (a segment that turns by more than"
+                   " 120°, or a value that overflows)";
+        }
         if (error > 1) {
             m->sum.failed_steps++;
             m->longest = h * fmax(0.1, 0.9 * cbrt(1 / error));
@@ -246,7 +253,7 @@ static bool cross(rosenbrock *m, double *t, double pause, double t1, double *y) 
         m->longest = fmin(m->step, fmax(h, grown));
         *t = parts <= 1 ? t1 : *t + h;
     }
-    return true;
+    return NULL;
 }
 
 static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
@@ -261,11 +268,11 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
     }
     if (t1 != m->end) m->drifted = MOST_DRIFTED; // not paused on the way
     m->end = t1;
-    if (cross(m, t, pause, t1, y)) return bough_ok();
+    const char *reason = cross(m, t, pause, t1, y);
+    if (reason == NULL) return bough_ok();
     m->started = false;
-    return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: the Rosenbrock method cannot go on: the error"
-                      " test fails down to the smallest step (a segment that turns by more than"
-                      " 120°, or a value that overflows)", m->ode.name, *t);
+    return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: the Rosenbrock method cannot go on: %s",
+                      m->ode.name, *t, reason);
 }
 
 static double *own_error(void *self) {

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CALLS = 4, ORDERS = 3 }; // calls remembered; parabolas at most
+enum { CALLS = 3 }; // remembered: the motion goes on along a parabola
 
 // A blade's state: its rows, velocity and angular velocity of its frame, hub and shaft in the frame (of
 // the first blade only).
@@ -110,46 +110,20 @@ static void enter(bough_aero_motion *m, int b) {
     store(bough_mat3_tmul(pose.rotation, m->found.shaft), frame + SHAFT);
 }
 
-// Of the last three calls, by the order: extrapolation to the next, and the mean up to it.
-static const double to_next[ORDERS][3] = {{1, 0, 0}, {2, -1, 0}, {3, -3, 1}};
-static const double mean[ORDERS][3] = {{1, 0, 0}, {1.5, -0.5, 0}, {23. / 12, -16. / 12, 5. / 12}};
-
-// A lower order is taken only where it would have foretold the last call so much better: of squares.
-static const double clearly = 0.25;
-
-// The highest order that would have foretold the velocities of the last call well: vibrations too fast
-// for the samples are foretold best by none.
-static int best_order(const bough_aero_motion *m, size_t at) {
-    int first = BOUGH_BLADE_VELOCITY * m->n_vertex, last = BOUGH_BLADE_ROWS * m->n_vertex;
-    const double *restrict x = m->state[0] + at, *restrict y = m->state[1] + at;
-    const double *restrict z = m->state[2] + at, *restrict w = m->state[3] + at;
-    double s0 = 0, s1 = 0, s2 = 0;
-    if (m->known < 3) return m->known - 1;
-#pragma omp simd reduction(+ : s0, s1, s2)
-    for (int k = first; k < last; k++) {
-        double d0 = x[k] - y[k], d1 = d0 - (y[k] - z[k]), d2 = d1 - (y[k] - 2 * z[k] + w[k]);
-        s0 += d0 * d0;
-        s1 += d1 * d1;
-        s2 += d2 * d2;
-    }
-    const double sum[ORDERS] = {s0, s1, s2};
-    int best = m->known < CALLS ? 1 : 2;
-    for (int i = best - 1; i >= 0; i--)
-        if (sum[i] < clearly * sum[best]) best = i;
-    return best;
-}
+// Of the last calls, by how many are known: extrapolation to the next, and the mean up to it.
+static const double to_next[CALLS][3] = {{1, 0, 0}, {2, -1, 0}, {3, -3, 1}};
+static const double mean[CALLS][3] = {{1, 0, 0}, {1.5, -0.5, 0}, {23. / 12, -16. / 12, 5. / 12}};
 
 static void expect(bough_aero_motion *m, int b) {
     size_t at = (size_t)b * (size_t)m->n_state;
-    int order = best_order(m, at);
     const double *restrict x = m->state[0] + at, *restrict y = m->state[1] + at;
-    const double *restrict z = m->state[2] + at, *w = to_next[order];
+    const double *restrict z = m->state[2] + at, *w = to_next[m->known - 1];
     double *restrict next = m->expected + at, w0 = w[0], w1 = w[1], w2 = w[2];
     for (int k = 0; k < m->n_state; k++) next[k] = w0 * x[k] + w1 * y[k] + w2 * z[k];
     // the frame by the mean of its velocity
     int frame = BOUGH_BLADE_ROWS * m->n_vertex + TWIST;
     double way[6];
-    w = mean[order];
+    w = mean[m->known - 1];
     for (int c = 0; c < 6; c++) {
         int k = frame + c;
         way[c] = m->ahead * (w[0] * x[k] + w[1] * y[k] + w[2] * z[k]);
