@@ -9,8 +9,10 @@ trap 'rm -rf "$scratch"' EXIT
 export OPENBLAS_NUM_THREADS=1 UBSAN_OPTIONS=print_stacktrace=1
 
 declare -A duration=(
-    [apps/beams/elastica.yaml]='0.1 s' [apps/beams/short.yaml]='20 ms'
-    [apps/beams/composite-box.yaml]='0.3 s' [apps/mechanisms/squeezer.yaml]='30 ms'
+    [apps/beams/elastica.yaml]='20 ms' [apps/beams/short.yaml]='20 ms'
+    [apps/beams/follower.yaml]='50 ms' [apps/beams/helix.yaml]='50 ms'
+    [apps/beams/roll-up.yaml]='0.2 s' [apps/beams/rubber-bar.yaml]='0.3 s'
+    [apps/beams/composite-box.yaml]='0.1 s' [apps/mechanisms/squeezer.yaml]='30 ms'
 )
 failures=0 scenes=0
 
