@@ -67,6 +67,12 @@ typedef struct bough_system_ops {
     void (*hold_loads)(void *self, double t0, double t1);
 } bough_system_ops;
 
+// What every system answers, by static functions that have the names of the contract.
+#define BOUGH_SYSTEM_REQUIRED                                                              \
+    .derivative = derivative, .output = output, .output_tangent = output_tangent,          \
+    .input_columns = input_columns, .factors = factors, .linearise = linearise,            \
+    .factor = factor, .solve = solve
+
 typedef struct bough_system {
     const char *name;      // as the scene names it, for messages
     const char *kind;      // "tree", "rod", …

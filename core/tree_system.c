@@ -324,15 +324,8 @@ static void project(void *self, const double *state, double *x) {
 }
 
 static const bough_system_ops operations = {
-    .derivative = derivative,
-    .output = output,
-    .output_tangent = output_tangent,
+    BOUGH_SYSTEM_REQUIRED,
     .output_drift = output_drift,
-    .input_columns = input_columns,
-    .factors = factors,
-    .linearise = linearise,
-    .factor = factor,
-    .solve = solve,
     .constrain = constrain,
     .project = project,
 };

@@ -88,15 +88,8 @@ static void hold_loads(void *self, double t0, double t1) {
 }
 
 static const bough_system_ops operations = {
-    .derivative = derivative,
+    BOUGH_SYSTEM_REQUIRED,
     .derivative_again = derivative_again,
-    .output = output,
-    .output_tangent = output_tangent,
-    .input_columns = input_columns,
-    .factors = factors,
-    .linearise = linearise,
-    .factor = factor,
-    .solve = solve,
     .constrain = constrain,
     .project = project,
     .hold_loads = hold_loads,

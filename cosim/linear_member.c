@@ -160,16 +160,7 @@ static void statistics(const void *self, bough_statistics *sum) {
 static const bough_integrator_ops sdirk = {
     .title = "SDIRK2", .advance = advance, .statistics = statistics};
 
-static const bough_system_ops operations = {
-    .derivative = derivative,
-    .output = output,
-    .output_tangent = output_tangent,
-    .input_columns = input_columns,
-    .factors = factors,
-    .linearise = linearise,
-    .factor = factor,
-    .solve = solve,
-};
+static const bough_system_ops operations = {BOUGH_SYSTEM_REQUIRED};
 
 bough_status bough_linear_member_create(bough_arena *arena, const bough_member *real,
                                         const double *input, double sub_step,

@@ -116,14 +116,7 @@ bough_status bough_modal_body_create(bough_arena *arena, const bough_modal_model
 
 bough_system bough_modal_body_system(bough_modal_body *body) {
     static const bough_system_ops ops = {
-        .derivative = derivative,
-        .output = output,
-        .output_tangent = output_tangent,
-        .input_columns = input_columns,
-        .factors = factors,
-        .linearise = linearise,
-        .factor = factor,
-        .solve = solve,
+        BOUGH_SYSTEM_REQUIRED,
         .hold_loads = hold_loads,
     };
     return (bough_system){.name = body->model->name,

@@ -139,15 +139,8 @@ bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *mo
 
 bough_system bough_rod_body_system(bough_rod_body *body) {
     static const bough_system_ops ops = {
-        .derivative = derivative,
+        BOUGH_SYSTEM_REQUIRED,
         .derivative_again = derivative_again,
-        .output = output,
-        .output_tangent = output_tangent,
-        .input_columns = input_columns,
-        .factors = factors,
-        .linearise = linearise,
-        .factor = factor,
-        .solve = solve,
         .constrain = constrain,
         .project = project,
     };

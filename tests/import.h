@@ -3,6 +3,7 @@
 #define BOUGH_TESTS_IMPORT_H
 
 #include "tests/check.h"
+#include "tests/scratch_name.h"
 
 #include "apps/config/text.h"
 #include "apps/import/import.h"
@@ -16,7 +17,7 @@ typedef struct edit {
 } edit;
 
 typedef struct trial {
-    char folder[64], out[96];
+    char folder[SCRATCH_NAME], out[SCRATCH_NAME + 8];
     bough_arena *arena;
     bough_status status;
 } trial;
@@ -33,7 +34,7 @@ static inline void apply(const edit *change, const char *name, char text[8192]) 
 // Writes a deck of tests/decks into the folder, changed.
 static inline void copy_deck(const char *folder, const char *name, const edit *one,
                              const edit *two) {
-    char path[256], text[8192];
+    char path[SCRATCH_PATH], text[8192];
     snprintf(path, sizeof path, "%s/tests/decks/%s", BOUGH_SOURCE_DIR, name);
     FILE *in = fopen(path, "r");
     assert_non_null(in);
@@ -49,14 +50,14 @@ static inline void copy_deck(const char *folder, const char *name, const edit *o
 }
 
 static inline void done(trial *t) {
-    char command[128];
+    char command[SCRATCH_PATH];
     bough_arena_destroy(t->arena);
     snprintf(command, sizeof command, "rm -rf %s", t->folder);
     assert_int_equal(system(command), 0);
 }
 
 static inline const bough_node *read_file(trial *t, const char *name) {
-    char path[160];
+    char path[SCRATCH_PATH];
     snprintf(path, sizeof path, "%s/%s", t->out, name);
     bough_errors errors = {.arena = t->arena};
     const bough_node *node = bough_text_read(t->arena, path, &errors);
@@ -86,7 +87,7 @@ static inline const char *text(const bough_node *node, const char *path) {
 }
 
 static inline bool list_says(trial *t, const char *words) {
-    char path[160], all[8192];
+    char path[SCRATCH_PATH], all[8192];
     snprintf(path, sizeof path, "%s/import.txt", t->out);
     FILE *file = fopen(path, "r");
     assert_non_null(file);

@@ -20,7 +20,7 @@ enum { N_DECK = sizeof decks / sizeof *decks };
 // A box of 12 m/s with steps of 2 m/s across, in parts/box.bts; it lasts long and repeats.
 static inline void write_box(const char *folder) {
     enum { TIMES = 8 };
-    char path[256];
+    char path[SCRATCH_PATH];
     int16_t value[TIMES * 4 * 3];
     for (int i = 0; i < TIMES * 4; i++) {
         value[3 * i] = (int16_t)(1200 + (i % 2 ? 100 : -100));
@@ -41,9 +41,8 @@ static inline trial import_given(const char *main, const edit *one, const edit *
                                  const bough_import_options *options) {
     static const char *const folder[] = {"parts/foils", "v4", "v5"};
     trial t = {.arena = bough_arena_create()};
-    char path[128];
-    strcpy(t.folder, "/tmp/bough-import-XXXXXX");
-    assert_non_null(mkdtemp(t.folder));
+    char path[SCRATCH_PATH];
+    assert_non_null(mkdtemp(scratch_name(t.folder)));
     for (int i = 0; i < 3; i++) {
         snprintf(path, sizeof path, "%s/%s", t.folder, folder[i]);
         bough_status made = bough_folder_make(path);

@@ -5,6 +5,7 @@
 
 #include "apps/scene/scene.h"
 #include "tests/check.h"
+#include "tests/scratch_name.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -45,11 +46,11 @@ static inline void write_file(const char *name, const char *text) {
     fclose(stream);
 }
 
-static char directory[] = "/tmp/bough_scene_XXXXXX";
+static char directory[SCRATCH_NAME];
 
 static inline int enter(void **state) {
     (void)state;
-    if (mkdtemp(directory) == NULL || chdir(directory) != 0) return -1;
+    if (mkdtemp(scratch_name(directory)) == NULL || chdir(directory) != 0) return -1;
     return 0;
 }
 

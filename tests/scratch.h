@@ -3,6 +3,7 @@
 #define BOUGH_TESTS_SCRATCH_H
 
 #include "tests/check.h"
+#include "tests/scratch_name.h"
 
 #include <dirent.h>
 #include <stdbool.h>
@@ -15,11 +16,10 @@ enum { SCRATCH_TEXT = 1 << 20 };
 
 // cmocka set-up and tear-down: *state is the folder's path. It may hold folders of files.
 static inline int scratch_make(void **state) {
-    char *path = malloc(64);
+    char *path = malloc(SCRATCH_NAME);
     if (!path) return -1;
-    snprintf(path, 64, "/tmp/bough-test-XXXXXX");
     *state = path;
-    return mkdtemp(path) ? 0 : -1;
+    return mkdtemp(scratch_name(path)) ? 0 : -1;
 }
 
 static inline int scratch_empty(const char *path) {

@@ -1,6 +1,7 @@
 // Between rotor and bodies: the loads put on rods and rigid blades, and how they go on between
 // samples. The scene has a flexible and a rigid blade.
 #include "tests/built_scene.h"
+#include "tests/scratch_name.h"
 
 #include "apps/simulation/aero_link.h"
 
@@ -182,8 +183,8 @@ static void wind_of_the_scene_reaches_the_rotor(void **context) {
 // Dynamic inflow begins in equilibrium; after a sudden gust the old induction stays for a while.
 static void wind_of_a_file_reaches_the_rotor(void **context) {
     (void)context;
-    char path[] = "/tmp/bough-wind-XXXXXX", set[160];
-    int file = mkstemp(path);
+    char path[SCRATCH_NAME], set[SCRATCH_PATH];
+    int file = mkstemp(scratch_name(path));
     assert_true(file >= 0);
     static const char text[] = "! time speed direction\n0 12 0 0 0 0 0 0\n2 6 0 4 0 0 0 0\n";
     assert_int_equal(write(file, text, sizeof text - 1), sizeof text - 1);

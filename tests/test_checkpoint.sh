@@ -4,30 +4,7 @@ set -u
 bough=$1
 bar=$2/apps/beams/rubber-bar.yaml
 turbine=$2/apps/turbine/runup.yaml
-failures=0
-
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 1
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-
-# expect CODE ARGUMENT...: runs the program; its output is then in stdout and stderr.
-expect() {
-    code=$1
-    shift
-    said="bough $*"
-    "$bough" "$@" >stdout 2>stderr </dev/null
-    got=$?
-    [ "$got" -eq "$code" ] && return
-    fail "$said: exit code $got, expected $code"
-    cat stderr
-}
-
-has() { grep -q -e "$2" "$1" || fail "$said: no '$2' in $1: $(head -n 3 "$1")"; }
+. "$(dirname "$0")/scratch.sh"
 
 # Waits for a checkpoint that is not the one of `seen`; false when the process ends before.
 await() {

@@ -10,36 +10,9 @@ mechanisms=$2/apps/mechanisms
 beam=$2/tests/scenes/example-beam.yaml
 turbine=$2/apps/turbine/runup.yaml
 version=$3
-failures=0
-
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-mkdir "$scratch/work"
-cd "$scratch/work" || exit 1
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-
-# expect CODE ARGUMENT...: runs the program; its output is then in ../stdout and ../stderr.
-expect() {
-    code=$1
-    shift
-    said="bough $*"
-    "$bough" "$@" >../stdout 2>../stderr </dev/null
-    got=$?
-    [ "$got" -eq "$code" ] && return
-    fail "$said: exit code $got, expected $code"
-    cat ../stderr
-}
-
-# has FILE PATTERN: a line of the file matches.
-has() {
-    grep -q -e "$2" "$1" && return
-    fail "$said: no '$2' in $1:"
-    head -n 20 "$1"
-}
+. "$(dirname "$0")/scratch.sh"
+mkdir work
+cd work || exit 1
 
 empty() { [ ! -s "$1" ] || fail "$said: $1 should be empty, has: $(cat "$1")"; }
 exists() { [ -e "$1" ] || fail "$said: no $1"; }

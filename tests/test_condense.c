@@ -91,14 +91,7 @@ static double noise(unsigned *seed) {
 
 static void make(member *m, int n_state, int n_input, int n_output, bool feedthrough,
                  unsigned seed) {
-    static const bough_system_ops ops = {.derivative = derivative,
-                                            .output = output,
-                                            .output_tangent = output_tangent,
-                                            .input_columns = input_columns,
-                                            .factors = factors,
-                                            .linearise = linearise,
-                                            .factor = factor,
-                                            .solve = solve};
+    static const bough_system_ops ops = {BOUGH_SYSTEM_REQUIRED};
     *m = (member){.s = {.name = "member",
                         .n_state = n_state,
                         .n_input = n_input,

@@ -201,7 +201,7 @@ static void frequencies_are_those_of_beams(void **context) {
 static void a_scene_steps(const edit *one, const edit *two) {
     trial t = import_with(one, two);
     assert_string_equal(t.status.message, "");
-    char path[160];
+    char path[SCRATCH_PATH];
     snprintf(path, sizeof path, "%s/scene.yaml", t.out);
     bough_session *s = bough_session_open(path, NULL, 0);
     assert_string_equal(bough_session_error(s), "");

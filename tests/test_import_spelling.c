@@ -83,7 +83,7 @@ static const char *const ends[] = {"\n", "\r\n", "\r"};
 
 // Copies a deck with its lines spelled otherwise.
 static void respell(const char *folder, const char *name) {
-    char path[256], text[8192];
+    char path[SCRATCH_PATH], text[8192];
     snprintf(path, sizeof path, "%s/tests/decks/%s", BOUGH_SOURCE_DIR, name);
     FILE *in = fopen(path, "r");
     assert_non_null(in);
@@ -108,7 +108,7 @@ static void respell(const char *folder, const char *name) {
 
 // Decks without tables, whose lines may stand in any order but for their first.
 static void reverse(const char *folder, const char *name) {
-    char path[256], text[8192], *line[200] = {""};
+    char path[SCRATCH_PATH], text[8192], *line[200] = {""};
     int n = 0;
     snprintf(path, sizeof path, "%s/tests/decks/%s", BOUGH_SOURCE_DIR, name);
     FILE *in = fopen(path, "r");
@@ -141,7 +141,7 @@ static void same_results(const trial *a, const trial *b) {
 }
 
 static void again(trial *t, const char *main) {
-    char path[128];
+    char path[SCRATCH_PATH];
     snprintf(path, sizeof path, "%s/%s", t->folder, main);
     t->status = bough_import_openfast(path, t->out, &(bough_import_options){0}, NULL);
 }

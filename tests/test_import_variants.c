@@ -7,7 +7,7 @@
 #include <math.h>
 
 static void steps(trial *t) {
-    char path[160];
+    char path[SCRATCH_PATH];
     snprintf(path, sizeof path, "%s/scene.yaml", t->out);
     bough_session *s = bough_session_open(path, NULL, 0);
     assert_string_equal(bough_session_error(s), "");

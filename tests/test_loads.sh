@@ -3,15 +3,7 @@
 set -u
 bough=$1 source=$2
 power=$source/apps/turbine/power.yaml
-failures=0
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 1
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
+. "$(dirname "$0")/scratch.sh"
 
 # A run of 2 s in that wind, into the folder.
 blow() {
@@ -42,14 +34,12 @@ done
 
 # -- sweeps and load sets --------------------------------------------------------------------------
 
-# expect CODE MESSAGE ARGUMENT...: of bough study, its words in ./log
-expect() {
-    want=$1 message=$2
+# study CODE PATTERN ARGUMENT...: bough study, whose words are then in ./log
+study() {
+    code=$1 pattern=$2
     shift 2
-    "$bough" study "$@" --quiet >log 2>&1 </dev/null
-    code=$?
-    [ $code -eq "$want" ] || fail "bough study $*: exit code $code, expected $want: $(cat log)"
-    [ -z "$message" ] || grep -q -e "$message" log || fail "bough study $*: no '$message' in: $(cat log)"
+    says "$code" "$pattern" study "$@" --quiet
+    cat stdout stderr >log
 }
 
 # same FOLDER FOLDER: all that follows from the cases, to the bit.
@@ -71,7 +61,7 @@ grid:
   aero.wind.speed: [8, 10 m/s]
   aero.air_density: [1.1, 1.225]
 END
-expect 0 '4 runs, 0 failed' sweep.yaml --out sweep
+study 0 '4 runs, 0 failed' sweep.yaml --out sweep
 head -n 1 sweep/cases.csv | grep -q '^case,aero.wind.speed,aero.air_density,outcome,RotSpeed min \[rpm\]' ||
     fail "head of cases.csv: $(head -n 1 sweep/cases.csv)"
 # The statistics of a case are those of the same run alone.
@@ -110,17 +100,17 @@ cases:
     factor: 1.1
     grid: {aero.wind.shear: [vertical, horizontal], aero.wind.speed: [16]}
 END
-expect 0 '10 cases' set.yaml --out whole
-expect 0 'simulated hours per core hour' set.yaml --out one --threads 1
+study 0 '10 cases' set.yaml --out whole
+study 0 'simulated hours per core hour' set.yaml --out one --threads 1
 same whole one
-for part in 2 3 1; do expect 0 "part $part of 3: " set.yaml --out parts --part $part/3; done
-expect 0 '10 cases' set.yaml --out parts
+for part in 2 3 1; do study 0 "part $part of 3: " set.yaml --out parts --part $part/3; done
+study 0 '10 cases' set.yaml --out parts
 grep -q 'ran ' log && fail "cases of parts were run again"
 same whole parts
 if parallel --version 2>/dev/null | grep -q 'GNU parallel'; then
     seq 3 | parallel -j 2 "$bough" study set.yaml --out jobs --threads 1 --quiet --part {}/3 >log 2>&1 ||
         fail "GNU parallel: $(cat log)"
-    expect 0 '10 cases' set.yaml --out jobs
+    study 0 '10 cases' set.yaml --out jobs
     grep -q 'ran ' log && fail "cases of GNU parallel's jobs were run again"
     same whole jobs
 fi
@@ -132,28 +122,28 @@ first=$!
 wait $first || fail "first worker: $(cat first)"
 ran=$(sed -n 's/^ran \([0-9]*\) cases.*/\1/p' first second | awk '{ n += $1 } END { print n }')
 [ "$ran" = 10 ] || fail "two workers ran $ran cases, not 10: $(cat first second)"
-expect 0 '10 cases' set.yaml --out shared
+study 0 '10 cases' set.yaml --out shared
 same whole shared
 "$bough" study set.yaml --out killed --threads 1 --quiet >first 2>&1 &
 first=$!
 until [ -e killed/cases/000002.case ]; do sleep 0.05; done
 kill -KILL $first
 wait $first 2>/dev/null
-expect 0 '10 cases' set.yaml --out killed
+study 0 '10 cases' set.yaml --out killed
 ran=$(sed -n 's/^ran \([0-9]*\) cases.*/\1/p' log)
 [ "$ran" -le 8 ] || fail "a killed worker's cases were run again: $ran"
 same whole killed
 
 # A damaged result is told, not taken for a missing one.
 cp -r whole damaged && head -n 5 whole/cases/000003.case >damaged/cases/000003.case
-expect 1 'cases/000003.case.*is damaged: remove it' set.yaml --out damaged
+study 1 'cases/000003.case.*is damaged: remove it' set.yaml --out damaged
 rm damaged/cases/000003.case
-expect 0 'ran 1 cases' set.yaml --out damaged
+study 0 'ran 1 cases' set.yaml --out damaged
 same whole damaged
 
 # A case that fails is told, the others go on, and the result says what it lacks.
 sed 's/speed: \[8, 16\]/speed: [8, 300]/' set.yaml >failing.yaml
-expect 3 'case 8 failed (DLC1.3, speed=300)' failing.yaml --out failing
+study 3 'case 8 failed (DLC1.3, speed=300)' failing.yaml --out failing
 grep -q "bough run .*--set aero.wind.speed=300" log || fail "no command line of the failed case: $(cat log)"
 grep -q '1 of 10 cases failed: the lifetime result is incomplete' log || fail "not told incomplete: $(cat log)"
 grep -q '^INCOMPLETE: 1 cases failed' failing/table.txt || fail "table: $(head -n 4 failing/table.txt)"
@@ -164,7 +154,7 @@ refused() {
     message=$1
     shift
     sed "$@" set.yaml >bad.yaml
-    expect 2 "$message" bad.yaml --out none
+    study 2 "$message" bad.yaml --out none
     [ -e none ] && fail "bad input wrote results: $*"
 }
 refused "'1' is given twice" 's/seed: \[1, 2\]/seed: [1, 2, 1]/'
@@ -176,8 +166,8 @@ refused 'at least two rising speeds' 's/\[8, 12, 16\]/[12]/'
 refused 'is not before the end' 's/from: 1 s/from: 5 s/'
 refused 'unknown key' 's/wind.seed/wind.seeds/'
 refused 'at most one of' 's/events: 100/events: 100, hours: 2/;s/    events: 100, /    events: 100\n    /'
-expect 2 "no load case 'DLC1.4' (did you mean 'DLC1.[2-5]'" set.yaml --out none --case DLC1.4
-expect 0 '' set.yaml --out chosen --case DLC1.5
+study 2 "no load case 'DLC1.4' (did you mean 'DLC1.[2-5]'" set.yaml --out none --case DLC1.4
+study 0 '' set.yaml --out chosen --case DLC1.5
 [ "$(ls chosen/cases/*.case | wc -l)" -eq 2 ] || fail "--case ran $(ls chosen/cases)"
 
 [ "$failures" -eq 0 ]

@@ -1,6 +1,7 @@
 #include "apps/config/text.h"
 
 #include "tests/check.h"
+#include "tests/scratch_name.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -233,15 +234,15 @@ static void unreadable_files_are_named(void **state) {
 
 static void large_files_are_refused(void **state) {
     (void)state;
-    char path[] = "/tmp/bough_text_XXXXXX";
-    int descriptor = mkstemp(path);
+    char path[SCRATCH_NAME];
+    int descriptor = mkstemp(scratch_name(path));
     FILE *stream = fdopen(descriptor, "w");
     char line[1024];
     memset(line, '#', sizeof line);
     for (int i = 0; i < 17 * 1024; i++)
         fwrite(line, 1, sizeof line, stream);
     fclose(stream);
-    char expected[120];
+    char expected[SCRATCH_PATH];
     snprintf(expected, sizeof expected, "%s: error: cannot be read: the file is larger than 16 MB\n", path);
     fixture f = start();
     clock_t begin = clock();

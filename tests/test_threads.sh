@@ -6,17 +6,8 @@ bough=$1
 turbine=$2/apps/turbine/runup.yaml
 land=$2/apps/turbine/land.yaml
 power=$2/apps/turbine/power.yaml
-failures=0
-
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 1
+. "$(dirname "$0")/scratch.sh"
 unset OMP_NUM_THREADS OMP_THREAD_LIMIT
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
 
 # run OUT ARGUMENT...: whole runs only; a sanitizer's report makes the exit code another.
 run() {

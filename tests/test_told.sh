@@ -3,25 +3,13 @@
 # in ways that interface defects do not show, made small.
 set -u
 bough=$1
-failures=0
-scratch=$(mktemp -d)
-trap 'rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 1
-export OPENBLAS_NUM_THREADS=1
+. "$(dirname "$0")/scratch.sh"
 
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-
-# expect CODE PATTERN SCENE [ARGUMENT]...: the pattern is in what is said.
-expect() {
+# run CODE PATTERN SCENE [ARGUMENT]...: a line of what the run says matches.
+run() {
     code=$1 pattern=$2
     shift 2
-    "$bough" run "$@" --quiet --out out >said 2>&1 </dev/null
-    got=$?
-    [ $got -eq "$code" ] || fail "bough run $*: exit code $got, expected $code: $(head -c 600 said)"
-    grep -q -e "$pattern" said || fail "bough run $*: no '$pattern' in: $(head -c 600 said)"
+    says "$code" "$pattern" run "$@" --quiet --out out
 }
 
 # A rod as arm on the rocker of a four-bar linkage, under ramp: the closed loop makes the rocker light.
@@ -40,10 +28,10 @@ bodies:
 closures: [{name: pin, kind: spherical, from: coupler, from_placement: [move x 1], to: rocker,
             to_placement: [move z 0.55]}]
 END
-expect 3 'error bound 0.05 is exceeded: [a-zA-Z]* errs by .* of its range, noticeably from .* s on; cause: .*; try' four-bar.yaml
+run 3 'error bound 0.05 is exceeded: [a-zA-Z]* errs by .* of its range, noticeably from .* s on; cause: .*; try' four-bar.yaml
 grep -q '"status": "failed"' out/summary.json || fail 'the summary of a run beyond its bound'
 coupled='simulation.coupling={scheme: monolithic}'
-expect 0 '^error: .* by second solution, same mesh' four-bar.yaml --set "$coupled" \
+run 0 '^error: .* by second solution, same mesh' four-bar.yaml --set "$coupled" \
     --set 'simulation.master={solver: rosenbrock, rtol: 1e-5}'
 
 # A straight bar in free fall: what hardly moves has no say, whatever its error relative to nothing.
@@ -54,7 +42,7 @@ bodies:
   - {name: arm, fidelity: rod, joint: {kind: fixed, parent: carriage},
      rod: {length: 0.8, segments: 3, stiffness: [5e6, 5e6, 1.4e7, 200, 200, 150], mass: [0.5, 0, 0, 1e-5, 1e-5, 0]}}
 END
-expect 0 '^status: complete' fall.yaml
+run 0 '^status: complete' fall.yaml
 
 # A mast that carries a head: told by the linearised members 1e3 and more times too much.
 cat >carrying.yaml <<'END'
@@ -65,10 +53,10 @@ bodies:
            damping: [3e-3, 3e-3, 3e-3, 3e-3, 3e-3, 3e-3], mass: [0.4, 0, 0, 1.2e-5, 1.2e-5, 0]}}
   - {name: head, joint: {kind: fixed, parent: mast}, fidelity: rigid, mass: 1.8, inertia: [7e-3, 7e-3, 2e-3]}
 END
-expect 0 '^error: ' carrying.yaml
+run 0 '^error: ' carrying.yaml
 
 # A reference tells nothing, and says so; a bound of 0 is none.
-expect 0 '^error: not estimated' fall.yaml --set "$coupled" --set simulation.error_estimate=none
+run 0 '^error: not estimated' fall.yaml --set "$coupled" --set simulation.error_estimate=none
 grep -q '"relative": null' out/summary.json || fail 'an unknown error is null'
-expect 0 '^status: complete' four-bar.yaml --set simulation.error_bound=0
+run 0 '^status: complete' four-bar.yaml --set simulation.error_bound=0
 [ $failures -eq 0 ]

@@ -6,26 +6,8 @@ set -u
 bough=$1 source=$2
 bar=$source/apps/beams/rubber-bar.yaml
 blade=$source/tests/scenes/blade.yaml
-failures=0
-scratch=$(mktemp -d)
+. "$(dirname "$0")/scratch.sh"
 trap 'umount -q "$scratch/disk" 2>/dev/null; chmod -R u+w "$scratch"; rm -rf "$scratch"' EXIT
-cd "$scratch" || exit 1
-export OPENBLAS_NUM_THREADS=1
-
-fail() {
-    echo "FAILED: $*"
-    failures=$((failures + 1))
-}
-
-# expect CODE MESSAGE ARGUMENT...
-expect() {
-    want=$1 message=$2
-    shift 2
-    "$bough" "$@" >stdout 2>stderr </dev/null
-    code=$?
-    [ $code -eq "$want" ] || fail "bough $*: exit code $code, expected $want: $(head -c 300 stderr)"
-    [ -z "$message" ] || grep -q -e "$message" stderr || fail "bough $*: no '$message' in: $(head -c 300 stderr)"
-}
 
 # same FOLDER: it is as it was when its copy was made, but for what was never finished.
 keep() { rm -rf kept && cp -r "$1" kept; }
@@ -68,13 +50,13 @@ with() {
 earlier() {
     for name in run static modes study import; do
         with $name "old-$name"
-        expect 0 '' "${words[@]}"
+        says 0 '' "${words[@]}"
     done
     cp -r old-run old-checkpoint
     cp -r old-run old-frames
     mkdir old-report
     cp old-run/channels.out old-report
-    expect 0 '' report old-report
+    says 0 '' report old-report
 }
 
 # A disk that is full from some byte on: a limit of a file's size, told as the device would.
@@ -115,7 +97,7 @@ mounted() {
         keep disk/out
         head -c 1000000 /dev/zero >disk/fill 2>/dev/null
         with $name disk/out
-        expect 1 'No space left on device' "${words[@]}"
+        says 1 'No space left on device' "${words[@]}"
         same disk/out "$name, full disk"
     done
     rm -rf disk/*
@@ -123,9 +105,9 @@ mounted() {
     keep disk/out
     mount -o remount,ro disk
     with run disk/out
-    expect 1 'Read-only file system' "${words[@]}"
+    says 1 'Read-only file system' "${words[@]}"
     same disk/out 'read-only disk'
-    expect 1 'Read-only file system' report disk/out
+    says 1 'Read-only file system' report disk/out
     umount disk
 }
 
@@ -133,8 +115,8 @@ unwritable() {
     [ "$(id -u)" -ne 0 ] || return 0 # root may write anywhere
     mkdir -p locked
     chmod a-w locked
-    expect 1 'cannot write into the folder' run "$bar" --set "$long" --out locked
-    expect 1 'cannot create the folder' run "$bar" --set "$long" --out locked/below
+    says 1 'cannot write into the folder' run "$bar" --set "$long" --out locked
+    says 1 'cannot create the folder' run "$bar" --set "$long" --out locked/below
 }
 
 await() { # FILE PROCESS
@@ -150,8 +132,8 @@ await() { # FILE PROCESS
 vanished() {
     cp "$bar" scene.yaml
     small_study scene.yaml >study.yaml
-    expect 2 'cannot be read' run none.yaml
-    expect 2 'cannot be read' study none.yaml
+    says 2 'cannot be read' run none.yaml
+    says 2 'cannot be read' study none.yaml
     "$bough" study study.yaml --out part --threads 1 --quiet >/dev/null 2>stderr &
     process=$!
     await part/cells.csv $process || fail 'the study began'
@@ -163,7 +145,7 @@ vanished() {
     cp part/cells.csv cells
     grep -q 'macro_step=[^,]*,[1-9]' cells && fail 'vanished scene: stored as a result'
     mv away.yaml scene.yaml
-    expect 0 '' study study.yaml --out part --threads 1 --quiet
+    says 0 '' study study.yaml --out part --threads 1 --quiet
     head -c "$(wc -c <cells)" part/cells.csv | cmp - cells || fail 'vanished scene: runs were lost'
     [ "$(grep -c macro_step= part/cells.csv)" -eq 6 ] || fail 'vanished scene: six cells'
 }
@@ -184,7 +166,7 @@ signals() {
             fail "SIG$signal: $(head -c 300 stderr)"
         [ ! -e part/table.txt ] || fail "SIG$signal: a table of half a study"
     done
-    expect 0 '' study study.yaml --out part --threads 1 --quiet
+    says 0 '' study study.yaml --out part --threads 1 --quiet
     [ -e part/table.txt ] || fail 'killed study: no table after going on'
 }
 

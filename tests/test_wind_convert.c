@@ -3,6 +3,7 @@
 #include "apps/import/wind_convert.h"
 
 #include "tests/check.h"
+#include "tests/scratch_name.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,14 +12,13 @@
 enum { N_Z = 2, N_Y = 3, N_T = 4 };
 
 typedef struct place {
-    char folder[64], wind[96], sum[96];
+    char folder[SCRATCH_NAME], wind[SCRATCH_PATH], sum[SCRATCH_PATH];
     bough_arena *arena;
 } place;
 
 static int set_up(void **state) {
     place *p = test_malloc(sizeof *p);
-    strcpy(p->folder, "/tmp/bough-convert-XXXXXX");
-    assert_non_null(mkdtemp(p->folder));
+    assert_non_null(mkdtemp(scratch_name(p->folder)));
     snprintf(p->wind, sizeof p->wind, "%s/box.wnd", p->folder);
     snprintf(p->sum, sizeof p->sum, "%s/box.sum", p->folder);
     p->arena = bough_arena_create();
@@ -28,7 +28,7 @@ static int set_up(void **state) {
 
 static int tear_down(void **state) {
     place *p = *state;
-    char command[128];
+    char command[SCRATCH_PATH];
     snprintf(command, sizeof command, "rm -rf %s", p->folder);
     assert_int_equal(system(command), 0);
     bough_arena_destroy(p->arena);
@@ -158,10 +158,10 @@ static void damaged_bladed_files_are_told(void **state) {
 
 static double unscaled(int x, int y, int z, int c) { return (x % 2 ? 1 : -1) * (1 + 0.1 * y) + 0.01 * z + c; }
 
-static void write_hawc(const place *p, char path[3][96], const char *const **file) {
+static void write_hawc(const place *p, char path[3][SCRATCH_PATH], const char *const **file) {
     static const char *list[3];
     for (int c = 0; c < 3; c++) {
-        snprintf(path[c], 96, "%s/%c.bin", p->folder, "uvw"[c]);
+        snprintf(path[c], SCRATCH_PATH, "%s/%c.bin", p->folder, "uvw"[c]);
         list[c] = path[c];
         FILE *f = fopen(path[c], "wb");
         assert_non_null(f);
@@ -192,7 +192,7 @@ static void check_hawc(const bough_wind_box *box, double factor, double mean_kep
 
 static void hawc_files_are_boxes(void **state) {
     place *p = *state;
-    char path[3][96];
+    char path[3][SCRATCH_PATH];
     const char *const *file;
     write_hawc(p, path, &file);
     bough_hawc_def d = {.file = {file[0], file[1], file[2]}, .nx = N_T, .ny = N_Y, .nz = N_Z,

@@ -2,6 +2,7 @@
 
 #include "core/base.h"
 #include "tests/check.h"
+#include "tests/scratch_name.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,14 +12,13 @@ static const double degree = BOUGH_PI / 180;
 
 typedef struct place {
     bough_arena *arena;
-    char path[32];
+    char path[SCRATCH_NAME];
 } place;
 
 static int set_up(void **state) {
     place *p = test_malloc(sizeof *p);
     p->arena = bough_arena_create();
-    strcpy(p->path, "/tmp/bough-wind-XXXXXX");
-    int file = mkstemp(p->path);
+    int file = mkstemp(scratch_name(p->path));
     assert_true(file >= 0);
     close(file);
     *state = p;

@@ -5,6 +5,7 @@
 #include "aero/wind_turbulence.h"
 #include "core/base.h"
 #include "tests/check.h"
+#include "tests/scratch_name.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -288,8 +289,8 @@ static void a_seed_gives_the_same_bits(void **state) {
 
 static void a_box_that_is_written_reads_the_same(void **state) {
     ensemble *e = *state;
-    char path[] = "/tmp/bough-box-XXXXXX";
-    int file = mkstemp(path);
+    char path[SCRATCH_NAME];
+    int file = mkstemp(scratch_name(path));
     assert_true(file >= 0);
     FILE *stream = fdopen(file, "wb");
     assert_true(bough_wind_box_write(&e->box[0], "seed 100", stream));

@@ -12,9 +12,8 @@ static const char *const files[] = {"scene.yaml", "blade-structure.yaml", "tower
 // Imports a deck with a text replaced (NULL: none).
 static trial import_of(const char *deck, const edit *change) {
     trial t = {.arena = bough_arena_create()};
-    char path[128];
-    strcpy(t.folder, "/tmp/bough-windio-XXXXXX");
-    assert_non_null(mkdtemp(t.folder));
+    char path[SCRATCH_PATH];
+    assert_non_null(mkdtemp(scratch_name(t.folder)));
     copy_deck(t.folder, deck, change, NULL);
     snprintf(path, sizeof path, "%s/%s", t.folder, deck);
     snprintf(t.out, sizeof t.out, "%s/out", t.folder);
@@ -230,7 +229,7 @@ static void polars_go_round(void **context) {
 static void scene_steps(void **context) {
     (void)context;
     trial t = import_of("turbine-1.yaml", NULL);
-    char path[160];
+    char path[SCRATCH_PATH];
     snprintf(path, sizeof path, "%s/scene.yaml", t.out);
     bough_session *s = bough_session_open(path, NULL, 0);
     assert_string_equal(bough_session_error(s), "");

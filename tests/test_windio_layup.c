@@ -51,10 +51,9 @@ typedef struct options {
 static trial import_layers(options o) {
     enum { SIZE = 65536 };
     trial t = {.arena = bough_arena_create()};
-    char path[256], *text = malloc(SIZE), shape[16384], *body;
+    char path[SCRATCH_PATH], *text = malloc(SIZE), shape[16384], *body;
     assert_non_null(text);
-    strcpy(t.folder, "/tmp/bough-layup-XXXXXX");
-    assert_non_null(mkdtemp(t.folder));
+    assert_non_null(mkdtemp(scratch_name(t.folder)));
     snprintf(path, sizeof path, "%s/tests/decks/turbine-1.yaml", BOUGH_SOURCE_DIR);
     FILE *in = fopen(path, "r");
     assert_non_null(in);
@@ -115,7 +114,7 @@ static void tube_of_one_layer(void **context) {
             check_near(number(row, "4.1"), 0, 0, 1e-4);
             check_near(number(row, "4.2"), 0, 0, 1e-4);
         }
-        char path[160];
+        char path[SCRATCH_PATH];
         snprintf(path, sizeof path, "%s/scene.yaml", t.out);
         bough_session *s = bough_session_open(path, NULL, 0);
         assert_string_equal(bough_session_error(s), "");

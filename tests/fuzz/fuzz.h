@@ -2,6 +2,8 @@
 #ifndef BOUGH_TESTS_FUZZ_FUZZ_H
 #define BOUGH_TESTS_FUZZ_FUZZ_H
 
+#include "tests/scratch_name.h"
+
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -20,17 +22,17 @@ static inline void fuzz_demand(int met, const char *what) {
 static inline const char *fuzz_folder(void);
 
 static inline void fuzz_clean(void) {
-    char command[64];
+    char command[SCRATCH_PATH];
     snprintf(command, sizeof command, "rm -rf %s", fuzz_folder());
-    if (system(command) != 0) fputs("files are left in /tmp\n", stderr);
+    if (system(command) != 0) fputs("files of the test are left\n", stderr);
 }
 
 // A folder of this process for parsers that read files, until it ends.
 static inline const char *fuzz_folder(void) {
-    static char folder[] = "/tmp/bough-fuzz-XXXXXX";
+    static char folder[SCRATCH_NAME];
     static int made;
     if (made) return folder;
-    fuzz_demand(mkdtemp(folder) != NULL, "a folder in /tmp");
+    fuzz_demand(mkdtemp(scratch_name(folder)) != NULL, "a folder for files");
     made = 1;
     atexit(fuzz_clean);
     return folder;
@@ -38,11 +40,11 @@ static inline const char *fuzz_folder(void) {
 
 // Writes the folder's file of that name; its path.
 static inline const char *fuzz_file(const char *name, const void *data, size_t size) {
-    static char path[128];
+    static char path[SCRATCH_PATH];
     snprintf(path, sizeof path, "%s/%s", fuzz_folder(), name);
     remove(path); // emptying a file instead makes some file systems write it to the disk
     FILE *file = fopen(path, "wb");
-    fuzz_demand(file && fwrite(data, 1, size, file) == size, "a file in /tmp");
+    fuzz_demand(file && fwrite(data, 1, size, file) == size, "a file");
     fclose(file);
     return path;
 }

@@ -20,7 +20,7 @@ static uint8_t good[ROOM], changed[ROOM];
 static size_t good_size;
 
 static size_t load(uint8_t *bytes) {
-    char path[128];
+    char path[SCRATCH_PATH];
     snprintf(path, sizeof path, "%s/checkpoint.bin", fuzz_folder());
     FILE *file = fopen(path, "rb");
     size_t size = file ? fread(bytes, 1, ROOM, file) : 0;

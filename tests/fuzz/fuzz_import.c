@@ -32,7 +32,7 @@ static void load(int i) {
 }
 
 static void make(const char *name) {
-    char path[128];
+    char path[SCRATCH_PATH];
     snprintf(path, sizeof path, "%s/%s", fuzz_folder(), name);
     mkdir(path, 0700);
 }
@@ -65,7 +65,7 @@ static int likest(const uint8_t *data, size_t size) {
 
 // What becomes a scene can be read as one.
 static void read_scene(const char *folder) {
-    char path[160];
+    char path[SCRATCH_PATH + 32];
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
@@ -78,7 +78,7 @@ static void read_scene(const char *folder) {
 
 // Any bytes as a file of a model that is good otherwise.
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    char path[128], out[128];
+    char path[SCRATCH_PATH], out[SCRATCH_PATH];
     start();
     int i = likest(data, size), version = decks[i][0] == 'v' ? 3 : 0;
     snprintf(path, sizeof path, "%s/%.*smain.fst", fuzz_folder(), version, decks[i]);

@@ -4,7 +4,7 @@
 
 // What becomes a scene can be read as one.
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    char out[128], path[160];
+    char out[SCRATCH_PATH], path[SCRATCH_PATH + 32];
     snprintf(out, sizeof out, "%s/out", fuzz_folder());
     snprintf(path, sizeof path, "%s/scene.yaml", out);
     bough_status status = bough_import_windio(fuzz_file("turbine.yaml", data, size), out,

@@ -135,16 +135,7 @@ static void transfer(void *self, bough_snapshot *s) {
 static const bough_integrator_ops taylor = {
     .title = "Taylor series", .advance = advance, .statistics = statistics, .transfer = transfer};
 
-static const bough_system_ops operations = {
-    .derivative = derivative,
-    .output = output,
-    .output_tangent = output_tangent,
-    .input_columns = input_columns,
-    .factors = factors,
-    .linearise = linearise,
-    .factor = factor,
-    .solve = solve,
-};
+static const bough_system_ops operations = {BOUGH_SYSTEM_REQUIRED};
 
 bough_system bough_oscillator_system(bough_oscillator *o, const char *name) {
     o->scale[0] = o->scale[1] = 1;
