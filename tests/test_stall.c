@@ -5,6 +5,7 @@
 #include "tests/nrel5mw_aero.h"
 
 #include <complex.h>
+#include <string.h>
 
 static const double degree = BOUGH_PI / 180;
 
@@ -86,6 +87,41 @@ static void steady_limit_is_the_static_polar(void **state) {
             check_static(&a->polar[p], angle * degree, k);
         }
     }
+}
+
+// In the steps of a run: a section that comes from the angle without lift and stays where it is has the
+// coefficients of its polar within 20 s, to 1e-3 at every angle of operation; of joined straight lines, of
+// cubics, and of mixtures of neighbours.
+static void a_run_settles_on_the_static_polar(void **state) {
+    foils *a = *state;
+    enum { N = 8, STEPS = 1000 };
+    bough_polar polar[3 * N - 1];
+    memcpy(polar, a->polar, sizeof a->polar);
+    for (int i = 0; i < N; i++) {
+        bough_polar *smooth = polar + N + i, *mixed = polar + 2 * N + i;
+        bough_status status = bough_polar_build(a->arena, nrel5mw_polars + i, smooth);
+        if (bough_is_ok(&status)) status = bough_polar_smoothen(a->arena, smooth);
+        if (bough_is_ok(&status) && i + 1 < N)
+            status = bough_polar_blend(a->arena, a->polar + i, a->polar + i + 1, 0.4, mixed);
+        assert_int_equal(status.code, BOUGH_OK);
+    }
+    double worst = 0;
+    for (int p = 0; p < 3 * N - 1; p++) {
+        bough_stall_airfoil foil = bough_stall_airfoil_of(polar + p);
+        for (double angle = -10; angle <= 15; angle += 0.25) {
+            bough_stall_state s = {0};
+            bough_coefficients k = bough_stall_advance(
+                &foil, 3, (bough_stall_inflow){50, foil.zero_lift, 0}, 0, &s);
+            for (int i = 0; i < STEPS; i++)
+                k = bough_stall_advance(&foil, 3, (bough_stall_inflow){50, angle * degree, 0}, 0.02,
+                                        &s);
+            bough_coefficients fixed = bough_polar_at(polar + p, angle * degree);
+            worst = fmax(worst, fmax(fabs(k.lift - fixed.lift), fabs(k.drag - fixed.drag)));
+            worst = fmax(worst, fabs(k.moment - fixed.moment));
+        }
+    }
+    print_message("most off the static polars: %.2g\n", worst);
+    assert_true(worst < 1e-3);
 }
 
 // Attached flow: lift at the reduced frequency k is slope·C(k) with Jones' approximation of
@@ -221,6 +257,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(parts_make_the_static_polar),
         cmocka_unit_test(steady_limit_is_the_static_polar),
+        cmocka_unit_test(a_run_settles_on_the_static_polar),
         cmocka_unit_test(attached_lift_is_indicial),
         cmocka_unit_test(rotation_lifts),
         cmocka_unit_test(withheld_lift_leans_back),
