@@ -13,15 +13,14 @@
 #define RHO                                                                                        \
     {.name = "rho", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.8", AT(rho),       \
      .example = "0.6",                                                                             \
-     .help = "of generalized-alpha: what a step leaves of the highest frequencies"}
+     .help = "of generalized-alpha: spectral radius at infinite frequency"}
 #define AT(field) .offset = offsetof(bough_scene_solver, field)
 static const bough_key master_keys[] = {
     {.name = "solver", .kind = BOUGH_KEY_CHOICE, .fallback = "ida",
      .choice = bough_integrator_name, AT(solver),
-     .help = "time integrator: BDF of variable order (ida, cvode-bdf), Runge-Kutta of order 4 "
-             "(arkode-esdirk) or, for up to 400 states, 5 (radau5), generalized-alpha of order 2, or a "
-             "linearly implicit Runge-Kutta method of order 3 (rosenbrock); of the monolithic scheme "
-             "for all bodies together"},
+     .help = "ida, cvode-bdf: BDF of variable order; arkode-esdirk: Runge-Kutta of order 4; "
+             "radau5: Runge-Kutta of order 5, up to 400 states; generalized-alpha: order 2; "
+             "rosenbrock: linearly implicit Runge-Kutta of order 3"},
     RTOL("1e-6"),
     {.name = "step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "[1e-7, 10]",
      AT(step), .example = "10 ms",
@@ -50,19 +49,19 @@ _Static_assert(sizeof(bough_exchange) == sizeof(int) && sizeof(bough_acceleratio
 static const bough_key coupling_keys[] = {
     {.name = "scheme", .kind = BOUGH_KEY_CHOICE, .fallback = "monolithic",
      .choice = bough_scheme_name, .offset = offsetof(bough_scene_coupling, scheme),
-     .help = "how sub-systems exchange their values. A scene that names none is integrated as a whole, by "
-             "rosenbrock to rtol 1e-5 where master names neither a solver nor an rtol below 1e-6"},
+     .help = "how sub-systems exchange their values. The default integrates all bodies as one "
+             "system: by rosenbrock to rtol 1e-5, unless master names a solver or an rtol below 1e-6"},
     {.name = "order", .kind = BOUGH_KEY_INTEGER, .range = "[0, 2]", .fallback = "1",
      AT(order), .example = "2", .help = "of extrapolated and of iterated end values: degree of the polynomial"},
     {.name = "theta", .kind = BOUGH_KEY_NUMBER, .word = "auto", .range = "[0.5, 1]",
      .fallback = "auto", AT(theta), .example = "0.6", .help = "of ramp: share of the new value"},
     {.name = "exchange", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("end-values", "waveform"),
      .fallback = "end-values", AT(exchange),
-     .help = "of iterated: what is agreed on; waveform: cubics through the values within the macro "
-             "step"},
+     .help = "of iterated: what the iteration makes agree: values at the end of the macro step, "
+             "or cubics through values within it"},
     {.name = "accelerator", .kind = BOUGH_KEY_CHOICE, .fallback = "iqn-ils", AT(accelerator),
      .choices = bough_acceleration_names,
-     .help = "of iterated: how the next values are found"},
+     .help = "of iterated: how the next values of the iteration are computed"},
     {.name = "relaxation", .kind = BOUGH_KEY_NUMBER, .range = "[0.001, 1]", .fallback = "0.5",
      AT(relaxation), .example = "0.7",
      .help = "of iterated: factor of the correction; the first one of aitken and "
@@ -73,7 +72,7 @@ static const bough_key coupling_keys[] = {
      .help = "of iterated: of the interface, relative to its largest values so far; auto: 3 rtol "
              "of micro"},
     {.name = "iterations", .kind = BOUGH_KEY_INTEGER, .range = "[1, 1000]", .fallback = "30",
-     AT(iterations), .example = "50", .help = "of iterated: most in a macro step"},
+     AT(iterations), .example = "50", .help = "of iterated: largest number in a macro step"},
 };
 #undef AT
 static const bough_schema coupling_schema = {
@@ -83,27 +82,27 @@ static const bough_key output_keys[] = {
     {.name = "interval", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .offset = offsetof(bough_scene_output, interval),
      .example = "50 ms",
-     .help = "between recorded values, a multiple of the macro step; default the macro step"},
+     .help = "time between recorded values, a multiple of the macro step; default the macro step"},
     {.name = "from", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = ">= 0",
      .fallback = "0", .offset = offsetof(bough_scene_output, from), .example = "30 s",
-     .help = "rows before it do not count in the statistics of summary.json"},
+     .help = "start of the statistics in summary.json"},
     {.name = "frames", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .offset = offsetof(bough_scene_output, frames),
      .example = "0.1 s",
-     .help = "between shapes stored for ParaView and `bough report`; default none"},
+     .help = "time between shapes stored for ParaView and `bough report`; default none"},
     {.name = "vertices", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .offset = offsetof(bough_scene_output, vertices),
      .example = "0.1 s",
-     .help = "between positions and rotations of all vertices stored in vertices.h5, by a program "
-             "built with -DBOUGH_HDF5=ON; default none"},
+     .help = "time between positions and rotations of all vertices stored in vertices.h5, by a "
+             "program built with -DBOUGH_HDF5=ON; default none"},
     {.name = "binary", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false",
      .offset = offsetof(bough_scene_output, binary),
-     .help = "at the end also channels.outb, OpenFAST's binary form: one scale and 16 bits a "
-             "channel"},
+     .help = "also writes channels.outb at the end, OpenFAST's binary format with 16 bits for "
+             "each value"},
     {.name = "channels", .kind = BOUGH_KEY_TEXTS, .count = 1,
      .offset = offsetof(bough_scene_output, channels),
      .count_offset = offsetof(bough_scene_output, n_channel), .example = "[RotSpeed, 'Root*']",
-     .help = "names or patterns of the channels that are recorded; left out: all"},
+     .help = "names or patterns of the channels that are recorded; default all"},
 };
 static const bough_schema output_schema = {SCHEMA("the output", bough_scene_output, output_keys)};
 
@@ -111,8 +110,8 @@ static const bough_schema output_schema = {SCHEMA("the output", bough_scene_outp
 static const bough_key step_control_keys[] = {
     {.name = "tolerance", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0",
      AT(tolerance), .example = "1e-3",
-     .help = "of what a port turned out to be against what was applied, relative to "
-                            "its largest value so far; 0: fixed steps"},
+     .help = "largest difference between the value obtained at a port and the value applied, "
+             "relative to the largest value so far; 0: fixed steps"},
     {.name = "min", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .fallback = "0.1 ms", AT(min), .example = "1 ms", .help = "shortest macro step"},
 };
@@ -129,29 +128,30 @@ static const bough_key simulation_keys[] = {
      .range = "[1e-7, 1e4]", .required = true, AT(macro_step), .example = "20 ms", .help = "time between exchanges"},
     {.name = "step_control", .kind = BOUGH_KEY_MAPPING, .of = &step_control_schema,
      AT(step_control),
-     .help = "halves of the macro step, and their halves, where the coupling errs"},
+     .help = "bisection of the macro step where the coupling error is too large"},
     {.name = "initial", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("undeformed", "equilibrium", "operation"),
      .fallback = "undeformed", AT(initial),
-     .help = "start as the scene says, or from equilibrium with the loads at time 0, in which a joint "
-             "with a speed keeps it, or in steady operation: equilibrium at the rotor speed and the pitch "
-             "at which the air's torque is that of 'control: {kind: variable-speed}'"},
+     .help = "undeformed: as the scene says; equilibrium: with the loads at time 0, joints with a "
+             "speed keep it; operation: equilibrium at the rotor speed and pitch at which the torque "
+             "of the air equals that of 'control: {kind: variable-speed}'"},
     {.name = "coupling", .kind = BOUGH_KEY_MAPPING, .of = &coupling_schema, AT(coupling),
      .help = "the coupling scheme"},
     {.name = "master", .kind = BOUGH_KEY_MAPPING, .of = &master_schema, AT(master),
-     .help = "integrator of the tree of bodies"},
+     .help = "integrator of the tree of bodies; of the monolithic scheme for all bodies together"},
     {.name = "micro", .kind = BOUGH_KEY_MAPPING, .of = &bough_scene_micro_schema, AT(micro),
      .help = "integrator of each rod"},
     {.name = "error_bound", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.05",
      AT(error_bound), .example = "0.02",
-     .help = "largest error, as the run tells it, of a channel of motion relative to its range: a run "
-             "beyond it ends with exit code 3; 0: none"},
+     .help = "largest estimated error of a channel of motion, relative to the channel's range; a "
+             "run with a larger error ends with exit code 3; 0: no bound"},
     {.name = "error_estimate", .kind = BOUGH_KEY_CHOICE, .fallback = "auto", AT(error_estimate),
      .choices = CHOICES("auto", "second-solution", "linearised", "none"),
-     .help = "how the run knows its error: from a second solution beside it, or from its own defects "
-             "taken through the linearised members; auto: linearised where that is known to serve"},
+     .help = "how the run estimates its error: by a second solution beside the run, or by the "
+             "linearised members driven by the coupling defects; auto: linearised where that is "
+             "known to be reliable"},
     {.name = "error_shares", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(error_shares),
-     .help = "tells the shares of mesh and air as well, by two more runs after this one: with half the "
-             "segments of each rod, and with twice the air's rate"},
+     .help = "also estimates the errors of mesh and air, by two more runs: with half the segments "
+             "of each rod, and with twice the aerodynamic sampling rate"},
     {.name = "threads", .kind = BOUGH_KEY_INTEGER, .range = "[0, 1024]", .fallback = "0",
      AT(threads), .example = "2",
      .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not "
@@ -168,34 +168,37 @@ static const bough_schema simulation_schema = {
 #define AT(member) .offset = offsetof(bough_scene_modes, member)
 static const bough_key modes_keys[] = {
     {.name = "count", .kind = BOUGH_KEY_INTEGER, .range = "[1, 60]", .fallback = "12", AT(count),
-     .example = "20", .help = "of each rod or of the scene, from the lowest frequency"},
+     .example = "20", .help = "number of modes of each rod or of the scene, from the lowest "
+                              "frequency"},
     {.name = "of", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("auto", "rods", "scene"),
      .fallback = "auto", AT(of),
-     .help = "each rod with its root held, or the whole scene; auto: the rods where no joint moves "
-             "or speed or axis is given"},
+     .help = "rods: each rod with its root held; scene: the whole scene; auto: rods if no joint "
+             "moves, or if a speed or an axis is given"},
     {.name = "at", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("undeformed", "equilibrium"),
      .fallback = "equilibrium", AT(at),
-     .help = "of the whole scene: about its initial state or its equilibrium, in which a joint "
-             "with "
-             "a speed keeps it"},
+     .help = "state of the whole scene about which modes are computed; in equilibrium, joints "
+             "with a speed keep it"},
     {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGULAR_SPEED, .fallback = "0",
      AT(speed), .example = "12.1 rpm",
-     .help = "of a steady rotation of the rods' roots; the whole scene turns as its joints do"},
+     .help = "steady rotation of the rods' roots; the whole scene rotates by the speeds of its "
+             "joints"},
     {.name = "about", .kind = BOUGH_KEY_TEXT, AT(about_name),
      .example = "hub",
-     .help = "body on the revolute joint about whose axis they turn; default the nearest that "
-             "carries the rod"},
+     .help = "body on the revolute joint about whose axis the roots rotate; default the nearest "
+             "revolute joint that carries the rod"},
     {.name = "axis", .kind = BOUGH_KEY_VECTOR, .count = 3, .fallback = ZERO3, AT(axis),
-     .example = "[1, 0, 0]", .help = "in place of a joint: direction of the axis in ground axes"},
+     .example = "[1, 0, 0]", .help = "direction of the axis of rotation in ground axes; replaces "
+                                     "'about'"},
     {.name = "centre", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
      .fallback = ZERO3, AT(centre), .example = "[0, 0, 90 m]",
-     .help = "of 'axis': a point of it, in the ground"},
+     .help = "a point of 'axis', ground axes"},
     {.name = "air", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("frozen", "quasi-steady", "dynamic"),
      .fallback = "frozen", AT(air),
-     .help = "of the whole scene: the air's forces stay those of the equilibrium, follow the motion at "
-             "once, or with the scene's dynamic inflow and stall"},
+     .help = "of the whole scene: frozen: the aerodynamic forces are those of the equilibrium; "
+             "quasi-steady: they follow the motion immediately; dynamic: with the scene's dynamic "
+             "inflow and stall"},
     {.name = "shapes", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(shapes),
-     .help = "write the modes' shapes"},
+     .help = "writes the shapes of the modes"},
 };
 #undef AT
 static const bough_schema modes_schema = {SCHEMA("the modes", bough_scene_modes, modes_keys)};
@@ -231,13 +234,13 @@ static const bough_key scene_keys[] = {
      .count_offset = offsetof(bough_scene, n_sensor),
      .help = "places on rods whose motion and section loads are recorded"},
     {.name = "turbine", .kind = BOUGH_KEY_MAPPING, .of = &bough_scene_turbine_schema, AT(turbine),
-     .help = "names what channels and aerodynamics need"},
+     .help = "bodies of the turbine that channels and aerodynamics need"},
     {.name = "aero", .kind = BOUGH_KEY_MAPPING, .of = &bough_scene_aero_schema, AT(aero),
-     .help = "aerodynamics; needs the turbine; left out: none"},
+     .help = "aerodynamics; needs the key 'turbine'; default none"},
     {.name = "control", .kind = BOUGH_KEY_MAPPING, .of = &bough_scene_control_schema, AT(control),
-     .help = "controller of the turbine's generator and pitch; left out: none"},
+     .help = "controller of the turbine's generator and pitch; default none"},
     {.name = "modes", .kind = BOUGH_KEY_MAPPING, .of = &modes_schema, AT(modes),
-     .help = "what 'bough modes' finds"},
+     .help = "settings of 'bough modes'"},
 };
 #undef AT
 // clang-format on
@@ -262,13 +265,12 @@ static const char example[] =
     "          mass: [0.8, 0, 0, 5e-5, 5e-5, 0]\n";
 
 void bough_scene_help(FILE *stream) {
-    fputs("# Scenes\n\nA scene is a YAML file. Files that it names are relative to it. Values "
-          "are SI "
-          "numbers or carry a unit:\n\n", stream);
+    fputs("# Scenes\n\nThis page lists all keys of a scene. A scene is a YAML file. Paths of files are "
+          "relative to it. Values are SI\nnumbers or have a unit:\n\n", stream);
     bough_schema_help_units(stream);
     fputs("\nAn angle or an angular speed that is not 0 needs its unit.\n\n"
-          "A list of mappings with the same keys may be written as a table; a unit at the head of a "
-          "column holds for\nall its numbers:\n\n"
+          "A list of mappings with the same keys may be written as a table. A unit after the name of "
+          "a column applies to\nall numbers of the column:\n\n"
           "    stations:\n"
           "      columns: [span, twist deg, chord]\n"
           "      rows:\n"

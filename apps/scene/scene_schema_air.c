@@ -7,7 +7,7 @@
 #define AT(member) .offset = offsetof(bough_scene_aero_station, member)
 static const bough_key aero_station_keys[] = {
     {.name = "span", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .required = true,
-     AT(span), .example = "20.5 m", .help = "along z from the root"},
+     AT(span), .example = "20.5 m", .help = "distance from the root, along z"},
     {.name = "ac_x", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .fallback = "0",
      AT(ac[0]), .example = "0.1 m",
      .help = "aerodynamic centre from the pitch axis, blade-root x (flapwise)"},
@@ -24,7 +24,7 @@ static const bough_key aero_station_keys[] = {
      .example = "DU21", .help = "name of a second polar, with which the first is mixed"},
     {.name = "share", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0", AT(share),
      .example = "0.4",
-     .help = "of the second polar, as by the place or the thickness between two airfoils"},
+     .help = "share of the second polar"},
 };
 #undef AT
 static const bough_schema aero_station_schema = {
@@ -64,7 +64,7 @@ static const bough_key polar_keys[] = {
      .help = "unique"},
     {.name = "table", .kind = BOUGH_KEY_LIST, .of = &polar_row_schema, .count = 2,
      .required = true, AT(row), .count_offset = offsetof(bough_scene_polar, n_row),
-     .help = "from -180 deg to 180 deg, linear between"},
+     .help = "rows from -180 deg to 180 deg, with linear interpolation"},
 };
 #undef AT
 static const bough_schema polar_schema = {SCHEMA("a polar", bough_scene_polar, polar_keys),
@@ -91,7 +91,7 @@ static const bough_key wind_table_keys[] = {
      .count = 2, .required = true, AT(speed),
      .count_offset = offsetof(bough_scene_wind_table, n_speed),
      .example = "[8, 8, 12 m/s]",
-     .help = "at each time, linear between, constant before and after"},
+     .help = "speed at each time, linear between, constant before and after"},
 };
 #undef AT
 static const bough_schema wind_table_schema = {
@@ -103,14 +103,16 @@ static const bough_key wind_keys[] = {
     {.name = "kind", .kind = BOUGH_KEY_CHOICE,
      .choices = CHOICES("uniform", "power", "log", "wnd", "bts", "iec"),
      .fallback = "uniform", AT(kind),
-     .help = "how the speed grows with the height: not, by a power or a logarithmic law; or from a "
-             "file: uniform (hub height) or TurbSim's box; or by a condition of IEC 61400-1"},
+     .help = "uniform: the same speed at all heights; power, log: by a power or a logarithmic "
+             "law; wnd: uniform wind file (hub height); bts: TurbSim's box; iec: condition of IEC "
+             "61400-1"},
     {.name = "condition", .kind = BOUGH_KEY_CHOICE,
      .choices = CHOICES("ntm", "etm", "ewm", "ewm-steady", "nwp", "eog", "edc", "ecd", "ews"),
      .required = true, .when_key = "kind", .when = "iec", AT(iec.condition),
-     .help = "turbulence: normal, extreme, of the extreme wind; its steady form; normal profile; "
-             "extreme operating gust, change of direction, coherent gust with change of direction, "
-             "shear"},
+     .help = "ntm: normal turbulence; etm: extreme turbulence; ewm: extreme wind with turbulence; "
+             "ewm-steady: steady extreme wind; nwp: normal profile; eog: extreme operating gust; "
+             "edc: extreme change of direction; ecd: coherent gust with change of direction; ews: "
+             "extreme shear"},
     {.name = "class", .kind = BOUGH_KEY_CHOICE,
      .choices = CHOICES("IA+", "IA", "IB", "IC", "IIA+", "IIA", "IIB", "IIC", "IIIA+", "IIIA",
                         "IIIB", "IIIC"),
@@ -118,74 +120,78 @@ static const bough_key wind_keys[] = {
      .help = "reference wind speed (I to III) and turbulence (A+ to C)"},
     {.name = "intensity", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .word = "class",
      .fallback = "class", .when_key = "kind", .when = "iec", AT(iec.intensity), .example = "0.12",
-     .help = "of the longitudinal turbulence at this speed, in place of the class's"},
+     .help = "intensity of the longitudinal turbulence at this speed; class: that of the class"},
     {.name = "rotor_diameter", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH,
      .range = "> 0", .word = "auto", .fallback = "auto", .when_key = "kind", .when = "iec",
-     AT(iec.diameter), .example = "126 m", .help = "auto: of the blades"},
+     AT(iec.diameter), .example = "126 m", .help = "auto: diameter of the scene's rotor"},
     {.name = "start", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .fallback = "0",
      .when_key = "kind", .when = "iec", AT(iec.start), .example = "60 s",
-     .help = "of a gust or a change of direction"},
+     .help = "start of a gust or a change of direction"},
     {.name = "sense", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("positive", "negative"),
      .fallback = "positive", .when_key = "kind", .when = "iec", AT(iec.negative),
-     .help = "of a change of direction (positive: clockwise seen from above) or of a shear"},
+     .help = "sign of a change of direction (positive: clockwise seen from above) or of a shear"},
     {.name = "shear", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("vertical", "horizontal"),
      .fallback = "vertical", .when_key = "kind", .when = "iec", AT(iec.horizontal),
-     .help = "of ews"},
+     .help = "direction of the shear of ews"},
     {.name = "recurrence", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("50-years", "1-year"),
      .fallback = "50-years", .when_key = "kind", .when = "iec", AT(iec.yearly),
-     .help = "of ewm and ewm-steady"},
+     .help = "recurrence period of ewm and ewm-steady"},
     {.name = "seed", .kind = BOUGH_KEY_INTEGER, .range = ">= 0", .fallback = "1",
      .when_key = "kind", .when = "iec", AT(iec.seed), .example = "7",
-     .help = "of turbulence: the same seed gives the same wind"},
+     .help = "seed of the turbulence; the same seed gives the same wind"},
     {.name = "points", .kind = BOUGH_KEY_INTEGER, .range = "[2, 41]", .fallback = "15",
      .when_key = "kind", .when = "iec", AT(iec.points), .example = "21",
-     .help = "of the turbulence's grid, over height and over breadth"},
+     .help = "number of points of the turbulence's grid, in height and in width"},
     {.name = "width", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = "> 0",
      .word = "auto", .fallback = "auto", .when_key = "kind", .when = "iec", AT(iec.width),
-     .example = "160 m", .help = "of that grid; auto: 1.15 rotor diameters"},
+     .example = "160 m", .help = "width and height of the turbulence's grid; auto: 1.15 rotor "
+                                 "diameters"},
     {.name = "time_step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .fallback = "0.05", .when_key = "kind", .when = "iec", AT(iec.time_step),
-     .example = "0.1 s", .help = "of the turbulence"},
+     .example = "0.1 s", .help = "time step of the turbulence"},
     {.name = "period", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .word = "auto", .fallback = "auto", .when_key = "kind", .when = "iec", AT(iec.period),
      .example = "700 s",
-     .help = "after which the turbulence repeats; auto: the duration, at least 600 s"},
+     .help = "period after which the turbulence repeats; auto: the duration, at least 600 s"},
     {.name = "file", .kind = BOUGH_KEY_TEXT, .required = true, .when_key = "kind",
      .when = "wnd|bts", AT(file), .example = "turbulence.bts", .help = "relative to the scene"},
     {.name = "speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .range = ">= 0",
      AT(speed), .example = "11.4 m/s",
-     .help = "horizontal, at the reference height; required without table and file, but for the "
-             "extreme wind (ewm), which the class gives"},
+     .help = "horizontal speed at the reference height; required unless there is a table or a "
+             "file, or the class gives the speed (ewm)"},
     {.name = "input", .kind = BOUGH_KEY_TEXT, AT(input), .example = "wind",
-     .help = "of a uniform wind or a law: name by which the speed is set between steps, by another "
-             "program"},
+     .help = "name of an input, by which another program sets the speed between steps; with kind "
+             "uniform, power or log"},
     {.name = "table", .kind = BOUGH_KEY_MAPPING, .of = &wind_table_schema, AT(table),
-     .help = "in place of speed: the speed over time, for gusts and ramps"},
+     .help = "speed over time, for gusts and ramps; replaces 'speed'"},
     {.name = "exponent", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.2",
      .when_key = "kind", .when = "power|iec", AT(exponent), .example = "0.14",
-     .help = "speed grows with height^exponent; in the extreme wind (ewm) 0.11 unless given"},
+     .help = "speed grows with height^exponent; the default for the extreme wind (ewm) is 0.11"},
     {.name = "roughness", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = "> 0",
      .fallback = "0.03", .when_key = "kind", .when = "log", AT(roughness),
      .example = "0.01 m", .help = "length z0: speed grows with ln(height/z0)"},
     {.name = "reference_height", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH,
      .range = "> 0", .required = true, .when_key = "kind", .when = "power|log|wnd|iec",
-     AT(reference_height), .example = "90 m", .help = "above ground z = 0; of iec the hub's"},
+     AT(reference_height), .example = "90 m", .help = "height above ground z = 0; with kind iec "
+                                        "the hub height"},
     {.name = "reference_length", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH,
      .range = "> 0", .required = true, .when_key = "kind", .when = "wnd", AT(reference_length),
      .example = "126 m",
-     .help = "over which the file's linear shears are given: the rotor's diameter"},
+     .help = "length over which the file's linear shears are given: the rotor's diameter"},
     {.name = "direction", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
-     AT(direction), .example = "15 deg", .help = "where the wind blows to, from ground x about z: the yaw misalignment of a rotor "
-             "that faces x"},
+     AT(direction), .example = "15 deg", .help = "direction to which the wind blows, from ground "
+                                        "x about z: the yaw misalignment of a rotor with its axis along x"},
     {.name = "upflow", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE,
      .range = "[-1.5, 1.5]", .fallback = "0", AT(upflow), .example = "8 deg",
      .help = "inclination of the whole wind, positive upwards"},
     {.name = "veer", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
      AT(veer), .example = "10 deg",
-     .help = "turn of the wind over 100 m of height, clockwise seen from above, none at the "
-             "reference height (of a box the hub's; 90 m without one)"},
+     .help = "change of the wind's direction over 100 m of height, clockwise seen from above; "
+             "zero at the reference height, which for a box is its hub height, and 90 m for other "
+             "winds without one"},
     {.name = "vertical", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .fallback = "0",
-     AT(vertical), .example = "0.5 m/s", .help = "upwards, at every height and time"},
+     AT(vertical), .example = "0.5 m/s", .help = "vertical speed, upwards, at every height and "
+                                        "time"},
 };
 #undef AT
 static const bough_schema wind_schema = {SCHEMA("the wind", bough_scene_wind, wind_keys),
@@ -199,11 +205,11 @@ static const bough_key induction_keys[] = {
     SWITCH(hub_loss, "Prandtl's loss factor at the hub"),
     SWITCH(tangential, "tangential induction"),
     {.name = "drag", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true",
-     .offset = offsetof(bough_scene_induction, drag), .help = "drag counts in the induction"},
+     .offset = offsetof(bough_scene_induction, drag), .help = "includes drag in the induction"},
     {.name = "high_thrust", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("smooth", "buhl"),
      .fallback = "smooth", .offset = offsetof(bough_scene_induction, options.high_thrust),
-     .help = "how thrust grows beyond momentum theory: as AeroDyn's newer formulation or by Buhl's "
-             "parabola"},
+     .help = "thrust beyond the validity of momentum theory: by AeroDyn's newer formulation, or "
+             "by Buhl's parabola"},
     {.name = "skew", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "pitt-peters"),
      .fallback = "pitt-peters", .offset = offsetof(bough_scene_induction, skew),
      .help = "correction for oblique inflow"},
@@ -213,11 +219,13 @@ static const bough_key induction_keys[] = {
      .help = "momentum theory of a disk at an angle to the wind, by Glauert: AeroDyn's SkewMomCorr"},
     {.name = "inflow", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("equilibrium", "oye"),
      .fallback = "equilibrium", .offset = offsetof(bough_scene_induction, inflow.kind),
-     .help = "how the induction follows a change of load: at once, or by Oye's dynamic inflow"},
+     .help = "reaction of the induction to a change of load: immediate, or by Oye's dynamic "
+             "inflow"},
     {.name = "inflow_time", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .word = "auto",
      .range = "> 0", .fallback = "auto", .when_key = "inflow", .when = "oye",
      .offset = offsetof(bough_scene_induction, inflow.time),
-     .example = "5 s", .help = "its slow time constant; auto: 1.1/(1 - 1.3 a) R/U"},
+     .example = "5 s", .help = "slow time constant of the dynamic inflow; auto: 1.1/(1 - 1.3 a) "
+                               "R/U"},
 };
 static const bough_schema induction_schema = {
     SCHEMA("the induction", bough_scene_induction, induction_keys)};
@@ -226,7 +234,7 @@ static const bough_schema induction_schema = {
 static const bough_key tower_keys[] = {
     {.name = "influence", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("potential", "bak"),
      .fallback = "potential", AT(influence),
-     .help = "how the tower changes the wind: potential flow about a cylinder, or with Bak's "
+     .help = "wind in front of the tower: potential flow about a cylinder, or with Bak's "
              "correction for its drag"},
     {.name = "shadow", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "powles"),
      .fallback = "none", AT(shadow), .help = "wake behind the tower"},
@@ -237,7 +245,7 @@ static const bough_key tower_keys[] = {
     {.name = "diameter", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_LENGTH, .range = "> 0",
      .count = 2, .required = true, AT(diameter),
      .count_offset = offsetof(bough_scene_tower, n_diameter), .example = "[6, 4.9 m, 3.87 m]",
-     .help = "at each height"},
+     .help = "diameter at each height"},
     {.name = "drag", .kind = BOUGH_KEY_NUMBERS, .range = ">= 0", .count = 1, .fallback = "[1]",
      AT(drag), .count_offset = offsetof(bough_scene_tower, n_drag),
      .example = "[0.5]",
@@ -246,7 +254,7 @@ static const bough_key tower_keys[] = {
              "the drag on a body"},
     {.name = "body", .kind = BOUGH_KEY_TEXT, AT(body_name),
      .example = "tower",
-     .help = "body with a rod on which the tower's drag acts; left out: no drag"},
+     .help = "body with a rod on which the tower's drag acts; default no drag"},
 };
 #undef AT
 static const bough_schema tower_schema = {SCHEMA("a tower", bough_scene_tower, tower_keys),
@@ -256,14 +264,14 @@ static const bough_schema tower_schema = {SCHEMA("a tower", bough_scene_tower, t
 static const bough_key aero_keys[] = {
     {.name = "rate", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_FREQUENCY, .range = "> 0",
      .required = true, AT(rate), .example = "50 Hz",
-     .help = "samples; their period is a multiple of the macro step"},
+     .help = "sampling rate; the period is a multiple of the macro step"},
     {.name = "air_density", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_DENSITY, .range = "> 0",
      .fallback = "1.225", AT(air_density), .example = "1.2", .help = "density of the air"},
     {.name = "wind", .kind = BOUGH_KEY_MAPPING, .of = &wind_schema, .required = true, AT(wind),
      .help = "the undisturbed wind"},
     RAMP(bough_scene_aero),
     {.name = "hold", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("linear", "constant"),
-     .fallback = "linear", AT(hold), .help = "how loads go between samples"},
+     .fallback = "linear", AT(hold), .help = "continuation of the loads between samples"},
     {.name = "blade", .kind = BOUGH_KEY_FILE, .of = &aero_blade_schema, .required = true,
      AT(blade), .example = "blade-aero.yaml",
      .help = "file with the blade elements, relative to the scene"},
@@ -272,7 +280,7 @@ static const bough_key aero_keys[] = {
     {.name = "induction", .kind = BOUGH_KEY_MAPPING, .of = &induction_schema, AT(induction),
      .help = "parts of the blade element momentum theory"},
     {.name = "tower", .kind = BOUGH_KEY_MAPPING, .of = &tower_schema, AT(tower),
-     .help = "vertical tower in front of which the blades pass; left out: no influence"},
+     .help = "influence of a vertical tower on the wind at the blades; default none"},
     {.name = "hub_radius", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = ">= 0",
      .required = true, AT(hub_radius), .example = "1.5 m",
      .help = "from the rotor axis to the blade roots"},
@@ -281,13 +289,13 @@ static const bough_key aero_keys[] = {
      .help = "drag coefficient times area of the hub, in m2; drag on the rotor"},
     {.name = "dynamic_stall", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("none", "hgm"),
      .fallback = "none", AT(dynamic_stall),
-     .help = "how lift follows the angle of attack: at once, or by the Beddoes-Leishman model of "
-             "Hansen, Gaunaa and Madsen"},
+     .help = "reaction of the lift to the angle of attack: immediate, or by the Beddoes-Leishman "
+             "model of Hansen, Gaunaa and Madsen"},
     {.name = "interpolation", .kind = BOUGH_KEY_CHOICE,
      .choices = CHOICES("linear", "monotone-cubic"), .fallback = "linear", AT(interpolation),
-     .help = "of the polars between their rows"},
+     .help = "interpolation between the rows of the polars"},
     {.name = "pitching_moment", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(pitching_moment),
-     .help = "the sections' moment coefficients count"},
+     .help = "includes the moment coefficients of the sections"},
     {.name = "nodes", .kind = BOUGH_KEY_NUMBERS, .range = ">= 1", .count = 1, AT(nodes),
      .count_offset = offsetof(bough_scene_aero, n_node),
      .example = "[9, 15]",

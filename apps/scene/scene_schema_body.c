@@ -50,10 +50,10 @@ static const bough_key structure_keys[] = {
     {.name = "damping", .kind = BOUGH_KEY_VECTOR, .count = 6, .dimension = BOUGH_TIME,
      .range = ">= 0", .fallback = zero6, AT(damping),
      .example = "[0, 0, 0, 3 ms, 3 ms, 3 ms]",
-     .help = "per strain: stress = stiffness (strain + damping x strain rate)"},
+     .help = "for each strain: stress = stiffness (strain + damping x strain rate)"},
     {.name = "stations", .kind = BOUGH_KEY_LIST, .of = &station_schema, .count = 1,
      .required = true, AT(station), .count_offset = offsetof(bough_scene_structure, n_station),
-     .help = "sections along the span, linear between; one station: uniform"},
+     .help = "sections along the span, with linear interpolation; one station: uniform rod"},
 };
 #undef AT
 static const bough_schema structure_schema = {
@@ -64,18 +64,18 @@ static const bough_schema structure_schema = {
 static const bough_key rod_keys[] = {
     {.name = "table", .kind = BOUGH_KEY_FILE, .of = &structure_schema, AT(structure),
      .example = "blade-structure.yaml",
-     .help = "file with the structure, relative to the scene; without it give length, stiffness "
-             "and mass of a uniform rod here"},
+     .help = "file with the structure, relative to the scene; a uniform rod has length, stiffness "
+             "and mass here instead"},
     {.name = "part", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_LENGTH,
      .range = ">= 0", AT(part),
      .example = "[0, 40 m]",
-     .help = "stretch of the table [from, to] along z: rods in a row are the whole, and bodies "
-             "hang where two meet"},
+     .help = "part of the table, from and to along z: several rods in a chain form the whole, and "
+             "carry bodies where two of them meet"},
     {.name = "segments", .kind = BOUGH_KEY_INTEGER, .range = "[1, 10000]", .fallback = "24",
      AT(n_segment), .example = "48", .help = "segments of equal length"},
     {.name = "damping", .kind = BOUGH_KEY_VECTOR, .count = 6, .dimension = BOUGH_TIME,
      .range = ">= 0", AT(damping), .example = "[0, 0, 0, 3 ms, 3 ms, 3 ms]",
-     .help = "in place of the table's"},
+     .help = "replaces the damping of the table"},
     {.name = "length", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = "> 0",
      AT(length), .example = "2 m", .help = "of a uniform rod"},
     {.name = "twist", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
@@ -98,21 +98,22 @@ static const bough_key joint_keys[] = {
     {.name = "kind", .kind = BOUGH_KEY_CHOICE, .required = true, AT(kind),
      .choices = CHOICES("fixed", "revolute", "prismatic", "spherical", "free", "cylindrical",
                         "universal", "planar"),
-     .help = "what the joint lets move"},
+     .help = "kind of joint"},
     {.name = "parent", .kind = BOUGH_KEY_TEXT, .required = true, AT(parent_name),
      .example = "hub",
-     .help = "name of a body, or ground; on a body with a rod this one hangs at the rod's end"},
+     .help = "name of a body, or ground; a parent with a rod carries this body at the rod's end"},
     {.name = "placement", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_placement,
      .form = PLACEMENT_FORM, .offset = 0,
      .example = "[rotate x 120 deg, move z 1.5 m]",
-     .help = "from the parent's frame to the joint's, each step in the frame reached so far"},
+     .help = "from the parent's frame to the joint's frame; each step is in the frame that the "
+             "previous steps give"},
     {.name = "axis", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("x", "y", "z"), .required = true,
      .when_key = "kind", .when = "revolute|prismatic|cylindrical|universal|planar", AT(axis),
-     .help = "axis of the motion; of a universal joint the first, which does not move; of a planar "
-             "joint the plane's normal"},
+     .help = "axis of the motion; of a universal joint the first axis, fixed in the parent; of a "
+             "planar joint the normal of the plane"},
     {.name = "second_axis", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("x", "y", "z"),
      .required = true, .when_key = "kind", .when = "universal", AT(second_axis),
-     .help = "another axis, which the turn about the first takes along"},
+     .help = "second axis, which rotates about the first"},
     {.name = "angle", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
      .when_key = "kind", .when = "revolute", AT(position), .example = "90 deg",
      .help = "initial angle"},
@@ -140,11 +141,11 @@ static const bough_key joint_keys[] = {
      .example = "[1 m/s, 0]", .help = "initial speeds, along the axes of 'positions'"},
     {.name = "angular_speed", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGULAR_SPEED,
      .fallback = "0", .when_key = "kind", .when = "cylindrical|planar", AT(angular_speed),
-     .example = "12.1 rpm", .help = "initial speed of the angle"},
+     .example = "12.1 rpm", .help = "initial angular speed"},
     {.name = "angular_speeds", .kind = BOUGH_KEY_VECTOR, .count = 2,
      .dimension = BOUGH_ANGULAR_SPEED, .fallback = "[0, 0]", .when_key = "kind",
      .when = "universal", AT(angular_speeds), .example = "[12.1 rpm, 0]",
-     .help = "initial speeds of the angles"},
+     .help = "initial angular speeds about the two axes"},
     {.name = "velocity", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_SPEED,
      .fallback = ZERO3, .when_key = "kind", .when = "free", AT(velocity),
      .example = "[0, 0, 2 m/s]", .help = "initial velocity in the joint's frame"},
@@ -160,9 +161,9 @@ static const bough_key joint_keys[] = {
              "number, "
              "{from: 0, to: ..., ramp: [...]} or {times: [...], values: [...]}",
      .example = "{speed: {from: 0, to: 12.1 rpm, ramp: [0, 10 s]}}",
-     .help = "makes the joint move so, whatever force that takes (channel Trq or Frc); a ramp is "
-             "smooth to the second derivative, a table of speeds linear, of positions a cubic "
-             "spline at rest at its ends"},
+     .help = "prescribes the motion of the joint; the channel Trq or Frc is the torque or force "
+             "that this needs; a ramp is smooth to the second derivative; a table of speeds is "
+             "linear between its times, a table of positions is a cubic spline at rest at its ends"},
     {.name = "stiffness", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0",
      .when_key = "kind", .when = "revolute|prismatic", AT(spring.stiffness),
      .example = "8.7e8", .help = "of a spring along the axis, in N m/rad or N/m"},
@@ -171,10 +172,10 @@ static const bough_key joint_keys[] = {
      .example = "6.2e6", .help = "of a damper along the axis, in N m s/rad or N s/m"},
     {.name = "rest", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
      .when_key = "kind", .when = "revolute", AT(spring.rest), .example = "5 deg",
-     .help = "angle at which the spring is free"},
+     .help = "angle at which the spring is free of force"},
     {.name = "rest", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .fallback = "0",
      .when_key = "kind", .when = "prismatic", AT(spring.rest),
-     .example = "0.1 m", .help = "displacement at which the spring is free"},
+     .example = "0.1 m", .help = "displacement at which the spring is free of force"},
     {.name = "stop", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_ANGLE,
      .fallback = "[0, 0]", .when_key = "kind", .when = "revolute", AT(spring.low),
      .example = "[-90 deg, 90 deg]",
@@ -186,7 +187,8 @@ static const bough_key joint_keys[] = {
     {.name = "stop_stiffness", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0",
      .when_key = "kind", .when = "revolute|prismatic", AT(spring.stop_stiffness),
      .example = "1e6",
-     .help = "in N m/rad or N/m; reached softly over a hundredth of the way between the stops"},
+     .help = "in N m/rad or N/m; it grows smoothly over a hundredth of the distance between the "
+             "stops"},
 };
 #undef AT
 static const bough_schema joint_schema = {SCHEMA("a joint", bough_scene_joint, joint_keys),
@@ -196,13 +198,15 @@ static const bough_schema joint_schema = {SCHEMA("a joint", bough_scene_joint, j
 static const bough_key modal_keys[] = {
     {.name = "modes", .kind = BOUGH_KEY_INTEGER, .range = "[1, 300]", .fallback = "12", AT(modes),
      .example = "20",
-     .help = "clamped modes of each piece, from the lowest frequency, beside its rigid motions"},
+     .help = "number of clamped modes of each piece, from the lowest frequency, besides its rigid "
+             "motions"},
     {.name = "statics", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(statics),
-     .help = "add the static answers to accelerations of the frame"},
+     .help = "adds the static deflections under accelerations of the frame"},
     {.name = "stiffening", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(stiffening),
-     .help = "bending is stiffened by axial forces, centrifugal ones first of all"},
+     .help = "axial forces, such as centrifugal forces, stiffen the bending"},
     {.name = "pieces", .kind = BOUGH_KEY_INTEGER, .range = "[1, 300]", .fallback = "5", AT(pieces),
-     .example = "10", .help = "of segmented-modal: parts of the rod, each linear in its own frame"},
+     .example = "10", .help = "of segmented-modal: number of parts of the rod, each linear in its "
+                              "own frame"},
 };
 #undef AT
 static const bough_schema modal_schema = {
@@ -214,17 +218,17 @@ static const bough_key body_keys[] = {
      .example = "blade1", .help = "letters, digits, '_' and '-'; unique"},
     {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 10000]", .fallback = "1",
      AT(repeat), .example = "10",
-     .help = "so many such bodies in a row, each hung on the one before by the same "
-                         "joint; named with numbers from 1"},
+     .help = "number of such bodies in a chain, each carried by the previous one on the same "
+             "joint; their names end with numbers from 1"},
     {.name = "fidelity", .kind = BOUGH_KEY_CHOICE, .required = true, AT(fidelity),
      .choices = CHOICES("rigid", "rod", "modal", "segmented-modal"),
-     .help = "how the body is modelled: rigid, its rod, or the rod's linear modes in one frame or "
-             "in pieces"},
+     .help = "model of the body: rigid, a geometrically exact rod, or the rod's linear modes in "
+             "one frame or in pieces"},
     {.name = "joint", .kind = BOUGH_KEY_MAPPING, .of = &joint_schema, .required = true, AT(joint),
      .help = "the joint that carries the body"},
     {.name = "pitch", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
      AT(pitch), .example = "6.5 deg",
-     .help = "last rotation of a body with a rod, about its z by -pitch"},
+     .help = "rotation of a body with a rod about its z axis by -pitch, after the joint"},
     {.name = "mass", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_MASS, .range = "[0, 1e12]",
      .fallback = "0", .when_key = "fidelity", .when = "rigid", AT(mass),
      .example = "240 t", .help = "of a rigid body without a rod"},
@@ -239,9 +243,9 @@ static const bough_key body_keys[] = {
     {.name = "micro", .kind = BOUGH_KEY_MAPPING, .of = &bough_scene_micro_schema,
      .when_key = "fidelity",
      .when = "rod|modal|segmented-modal", AT(micro),
-     .help = "sub-solver of this body in place of simulation.micro"},
+     .help = "sub-solver of this body; replaces simulation.micro"},
     {.name = "rod", .kind = BOUGH_KEY_MAPPING, .of = &rod_schema, AT(rod),
-     .help = "the rod; of a rigid body: integrated to a rigid body"},
+     .help = "the rod; a rigid body takes mass and inertia from it"},
     {.name = "modal", .kind = BOUGH_KEY_MAPPING, .of = &modal_schema, .when_key = "fidelity",
      .when = "modal|segmented-modal", AT(modal), .help = "how the rod is reduced to modes"},
 };

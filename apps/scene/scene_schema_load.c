@@ -7,21 +7,21 @@
 #define AT(member) .offset = offsetof(bough_scene_load, member)
 static const bough_key load_keys[] = {
     {.name = "joint", .kind = BOUGH_KEY_TEXT, AT(joint_name),
-     .example = "hub", .help = "loads a joint: name of the body that the joint carries"},
+     .example = "hub", .help = "load on a joint: name of the body that the joint carries"},
     {.name = "torque", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_torque,
      .form = "number in N m, or {times: [...], values: [...]}", .offset = 0,
      .example = "-11.9 MN m", .help = "about the axis of a revolute joint"},
     {.name = "body", .kind = BOUGH_KEY_TEXT, AT(body_name),
-     .example = "blade1", .help = "loads a rod or a rigid body: its name"},
+     .example = "blade1", .help = "load on a rod or a rigid body: name of the body"},
     {.name = "point", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
      .fallback = ZERO3, AT(point), .example = "[0, 0, 1.5 m]",
      .help = "of a rigid body, in its frame"},
     {.name = "at", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_place,
      .form = "tip, a vertex' number or a length as '30 m'", .offset = 0,
-     .example = "30 m", .help = "where on the rod, counted from the root"},
+     .example = "30 m", .help = "place on the rod, counted from the root"},
     {.name = "along", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_LENGTH,
      .range = ">= 0", AT(span), .example = "[40 m, 61.5 m]",
-     .help = "in place of 'at': from where to where the load is spread"},
+     .help = "range of a distributed load; replaces 'at'"},
     {.name = "force", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_force,
      .form = "number in N, {times: [...], values: [...]}, or 3 numbers in N, in N/m with 'along'",
      .offset = 0,
@@ -31,24 +31,26 @@ static const bough_key load_keys[] = {
      .help = "on the body"},
     {.name = "end_force", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LINE_FORCE,
      .fallback = ZERO3, AT(end_force), .example = "[2 kN/m, 0, 0]",
-     .help = "with 'along': the force at its end, when it is not that at its start; linear between"},
+     .help = "with 'along': force at the end of the range, if it differs from 'force' at the "
+             "start; linear between"},
     {.name = "end_moment", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LINE_MOMENT,
      .fallback = ZERO3, AT(end_moment), .example = "[0, 0, 100]",
-     .help = "the same of the moment"},
+     .help = "with 'along': moment at the end of the range, if it differs from 'moment' at the "
+             "start; linear between"},
     {.name = "factor", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_load_factor,
      .form = "{times: [...], values: [...]}", .offset = 0,
      .example = "{times: [0, 1, 2], values: [0, 1, 0]}",
-     .help = "on a body, in place of a ramp: by what the load is multiplied, linear between the "
-             "times and held outside"},
+     .help = "on a body: factor of the load over time, linear between the times and constant "
+             "outside; replaces 'ramp'"},
     {.name = "frame", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("ground", "body", "follower"),
      .fallback = "ground", AT(frame),
-     .help = "axes of a body's load: ground (not of rods whose root moves), body, or follower: a "
-             "rod's section axes, with which it turns"},
+     .help = "axes of the load on a body: ground (not for rods whose root moves), body, or "
+             "follower: the section axes of a rod, so that the load rotates with the section"},
     RAMP(bough_scene_load),
     {.name = "input", .kind = BOUGH_KEY_TEXT, AT(input), .example = "brake",
-     .help = "name by which the load is set between steps, by another program: of a joint, its "
-             "torque or force; of a body, with Fx, Fy, Fz, Mx, My, Mz behind it the components of "
-             "force and moment; what stands here is where it starts"},
+     .help = "name of an input, by which another program sets the load between steps: torque or "
+             "force on a joint; on a body six inputs, whose names end with Fx, Fy, Fz, Mx, My, Mz; "
+             "the values of the scene are the start values"},
 };
 #undef AT
 const bough_schema bough_scene_load_schema = {SCHEMA("a load", bough_scene_load, load_keys),
@@ -58,7 +60,7 @@ const bough_schema bough_scene_load_schema = {SCHEMA("a load", bough_scene_load,
 static const bough_key spring_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
      .example = "stay",
-     .help = "of its channels: Len and Frc, the force that draws its ends together"},
+     .help = "name of its channels, which end with Len and Frc"},
     {.name = "from", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name[0]),
      .example = "ground", .help = "name of a rigid body, or ground"},
     {.name = "from_point", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
@@ -67,13 +69,13 @@ static const bough_key spring_keys[] = {
      .example = "mast", .help = "name of another rigid body, or ground"},
     {.name = "to_point", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
      .fallback = ZERO3, AT(point[1]), .example = "[0, 0, 20]",
-     .help = "in that body's frame; the points must never meet"},
+     .help = "in that body's frame; the two points must never coincide"},
     {.name = "stiffness", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_STIFFNESS, .range = ">= 0",
      .fallback = "0", AT(stiffness), .example = "3 kN/m", .help = "of the spring"},
     {.name = "damping", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0", AT(damping),
-     .example = "150", .help = "of the damper beside it, in N s/m"},
+     .example = "150", .help = "of the damper parallel to the spring, in N s/m"},
     {.name = "length", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_LENGTH, .range = ">= 0",
-     .fallback = "0", AT(length), .example = "21.5 m", .help = "without force"},
+     .fallback = "0", AT(length), .example = "21.5 m", .help = "length of the spring without force"},
 };
 #undef AT
 const bough_schema bough_scene_spring_schema = {
@@ -86,12 +88,14 @@ const bough_schema bough_scene_spring_schema = {
 static const bough_key bushing_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
      .example = "yaw_bearing",
-     .help = "of its channels: FrcX to MomZ, what it does to the second body, in the first's axes"},
+     .help = "name of its channels FrcX to MomZ: force and moment on the second body, in the "
+             "first body's axes"},
     {.name = "from", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name[0]),
      .example = "tower",
-     .help = "name of a rigid body, or ground, with whose axes the bushing turns"},
+     .help = "name of a rigid body, or ground; the bushing's axes are those of this body"},
     {.name = "to", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name[1]),
-     .example = "nacelle", .help = "name of another; without force as it stands at the start"},
+     .example = "nacelle", .help = "name of the second body; the bushing is free of force in the "
+                                   "initial position"},
     {.name = "point", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
      .fallback = ZERO3, AT(point), .example = "[0, 0, 87.6]", .help = "in the first body's frame"},
     THREE(stiffness, "along x, y, z, in N/m"),
@@ -109,26 +113,28 @@ const bough_schema bough_scene_bushing_schema = {
 static const bough_key closure_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
      .example = "pin",
-     .help = "of its channels: force Fx Fy Fz and moment Mx My Mz on 'to', in its frame there"},
+     .help = "name of its channels Fx to Mz: force and moment on 'to', in the joint's frame there"},
     {.name = "kind", .kind = BOUGH_KEY_CHOICE, .required = true, AT(kind),
      .choices = CHOICES("fixed", "revolute", "prismatic", "spherical", "cylindrical", "universal",
                         "planar"),
-     .help = "the joint whose motion remains; what it forbids may be forbidden already"},
+     .help = "kind of joint; other joints may already prevent some of the motions that it "
+             "prevents"},
     {.name = "from", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name[0]),
      .example = "coupler", .help = "name of a rigid body, or ground"},
     {.name = "from_placement", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_steps,
      .form = PLACEMENT_FORM, AT(placement[0]), .example = "[move x 0.5 m]",
-     .help = "of the joint's frame in that body's"},
+     .help = "placement of the joint's frame in that body's frame"},
     {.name = "to", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name[1]),
      .example = "ground", .help = "name of another rigid body, or ground"},
     {.name = "to_placement", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_steps,
      .form = PLACEMENT_FORM, AT(placement[1]),
      .example = "[move x 1 m]",
-     .help = "of the joint's frame in that body's; the two must almost meet at the start: the "
-             "rest is closed by moving all joints a little, and joints without a speed follow"},
+     .help = "placement of the joint's frame in that body's frame; the two frames must almost "
+             "coincide at the start: small motions of all joints close the rest, and joints without "
+             "a speed follow"},
     {.name = "axis", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("x", "y", "z"), .required = true,
      .when_key = "kind", .when = "revolute|prismatic|cylindrical|universal|planar", AT(axis),
-     .help = "of the motion, as of a joint; of a universal joint in the frame of 'from'"},
+     .help = "axis of the motion, as of a joint; of a universal joint in the frame of 'from'"},
     {.name = "second_axis", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("x", "y", "z"),
      .required = true, .when_key = "kind", .when = "universal", AT(second_axis),
      .help = "normal to the axis, in the frame of 'to'"},
@@ -140,7 +146,7 @@ const bough_schema bough_scene_closure_schema = {
 #define AT(member) .offset = offsetof(bough_scene_marker, member)
 static const bough_key marker_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
-     .example = "tower_top", .help = "of its channels: X, Y, Z in ground axes"},
+     .example = "tower_top", .help = "name of its channels X, Y, Z in ground axes"},
     {.name = "body", .kind = BOUGH_KEY_TEXT, .required = true, AT(body_name),
      .example = "nacelle", .help = "name of a rigid body, or ground"},
     {.name = "point", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
@@ -156,7 +162,8 @@ static const bough_key sensor_keys[] = {
      .help = "name of a body of fidelity rod"},
     {.name = "at", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_LENGTH, .range = ">= 0",
      .required = true, .count = 1, AT(at), .count_offset = offsetof(bough_scene_sensor, n_at),
-     .example = "[20 m, 40 m]", .help = "where on the rod, counted from the root: its places 1, 2, ..."},
+     .example = "[20 m, 40 m]", .help = "distances from the root, along the rod; the first place "
+                                        "is number 1"},
 };
 #undef AT
 const bough_schema bough_scene_sensor_schema = {

@@ -18,7 +18,7 @@
     {.name = "ramp", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_TIME,                \
      .range = ">= 0", .fallback = "[0, 0]", .example = "[0 s, 20 s]",                              \
      .offset = offsetof(type, ramp),                                                               \
-     .help = "grows linearly from nothing at the first time to all at the second; a jump where the "            \
-             "two are equal and not 0"}
+     .help = "grows linearly from zero at the first time to the full value at the second; two "    \
+             "equal times above 0 make a jump"}
 
 #endif

@@ -15,25 +15,26 @@
 #define AT(member) .offset = offsetof(bough_load_group, member)
 static const bough_key group_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name), .example = "DLC1.2",
-     .help = "of the load case"},
+     .help = "name of the load case"},
     {.name = "scene", .kind = BOUGH_KEY_TEXT, AT(scene_name), .example = "parked.yaml",
-     .help = "in place of the set's"},
+     .help = "scene of this load case; replaces the set's"},
     {.name = "set", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings,
-     .form = "{KEY: VALUE, ...}", AT(set), .help = "replacements for its cases"},
+     .form = "{KEY: VALUE, ...}", AT(set), .help = "replaced keys of its cases"},
     {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_grid,
      .form = "{KEY: [VALUE, ...], ...}", AT(grid),
-     .help = "a case for each combination of the values; left out: one case"},
+     .help = "one case for each combination of the values; default one case"},
     {.name = "weibull", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0", AT(weibull),
      .example = "0.95",
-     .help = "its share of all hours, spread over the values of aero.wind.speed"},
+     .help = "share of all hours, distributed over the values of aero.wind.speed"},
     {.name = "hours", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0", AT(hours),
-     .example = "50", .help = "a year, of all its cases together"},
+     .example = "50", .help = "hours in a year, of all its cases together"},
     {.name = "events", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0", AT(events),
-     .example = "1000", .help = "a year, of all its cases together: each run is one"},
+     .example = "1000", .help = "events in a year, of all its cases together; each run is one "
+                                "event"},
     {.name = "factor", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .fallback = "1.35", AT(factor),
      .example = "1.1", .help = "partial safety factor of its extremes"},
     {.name = "extremes", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(extremes),
-     .help = "they count"},
+     .help = "its extremes count"},
 };
 #undef AT
 
@@ -51,9 +52,9 @@ static const bough_schema group_schema = {
 #define AT(member) .offset = offsetof(bough_load_wind, member)
 static const bough_key wind_keys[] = {
     {.name = "average", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .range = "> 0",
-     .required = true, AT(average), .example = "10 m/s", .help = "of the year at hub height"},
+     .required = true, AT(average), .example = "10 m/s", .help = "yearly mean at hub height"},
     {.name = "shape", .kind = BOUGH_KEY_NUMBER, .range = "[1, 10]", .fallback = "2", AT(shape),
-     .example = "2.1", .help = "of Weibull's distribution; 2 is Rayleigh's"},
+     .example = "2.1", .help = "shape of the Weibull distribution; 2: Rayleigh distribution"},
 };
 #undef AT
 static const bough_schema wind_schema = {.name = "the wind's distribution",
@@ -61,26 +62,26 @@ static const bough_schema wind_schema = {.name = "the wind's distribution",
 
 #define AT(member) .offset = offsetof(bough_load_set, member)
 #define HEAD(kinds)                                                                                \
-    {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line: what is asked"},       \
+    {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line of description"},       \
     {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES(kinds), .required = true,        \
      AT(kind), .help = "kind of study"},                                                           \
     {.name = "common", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings,                \
-     .form = "{KEY: VALUE, ...}", AT(common), .help = "replacements for every case"},              \
+     .form = "{KEY: VALUE, ...}", AT(common), .help = "replaced keys of every case"},              \
     {.name = "from", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = ">= 0",           \
-     .fallback = "0", AT(from), .example = "30 s", .help = "what is before it does not count"},    \
+     .fallback = "0", AT(from), .example = "30 s", .help = "start of the statistics"},    \
     {.name = "channels", .kind = BOUGH_KEY_TEXTS, .count = 1, AT(wanted),                          \
      .count_offset = offsetof(bough_load_set, n_wanted), .example = "[RotSpeed, RootMyb1]",        \
-     .help = "that are kept; left out: all"},                                                      \
+     .help = "channels that are kept; default all"},                                                      \
     {.name = "series", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(series),                 \
      .help = "every case keeps its channels.out"}
 
 static const bough_key sweep_keys[] = {
     HEAD("sweep"),
     {.name = "scene", .kind = BOUGH_KEY_TEXT, AT(scene_name),
-     .help = "file of the scene, relative to the study; left out where the grid has 'scene'"},
+     .help = "file of the scene, relative to the study; not given if the grid has the key 'scene'"},
     {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_grid, .required = true,
      .form = "{KEY: [VALUE, ...], ...}", AT(grid),
-     .help = "a run for each combination of the values; the key 'scene' takes files"},
+     .help = "one run for each combination of the values; the key 'scene' takes files"},
 };
 const bough_schema bough_sweep_schema = {.name = "a sweep", .size = sizeof(bough_load_set),
     .n_key = COUNT(sweep_keys), .key = sweep_keys};
@@ -93,11 +94,12 @@ static const bough_key set_keys[] = {
      AT(slope), .count_offset = offsetof(bough_load_set, n_slope), .example = "[4, 10]",
      .help = "exponents of the S-N curves"},
     {.name = "equivalent_cycles", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .fallback = "1e7",
-     AT(cycles), .example = "2e6", .help = "of the lifetime's damage-equivalent loads"},
+     AT(cycles), .example = "2e6", .help = "number of cycles of the lifetime's damage-equivalent "
+                                        "loads"},
     {.name = "lifetime", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .fallback = "20", AT(lifetime),
-     .example = "25", .help = "in years"},
+     .example = "25", .help = "lifetime in years"},
     {.name = "wind", .kind = BOUGH_KEY_MAPPING, .of = &wind_schema, AT(wind),
-     .help = "how often which speed blows, for 'weibull'"},
+     .help = "distribution of the wind speed, for 'weibull'"},
     {.name = "cases", .kind = BOUGH_KEY_LIST, .of = &group_schema, .count = 1, .required = true,
      AT(group), .count_offset = offsetof(bough_load_set, n_group), .help = "design load cases"},
 };

@@ -228,16 +228,17 @@ static void check_measure(bough_schema_reader *r, void *item) {
 #define AT(member) .offset = offsetof(bough_study_measure, member)
 static const bough_key measure_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
-     .help = "heads its column"},
+     .help = "heading of its column"},
     {.name = "channel", .kind = BOUGH_KEY_TEXT, AT(channel), .help = "name of a channel"},
     {.name = "channels", .kind = BOUGH_KEY_CUSTOM, .read = read_channels, .form = channels_form,
-     AT(channels), .help = "components of a vector; of several vectors the largest counts"},
+     AT(channels), .help = "components of a vector; of several vectors the largest difference "
+                           "counts"},
     {.name = "norm", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("euclid", "largest"),
-     .fallback = "euclid", AT(norm), .help = "of a vector"},
+     .fallback = "euclid", AT(norm), .help = "norm of a vector"},
     {.name = "scale", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .fallback = "1", AT(scale),
-     .help = "from the channels' unit to the unit"},
+     .help = "factor from the channels' unit to 'unit'"},
     {.name = "unit", .kind = BOUGH_KEY_TEXT, AT(unit),
-     .help = "of the difference after scaling; default the channels'"},
+     .help = "unit of the difference after scaling; default the channels' unit"},
 };
 #undef AT
 static const bough_schema measure_schema = {
@@ -246,27 +247,27 @@ static const bough_schema measure_schema = {
 
 #define AT(member) .offset = offsetof(bough_study, member)
 static const bough_key study_keys[] = {
-    {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line: what is asked"},
+    {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line of description"},
     {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
      .help = "file of the scene, relative to the study"},
     {.name = "kind", .kind = BOUGH_KEY_CHOICE,
      .choices = CHOICES("work-precision", "timing", "stability", "sweep", "load-set"), .required = true, AT(kind),
-     .help = "work-precision: time and difference to the reference of every cell of the grid; "
-             "timing: what the cells cost, in turns; stability: map of errors and diagnoses, each "
-             "against a reference with its own model parameters; sweep: statistics of every cell; "
-             "load-set: lifetime loads of weighted cases (both: docs/loads.md)"},
+     .help = "work-precision: time and error of every cell of the grid against one reference; "
+             "timing: cost of the cells, measured in turns; stability: map of errors and diagnoses, "
+             "each cell against a reference with the same model parameters; sweep: statistics of "
+             "every cell; load-set: lifetime loads of weighted cases (both: docs/loads.md)"},
     {.name = "reference", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings, .required = true,
-     .form = "{KEY: VALUE, ...}", AT(reference), .help = "replacements that make the reference"},
+     .form = "{KEY: VALUE, ...}", AT(reference), .help = "replaced keys of the reference run"},
     {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_grid, .required = true,
      .form = "{KEY: [VALUE, ...], ...}", AT(grid),
-     .help = "a run for each combination of the values"},
+     .help = "one run for each combination of the values"},
     {.name = "common", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings,
-     .form = "{KEY: VALUE, ...}", AT(common), .help = "replacements for every run"},
+     .form = "{KEY: VALUE, ...}", AT(common), .help = "replaced keys of every run"},
     {.name = "measures", .kind = BOUGH_KEY_LIST, .of = &measure_schema, .count = 1,
      .required = true, AT(measure), .count_offset = offsetof(bough_study, n_measure),
      .help = "largest differences to the reference at the common output times"},
     {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 99]", .fallback = "1", AT(repeat),
-     .help = "runs of each cell; the times are their medians"},
+     .help = "number of runs of each cell; times are medians"},
 };
 #undef AT
 
@@ -286,9 +287,10 @@ static const bough_schema study_schema = {
 
 void bough_study_help(FILE *stream) {
     fputs("# Studies\n\n"
-          "A study is a YAML file that names a scene and what is run with it: `bough study STUDY`. "
-          "Keys in braces are\nthose of the scene, written as for `--set`; values are as in scenes. "
-          "Tutorials: `docs/tutorials/study.md`,\n`docs/tutorials/loads.md`.\n"
+          "A study is a YAML file that names a scene and the runs of that scene. `bough study STUDY` "
+          "performs the runs. Keys in\nbraces are keys of the scene, written as for `--set`; values "
+          "are written as in scenes. Tutorials:\n[studies](tutorials/study.md), "
+          "[load sets](tutorials/loads.md).\n"
           "\n## work-precision, timing, stability\n\n", stream);
     bough_schema_help(&study_schema, 0, stream);
     fputs("\n## sweep\n\n", stream);
