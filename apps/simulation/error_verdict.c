@@ -5,7 +5,7 @@
 #include <string.h>
 
 static const double noticeable = 0.01; // of a channel's range: the run warns from there on
-static const double rounding = 1e-5; // of the largest range of all motion or value up to 1, in SI units
+static const double rounding = 1e-6; // of the largest range of all motion or value up to 1, in SI units
 static const double least_share = 1e-3; // of the largest range with that unit: moves less, says nothing
 
 // -- vectors --------------------------------------------------------------------------------------

@@ -37,6 +37,8 @@ CLASSES = ("held", "warned", "diagnosed", "gross", "silent", "too little", "too 
 BROKEN = ("silent", "too little", "gross", "crash", "hang")
 GROSS, SMALL, WARNED = 0.05, 1e-3, 0.01
 FLOOR = 1e-3  # of the largest range with that unit: what moves less is not judged
+ROUNDING = 1e-6  # nor what moves less than that of the largest motion, in SI units: as the program's own rule
+SI = {"(deg)": math.radians(1), "(deg/s)": math.radians(1), "(rpm)": math.pi / 30}
 TIMEOUT, REFERENCE_TIMEOUT = 60, 15  # s of CPU
 
 
@@ -126,9 +128,10 @@ def error_of(run, truth, told_of=None):
     largest = collections.defaultdict(float)
     for error, told, span, size, unit in errors.values():
         largest[unit] = max(largest[unit], span)
-    most = max(largest.values(), default=0)
+    most = max([SI.get(unit, 1) * max(span, min(size, 1 / SI.get(unit, 1)))
+                for _, _, span, size, unit in errors.values()], default=0)
     return {vector: (error / span, told / span) for vector, (error, told, span, size, unit) in errors.items()
-            if span > FLOOR * largest[unit] and span > 1e-6 * max(size, most)}
+            if span > FLOOR * largest[unit] and SI.get(unit, 1) * span > ROUNDING * most}
 
 
 def is_state(name):
@@ -154,7 +157,7 @@ def classify(run, truth, rough):
     line = "%s: error %.2g told %.2g (reference %.1g)" % (worst, error, told, unsure)
     if run.code == 3:
         over = max(errors.values(), key=lambda e: e[1] if e[1] == e[1] else 0, default=(0, 0))
-        line += "; " + run.said[:200]
+        line += "; " + " ".join(run.said.split())[:200]
         small = over[0] < 0.1 * over[1] and over[0] < 0.1 * GROSS if run.bound_stop else error < SMALL
         if len(run.rows) > 5 and unsure < 0.3 * SMALL and small:
             return "false stop", line
