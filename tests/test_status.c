@@ -13,14 +13,18 @@ static void message_is_as_written(void **state) {
 
 static void long_message_ends_after_a_word(void **state) {
     (void)state;
-    char words[3 * BOUGH_MESSAGE] = "";
-    while (strlen(words) < 2 * BOUGH_MESSAGE) strcat(words, "equilibrium ");
-    bough_status status = bough_fail(BOUGH_FAILED, "%s", words);
-    size_t length = strlen(status.message);
-    assert_true(length > BOUGH_MESSAGE - 20 && length < BOUGH_MESSAGE);
-    assert_string_equal(status.message + length - 15, "equilibrium ...");
+    char words[3 * BOUGH_MESSAGE];
+    for (int shift = 0; shift < 12; shift++) {
+        memset(words, 'x', sizeof words);
+        words[shift] = '\0';
+        while (strlen(words) < 2 * BOUGH_MESSAGE) strcat(words, "equilibrium ");
+        bough_status status = bough_fail(BOUGH_FAILED, "%s", words);
+        size_t length = strlen(status.message);
+        assert_true(length > BOUGH_MESSAGE - 20 && length < BOUGH_MESSAGE);
+        assert_string_equal(status.message + length - 15, "equilibrium ...");
+    }
     memset(words, 'x', 2 * BOUGH_MESSAGE); // no word ends
-    status = bough_fail(BOUGH_FAILED, "%s", words);
+    bough_status status = bough_fail(BOUGH_FAILED, "%s", words);
     assert_string_equal(status.message + strlen(status.message) - 4, " ...");
 }
 

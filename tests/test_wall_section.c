@@ -57,6 +57,21 @@ static void tube_has_its_formulas(void **state) {
     check_near(s.k[5], 0, 0, 1e-3 * s.k[0]);
 }
 
+// A square of four walls, centred on lines of length 1: E I = E t (2 · 1/12 + 2 · 1/4), without the walls'
+// own thickness.
+static void box_of_four_walls_has_its_formulas(void **state) {
+    (void)state;
+    static const double x[] = {-0.5, 0.5, 0.5, -0.5}, y[] = {-0.5, -0.5, 0.5, 0.5};
+    const bough_ply thin = {{200e9, 200e9}, 80e9, 0.25, 7800, 0, 1e-3};
+    bough_wall wall[4];
+    for (int i = 0; i < 4; i++) wall[i] = (bough_wall){i, (i + 1) % 4, 1, &thin, 1};
+    section s = solve(4, x, y, 4, wall);
+    check_near(s.k[14], 4 * 200e9 * 1e-3, 1e-9, 0);
+    check_near(s.k[21], 2. / 3 * 200e9 * 1e-3, 1e-9, 0);
+    check_near(s.k[28], 2. / 3 * 200e9 * 1e-3, 1e-9, 0);
+    check_near(s.m[35], 4. / 3 * 7800 * 1e-3, 1e-9, 0);
+}
+
 // Moved by (0.3, −0.2): first moments and Steiner's terms, in shear and twist as well.
 static void offsets_move_along(void **state) {
     (void)state;
@@ -152,6 +167,7 @@ static void plies_turn(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tube_has_its_formulas),
+        cmocka_unit_test(box_of_four_walls_has_its_formulas),
         cmocka_unit_test(offsets_move_along),
         cmocka_unit_test(slit_tube_has_its_shear_centre_outside),
         cmocka_unit_test(cells_share_the_torsion),
