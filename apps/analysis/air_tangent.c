@@ -134,9 +134,26 @@ static bough_status follow_memory(work *w, const double *state, bough_air_tangen
     return bough_ok();
 }
 
+static bough_status follow_inputs(work *w, const double *state, const bough_air_inputs *inputs,
+                                  bough_air_tangent *t) {
+    size_t n = (size_t)w->coupled->assembly->n_state;
+    for (int k = 0; k < inputs->n; k++) {
+        for (int side = 0; side < 2; side++) {
+            memcpy(w->state, state, n * sizeof *state);
+            memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);
+            inputs->set(inputs->self, k, (2 * side - 1) * inputs->size[k], w->state);
+            bough_status status = find_rates(w, w->state, w->rate[side], w->air_rate[side]);
+            inputs->set(inputs->self, k, 0, w->state);
+            if (!bough_is_ok(&status)) return status;
+        }
+        set_column(w, inputs->size[k], t->input + (size_t)k * n, t->input_drive + (size_t)k * t->n_air);
+    }
+    return bough_ok();
+}
+
 bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
                                     double time, const double *state, bool dynamic,
-                                    bough_air_tangent *t) {
+                                    const bough_air_inputs *inputs, bough_air_tangent *t) {
     const bough_rotor *rotor = bough_aero_link_rotor(s->aero);
     int n_memory = dynamic ? bough_rotor_memory_size(rotor) : 0;
     work w = {.simulation = s, .coupled = coupled, .time = time, .n_memory = n_memory,
@@ -144,17 +161,21 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
     if (!take(arena, &w)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (w.dynamic) w.n_air = bough_rotor_memory_states(rotor, w.row);
     size_t n = (size_t)coupled->assembly->n_state, m = (size_t)w.n_air;
+    size_t n_input = inputs ? (size_t)inputs->n : 0;
     *t = (bough_air_tangent){.n = (int)n,
                              .n_air = w.n_air,
                              .n_per_blade = w.n_air / s->scene->turbine.n_blade,
                              .motion = bough_arena_doubles(arena, n * n),
                              .lift = bough_arena_doubles(arena, n * m + 1),
                              .drive = bough_arena_doubles(arena, n * m + 1),
-                             .lag = bough_arena_doubles(arena, m * m + 1)};
+                             .lag = bough_arena_doubles(arena, m * m + 1),
+                             .input = bough_arena_doubles(arena, n * n_input + 1),
+                             .input_drive = bough_arena_doubles(arena, m * n_input + 1)};
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     settle(&w, state);
     bough_status status = follow_motion(&w, state, t);
     if (bough_is_ok(&status)) status = follow_memory(&w, state, t);
+    if (bough_is_ok(&status) && inputs) status = follow_inputs(&w, state, inputs, t);
     settle(&w, state);
     return status;
 }

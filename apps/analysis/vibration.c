@@ -152,7 +152,7 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
     bough_air_tangent air;
     bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
     bough_status status =
-        bough_air_tangent_find(arena, s, x->coupled, x->def.time, x->state, dynamic, &air);
+        bough_air_tangent_find(arena, s, x->coupled, x->def.time, x->state, dynamic, NULL, &air);
     if (!bough_is_ok(&status)) return status;
     v->reduced = bough_arena_take(arena, sizeof *v->reduced);
     if (!v->reduced || !bough_air_tangent_average(arena, s, &x->group, &air)) {

@@ -1,6 +1,7 @@
 #include "apps/bough/modes_whole.h"
 
 #include "apps/analysis/vibration.h"
+#include "apps/bough/modes_linear.h"
 #include "apps/bough/open.h"
 #include "apps/output/folder.h"
 
@@ -136,6 +137,10 @@ bough_status bough_modes_whole(bough_arena *arena, const bough_options *options,
     if (bough_is_ok(&status)) status = write_file(folder, "modes.csv", s, &v, write_modes);
     if (bough_is_ok(&status) && s->scene->modes.shapes) {
         status = write_file(folder, "shapes.csv", s, &v, write_shapes);
+    }
+    bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
+    if (bough_is_ok(&status) && s->scene->modes.linear) {
+        status = bough_modes_linear(arena, s, balanced ? bough_equilibrium_time(s) : 0, folder);
     }
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;

@@ -478,6 +478,7 @@ typedef struct bough_scene_modes {
     double centre[3];       // a point of that axis, in the ground [m]
     int air;                // bough_scene_modes_air; of the whole scene
     bool shapes;            // written too
+    bool linear;            // of the whole scene: its linear state space is written too
 } bough_scene_modes;
 
 // What is left to whoever steps the scene: a value by name, set between steps.

@@ -199,6 +199,9 @@ static const bough_key modes_keys[] = {
              "inflow and stall"},
     {.name = "shapes", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(shapes),
      .help = "writes the shapes of the modes"},
+    {.name = "linear", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(linear),
+     .help = "of the whole scene: writes its linear state space, the matrices A to D and the names of its "
+             "states, inputs and outputs"},
 };
 #undef AT
 static const bough_schema modes_schema = {SCHEMA("the modes", bough_scene_modes, modes_keys)};

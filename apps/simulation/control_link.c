@@ -68,9 +68,14 @@ bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *li
 bool bough_control_link_pitches(const bough_control_link *link) { return link->steers; }
 
 void bough_control_link_stand(bough_control_link *link, double speed, double pitch) {
+    double gear = link->control->gear_ratio;
+    bough_control_link_put(link, bough_controller_torque(&link->control->law, gear * speed, pitch), pitch);
+    link->now.speed = gear * speed;
+}
+
+void bough_control_link_put(bough_control_link *link, double torque, double pitch) {
     bough_simulation *s = link->simulation;
     double gear = link->control->gear_ratio;
-    double torque = bough_controller_torque(&link->control->law, gear * speed, pitch);
     bough_tree_steer_load(s->tree, link->load, 0, 1, -gear * torque, -gear * torque);
     for (int b = 0; b < link->n_blade && link->steers; b++) {
         int body = blade_body(link, b);
@@ -79,7 +84,6 @@ void bough_control_link_stand(bough_control_link *link, double speed, double pit
         link->now.pitch_joint[b] = at;
     }
     link->now.torque = torque;
-    link->now.speed = gear * speed;
 }
 
 // -- sample ---------------------------------------------------------------------------------------

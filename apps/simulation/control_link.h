@@ -22,6 +22,9 @@ bool bough_control_link_pitches(const bough_control_link *link);
 // pitch [rad]; the law starts from there.
 void bough_control_link_stand(bough_control_link *link, double speed, double pitch);
 
+// The generator's torque on the fast shaft [N m], and blades that are turned at a pitch [rad], from now on.
+void bough_control_link_put(bough_control_link *link, double torque, double pitch);
+
 // The sampled load for the master's loop.
 bough_sampled_load bough_control_link_load(bough_control_link *link);
 

@@ -66,6 +66,12 @@ bough_status bough_input_link_build(bough_arena *arena, bough_simulation *s) {
 
 double *bough_input_link_values(bough_input_link *link) { return link->memory; }
 
+bool bough_input_link_put(bough_input_link *link, int k, double value) {
+    if (link->table[k] == NULL) return false;
+    link->table[k][0] = link->table[k][1] = value;
+    return true;
+}
+
 static void move_joint(bough_input_link *l, int k, double t, double t_next) {
     bough_motion_point from = points(l)[k], to = {l->memory[k], 0, 0};
     to.v = (to.q - from.q) / (t_next - t);

@@ -13,6 +13,9 @@ bough_status bough_input_link_build(bough_arena *arena, bough_simulation *s);
 // Values now (scene->n_input), SI; to be written between steps.
 double *bough_input_link_values(bough_input_link *link);
 
+// Puts a load that is input k at a value at once; false of other inputs.
+bool bough_input_link_put(bough_input_link *link, int k, double value);
+
 // For the macro loop, before all other loads.
 bough_sampled_load bough_input_link_load(bough_input_link *link, double macro_step);
 

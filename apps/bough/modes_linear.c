@@ -1,0 +1,61 @@
+#include "apps/bough/modes_linear.h"
+
+#include "apps/analysis/state_space.h"
+#include "apps/output/folder.h"
+
+// Either a matrix or a list of names.
+typedef struct content {
+    const char *name;
+    int rows, columns;
+    const double *matrix;
+    const bough_signal_name *list; // (rows)
+} content;
+
+static void write_matrix(FILE *file, const content *x) {
+    long entries = 0, all = (long)x->rows * x->columns;
+    for (long k = 0; k < all; k++) entries += x->matrix[k] != 0;
+    fprintf(file, "%%%%MatrixMarket matrix coordinate real general\n%d %d %ld\n", x->rows, x->columns,
+            entries);
+    for (long k = 0; k < all; k++) {
+        if (x->matrix[k] == 0) continue;
+        fprintf(file, "%ld %ld %.12g\n", k % x->rows + 1, k / x->rows + 1, x->matrix[k]);
+    }
+}
+
+static void write_list(FILE *file, const content *x) {
+    fputs("number,name,unit,value\n", file);
+    for (int k = 0; k < x->rows; k++)
+        fprintf(file, "%d,\"%s\",%s,%.12g\n", k + 1, x->list[k].name, x->list[k].unit, x->list[k].value);
+}
+
+static bough_status write_content(const char *folder, const content *x) {
+    char path[BOUGH_PATH_MAX];
+    FILE *file = NULL;
+    bough_status status = bough_folder_path(folder, x->name, path);
+    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    if (!bough_is_ok(&status)) return status;
+    if (x->matrix) {
+        write_matrix(file, x);
+    } else {
+        write_list(file, x);
+    }
+    return bough_folder_commit(path, file);
+}
+
+bough_status bough_modes_linear(bough_arena *arena, bough_simulation *s, double time, const char *folder) {
+    bough_state_space x;
+    bough_status status = bough_state_space_find(arena, s, time, &x);
+    const content contents[] = {
+        {"A.mtx", x.n, x.n, x.a, NULL},
+        {"B.mtx", x.n, x.n_input, x.b, NULL},
+        {"C.mtx", x.n_output, x.n, x.c, NULL},
+        {"D.mtx", x.n_output, x.n_input, x.d, NULL},
+        {"states.csv", x.n, 1, NULL, x.state},
+        {"inputs.csv", x.n_input, 1, NULL, x.input},
+        {"outputs.csv", x.n_output, 1, NULL, x.output},
+    };
+    for (int k = 0; k < 7 && bough_is_ok(&status); k++) status = write_content(folder, &contents[k]);
+    if (bough_is_ok(&status))
+        printf("linear system: %d states, %d inputs, %d outputs\n", x.n, x.n_input, x.n_output);
+    return status;
+}
