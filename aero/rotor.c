@@ -324,12 +324,13 @@ bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int s
                            .force_y = r->force_y[j]};
 }
 
-enum { TOLD = 14, SUMS = 5 };
+enum { TOLD = 17, SUMS = 5 };
 
-static void told_rows(const blade_rows *r, double *row[TOLD]) {
+static void told_rows(const bough_rotor *rotor, const blade_rows *r, double *row[TOLD]) {
     double *const rows[TOLD] = {r->radius, r->inflow_x, r->inflow_y, r->axial, r->tangential,
                                 r->alpha,  r->phi,      r->twist,    r->speed, r->lift,
-                                r->drag,   r->moment,   r->force_x,  r->force_y};
+                                r->drag,   r->moment,   r->force_x,  r->force_y,
+                                r->place,  r->place + rotor->stride, r->place + 2 * rotor->stride};
     memcpy(row, rows, sizeof rows);
 }
 
@@ -345,7 +346,7 @@ void bough_rotor_told_save(const bough_rotor *rotor, const bough_rotor_data *dat
     to += SUMS;
     for (int b = 0; b < rotor->n_blade; b++) {
         double *row[TOLD];
-        told_rows(data->scratch->blade + b, row);
+        told_rows(rotor, data->scratch->blade + b, row);
         for (int k = 0; k < TOLD; k++, to += n) memcpy(to, row[k], n * sizeof *to);
     }
 }
@@ -358,7 +359,7 @@ void bough_rotor_told_restore(const bough_rotor *rotor, const double *from, boug
     from += SUMS;
     for (int b = 0; b < rotor->n_blade; b++) {
         double *row[TOLD];
-        told_rows(data->scratch->blade + b, row);
+        told_rows(rotor, data->scratch->blade + b, row);
         for (int k = 0; k < TOLD; k++, from += n) memcpy(row[k], from, n * sizeof *from);
     }
 }

@@ -607,6 +607,32 @@ static void inflow_is_saved_and_restored(void **state) {
     destroy_rig(r);
 }
 
+// What a sample told is told again once stored and put back, the blades' distance to the tower included,
+// which differs from blade to blade.
+static void told_is_saved_and_restored(void **state) {
+    (void)state;
+    rig *r = create_rig(false);
+    operate(r, 8, 0, 9);
+    sample(r, BOUGH_PI); // blade 1 in front of the tower
+    double *told = test_malloc((size_t)bough_rotor_told_size(r->rotor) * sizeof *told);
+    bough_rotor_extremes before[BLADES];
+    for (int b = 0; b < BLADES; b++) before[b] = bough_rotor_look(r->rotor, &r->data, b);
+    assert_true(before[0].distance < 10 && before[1].distance > 2 * before[0].distance);
+    double thrust = r->data.thrust;
+    bough_rotor_told_save(r->rotor, &r->data, told);
+    operate(r, 12, 3, 6);
+    sample(r, 1);
+    assert_true(bough_rotor_look(r->rotor, &r->data, 0).distance != before[0].distance);
+    bough_rotor_told_restore(r->rotor, told, &r->data);
+    check_near(r->data.thrust, thrust, 0, 0);
+    for (int b = 0; b < BLADES; b++) {
+        bough_rotor_extremes after = bough_rotor_look(r->rotor, &r->data, b);
+        assert_true(after.distance == before[b].distance && after.speed == before[b].speed);
+    }
+    test_free(told);
+    destroy_rig(r);
+}
+
 // The time constant by its formula; one long advance equals many short ones.
 static void inflow_advances_exactly(void **state) {
     (void)state;
@@ -722,6 +748,7 @@ int main(void) {
         cmocka_unit_test(odd_states_are_finite),
         cmocka_unit_test(pitch_step_matches_reference),
         cmocka_unit_test(inflow_is_saved_and_restored),
+        cmocka_unit_test(told_is_saved_and_restored),
         cmocka_unit_test(inflow_advances_exactly),
         cmocka_unit_test(stall_is_late_and_repeats),
         cmocka_unit_test(stall_keeps_the_torque_of_a_coned_rotor),
