@@ -50,8 +50,8 @@ static bough_status read_box(bough_arena *arena, bough_wind *wind) {
     bough_status status = bough_wind_box_read(arena, wind->def.file, box);
     if (!bough_is_ok(&status) || bough_wind_box_lasts(box, wind->def.until)) return status;
     return bough_fail(BOUGH_INVALID,
-                      "%s does not repeat and is too short: it has %g s, of which %g s pass before "
-                      "it reaches the rotor whole; %g s are needed.", wind->def.file,
+                      "%s is not periodic and too short: it has %g s, of which %g s pass before "
+                      "the box covers the rotor; %g s are needed.", wind->def.file,
                       box->duration, box->half_width / box->mean, wind->def.until);
 }
 

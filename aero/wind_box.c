@@ -28,7 +28,7 @@ static double f32_at(const unsigned char *b) {
 }
 
 static bough_status bad(const char *path, const char *what) {
-    return bough_fail(BOUGH_INVALID, "%s is no TurbSim full-field file: %s.", path, what);
+    return bough_fail(BOUGH_INVALID, "%s is not a TurbSim full-field file: %s.", path, what);
 }
 
 static bough_status read_counts(const char *path, const unsigned char *head, bough_wind_box *box) {
@@ -86,8 +86,8 @@ static bough_status count_values(const char *path, const bough_wind_box *box, in
     if (points <= room && box->n_time <= room / points) *n = 3 * points * box->n_time;
     if (*n > 0 && HEAD + text + 2 * *n == size) return bough_ok();
     return bough_fail(BOUGH_INVALID,
-                      "%s is damaged: it has %lld bytes, but its head promises %d times of %d x %d "
-                      "points and %d of the tower.", path, (long long)size, box->n_time, box->n_z,
+                      "%s is damaged: it has %lld bytes, but its header announces %d times of %d "
+                      "x %d points and %d of the tower.", path, (long long)size, box->n_time, box->n_z,
                       box->n_y, box->n_tower);
 }
 

@@ -220,8 +220,8 @@ static bough_status look_into(const bough_monitor *m, bough_coupling *c, const g
     const bough_assembly *a = c->assembly;
     return bough_fail(BOUGH_FAILED,
                       "coupling of %s and %s is unstable at %.6g s: scheme %s, macro step %.6g s, "
-                      "their force has grown a hundredfold and more, by %.3g per second; try a "
-                      "smaller macro step%s",
+                      "their force has grown by more than a factor of 100, by %.3g per "
+                      "second; try a smaller macro step%s",
                       a->member[g->from]->system.name, a->member[g->to]->system.name, c->t1, c->scheme->name, h,
                       growth, m->advice);
 }
@@ -366,9 +366,9 @@ static bough_status judge_balance(bough_monitor *m, const bough_coupling *c) {
     if (holds_forces(c) || m->unbalanced < MOST_UNBALANCED) return bough_ok();
     int body = a->interface[worst].body;
     return bough_fail(BOUGH_FAILED,
-                      "the coupling of %s has lost the solution by %.6g s (scheme %s, macro step "
-                      "%.6g s): %.2g of the energy exchanged at the interfaces is made or lost by "
-                      "the coupling itself; try a smaller macro step or scheme: %s",
+                      "the coupling of %s has lost the solution at %.6g s (scheme %s, macro step "
+                      "%.6g s): the coupling itself adds or removes %.2g of the energy "
+                      "exchanged at the interfaces; try a smaller macro step or scheme: %s",
                       a->member[body]->system.name, c->t1, c->scheme->name, c->t1 - c->t0,
                       all.residual / all.exchanged, bough_scheme_last_resort(c->scheme));
 }

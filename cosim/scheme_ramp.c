@@ -404,8 +404,8 @@ static void choose(const bough_coupling *c, bough_scheme_options *options) {
 
 const bough_scheme bough_scheme_ramp = {
     .name = "ramp",
-    .summary = "forces ramp to a linearly implicit prediction; order 3 on heavy interface bodies, "
-               "else 2; stable far beyond the explicit limit",
+    .summary = "forces change linearly to a linearly implicit prediction; order 3 on heavy "
+               "interface bodies, else 2; stable far beyond the explicit limit",
     .instead = "monolithic",
     .reads = BOUGH_READS_THETA,
     .create = create,

@@ -95,7 +95,7 @@ wrong_checkpoints() {
     damage $((size / 2))
     refused "checkpoint 'kept/checkpoint.bin' is damaged" "$bar" --set "$long"
     damage 3
-    refused 'no checkpoint of this version' "$bar" --set "$long"
+    refused 'not a checkpoint of this version' "$bar" --set "$long"
     head -c $((size - 9)) checkpoint.bin >kept/checkpoint.bin
     refused 'is damaged' "$bar" --set "$long"
     : >kept/checkpoint.bin
@@ -106,7 +106,7 @@ wrong_checkpoints() {
     refused 'has --checkpoint 0.01 s, not 0.02 s' "$bar" --set "$long" --checkpoint 20ms
     cp kept/channels.out.partial rows
     head -c 100 rows >kept/channels.out.partial
-    refused 'does not hold what the checkpoint counts on' "$bar" --set "$long"
+    refused 'lacks rows that the checkpoint needs' "$bar" --set "$long"
     cp rows kept/channels.out.partial
     rm kept/checkpoint.bin
     refused "nothing to resume: there is no 'kept/checkpoint.bin'" "$bar" --set "$long"

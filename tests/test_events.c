@@ -194,7 +194,7 @@ static void refused(const char *set, const char *message) {
 
 static void senseless_events_are_refused(void **state) {
     (void)state;
-    refused("control.events=[{kind: stop}]", "when it happens");
+    refused("control.events=[{kind: stop}]", "time of the event");
     refused("control.events=[{kind: stop, channel: RotSpeed}]", "needs one of");
     refused("control.events=[{kind: stop, at: 1, above: 3}]", "needs its 'channel'");
     refused("control.events=[{kind: stop, channel: RotSped, above: 3}]", "did you mean 'RotSpeed'");

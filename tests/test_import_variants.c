@@ -71,7 +71,7 @@ static void missing_wind_leaves_a_steady_one(void **context) {
     }
     // no text of a wind: an entry of a store of large files, in its place
     t = import(&(edit){"parts/wind.dat", "1    WindType", "3    WindType\n\"servo.dat\"  FileName_BTS"});
-    assert_true(list_says(&t, "no TurbSim full-field file"));
+    assert_true(list_says(&t, "not a TurbSim full-field file"));
     done(&t);
 }
 

@@ -31,9 +31,9 @@ static void turbine_names_are_checked(void **state) {
     refuses(ROTOR "turbine: {rotor: b1, blades: [b1, b1, hub]}\n",
             "s.yaml:7:18: error: turbine.rotor: the joint of 'b1' must be revolute\n"
             "s.yaml:7:35: error: turbine.blades[1]: blade 'b1' is given twice\n"
-            "s.yaml:7:39: error: turbine.blades[2]: body 'hub' has no rod, so it is no blade\n");
+            "s.yaml:7:39: error: turbine.blades[2]: body 'hub' has no rod, so it cannot be a blade\n");
     refuses(ROTOR "turbine: {rotor: hub, blades: [b1, b2]}\n",
-            "s.yaml:7:36: error: turbine.blades[1]: body 'b2' does not hang on the rotor 'hub'\n");
+            "s.yaml:7:36: error: turbine.blades[1]: body 'b2' is not carried by the rotor 'hub'\n");
 }
 
 static void aerodynamics_are_consistent(void **state) {

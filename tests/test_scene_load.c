@@ -58,7 +58,7 @@ static void modal_bodies_are_rods_reduced(void **state) {
             "s.yaml:7:5: error: bodies[0].modal: only used with 'fidelity: "
             "modal/segmented-modal'\n");
     refuses(MODAL("modal") "  - {name: b, fidelity: rigid, joint: {kind: fixed, parent: a}}\n",
-            "s.yaml:7:61: error: bodies[1].joint.parent: 'a' is a modal body, which carries none; "
+            "s.yaml:7:61: error: bodies[1].joint.parent: 'a' is a modal body, which cannot carry bodies; "
             "make it a rod\n");
     refuses(MODAL("modal") "loads:\n  - {body: a, at: tip, force: [1, 0, 0], frame: follower}\n",
             "s.yaml:8:49: error: loads[0].frame: 'a' is a modal body, on which loads do not turn "

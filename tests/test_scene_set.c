@@ -70,7 +70,7 @@ static void bad_replacements_are_refused(void **state) {
                         "--set: error: bodies[x].pitch: there is no item with 'name: x' in that list\n"
                         "--set: error: bodies[0: expected an index such as [0] or [0-2], or a name as [blade1]\n"
                         "--set: error: title.x: key 'x' is looked for in 'Two-bladed example'\n"
-                        "--set: error: title[0]: there is no list to take an index of\n"
+                        "--set: error: title[0]: this key has no list, so it takes no index\n"
                         "--set: error: bodies.x: key 'x' is looked for in a list\n"
                         "--set: error: a..b: expected a key\n"
                         "--set: error: bodies[0]x: expected '.' or '['\n"

@@ -96,8 +96,8 @@ static void print_closures(const bough_tree *tree) {
     printf("closures: %d, %d equation%s, %d independent", tree->n_closures, tree->n_rows,
            plural(tree->n_rows), tree->closure_rank);
     if (redundant > 0) {
-        printf("; %d forbid%s what is forbidden already: of the forces that could do it the least "
-               "are found",
+        printf("; %d depend%s on the others: the smallest of the possible constraint forces are "
+               "computed",
                redundant, redundant == 1 ? "s" : "");
     }
     int freedoms = tree->n_v - tree->closure_rank;

@@ -65,8 +65,8 @@ static bough_status check_interval(const bough_job *job, double interval) {
                                          "simulation.output.vertices, or store frames");
     }
     if (interval > m->duration) {
-        return bough_fail(BOUGH_INVALID, "--checkpoint %.9g s is longer than the run, %.9g s: none "
-                                         "would be written", interval, m->duration);
+        return bough_fail(BOUGH_INVALID, "--checkpoint %.9g s is longer than the run, %.9g s: "
+                                        "there would be no checkpoint", interval, m->duration);
     }
     if (bough_master_multiple(interval, m->macro_step) == 0) {
         return bough_fail(BOUGH_INVALID,
@@ -120,7 +120,7 @@ static bough_status read_copy(bough_job *job, const char *path, FILE *file) {
     head h;
     if (fread(&h, sizeof h, 1, file) != 1) return damaged(path);
     if (memcmp(h.magic, magic, sizeof magic) != 0) {
-        return bough_fail(BOUGH_INVALID, "'%.200s' is no checkpoint of this version", path);
+        return bough_fail(BOUGH_INVALID, "'%.200s' is not a checkpoint of this version", path);
     }
     bool fits = h.size == c->size;
     if (fits && (fread(c->copy, 1, c->size, file) != c->size || fgetc(file) != EOF ||

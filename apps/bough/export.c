@@ -69,7 +69,8 @@ static bough_status place_files(export *x) {
         const char *path = x->file[k].path;
         if (strncmp(path, x->file[0].path, length) != 0 || (length == 0 && path[0] == '/')) {
             return bough_fail(BOUGH_INVALID,
-                              "'%.200s' is not named relative to the scene: an FMU must hold it",
+                              "'%.200s' is not given relative to the scene; an FMU must contain "
+                              "it",
                               path);
         }
         x->file[k].name = path + length;
@@ -196,7 +197,7 @@ static bough_status check_names(const export *x) {
     for (int k = 0; k < scene->n_input; k++) {
         const char *name = scene->input[k].name;
         if (strcmp(name, "time") != 0 && bough_channels_find(&x->channels, name) < 0) continue;
-        return bough_fail(BOUGH_INVALID, "the input '%.80s' is named as an output: rename it", name);
+        return bough_fail(BOUGH_INVALID, "the input '%.80s' has the name of an output: rename it", name);
     }
     return bough_ok();
 }

@@ -128,7 +128,7 @@ bough_status bough_modes_whole(bough_arena *arena, const bough_options *options,
     const char *folder = bough_out_folder(arena, options);
     if (!folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (s->master->assembly->n_state == 0) {
-        return bough_fail(BOUGH_INVALID, "%.200s: nothing in it moves or bends", s->scene->file);
+        return bough_fail(BOUGH_INVALID, "%.200s: no body of the scene can move or bend", s->scene->file);
     }
     bough_status status = bough_vibration_find(arena, s, s->scene->modes.count, &v);
     if (!bough_is_ok(&status)) return status;

@@ -214,7 +214,7 @@ bough_status bough_verb_static(bough_arena *arena, const bough_options *options)
     bough_status status = bough_open(arena, options, &s);
     if (!bough_is_ok(&status)) return status;
     if (s->n_rod == 0 && s->tree->n_v == 0) {
-        return bough_fail(BOUGH_INVALID, "%.200s: nothing in it moves or bends", s->scene->file);
+        return bough_fail(BOUGH_INVALID, "%.200s: no body of the scene can move or bend", s->scene->file);
     }
     const char *folder = bough_out_folder(arena, options);
     bough_steady *steady = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *steady);

@@ -44,7 +44,7 @@ static bough_status read_bytes(bough_arena *arena, const char *path, char **text
     fclose(file);
     if (!out || fclose(out) != 0) status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (bough_is_ok(&status) && (size > MOST_BYTES || memchr(bytes, 0, size))) {
-        status = bough_fail(BOUGH_INVALID, "'%.250s' is no text, or larger than 16 MB", path);
+        status = bough_fail(BOUGH_INVALID, "'%.250s' is not a text file, or is larger than 16 MB", path);
     }
     if (bough_is_ok(&status)) *text = bough_arena_string(arena, bytes);
     free(bytes);

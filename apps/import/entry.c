@@ -147,7 +147,8 @@ bough_curve bough_curve_of(bough_draft *d, const bough_node *node, const double 
                            int n) {
     for (int i = 1; i < n; i++) {
         if (x[i] >= x[i - 1]) continue;
-        bough_entry_fail(d, node, "grid: expected numbers that grow, number %d does not", i + 1);
+        bough_entry_fail(d, node, "grid: expected increasing numbers, but number %d is not larger "
+                                  "than the one before", i + 1);
         return (bough_curve){0};
     }
     return (bough_curve){node, n, x, y};

@@ -34,7 +34,8 @@ static void read_axis(bough_windio *w) {
     for (int i = 1; i < z->n; i++) {
         if (z->y[i] > z->y[i - 1] && z->x[i] > z->x[i - 1]) continue;
         bough_entry_fail(&w->draft, z->node,
-                         "reference_axis.z: expected points that go outwards, number %d does not",
+                         "reference_axis.z: expected increasing values, but number %d is not "
+                         "larger than the one before",
                          i + 1);
     }
     if (z->n < 2 || fabs(z->y[0]) > 1e-6 || z->x[0] != 0 || z->x[z->n - 1] != 1) {

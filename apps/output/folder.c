@@ -83,8 +83,8 @@ bough_status bough_folder_reopen_partial(const char *path, long bytes, FILE **fi
     if (stat(partial, &info) != 0 && errno == ENOENT) rename(path, partial);
     if (stat(partial, &info) != 0 || info.st_size < bytes) {
         return bough_fail(BOUGH_INVALID,
-                          "'%.200s' does not hold what the checkpoint counts on; without --resume "
-                          "the run starts anew",
+                          "'%.200s' lacks rows that the checkpoint needs; without --resume the "
+                          "run starts anew",
                           partial);
     }
     *file = fopen(partial, "r+");

@@ -87,7 +87,7 @@ static void check_event(bough_schema_reader *r, void *item) {
                                                       : "a threshold needs its 'channel'");
     }
     if (!e->channel && !bough_node_find(e->node, "at")) {
-        bough_schema_error(r, e->node, "", "expected 'at' or 'channel': when it happens");
+        bough_schema_error(r, e->node, "", "expected 'at' or 'channel' as the time of the event");
     }
     e->falls = below;
     e->threshold = below ? e->below : e->above;

@@ -134,8 +134,8 @@ static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
     const bough_node *node = bough_link_value(joint->node, "parent");
     joint->parent = bough_link_body(r, s, node, "parent", joint->parent_name);
     if (joint->parent >= 0 && s->body[joint->parent].fidelity > BOUGH_SCENE_ROD) {
-        bough_schema_error(r, node, "parent", "'%s' is a modal body, which carries none; make it a"
-                           " rod", joint->parent_name);
+        bough_schema_error(r, node, "parent", "'%s' is a modal body, which cannot carry bodies; "
+                                        "make it a rod", joint->parent_name);
     }
 }
 
@@ -309,7 +309,8 @@ static void link_sensor(bough_schema_reader *r, const bough_scene *s, bough_scen
     if (body->fidelity != BOUGH_SCENE_ROD) {
         bough_schema_error(r, node, "body", "'%s' is not of fidelity rod", body->name);
     } else if (is_sensed_before(s, sensor)) {
-        bough_schema_error(r, node, "body", "'%s' has a sensor already: give all places there",
+        bough_schema_error(r, node, "body", "'%s' already has a sensor: give all places in that "
+                                        "sensor",
                            body->name);
     }
     double length = body->rod.structure.length;

@@ -32,9 +32,9 @@ static void link_blade(bough_schema_reader *r, bough_scene *s, int k) {
     if (is_listed_before(t, k)) {
         bough_schema_error(r, node, "", "blade '%s' is given twice", name);
     } else if (bough_node_find(s->body[t->blade[k]].node, "rod") == NULL) {
-        bough_schema_error(r, node, "", "body '%s' has no rod, so it is no blade", name);
+        bough_schema_error(r, node, "", "body '%s' has no rod, so it cannot be a blade", name);
     } else if (t->rotor >= 0 && !hangs_on(s, t->blade[k], t->rotor)) {
-        bough_schema_error(r, node, "", "body '%s' does not hang on the rotor '%s'", name,
+        bough_schema_error(r, node, "", "body '%s' is not carried by the rotor '%s'", name,
                            t->rotor_name);
     }
 }
@@ -129,7 +129,7 @@ static void link_tower(bough_schema_reader *r, bough_scene *s) {
     for (int k = 0; k < s->turbine.n_blade; k++)
         blade = blade || s->turbine.blade[k] == tower->body;
     if (blade || bough_node_find(s->body[tower->body].node, "rod") == NULL) {
-        bough_schema_error(r, node, "tower.body", "'%s' must have a rod and be no blade",
+        bough_schema_error(r, node, "tower.body", "'%s' must have a rod and must not be a blade",
                            tower->body_name);
     }
 }

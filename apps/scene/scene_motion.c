@@ -166,10 +166,11 @@ static void check_motion(bough_schema_reader *r, void *item) {
     bool constant = motion->def.n == 0 && !(motion->def.end > motion->def.start);
     if (motion->input != NULL && (motion->def.speed || !constant)) {
         bough_schema_error(r, bough_node_find(motion->node, "input"), "input",
-                           "only with a constant place to start from");
+                           "only with a constant initial position");
     }
     if (motion->node->n == (motion->input != NULL ? 2 : 1)) return;
-    bough_schema_error(r, motion->node, "", "expected either the speed or where the joint is");
+    bough_schema_error(r, motion->node, "", "expected either the speed or the position of the "
+                                        "joint");
 }
 
 static void check_pair(bough_schema_reader *r, void *item) {

@@ -105,7 +105,7 @@ static bough_node *put_item(const replacement *s, const bough_node *node, const 
         return refuse(s, "expected an index such as [0] or [0-2], or a name as [blade1]");
     }
     if (node == NULL || node->kind != BOUGH_SEQUENCE) {
-        return refuse(s, "there is no list to take an index of");
+        return refuse(s, "this key has no list, so it takes no index");
     }
     if (last >= node->n) {
         snprintf(text, sizeof text, "index %.12s is beyond the last, [%d]", rest, node->n - 1);

@@ -66,9 +66,10 @@ static const char *body_of(const bough_simulation *s, const bough_assembly *asse
 static bough_status explain(const bough_simulation *s, const bough_assembly *assembly,
                             const bough_equilibrium_report *report) {
     return bough_fail(BOUGH_FAILED,
-                      "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale in"
-                      " a step, at a rate of %.3g; a free joint needs a spring, a speed or a"
-                      " motion, a load may be too large (try a part of it), a mesh too coarse",
+                      "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale "
+                      "in a step, at a rate of %.3g; a free joint needs a spring, a speed or "
+                      "a motion; or the load is too large (try a part of it), or the mesh "
+                      "too coarse",
                       body_of(s, assembly, report->row), report->steps, report->change,
                       report->rate);
 }

@@ -194,7 +194,7 @@ bough_status bough_run_storable(const bough_run *run) {
     const bough_master *m = run->simulation->master;
     if (bough_master_sampled(m)) return bough_simulation_storable(run->simulation);
     return bough_fail(BOUGH_INVALID,
-                      "at %.9g s the air or the control is between two samples, whose past is in no "
-                      "copy: step on",
+                      "at %.9g s the air or the control is between two samples; a copy can be "
+                      "made at their next sample",
                       m->time);
 }

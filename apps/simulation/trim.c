@@ -78,8 +78,8 @@ static void seek_pitch(search *x, double speed, double f) {
         }
         low = high, f = g;
     }
-    x->status = bough_fail(BOUGH_FAILED, "no steady operation: pitched to %.4g degrees the rotor still gains "
-                           "power at %.4g rpm", low * 180 / BOUGH_PI, speed * 30 / BOUGH_PI);
+    x->status = bough_fail(BOUGH_FAILED, "no steady operation: at a pitch of %.4g degrees the "
+                                        "rotor still accelerates at %.4g rpm", low * 180 / BOUGH_PI, speed * 30 / BOUGH_PI);
 }
 
 // From a speed with a surplus (f > 0) upwards, or without one downwards.
@@ -98,8 +98,8 @@ static void seek_speed(search *x, double speed, double f, double pitch) {
         }
         speed = next, f = g;
         if (speed > standing * reference && speed < reference / standing) continue;
-        x->status = bough_fail(BOUGH_FAILED, "no steady operation: the air's torque is that of the "
-                               "generator at no speed from %.4g to %.4g rpm",
+        x->status = bough_fail(BOUGH_FAILED, "no steady operation: the torque of the air equals "
+                                        "that of the generator at no speed from %.4g to %.4g rpm",
                                fmin(speed, reference) * 30 / BOUGH_PI,
                                fmax(speed, reference) * 30 / BOUGH_PI);
         return;

@@ -233,8 +233,8 @@ static bough_status judge(const work *w, const bough_lifetime *l) {
                           w->set->n_case);
     }
     return bough_fail(BOUGH_FAILED,
-                      "%d of %d cases failed: the lifetime result is incomplete, %.3g %% of its weight "
-                      "is lacking", l->n_failed, w->set->n_case, 100 * l->lacking);
+                      "%d of %d cases failed: the lifetime result is incomplete, %.3g %% of its "
+                      "weight is missing", l->n_failed, w->set->n_case, 100 * l->lacking);
 }
 
 static bough_status conclude_in(bough_arena *arena, const work *w) {

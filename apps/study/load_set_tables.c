@@ -146,7 +146,7 @@ static void put_extremes(const bough_lifetime *l, FILE *f) {
 }
 
 static void put_ranges(const bough_lifetime *l, FILE *f) {
-    fputs("channel,unit,range from,range to,cycles in the life\n", f);
+    fputs("channel,unit,range from,range to,cycles in the lifetime\n", f);
     for (int i = 0; i < l->set->n_channel; i++) {
         const bough_levels *r = &l->channel[i].ranges;
         double width = bough_levels_width(r);
@@ -158,7 +158,7 @@ static void put_ranges(const bough_lifetime *l, FILE *f) {
 }
 
 static void put_levels(const bough_lifetime *l, FILE *f) {
-    fputs("channel,unit,from,to,hours in the life,upward crossings of from\n", f);
+    fputs("channel,unit,from,to,hours in the lifetime,upward crossings of from\n", f);
     for (int i = 0; i < l->set->n_channel; i++) {
         const bough_levels *r = &l->channel[i].levels;
         double width = bough_levels_width(r);
@@ -206,10 +206,10 @@ static void print_extreme(const bough_lifetime *l, const bough_extreme *e, FILE 
 
 void bough_lifetime_print(const bough_lifetime *l, FILE *f) {
     const bough_load_set *s = l->set;
-    fprintf(f, "%d cases, %.6g hours of a life of %g years; equivalent loads at %g cycles\n",
+    fprintf(f, "%d cases, %.6g hours of a lifetime of %g years; equivalent loads at %g cycles\n",
             s->n_case, l->hours, s->lifetime, s->cycles);
     if (l->n_failed + l->n_missing > 0) {
-        fprintf(f, "INCOMPLETE: %d cases failed, %d are missing, %.3g %% of the weight is lacking\n",
+        fprintf(f, "INCOMPLETE: %d cases failed, %d are missing, %.3g %% of the weight is missing\n",
                 l->n_failed, l->n_missing, 100 * l->lacking);
     }
     fprintf(f, "%-12s %-6s", "channel", "unit");

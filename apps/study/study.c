@@ -345,8 +345,9 @@ static bool is_verification(const bough_node *root, bough_errors *errors) {
     for (size_t i = 0; kind && kind->kind == BOUGH_SCALAR && i < sizeof kinds / sizeof *kinds; i++) {
         if (strcmp(kind->text, kinds[i]) != 0) continue;
         bough_errors_add(errors, kind, "kind",
-                         "'%s' is a kind of bough's own verification, which another program runs: "
-                         "build/release/tests/bough-verify FILE, built with the tests", kinds[i]);
+                         "'%s' is a study of bough's verification; run it by "
+                         "build/release/tests/bough-verify FILE, which is built with the "
+                         "tests", kinds[i]);
         return true;
     }
     return false;

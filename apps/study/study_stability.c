@@ -179,7 +179,8 @@ static bough_status make_map(bough_arena *arena, const stability *x, bough_map *
     const bough_study_axis *across = &s->grid.axis[s->grid.n - 1];
     char legend[160], row[160];
     snprintf(legend, sizeof legend,
-             "%.60s [%.20s], !: warned of before the run; red: stopped with a diagnosis, when",
+             "%.60s [%.20s]; !: warning before the run; red: stopped with a diagnosis, with its "
+             "time",
              s->measure[0].name, s->measure[0].unit);
     *map = (bough_map){.title = s->title ? s->title : s->file,
                        .legend = bough_arena_string(arena, legend),
