@@ -38,7 +38,7 @@ static int defect_order(const bough_scheme_options *options) { return options->o
 
 const bough_scheme bough_scheme_gauss_seidel = {
     .name = "gauss-seidel",
-    .summary = "first the tree with constant forces, then the bodies with its new motion; order "
+    .summary = "first the master with constant forces, then the bodies with its new motion; order "
                "1, explicit",
     .instead = "ramp",
     .explicit_forces = true,
