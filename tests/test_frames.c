@@ -16,12 +16,17 @@ static void points(void *self, double *point) {
     }
 }
 
+static void loads(void *self, double t, double *force, double *moment) {
+    (void)self;
+    for (int i = 0; i < 15; i++) force[i] = 100 * t + i, moment[i] = -force[i];
+}
+
 static void write_frames(const char *folder) {
     static const bough_polyline line[] = {{"first", 3}, {"second", 2}};
     double shift = 0;
     bough_arena *arena = bough_arena_create();
     bough_frames_def def = {
-        .folder = folder, .n_line = 2, .line = line, .points = points, .self = &shift};
+        .folder = folder, .n_line = 2, .line = line, .points = points, .loads = loads, .self = &shift};
     bough_frames *frames;
     bough_status status = bough_frames_open(arena, &def, &frames);
     assert_int_equal(status.code, BOUGH_OK);
@@ -56,6 +61,9 @@ static void frames_are_polylines_with_times(void **context) {
     char *frame = scratch_read(folder, "frames/000001.vtp");
     has(frame, "NumberOfPoints=\"5\" NumberOfLines=\"2\"");
     has(frame, "\n0.25 -0 2\n1.25 -0.5 2\n2.25 -1 2\n3.25 -1.5 2\n4.25 -2 2\n</DataArray>");
+    has(frame, "<PointData>\n<DataArray type=\"Float32\" Name=\"section force (N)\" "
+               "NumberOfComponents=\"3\" format=\"ascii\">\n10 11 12\n13 14 15\n");
+    has(frame, "Name=\"section moment (N m)\" NumberOfComponents=\"3\" format=\"ascii\">\n-10 -11");
     has(frame, "Name=\"offsets\" format=\"ascii\">\n3\n5\n");
     free(list);
     free(frame);

@@ -19,11 +19,16 @@ static void move(void *self, double *position, double *rotation) {
     ++*n;
 }
 
+static void load(void *self, double t, double *force, double *moment) {
+    (void)self;
+    for (int k = 0; k < 3 * POINTS; k++) force[k] = t + k, moment[k] = -t - k;
+}
+
 static bough_status open_file(bough_arena *arena, const char *folder, int *n,
                               bough_vertices **vertices) {
     *n = 0;
     bough_vertices_def def = {
-        .folder = folder, .n_body = 2, .body = bodies, .motion = move, .self = n};
+        .folder = folder, .n_body = 2, .body = bodies, .motion = move, .loads = load, .self = n};
     return bough_vertices_open(arena, &def, vertices);
 }
 
@@ -49,6 +54,7 @@ static void check_series(hid_t file, const char *name, int rank, const hsize_t *
 
 static void what_is_written_is_read_back(void **state) {
     static double time[SAMPLES], position[SAMPLES][3][3], rotation[SAMPLES][3][9], hub[SAMPLES][3];
+    static double force[SAMPLES][3][3], moment[SAMPLES][3][3];
     bough_arena *arena = bough_arena_create();
     bough_vertices *v;
     int n;
@@ -71,11 +77,15 @@ static void what_is_written_is_read_back(void **state) {
     check_series(file, "/body/hub/position", 3, alone, "m", &hub[0][0]);
     check_series(file, "/body/blade/position", 3, shape, "m", &position[0][0][0]);
     check_series(file, "/body/blade/rotation", 4, shape, "1", &rotation[0][0][0]);
+    check_series(file, "/body/blade/force", 3, shape, "N", &force[0][0][0]);
+    check_series(file, "/body/blade/moment", 3, shape, "N m", &moment[0][0][0]);
     for (int i = 0; i < SAMPLES; i++) {
         check_near(time[i], 0.5 * i, 0, 0);
         check_near(hub[i][2], 100 * i + 2, 0, 0);
         for (int k = 0; k < 3; k++) {
             check_near(position[i][k][1], 100 * i + 10 * (k + 1) + 1, 0, 0);
+            check_near(force[i][k][2], 0.5 * i + 3 * (k + 1) + 2, 0, 0);
+            check_near(moment[i][k][0], -0.5 * i - 3 * (k + 1), 0, 0);
             check_near(rotation[i][k][8], 100 * i + 10 * (k + 1) + 8, 0, 0);
         }
     }

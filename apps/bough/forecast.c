@@ -7,9 +7,9 @@
 
 static const double long_run = 1e6;   // macro steps
 static const double much_data = 1e9;  // [bytes]
-static const double frame_head = 500; // bytes of a frame's file beside its points
-static const double frame_point = 40; // bytes of one of its points
-enum { COLUMN = 18, VERTEX = 96 };    // bytes of a value in channels.out, of a vertex in vertices.h5
+static const double frame_head = 900; // bytes of a frame's file beside its points
+static const double frame_point = 110; // bytes of one of its points
+enum { COLUMN = 18, VERTEX = 144 };    // bytes of a value in channels.out, of a vertex in vertices.h5
 
 // How often something is recorded: at the start and after every interval.
 static double samples(double duration, double interval) {

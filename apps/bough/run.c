@@ -52,6 +52,7 @@ static bough_status open_vertices(bough_job *job) {
                               .n_body = job->shape.n_line,
                               .body = body,
                               .motion = bough_shape_motion,
+                              .loads = bough_shape_vertex_loads,
                               .self = &job->shape};
     return bough_vertices_open(job->arena, &def, &job->vertices);
 }
@@ -66,6 +67,7 @@ static bough_status open_frames(bough_job *job) {
                             .n_line = job->shape.n_line,
                             .line = job->shape.line,
                             .points = bough_shape_points,
+                            .loads = bough_shape_loads,
                             .self = &job->shape,
                             .kept = job->frames_kept};
     return bough_frames_open(job->arena, &def, &job->frames);

@@ -9,7 +9,7 @@
 struct bough_frames {
     bough_frames_def def;
     FILE *list;     // frames.pvd.partial; NULL once finished
-    double *point;  // (n_point × 3)
+    double *point, *force, *moment; // (n_point × 3)
     int n_point, n_frame;
     char list_path[BOUGH_PATH_MAX];
 };
@@ -42,7 +42,9 @@ bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def,
     if (!f) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for frames");
     f->def = *def;
     for (int k = 0; k < def->n_line; k++) f->n_point += def->line[k].n_point;
-    f->point = bough_arena_doubles(arena, 3 * (size_t)f->n_point);
+    f->point = bough_arena_doubles(arena, 9 * (size_t)f->n_point);
+    f->force = f->point + 3 * f->n_point;
+    f->moment = f->force + 3 * f->n_point;
     if (!f->point) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for frames");
     char folder[BOUGH_PATH_MAX];
     bough_status status = bough_folder_path(def->folder, "frames", folder);
@@ -55,14 +57,26 @@ bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def,
     return status;
 }
 
-static void write_points(const bough_frames *f, FILE *file) {
-    fprintf(file, "<Points>\n<DataArray type=\"Float32\" NumberOfComponents=\"3\" "
-                  "format=\"ascii\">\n");
-    for (int i = 0; i < f->n_point; i++) {
-        const double *x = f->point + 3 * (size_t)i;
+static void write_vectors(const bough_frames *f, const char *name, const double *x, FILE *file) {
+    fprintf(file, "<DataArray type=\"Float32\" Name=\"%s\" NumberOfComponents=\"3\" "
+                  "format=\"ascii\">\n", name);
+    for (int i = 0; i < f->n_point; i++, x += 3)
         fprintf(file, "%.6g %.6g %.6g\n", x[0], x[1], x[2]);
-    }
-    fprintf(file, "</DataArray>\n</Points>\n");
+    fprintf(file, "</DataArray>\n");
+}
+
+static void write_points(const bough_frames *f, FILE *file) {
+    fprintf(file, "<Points>\n");
+    write_vectors(f, "position", f->point, file);
+    fprintf(file, "</Points>\n");
+}
+
+// The report reads the points, which stand first.
+static void write_loads(const bough_frames *f, FILE *file) {
+    fprintf(file, "<PointData>\n");
+    write_vectors(f, "section force (N)", f->force, file);
+    write_vectors(f, "section moment (N m)", f->moment, file);
+    fprintf(file, "</PointData>\n");
 }
 
 static void write_lines(const bough_frames *f, FILE *file) {
@@ -91,11 +105,13 @@ bough_status bough_frames_sample(bough_frames *f, double t) {
     if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
     if (!bough_is_ok(&status)) return status;
     f->def.points(f->def.self, f->point);
+    f->def.loads(f->def.self, t, f->force, f->moment);
     fprintf(file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\">\n"
                   "<PolyData>\n<Piece NumberOfPoints=\"%d\" NumberOfLines=\"%d\">\n",
             f->n_point, f->def.n_line);
     write_points(f, file);
     write_lines(f, file);
+    write_loads(f, file);
     write_bodies(f, file);
     fprintf(file, "</Piece>\n</PolyData>\n</VTKFile>\n");
     status = bough_folder_commit(path, file);

@@ -20,6 +20,8 @@ typedef struct bough_frames_def {
     const bough_polyline *line; // (n_line), outlives the frames
     // Fills the points of all lines, in order (Σ n_point × 3), in ground axes [m].
     void (*points)(void *self, double *point);
+    // Fills the section loads at these points at time t (Σ n_point × 3), in ground axes [N], [N m].
+    void (*loads)(void *self, double t, double *force, double *moment);
     void *self;
     bough_kept kept; // of an earlier process: the frames to go on behind; else 0
 } bough_frames_def;

@@ -40,8 +40,8 @@ struct bough_vertices {
     bough_vertices_def def;
     hid_t file; // negative once closed
     series time;
-    series *position, *rotation; // (n_body)
-    double *x, *r;               // (Σ n_point × 3), (Σ n_point × 9)
+    series *position, *rotation, *force, *moment; // (n_body)
+    double *x, *r, *f, *m;                        // (Σ n_point × 3), r (Σ n_point × 9)
     hsize_t n;                   // samples so far
     char path[BOUGH_PATH_MAX], partial[BOUGH_PATH_MAX + 16];
 };
@@ -114,7 +114,11 @@ static bool create_body(bough_vertices *v, int i) {
     snprintf(name, sizeof name, "/body/%.100s/position", v->def.body[i].name);
     if (!create_series(v->file, name, 3, row, "m", &v->position[i])) return false;
     snprintf(name, sizeof name, "/body/%.100s/rotation", v->def.body[i].name);
-    return create_series(v->file, name, 4, row, "1", &v->rotation[i]);
+    if (!create_series(v->file, name, 4, row, "1", &v->rotation[i])) return false;
+    snprintf(name, sizeof name, "/body/%.100s/force", v->def.body[i].name);
+    if (!create_series(v->file, name, 3, row, "N", &v->force[i])) return false;
+    snprintf(name, sizeof name, "/body/%.100s/moment", v->def.body[i].name);
+    return create_series(v->file, name, 3, row, "N m", &v->moment[i]);
 }
 
 static bool create_file(bough_vertices *v) {
@@ -135,11 +139,12 @@ bough_status bough_vertices_open(bough_arena *arena, const bough_vertices_def *d
     bough_vertices *v = bough_arena_take(arena, sizeof *v);
     size_t bodies = (size_t)def->n_body, points = 0;
     for (int i = 0; i < def->n_body; i++) points += (size_t)def->body[i].n_point;
-    series *each = bough_arena_take(arena, 2 * bodies * sizeof *each);
-    double *x = bough_arena_doubles(arena, 12 * points);
+    series *each = bough_arena_take(arena, 4 * bodies * sizeof *each);
+    double *x = bough_arena_doubles(arena, 18 * points);
     if (!v || !each || !x) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for vertices");
     *v = (bough_vertices){.def = *def, .file = -1, .position = each, .rotation = each + bodies,
-                          .x = x, .r = x + 3 * points};
+                          .force = each + 2 * bodies, .moment = each + 3 * bodies,
+                          .x = x, .r = x + 3 * points, .f = x + 12 * points, .m = x + 15 * points};
     bough_status status = bough_folder_path(def->folder, "vertices.h5", v->path);
     if (!bough_is_ok(&status)) return status;
     snprintf(v->partial, sizeof v->partial, "%s.partial", v->path);
@@ -150,12 +155,14 @@ bough_status bough_vertices_open(bough_arena *arena, const bough_vertices_def *d
 
 bough_status bough_vertices_sample(bough_vertices *v, double t) {
     v->def.motion(v->def.self, v->x, v->r);
+    v->def.loads(v->def.self, t, v->f, v->m);
     bool good = append(&v->time, v->n, &t);
-    const double *x = v->x, *r = v->r;
-    for (int i = 0; i < v->def.n_body && good; i++) {
-        good = append(&v->position[i], v->n, x) && append(&v->rotation[i], v->n, r);
-        x += 3 * v->def.body[i].n_point;
-        r += 9 * v->def.body[i].n_point;
+    int first = 0;
+    for (int i = 0; i < v->def.n_body && good; first += v->def.body[i++].n_point) {
+        good = append(&v->position[i], v->n, v->x + 3 * first) &&
+               append(&v->rotation[i], v->n, v->r + 9 * first) &&
+               append(&v->force[i], v->n, v->f + 3 * first) &&
+               append(&v->moment[i], v->n, v->m + 3 * first);
     }
     if (!good) return failed(v, "write");
     v->n++;

@@ -1,5 +1,5 @@
-// All vertices over time in vertices.h5 (HDF5): /time, and for each body /body/NAME/position and
-// /body/NAME/rotation, chunked along time, each with an attribute `units`. The file is complete or not
+// All vertices over time in vertices.h5 (HDF5): /time, and for each body /body/NAME/position, rotation,
+// force and moment, chunked along time, each with an attribute `units`. The file is complete or not
 // there: it grows as vertices.h5.partial. In a program built without HDF5 opening it is refused.
 #ifndef BOUGH_OUTPUT_VERTICES_H
 #define BOUGH_OUTPUT_VERTICES_H
@@ -15,6 +15,8 @@ typedef struct bough_vertices_def {
     // Fills what all vertices have, in order, in ground axes: position (Σ n_point × 3) [m] and
     // rotation (Σ n_point × 3 × 3), whose columns are the vertex's own axes.
     void (*motion)(void *self, double *position, double *rotation);
+    // Fills the section loads at the vertices at time t (Σ n_point × 3), in ground axes [N], [N m].
+    void (*loads)(void *self, double t, double *force, double *moment);
     void *self;
 } bough_vertices_def;
 

@@ -89,12 +89,13 @@ static const bough_key output_keys[] = {
     {.name = "frames", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .offset = offsetof(bough_scene_output, frames),
      .example = "0.1 s",
-     .help = "time between shapes stored for ParaView and `bough report`; default none"},
+     .help = "time between shapes stored for ParaView, with the section loads of rods, and for "
+             "`bough report`; default none"},
     {.name = "vertices", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "> 0",
      .offset = offsetof(bough_scene_output, vertices),
      .example = "0.1 s",
-     .help = "time between positions and rotations of all vertices stored in vertices.h5, by a "
-             "program built with -DBOUGH_HDF5=ON; default none"},
+     .help = "time between positions, rotations and section loads of all vertices stored in "
+             "vertices.h5, by a program built with -DBOUGH_HDF5=ON; default none"},
     {.name = "binary", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false",
      .offset = offsetof(bough_scene_output, binary),
      .help = "also writes channels.outb at the end, OpenFAST's binary format with 16 bits for "

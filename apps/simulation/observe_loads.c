@@ -1,6 +1,7 @@
 // Loads inside the structure: in sections of rods, in the rotor's shaft, on the tower's top.
 #include "apps/simulation/channel_table.h"
 #include "apps/simulation/observe.h"
+#include "apps/simulation/section_load.h"
 #include "core/force.h"
 
 #include <stdio.h>
@@ -48,27 +49,16 @@ static bough_vec3 vertex_turn(const sensor *x, int i) {
     return bough_quaternion_logarithm(bough_quaternion_product(vertex_rotation(x, i), back));
 }
 
-static bough_vec3 segment_row(const sensor *x, int segment, int row) {
-    const double *f = x->scratch.segment + segment;
-    int n = bough_beam_mesh(x->beam)->stride;
-    return bough_v3(f[row * n], f[(row + 1) * n], f[(row + 2) * n]);
-}
-
-// A segment's force is the same all along it, its moment goes linearly from what it does to the left
-// vertex to the opposite of what it does to the right one: so nodal loads act in between.
 static void sample_place(const sensor *x, place at, double *value) {
     int left = at.segment, right = left + 1;
     const bough_rod_def *def = &x->beam->def;
     bough_vec3 shift = blend(bough_sub(vertex_position(x, left), def->position[left]),
                              bough_sub(vertex_position(x, right), def->position[right]), at.share);
     bough_vec3 turn = blend(vertex_turn(x, left), vertex_turn(x, right), at.share);
-    bough_vec3 force = segment_row(x, left, 0);
-    bough_vec3 first = bough_mat3_mul(bough_rotation_matrix(vertex_rotation(x, left)), segment_row(x, left, 3));
-    bough_vec3 last = bough_mat3_mul(bough_rotation_matrix(vertex_rotation(x, right)), segment_row(x, left, 6));
-    bough_vec3 moment = blend(first, bough_scale(-1, last), at.share);
+    bough_section_load load = bough_section_in_segment(x->beam, &x->scratch, left, at.share);
     bough_mat3 axes = bough_rotation_matrix(bough_quaternion_exponential(turn));
-    force = bough_mat3_tmul(axes, force);
-    moment = bough_mat3_tmul(axes, moment);
+    bough_vec3 force = bough_mat3_tmul(axes, load.force);
+    bough_vec3 moment = bough_mat3_tmul(axes, load.moment);
     const double values[PLACE_CHANNELS] = {
         shift.x,         shift.y,         shift.z,         turn.x / degree, turn.y / degree,
         turn.z / degree, force.x / 1e3,   force.y / 1e3,   force.z / 1e3,   moment.x / 1e3,
@@ -78,11 +68,7 @@ static void sample_place(const sensor *x, place at, double *value) {
 
 static void sample_sections(void *self, double t, double *value) {
     sensor *x = self;
-    const bough_rod_model *m = bough_beam_mesh(x->beam);
-    const double *state = bough_beam_state(x->simulation, x->beam, 1);
-    bough_rod_gather(m, state, bough_simulation_rod_input(x->simulation, x->beam), &x->scratch);
-    bough_rod_load(m, bough_beam_loads(x->beam), t, &x->scratch);
-    bool good = bough_rod_forces(m, 0, m->n_segment, &x->scratch);
+    bool good = bough_section_evaluate(x->simulation, x->beam, t, &x->scratch);
     for (int k = 0; k < x->n; k++, value += PLACE_CHANNELS) {
         sample_place(x, x->place[k], value);
         for (int c = 6; c < PLACE_CHANNELS && !good; c++) value[c] = (double)NAN;

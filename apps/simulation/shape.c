@@ -1,5 +1,7 @@
 #include "apps/simulation/shape.h"
 
+#include "apps/simulation/section_load.h"
+
 #include <string.h>
 
 enum { RIGID_POINTS = 3 };
@@ -7,6 +9,22 @@ enum { RIGID_POINTS = 3 };
 static int beam_points(const bough_simulation *s, int body) {
     const bough_beam *beam = bough_simulation_beam(s, body);
     return beam ? beam->def.n_segment + 1 : RIGID_POINTS;
+}
+
+static bool has_rod(const bough_simulation *s, int body) {
+    const bough_beam *beam = bough_simulation_beam(s, body);
+    return beam && beam->rod;
+}
+
+static void take_scratch(bough_arena *arena, bough_shape *shape) {
+    const bough_simulation *s = shape->simulation;
+    shape->scratch = bough_arena_take(arena, (size_t)shape->n_line * sizeof *shape->scratch);
+    for (int i = 0; shape->scratch && i < shape->n_line; i++) {
+        if (has_rod(s, i)) {
+            bough_rod_scratch_init(&shape->scratch[i], arena,
+                                   bough_beam_mesh(bough_simulation_beam(s, i)));
+        }
+    }
 }
 
 bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_shape *shape) {
@@ -23,6 +41,7 @@ bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_s
     m->velocity = bough_arena_take(arena, longest * sizeof *m->velocity);
     m->angular_velocity = bough_arena_take(arena, longest * sizeof *m->angular_velocity);
     m->rotation = bough_arena_take(arena, longest * sizeof *m->rotation);
+    take_scratch(arena, shape);
     if (!bough_arena_exhausted(arena)) return bough_ok();
     return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the shape of %d bodies",
                       s->scene->n_body);
@@ -53,6 +72,43 @@ void bough_shape_points(void *self, double *point) {
             point[0] = x[k].x, point[1] = x[k].y, point[2] = x[k].z;
         }
     }
+}
+
+static void store(bough_vec3 x, double *to) { to[0] = x.x, to[1] = x.y, to[2] = x.z; }
+
+static void rod_loads(const bough_shape *shape, int body, double t, double *force, double *moment) {
+    const bough_simulation *s = shape->simulation;
+    const bough_beam *beam = bough_simulation_beam(s, body);
+    bough_rod_scratch *scratch = &shape->scratch[body];
+    bough_mat3 axes = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]).rotation;
+    if (!bough_section_evaluate(s, beam, t, scratch)) return;
+    for (int k = 0; k < shape->line[body].n_point; k++) {
+        bough_section_load load = bough_section_at_vertex(beam, scratch, k);
+        store(bough_mat3_mul(axes, load.force), force + 3 * k);
+        store(bough_mat3_mul(axes, load.moment), moment + 3 * k);
+    }
+}
+
+// `rigid`: the number of points of a body without a beam.
+static void all_loads(const bough_shape *shape, int rigid, double t, double *force,
+                      double *moment) {
+    for (int i = 0; i < shape->n_line; i++) {
+        bool beam = bough_simulation_beam(shape->simulation, i) != NULL;
+        int n = 3 * (beam ? shape->line[i].n_point : rigid);
+        memset(force, 0, (size_t)n * sizeof *force);
+        memset(moment, 0, (size_t)n * sizeof *moment);
+        if (has_rod(shape->simulation, i)) rod_loads(shape, i, t, force, moment);
+        force += n;
+        moment += n;
+    }
+}
+
+void bough_shape_loads(void *self, double t, double *force, double *moment) {
+    all_loads(self, RIGID_POINTS, t, force, moment);
+}
+
+void bough_shape_vertex_loads(void *self, double t, double *force, double *moment) {
+    all_loads(self, 1, t, force, moment);
 }
 
 bough_polyline *bough_shape_bodies(bough_arena *arena, const bough_shape *shape) {
