@@ -140,7 +140,7 @@ typedef struct bough_rod_scratch {
     double *load;    // loads at the time of evaluation (6 × stride), in BRF axes
     double *follower; // the followers among them in section axes (6 × stride); set if there are any
     // set with the loads:
-    double time;        // of the loads [s]
+    double time;        // of the last bough_rod_derivative [s]
     const double *rest; // strains without stress (6 × stride); before any loads e⁰
     bool turning;       // part of it is made by dead loads along the segments and turns with them:
     double *along;      // these in the axes of the segments' middles (12 × stride)

@@ -26,12 +26,12 @@ static void gather_input(const bough_rod_model *m, const double *input,
     for (int c = 0; c < BOUGH_ROD_STATES; c++) vertex[c * s + m->n + 1] = end[c];
 }
 
-// Moving vertices up to `last`.
-static void gather_state(const bough_rod_model *m, const double *restrict state, int last,
+// Moving vertices first to last.
+static void gather_state(const bough_rod_model *m, const double *restrict state, int first, int last,
                          double *restrict vertex) {
     int n = m->n, s = m->stride;
 #pragma omp simd
-    for (int i = 1; i <= last; i++) {
+    for (int i = first; i <= last; i++) {
         const double *restrict y = state + i - 1;
         double w = y[3 * n], x = y[4 * n], v = y[5 * n], z = y[6 * n];
         double scale = 1 / sqrt(w * w + x * x + v * v + z * z);
@@ -46,13 +46,13 @@ static void gather_state(const bough_rod_model *m, const double *restrict state,
 void bough_rod_gather(const bough_rod_model *m, const double *state, const double *input,
                       bough_rod_scratch *scratch) {
     gather_input(m, input, scratch);
-    gather_state(m, state, m->n, scratch->vertex);
+    gather_state(m, state, 1, m->n, scratch->vertex);
 }
 
 void bough_rod_gather_root(const bough_rod_model *m, const double *state, const double *input,
                            bough_rod_scratch *scratch) {
     gather_input(m, input, scratch);
-    gather_state(m, state, 1, scratch->vertex);
+    gather_state(m, state, 1, 1, scratch->vertex);
 }
 
 // The forces, and the least cos θ/2 of the segments.
@@ -159,16 +159,16 @@ static void move_rest(const bough_rod_model *m, const bough_rod_loads *loads, do
     scratch->rest = now;
 }
 
-// Adds what the vertices' own motion makes of the loads.
-static void add_damping(const bough_rod_model *m, const bough_rod_loads *loads,
+// Adds what the own motion of vertices first..last makes of the loads.
+static void add_damping(const bough_rod_model *m, const bough_rod_loads *loads, int first, int last,
                         bough_rod_scratch *scratch) {
-    int s = m->stride, last = m->n_segment;
+    int s = m->stride;
     const double *restrict u = scratch->vertex + BOUGH_ROD_U * s, *restrict slope = loads->slope;
     const double *restrict p = scratch->vertex + BOUGH_ROD_P * s, *restrict angle = loads->angle;
     const double *restrict w = scratch->vertex + (BOUGH_ROD_W + 2) * s;
     double *restrict load = scratch->load;
 #pragma omp simd
-    for (int i = 1; i <= last; i++) {
+    for (int i = first; i <= last; i++) {
         double phi = angle[i] * p[i] + angle[s + i] * p[s + i] + angle[2 * s + i] * p[2 * s + i] +
                      angle[3 * s + i] * p[3 * s + i];
         double x = u[i], y = u[s + i], z = w[i];
@@ -190,14 +190,33 @@ void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, doub
     for (int k = 1 - BOUGH_LANES; k <= count; k++) {
         load[k] = value[k] + elapsed * (rate[k] + elapsed * curve[k]);
     }
-    if (loads->damped) add_damping(m, loads, scratch);
-    scratch->time = t;
+    if (loads->damped) add_damping(m, loads, 1, m->n_segment, scratch);
     scratch->rest = loads->rest;
     scratch->turning = false;
     if (loads->moving) move_rest(m, loads, elapsed, scratch);
     if (loads->ramped == NULL) return;
     add_ramped(m, loads, t, scratch);
     if (loads_lie_along(loads)) add_along(m, loads, t, scratch);
+}
+
+// The same for one vertex and one segment.
+static void load_end(const bough_rod_model *m, const bough_rod_loads *loads, double t, int vertex,
+                     int segment, bough_rod_scratch *scratch) {
+    if (loads->ramped != NULL) {
+        bough_rod_load(m, loads, t, scratch);
+        return;
+    }
+    double elapsed = t - loads->start;
+    int s = m->stride;
+    for (int k = vertex; k < 6 * s; k += s) {
+        scratch->load[k] = loads->value[k] + elapsed * (loads->rate[k] + elapsed * loads->curve[k]);
+    }
+    if (loads->damped && vertex > 0) add_damping(m, loads, vertex, vertex, scratch);
+    scratch->rest = loads->moving ? scratch->own_rest : loads->rest;
+    scratch->turning = false;
+    for (int k = segment; k < 6 * s && loads->moving; k += s) {
+        scratch->own_rest[k] = loads->rest[k] + elapsed * loads->rest_rate[k];
+    }
 }
 
 // (11) solved for the accelerations, all vertices: the linear part goes out in BRF axes.
@@ -267,6 +286,7 @@ bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads
                           double *rate) {
     bough_rod_gather(m, state, input, scratch);
     bough_rod_load(m, loads, t, scratch);
+    scratch->time = t;
     // whole registers: segments beyond the last exert nothing
     if (!bough_rod_forces(m, 0, bough_padded(m->n_segment), scratch)) return false;
     return balance_vertices(m, state, input, scratch, rate);
@@ -315,7 +335,7 @@ void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *load
                            double *wrench) {
     int s = m->stride;
     bough_rod_gather_root(m, state, input, scratch);
-    bough_rod_load(m, loads, t, scratch);
+    load_end(m, loads, t, 0, 0, scratch);
     bough_rod_forces(m, 0, 1, scratch);
     const double *f = scratch->segment;
     bough_vec3 moment = bough_mat3_mul(m->root, bough_v3(f[3 * s], f[4 * s], f[5 * s]));
@@ -327,8 +347,9 @@ void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads
                           const double *state, const double *input, bough_rod_scratch *scratch,
                           double *wrench) {
     int s = m->stride, end = m->n_segment;
-    bough_rod_gather(m, state, input, scratch);
-    bough_rod_load(m, loads, t, scratch);
+    gather_input(m, input, scratch);
+    gather_state(m, state, m->n, m->n, scratch->vertex);
+    load_end(m, loads, t, end, end - 1, scratch);
     bough_rod_forces(m, end - 1, end, scratch);
     bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, end).p);
     const double *f = scratch->segment + end - 1, *load = scratch->load + end;

@@ -274,6 +274,28 @@ static void second_evaluation_knows_loads_along_segments(void **context) {
     for (int k = 0; k < STATES; k++) check_near(again[k], first[k], 1e-12, 1e-12);
 }
 
+// Between the two the coupled bodies ask for the wrench at the later time.
+static void second_evaluation_is_no_other_after_a_wrench(void **context) {
+    fixture *f = *context;
+    double first[STATES], again[2][STATES], wrench[6], change = 0;
+    unsigned seed = 29;
+    f->loads.moving = true;
+    for (int k = 0; k < 6 * f->model->stride; k++) f->loads.rest_rate[k] = 0.01 * sample_random(&seed);
+    for (int asked = 0; asked < 2; asked++) {
+        derivative(f, f->state, f->input, first);
+        if (asked) {
+            bough_rod_root_wrench(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch, wrench);
+        }
+        assert_true(bough_rod_derivative_again(f->model, &f->loads, 0.7, f->state, f->input,
+                                               &f->scratch, again[asked]));
+    }
+    for (int k = 0; k < STATES; k++) {
+        assert_true(again[0][k] == again[1][k]);
+        change = fmax(change, fabs(again[0][k] - first[k]));
+    }
+    assert_true(change > 1e-3);
+}
+
 // A follower load is at every state the dead load that its section's rotation makes of it.
 static void follower_load_turns_with_its_section(void **context) {
     fixture *f = *context;
@@ -406,6 +428,8 @@ int main(void) {
         cmocka_unit_test_setup_teardown(newton_solution_knows_loads_that_follow_the_motion, setup,
                                         teardown),
         cmocka_unit_test_setup_teardown(second_evaluation_knows_loads_along_segments, setup,
+                                        teardown),
+        cmocka_unit_test_setup_teardown(second_evaluation_is_no_other_after_a_wrench, setup,
                                         teardown),
         cmocka_unit_test_setup_teardown(wrench_tangent_knows_loads_along_segments, setup, teardown),
         cmocka_unit_test_setup_teardown(follower_load_turns_with_its_section, setup, teardown),
