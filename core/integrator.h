@@ -1,7 +1,7 @@
 // Integrators: any method on any system. One file per method; this is the table.
 //
-// A method sees a system under its inputs as ẏ = f(t, y), with the solution of Newton's systems
-// (I − γ ∂f/∂y) x = b beside it: a rod, the tree, two masses or a whole assembly.
+// A method gets a system under its inputs (a rod, the tree, two masses or a whole assembly) as
+// ẏ = f(t, y), together with solutions of (I − γ ∂f/∂y) x = b.
 #ifndef BOUGH_CORE_INTEGRATOR_H
 #define BOUGH_CORE_INTEGRATOR_H
 
@@ -67,22 +67,22 @@ typedef struct bough_integrator_options {
     double rho;  // of generalised-α: spectral radius at infinite frequency, 0 … 1
 } bough_integrator_options;
 
-// A method. One that is created hands its memory to the other calls as `self`.
+// A method. `create` returns its memory, which the other calls get as `self`.
 typedef struct bough_integrator_ops {
     const char *name;  // in scenes
     const char *title; // in messages
-    int most_states;   // of a system it suits; 0: any number
+    int most_states;   // largest system that it suits; 0: any
     bough_status (*create)(bough_arena *arena, const bough_ode *ode,
                            const bough_integrator_options *options, void **self);
-    // Integrates y (n) from *t to exactly t1, never evaluating f beyond it; one that can stop on the
-    // way ends with the first step that reaches `pause`. *t tells where it is. `restart`: y was
-    // changed or f jumps at *t.
+    // Integrates y (n) from *t to exactly t1 and never evaluates f beyond t1. A method that can stop
+    // early returns after the first step that reaches `pause`. *t is then the time of y. `restart`: y
+    // was changed, or f jumps at *t.
     bough_status (*advance)(void *self, double *t, double pause, double t1, bool restart,
                             double *y);
     void (*statistics)(const void *self, bough_statistics *sum); // added to sum
     // (n) sum of the errors of all steps, by the method's own estimate. NULL: it has none.
     double *(*own_error)(void *self);
-    // All that its next step depends on, apart from t and y. NULL: it starts anew.
+    // The memory that the next step depends on, apart from t and y. NULL: the method restarts.
     void (*transfer)(void *self, bough_snapshot *s);
 } bough_integrator_ops;
 

@@ -1,17 +1,17 @@
 // Lists of short tasks, a few microseconds each and many lists per step, shared out among the threads
 // of one parallel region of OpenMP. Only core/pool.c uses OpenMP.
 //
-// A region is opened around all that is stepped: opening and closing one takes longer than a list.
-// Without a region the caller does all tasks itself. OMP_PLACES, OMP_PROC_BIND and OMP_THREAD_LIMIT
-// hold as for every parallel region.
+// One region contains all steps, because opening and closing a region takes longer than a list. Without a
+// region the caller does all tasks itself. OMP_PLACES, OMP_PROC_BIND and OMP_THREAD_LIMIT act as on every
+// parallel region.
 //
-// Each task is some thread's own, in lists alike the same one's, so that what it works on stays in
-// that processor's cache: of three tasks the caller has the first and one thread the others. A
-// thread does its own in order, then steals those of threads that do not come; so nobody waits for a
-// thread that does not run. Results do not depend on who does what as long as no sum crosses tasks.
+// Each task belongs to one thread, in all lists of the same length to the same thread, so that its data
+// stay in the cache of one processor: of three tasks the caller has the first and one thread the others.
+// A thread does its own tasks in order and then takes tasks of threads that are late; so no thread waits
+// for a thread that does not run. Results do not depend on the threads if no sum crosses tasks.
 //
-// A thread that waits looks again for some 50 µs, yields its processor meanwhile, and then sleeps; at
-// once where there are more threads than processors.
+// A waiting thread polls for about 50 µs, yielding its processor, and then sleeps. If there are more
+// threads than processors, it sleeps at once.
 #ifndef BOUGH_CORE_POOL_H
 #define BOUGH_CORE_POOL_H
 
@@ -22,12 +22,12 @@ typedef struct bough_pool bough_pool;
 
 typedef void (*bough_task)(void *data, int task);
 
-// The number of threads where nobody says one: OMP_NUM_THREADS, or `otherwise` where that is not set;
-// 0: the number of processors.
+// The default number of threads: OMP_NUM_THREADS, or `otherwise` if that is not set; 0: the number of
+// processors.
 int bough_pool_default(int otherwise);
 
-// A pool for regions of so many threads. For one thread it is NULL, allowed below: it takes the tasks
-// of a list one after the other, without memory or cost.
+// A pool for regions of so many threads. For one thread it is NULL, which all functions below accept: the
+// tasks of a list are then done one after the other, without memory or cost.
 bough_status bough_pool_create(bough_arena *arena, int threads, bough_pool **pool);
 
 // The caller included: as asked for, and after a region as many as OpenMP has given it, for instance

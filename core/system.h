@@ -2,9 +2,9 @@
 //
 // A system is an ordinary differential equation with ports,
 //     ẏ = f(t, y, u),   o = h(t, y, u),
-// that can be asked for f, h, their tangents and the solution of (I − γ ∂f/∂y) x = b. It has no
-// current time and state, no integrator and no factors: these belong to who asks, and no question
-// changes the answer to another.
+// which provides f, h, their tangents and the solution of (I − γ ∂f/∂y) x = b. It has no current time
+// and state, no integrator and no factors: these belong to the caller. The result of a call does not
+// depend on earlier calls.
 #ifndef BOUGH_CORE_SYSTEM_H
 #define BOUGH_CORE_SYSTEM_H
 
@@ -13,7 +13,7 @@
 #include <stdbool.h>
 
 typedef struct bough_system_ops {
-    // f: rate (n_state). False when it has no finite value there.
+    // f: rate (n_state). False when the value is not finite.
     bool (*derivative)(void *self, double t, const double *state, const double *input,
                        double *rate);
 
@@ -29,8 +29,8 @@ typedef struct bough_system_ops {
     void (*input_columns)(void *self, double t, const double *state, const double *input,
                           double *column);
 
-    // Memory of one linearisation and its factors in the arena; NULL when that is exhausted. They
-    // belong to who asks: others' steps, evaluations and factors leave them alone.
+    // Memory for one linearisation and its factors in the arena; NULL when it is exhausted. It belongs
+    // to the caller: no other call changes it.
     void *(*factors)(void *self, bough_arena *arena);
 
     // Linearises f about (t, state, input). False when the tangents are not finite.
@@ -43,10 +43,10 @@ typedef struct bough_system_ops {
     // Solves with the last factors, in place: x (n_state).
     void (*solve)(void *self, void *factors, double *x);
 
-    // -- optional: NULL where there is no use for it --------------------------------------------
+    // -- optional: may be NULL ------------------------------------------------------------------
 
-    // f at another time and input, the state being that of the last call of derivative, between which
-    // and this one only outputs were asked for: cheaper.
+    // f at another time and input, for the state of the last call of derivative. Cheaper than
+    // derivative. Between both calls only outputs may be evaluated.
     bool (*derivative_again)(void *self, double t, const double *state, const double *input,
                              double *rate);
 
@@ -54,20 +54,20 @@ typedef struct bough_system_ops {
     void (*output_drift)(void *self, double t, const double *state, const double *input,
                          double *drift);
 
-    // Brings a state that was integrated to t onto what it must fulfil exactly: given motions,
-    // quaternions of length 1. True when that changes it by more than an integrator's history bears.
+    // Projects a state that was integrated to t onto its constraints: prescribed motions, quaternions
+    // of length 1. True when the change is so large that a multistep method must restart.
     bool (*constrain)(void *self, double t, double *state);
 
-    // Takes out of a tangent x (n_state) at `state` what is no motion: changes of a quaternion's
-    // length.
+    // Removes from a tangent x (n_state) at `state` the part that is not a motion: changes of a
+    // quaternion's length.
     void (*project)(void *self, const double *state, double *x);
 
-    // Loads stay what they are for derivatives from t0 to t1: what can be found once for all of them
-    // is. t0 = t1: no longer.
+    // Loads do not change for derivatives from t0 to t1, so terms that depend only on them may be computed
+    // once. t0 = t1 ends this.
     void (*hold_loads)(void *self, double t0, double t1);
 } bough_system_ops;
 
-// What every system answers, by static functions that have the names of the contract.
+// The required operations, for static functions that have the names above.
 #define BOUGH_SYSTEM_REQUIRED                                                              \
     .derivative = derivative, .output = output, .output_tangent = output_tangent,          \
     .input_columns = input_columns, .factors = factors, .linearise = linearise,            \

@@ -1,7 +1,7 @@
-// The rigid multibody tree in joint coordinates: what the user said (def), the constant model with
-// its loads, and the data of one evaluation. Bodies that cannot move against each other are one
-// link: fixed joints cost no states and no work. Everything about the tree includes this header:
-// tree_build.h builds, force.h has the forces, dynamics.h the recursions, loop.h the closures.
+// The rigid multibody tree in joint coordinates: the user's definition (def), the constant model with its
+// loads, and the data of one evaluation. Bodies that cannot move relative to each other form one link, so
+// fixed joints cost no states and no work. tree_build.h builds the tree, force.h contains its forces,
+// dynamics.h the recursions, loop.h the closures.
 #ifndef BOUGH_CORE_TREE_H
 #define BOUGH_CORE_TREE_H
 
@@ -264,7 +264,7 @@ typedef struct bough_tree_data {
     double *joint_factor;      // Cholesky factor of SᵀU (n_links × 6 × 6, row-major)
     bough_inertia *composite;  // composite rigid bodies (n_links)
     double *force;             // generalised forces (n_v)
-    double *drive;             // what makes prescribed joints move so, else 0 (n_v) [N m, N]
+    double *drive;             // forces that drive prescribed joints, else 0 (n_v) [N m, N]
     int singular;              // the link whose joint moves no inertia, else -1
     bough_loops *loops;        // of the closures; NULL without
 } bough_tree_data;

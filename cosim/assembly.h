@@ -1,6 +1,6 @@
-// The coupled system: members, the stage each advances in, and the connections that copy outputs
-// to inputs. Constant once built. Ports of all members are numbered through: input j of member i is
-// component input_offset[i] + j of an array over all inputs, and likewise for outputs and states.
+// The coupled system: members, the stage in which each advances, and the connections that copy outputs to
+// inputs. It is constant after building. Arrays over all inputs contain input j of member i at
+// input_offset[i] + j; arrays over outputs and states likewise.
 #ifndef BOUGH_COSIM_ASSEMBLY_H
 #define BOUGH_COSIM_ASSEMBLY_H
 
@@ -8,8 +8,8 @@
 #include "core/status.h"
 #include "cosim/member.h"
 
-// A member and when it advances: members of one stage in parallel; sequential schemes take the
-// stages in order. The members of stage 0 are the leaders.
+// A member and its stage. Members of one stage advance in parallel; sequential schemes advance the stages
+// in order. The members of stage 0 are the leaders.
 typedef struct bough_assembly_member {
     bough_member *member; // borrowed; outlives the assembly
     int stage;
@@ -18,7 +18,7 @@ typedef struct bough_assembly_member {
 // Outputs from_offset … from_offset + count − 1 of one member are inputs to_offset … of another.
 typedef struct bough_connection {
     int from, from_offset, to, to_offset, count;
-    bool kinematic; // a motion: where a value is held, its rate is held instead
+    bool kinematic; // a motion: a scheme with constant values keeps its rate constant instead
 } bough_connection;
 
 typedef struct bough_assembly_def {

@@ -1,4 +1,4 @@
-// Working data of the macro steps, and the moves that schemes are made of.
+// Working data of the macro steps, and the operations that schemes consist of.
 #ifndef BOUGH_COSIM_COUPLING_H
 #define BOUGH_COSIM_COUPLING_H
 
@@ -8,19 +8,19 @@
 #include "cosim/accelerate.h"
 #include "cosim/condense.h"
 
-// What a later stage sees of what an earlier stage has already obtained.
+// How a later stage interpolates the outputs that an earlier stage has already obtained.
 typedef enum bough_interpolation {
     BOUGH_HERMITE,    // cubic from values and rates at both ends
     BOUGH_POLYNOMIAL, // through the new value and `order` earlier ones; order 0 holds the new value
 } bough_interpolation;
 
-// What the iterated scheme iterates on.
+// The unknowns of the iterated scheme.
 typedef enum bough_exchange {
     BOUGH_EXCHANGE_END_VALUES, // values at t1
     BOUGH_EXCHANGE_WAVEFORM,   // values at the Lobatto points: a cubic over the step
 } bough_exchange;
 
-// What the user chose. Unused fields are ignored by a scheme.
+// The user's choices. A scheme ignores the fields that it does not use.
 typedef struct bough_scheme_options {
     const char *name;  // of the scheme, see scheme.h
     int order;         // extrapolated, iterated: degree of the polynomial, 0 … 2
@@ -36,7 +36,7 @@ typedef struct bough_scheme_options {
     int iterations;   // iterated: most per macro step
 } bough_scheme_options;
 
-// Synchronisation points that a scheme may use, and that are kept.
+// Number of past synchronisation points that a scheme may use, and number that is stored.
 enum { BOUGH_HISTORY = 3, BOUGH_PAST = 4 };
 
 typedef struct bough_scheme bough_scheme;       // see scheme.h
@@ -57,16 +57,16 @@ typedef struct bough_coupling {
     // by bough_coupling_exchange: at the end of the last step
     double *output; // (n_output) of all members at their current states
     double *input;  // (n_input) the same, as their receivers see it
-    double *applied; // (n_input) what acted on the receivers on the step, at its end
-    double *deficit; // (n_input) ∫ of what a port was − what its receiver saw, over all steps;
-                     // of the leaders; NULL unless the scheme pays it back
-    int n_past;     // of the two below those that schemes may use, at most BOUGH_HISTORY
+    double *applied; // (n_input) the values applied to the receivers at the end of the step
+    double *deficit; // (n_input) ∫ (obtained − applied value) over all steps, of the leaders' inputs;
+                     // NULL unless the scheme compensates it
+    int n_past;     // number of entries of the next two that schemes may use, at most BOUGH_HISTORY
     double past_time[BOUGH_PAST]; // the last synchronisation points, newest first [s]
     double *past[BOUGH_PAST];     // (n_input each) inputs there
 
     // during a step, by the scheme
-    bough_signal *signal;  // (n_member) what each member sees on the step
-    bool *followed;        // (n_input) the motion that was really made: no defect
+    bough_signal *signal;  // (n_member) input of each member over the step
+    bool *followed;        // (n_input) the input is the actual motion: there is no defect
     double *start_rate;    // (n_output) rates of the outputs at t0, of members already advanced
     double *end_output;    // (n_output) outputs at t1, likewise
     double *end_rate;      // (n_output)
@@ -74,7 +74,7 @@ typedef struct bough_coupling {
     int *turn;             // (n_member) the members of the stage in progress
     int failed_member;     // −1, or the member whose move failed
 
-    // by schemes that see outputs within the step: as they turned out at these times, the last t1
+    // by schemes that exchange within the step: outputs obtained at these times, the last of which is t1
     int n_within;              // 3; 0: others
     const double *within_time; // (n_within) over the step, in (0, 1]
     const double *within;      // (n_within × n_output)
@@ -123,7 +123,7 @@ typedef struct bough_staged_work {
 } bough_staged_work;
 bough_status bough_coupling_each_staged(bough_coupling *c, bough_staged_work work);
 
-// Sets the span of every signal to the step.
+// Sets the time span of every signal to that of the step.
 void bough_coupling_begin(bough_coupling *c);
 
 // Rates of a member's outputs at t, of its current state under the input, whose rate may be NULL
@@ -131,38 +131,38 @@ void bough_coupling_begin(bough_coupling *c);
 bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const double *input,
                                 const double *input_rate, double *rate);
 
-// Advances a member to t under its signal; c->status[member] is BOUGH_RETRY where it cannot follow.
+// Advances a member to t under its signal; c->status[member] is BOUGH_RETRY if its integrator fails.
 void bough_coupling_advance_to(bough_coupling *c, int member, double t, bool restart);
 
 // Advances the members of a stage to t1 under their signals.
 bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart);
 
-// The same, and finds what a later stage needs: start_rate, end_output, end_rate.
+// The same, and computes the values that a later stage needs: start_rate, end_output, end_rate.
 bough_status bough_coupling_advance_leaders(bough_coupling *c, int stage, bool restart);
 
 // Fills input j (numbered over all inputs) of its member from the new output that feeds it.
 void bough_coupling_interpolate(bough_coupling *c, int member, int j);
 
 // Second derivative at the step of the parabola through the last two values of input j (numbered
-// over all inputs) and `end` at t1; 0 where there are no such values or a jump parts them.
+// over all inputs) and `end` at t1; 0 if there are no such values, or a jump between them.
 double bough_coupling_curvature(const bough_coupling *c, int j, double end);
 
-// Outputs and inputs at t1, end values of the signals; the history moves on.
+// Computes outputs and inputs at t1 and the end values of the signals, and updates the history.
 void bough_coupling_exchange(bough_coupling *c);
 
-// What the next macro step depends on as one vector z: the members' states (n_state), the inputs one
-// and two steps ago, the inputs applied last and, of schemes that pay it back, the deficit (n_input
-// each). Its length; the step that begins at time 0 after steps of length h set from it; it from the
-// coupling.
+// The memory of a macro step as one vector z: the members' states (n_state), the inputs one and two steps
+// ago, the inputs applied last and, for schemes that compensate it, the deficit (n_input each). The
+// functions: the length of z; set the coupling from z, for the step that begins at time 0 after steps
+// of length h; get z from the coupling.
 int bough_coupling_n_memory(const bough_coupling *c);
 void bough_coupling_load(bough_coupling *c, double h, const double *z);
 void bough_coupling_store(const bough_coupling *c, double *z);
 
-// All that a step changes and the next one needs: the members' states and what was exchanged. A
-// scheme's own memory is not in it.
+// The memory that a step changes and the next step needs: the members' states and the exchanged values,
+// without the scheme's own memory.
 void bough_coupling_snapshot(bough_coupling *c, bough_snapshot *s);
 
-// BOUGH_RETRY that names the member.
+// BOUGH_RETRY with a message that names the member.
 bough_status bough_coupling_not_finite(const bough_coupling *c, int member);
 
 #endif

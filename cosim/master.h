@@ -11,24 +11,24 @@
 #include "cosim/stability.h"
 #include "cosim/step_control.h"
 
-// Loads that arrive at their own rate: sample() is called at multiples of the period, between
-// steps, and sets the loads inside the members for [t, t_next]. Where it is NULL there is only begin().
+// Loads with a sampling rate of their own: sample() is called at multiples of the period, between steps,
+// and sets the loads inside the members for [t, t_next]. It may be NULL if there is only begin().
 typedef struct bough_sampled_load {
     double period; // [s] an integer multiple of the macro step
     void *self;
     // *jumped is true on return when the loads are discontinuous at t.
     bough_status (*sample)(void *self, double t, double t_next, bool *jumped);
-    // Called as soon as t, the time of the next sample, is reached: evaluates what sample() will hand
-    // out, so that results of that time can tell it. Sets no loads. NULL: nothing to tell.
+    // Called as soon as t, the time of the next sample, is reached: evaluates the values of that sample
+    // for the results at that time, without setting loads. NULL: there are none.
     void (*evaluate)(void *self, double t);
-    // Called before every macro step, from t on; NULL: nothing to do. Loads that jump at an event take
-    // the value of the step's side here.
+    // Called before every macro step, which begins at t; NULL: nothing to do. Loads that jump at an event
+    // take the value after the jump here.
     void (*begin)(void *self, double t);
 } bough_sampled_load;
 
-// How a run knows what it errs by.
+// How a run estimates its error.
 typedef enum bough_error_source {
-    BOUGH_ERROR_BY_BEST, // the linearised members where they are known to serve, else a second solution
+    BOUGH_ERROR_BY_BEST, // the linearised members where they are known to be reliable, else a second solution
     BOUGH_ERROR_BY_SECOND_SOLUTION,
     BOUGH_ERROR_BY_LINEARISED_MEMBERS,
     BOUGH_ERROR_NOT_TOLD,
@@ -71,7 +71,7 @@ typedef struct bough_master {
     int next_event;  // first event after `time`
     long grid_index; // k of the last grid point at or before `time`
     bool at_event;   // `time` is an event
-    double begun;    // where the last macro step began [s]
+    double begun;    // start of the last macro step [s]
     bough_stability_advice advice; // about the initial state; empty when not judged
     char verdict[BOUGH_VERDICT]; // a warning that the coupling is unstable; may be empty
 } bough_master;
@@ -79,52 +79,51 @@ typedef struct bough_master {
 // Whether a period is an integer multiple of the macro step within 1e-9: the multiple, 0 if not.
 long bough_master_multiple(double period, double macro_step);
 
-// Builds everything in the arena; stepping allocates nothing. A coupling that may be unstable is
-// judged about the initial state: the verdict is a warning, because outer loads may damp what it
-// finds.
+// Builds everything in the arena; stepping allocates nothing. The stability of a coupling is analysed
+// about the initial state. The result is only a warning, because outer loads may add damping.
 bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
                                 bough_master **master);
 
-// One macro step: sample loads, take the members over the step, exchange, judge. Who takes many steps
-// does so within one bough_pool_region; otherwise each step opens its own.
+// One macro step: samples loads, advances the members, exchanges values, checks the result. A caller that
+// takes many steps should do so within one bough_pool_region; otherwise each step opens its own.
 bough_status bough_step(bough_master *m);
 
-// All that later steps and the reports depend on, but for what the loads remember, at a time when
-// all loads are sampled. Restored, integrators and Newton factors start anew: a run that restores
-// the copy it has just saved goes on bit for bit as another process that restores it.
+// The memory that later steps and the reports depend on, without that of the loads, at a time when all
+// loads are sampled. After a restore, integrators restart and Newton matrices are computed again. A run
+// that restores the copy it has just saved continues bit for bit like another process that restores it.
 void bough_master_snapshot(bough_master *m, bough_snapshot *s);
 
-// Whether all loads are sampled at `time`: only then a snapshot is whole.
+// Whether all loads are sampled at `time`, which a snapshot requires.
 bool bough_master_sampled(const bough_master *m);
 
-// Whether the error is measured by a second solution: whatever goes wrong then shows in it.
+// Whether a second solution measures the error, which then contains every kind of coupling error.
 bool bough_master_measures(const bough_master *m);
 
-// How often the error of the states has been found so far: it is new when this has changed.
+// Number of updates of the states' error so far.
 long bough_master_errors(const bough_master *m);
 
-// What the states err by now (n_state), in their units; NULL where it cannot be told.
+// Current error of the states (n_state), in their units; NULL if it cannot be estimated.
 const double *bough_master_state_error(const bough_master *m);
 
-// The same of the inputs (n_input); NULL where it is not known.
+// Current error of the inputs (n_input); NULL if it cannot be estimated.
 const double *bough_master_inputs_error(const bough_master *m);
 
-// What is told to people is the error times this.
+// Factor of the error in results and messages.
 double bough_master_error_safety(const bough_master *m);
 
-// Largest error so far of what input j should be given, told, in the port's unit; NaN: unknown.
+// Largest error so far of the value of input j, with that factor, in the port's unit; NaN: unknown.
 double bough_master_input_error(const bough_master *m, int j);
 
-// In a few words how the error is found, and what made it.
+// In a few words: the method of the estimate, and the cause of the error.
 const char *bough_master_error_source(const bough_master *m);
 const char *bough_master_error_cause(const bough_master *m);
 
 enum { BOUGH_MASTER_ADVICE = 120 };
 
-// What would err less, by that factor: words to follow "try".
+// Settings with an error that is smaller by that factor: words to follow "try".
 void bough_master_advise(const bough_master *m, double factor, char text[BOUGH_MASTER_ADVICE]);
 
-// From now on, at time 0, the error is known: builds what that takes in the arena.
+// Builds the error estimate in the arena; called at time 0.
 bough_status bough_master_watch(bough_master *m, bough_arena *arena);
 
 // Whether the duration is reached.

@@ -1,6 +1,6 @@
-// A member of an assembly: a system, its current time and state, and the integrator that takes it over
-// a macro step by its own steps. An integrator need not be one of the table: a foreign simulator is a
-// member whose integrator advances it.
+// A member of an assembly: a system, its current time and state, and the integrator that advances it over
+// a macro step by its own steps. The integrator need not be in the table of core/integrator.h: a foreign
+// simulator is a member with an integrator of its own.
 #ifndef BOUGH_COSIM_MEMBER_H
 #define BOUGH_COSIM_MEMBER_H
 
@@ -13,17 +13,17 @@ typedef struct bough_member {
     const char *solver;  // its integrator, for messages: "IDA", "CVODE BDF", …
     double time;         // current [s]
     double *state;       // current (n_state)
-    double *own_error;   // (n_state) sum of its own steps' errors, by their estimate, since a reader
-                         // last set it to zero; NULL: it does not tell
+    double *own_error;   // (n_state) estimated errors of its own steps, summed since a reader last set
+                         // them to zero; NULL: no estimate
     bough_integrator integrator; // ops NULL: there are no states
 
     // own steps
     const bough_signal *signal; // the input on the step in progress
     double *input;              // (n_input) at the evaluation's time
-    double *integrated;         // (n_state) of the integrator, as `constrain` has not seen it
+    double *integrated;         // (n_state) the integrator's state, before `constrain`
     void *factors;              // of its Newton matrix
     bool started;               // the integrator's history belongs to the state
-    bool paused;                // on the way: `integrated` is what it goes on from
+    bool paused;                // within a macro step: it continues from `integrated`
 } bough_member;
 
 // Builds a member in the arena, at time `start` [s] and the system's initial state. BOUGH_INVALID
@@ -31,23 +31,23 @@ typedef struct bough_member {
 bough_status bough_member_create(bough_arena *arena, const bough_system *system, double start,
                                  const bough_integrator_options *options, bough_member *member);
 
-// Integrates the current state to t1 by own steps under input(t), which covers [time, t1]. `restart`
-// says that the input or a load jumped at the current time: a multistep method starts anew. On
-// failure time and state are those of before; its next step starts anew.
+// Integrates the current state to t1 by its own steps under input(t), which covers [time, t1]. `restart`:
+// the input or a load jumps at the current time, so a multistep method restarts. On failure, time and
+// state are unchanged and the next step restarts the method.
 bough_status bough_member_advance(bough_member *m, double t1, const bough_signal *input,
                                   bool restart);
 
-// The same, but may stop on the way, at the first of its own steps' ends at or after `pause`: the current
-// time tells. To advance to t1 under the same input, without restart, then goes on to the bits of an
-// advance in one go.
+// The same, but it may stop at the end of the first own step at or after `pause`; the current time is then
+// this time. A further call to t1 with the same input and without restart gives the same bits as one
+// advance to t1.
 bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
                                        const bough_signal *input, bool restart);
 
 // Replaces the current time and state (n_state); the integrator starts anew.
 void bough_member_set(bough_member *m, double t, const double *state);
 
-// All that its next step depends on, the integrator's memory included where that can be kept. A copy
-// restored twice and advanced twice gives the same bits.
+// The memory that its next step depends on, including the integrator's where that can be stored. Restoring
+// a copy twice and advancing twice gives the same bits.
 void bough_member_snapshot(bough_member *m, bough_snapshot *s);
 
 // Work of its own steps so far.

@@ -1,6 +1,6 @@
-// Coupling schemes: how the members of an assembly are taken over one macro step, and what they see
-// of each other while they integrate themselves. A scheme is one file, which ends with its entry,
-// and one line of the table in scheme.c. What others need to know of it they ask the entry.
+// Coupling schemes: how the members of an assembly advance over one macro step, and which inputs they get
+// while they integrate. A scheme is one file, which ends with its entry, and one line of the table in
+// scheme.c. Other code uses the entry only.
 #ifndef BOUGH_COSIM_SCHEME_H
 #define BOUGH_COSIM_SCHEME_H
 
@@ -14,27 +14,28 @@ enum {
     BOUGH_READS_ACCELERATOR = 8, // relaxation, tolerance and iterations too
 };
 
-// What is left out is false, 0 or NULL.
+// The entry of a scheme. Fields that it leaves out are false, 0 or NULL.
 struct bough_scheme {
     const char *name;
     const char *summary;  // one line for help: what is exchanged, order, stability
-    const char *instead;  // name of the scheme to try where this one does not hold; NULL: none
+    const char *instead;  // name of the scheme to try where this one is unstable; NULL: none
     unsigned reads;       // BOUGH_READS_… of the options
     bool explicit_forces; // forces are frozen or extrapolated: unstable beyond some macro step
-    bool judged;          // may be unstable: its eigenvalues are looked at before the run
+    bool judged;          // may be unstable: its eigenvalues are computed before the run
     bool one_system; // all members are one system: there is no coupling error to judge or estimate
-    // Takes the scheme's memory, checks its options; NULL when it needs neither.
+    // Allocates the scheme's memory and checks its options; NULL if it needs neither.
     bough_status (*create)(bough_coupling *c, bough_arena *arena);
-    // Chooses what stays for the run by the initial state and a first step from t0 to t1, and takes the
-    // memory for it; NULL: nothing. A failure that the first step will meet again is left to that.
+    // Makes the choices that are constant over the run, from the initial state and a first step from t0 to
+    // t1, and allocates their memory; NULL: there are none. A failure that the first step would repeat
+    // is reported by the first step.
     bough_status (*prepare)(bough_coupling *c, bough_arena *arena);
-    // Takes all members from t0 to t1.
+    // Advances all members from t0 to t1.
     bough_status (*step)(bough_coupling *c);
-    // What its own memory carries from step to step; factors are made anew. NULL: nothing.
+    // The part of its memory that later steps depend on, without factors. NULL: nothing.
     void (*snapshot)(bough_coupling *c, bough_snapshot *s);
     // Order of the interface defects in the macro step; NULL: 1.
     int (*defect_order)(const bough_scheme_options *options);
-    // Replaces options by what the scheme has chosen while it ran; NULL: it uses what it was given.
+    // Replaces options by the scheme's own choices during the run; NULL: it makes none.
     void (*choose)(const bough_coupling *c, bough_scheme_options *options);
 };
 
@@ -57,10 +58,10 @@ const char *bough_scheme_name(int index);
 // Order of the interface defects in the macro step.
 int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options *options);
 
-// The options that the scheme really uses, for a judgement.
+// The options that the scheme actually uses, for a stability analysis.
 bough_scheme_options bough_scheme_options_in_use(const bough_coupling *c);
 
-// The scheme that holds wherever the mechanics do: the end of the chain of `instead`.
+// The most stable scheme: the end of the chain of `instead`.
 const char *bough_scheme_last_resort(const bough_scheme *s);
 
 enum { BOUGH_SCHEME_TEXT = 200, BOUGH_SCHEME_ADVICE = 48 };
@@ -69,7 +70,7 @@ enum { BOUGH_SCHEME_TEXT = 200, BOUGH_SCHEME_ADVICE = 48 };
 void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *options,
                            char text[BOUGH_SCHEME_TEXT]);
 
-// " or scheme: NAME" of what to try instead, or "".
+// " or scheme: NAME" with the scheme to try instead, or "".
 void bough_scheme_advise(const bough_scheme *s, char text[BOUGH_SCHEME_ADVICE]);
 
 #endif

@@ -1,14 +1,13 @@
 // A second solution beside the run: all members as one system under the same loads, coupled at the
-// stages of the Rosenbrock method. What the run errs by is then measured instead of estimated: whatever
-// made the error, coupling, sub-solvers or a macro step that does not resolve what happens in it, and
-// however the mechanics lets it grow.
+// stages of the Rosenbrock method. It measures the error of the run instead of estimating it, whether
+// coupling, sub-solvers or too long a macro step cause the error, and however the mechanics amplifies it.
 //
 // Either it is far finer than the run, and the difference is the run's error; or the run is itself such
 // a solution, and the second takes steps of twice the length to eight times the tolerance: of a method
 // of order p the run then errs by 1/(2ᵖ − 1) of the difference (Richardson). The order is 3 for smooth
 // motion and 2 or less where stiff members reduce it; a third is told.
 //
-// Not seen: the answer of loads from outside the members, such as the air's, to the error.
+// It does not contain the reaction of outer loads, such as aerodynamic loads, to the error.
 #ifndef BOUGH_COSIM_SECOND_SOLUTION_H
 #define BOUGH_COSIM_SECOND_SOLUTION_H
 
@@ -29,16 +28,16 @@ bough_status bough_second_solution_create(bough_arena *arena, const bough_coupli
                                           const bough_second_solution_def *def,
                                           bough_second_solution **second);
 
-// Follows the run over the macro step that has just been exchanged.
+// Advances the second solution over the last macro step of the run.
 void bough_second_solution_step(bough_second_solution *s, const bough_coupling *c);
 
-// What the run's states err by (n_state), in their units; NULL when the second solution broke down.
+// Error of the run's states (n_state), in their units; NULL if the second solution has failed.
 const double *bough_second_solution_error(const bough_second_solution *s);
 
-// What the inputs should be given errs by (n_input), in the ports' units; NULL likewise.
+// Error of the inputs' values (n_input), in the ports' units; NULL if the second solution has failed.
 const double *bough_second_solution_input_error(const bough_second_solution *s);
 
-// Largest error so far of what input j should be given, in the port's unit; NaN when broken down.
+// Largest error so far of the value of input j, in the port's unit; NaN if the second solution has failed.
 double bough_second_solution_input(const bough_second_solution *s, int j);
 
 void bough_second_solution_snapshot(bough_second_solution *s, bough_snapshot *snapshot);

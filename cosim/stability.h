@@ -1,12 +1,11 @@
-// Verdict on a coupling before it is run: the fastest growing oscillation of the linearised macro
-// step. The scheme itself is run on linear members in place of the members (linear_member.h), so
-// that one macro step is a linear map of the perturbations: states, and what the scheme remembers
-// of earlier inputs. The largest eigenvalues come from Arnoldi's method (modified Gram–Schmidt,
-// twice), applied to as many macro steps as it takes for the stiff modes to die out and the slow
-// ones to turn visibly.
+// Stability analysis of a coupling before the run: the fastest growing oscillation of the linearised macro
+// step. The scheme itself runs on linear members (linear_member.h), so one macro step is a linear map of
+// the perturbations: states, and the earlier inputs that the scheme stores. The largest eigenvalues come
+// from Arnoldi's method (modified Gram–Schmidt, twice), applied to so many macro steps that the stiff
+// modes decay and the slow modes change their phase visibly.
 //
-// What it does not see: loads from outside the members, so no aerodynamic damping (it errs on the
-// safe side), changes of the state along the run, and growth without oscillation, which is left to
+// The analysis does not contain loads from outside the members, such as aerodynamic damping (it is
+// conservative), changes of the state during the run, and growth without oscillation, which belongs to
 // the mechanics: a free rotation, an inverted pendulum.
 #ifndef BOUGH_COSIM_STABILITY_H
 #define BOUGH_COSIM_STABILITY_H
@@ -16,20 +15,18 @@
 
 typedef struct bough_stability {
     double growth;    // of the fastest growing oscillation [1/s]; negative: it decays
-    double suspected; // the same, including values that are not certain; at least `growth` [1/s]
-    double rising;    // of what grows faster than it turns; the mechanics' own or not [1/s]
-    double frequency; // of it [Hz]
-    int body;         // the member on an interface that takes most part in it
+    double suspected; // the same, including uncertain eigenvalues; at least `growth` [1/s]
+    double rising;    // growth of what grows faster than it oscillates, of coupling or mechanics [1/s]
+    double frequency; // of the fastest growing oscillation [Hz]
+    int body;         // the member on an interface with the largest share in it
 } bough_stability;
 
-// Judges a scheme at a macro step about the members' current states. Takes memory of its own and
-// releases it.
-// BOUGH_INVALID for a scheme of one system, which has no coupling to judge.
+// Analyses a scheme at a macro step about the members' current states. Allocates and releases its own
+// memory. BOUGH_INVALID for a scheme of one system, which has no coupling.
 bough_status bough_stability_judge(const bough_assembly *a, const bough_scheme_options *options,
                                    double macro_step, bough_stability *result);
 
-// The same with linear members that step by at most `sub_step` [s]: what they do not resolve, they
-// damp.
+// The same with linear members that step by at most `sub_step` [s]; they damp faster motions.
 bough_status bough_stability_judge_by(const bough_assembly *a, const bough_scheme_options *options,
                                       double macro_step, double sub_step, bough_stability *result);
 
@@ -37,13 +34,13 @@ bough_status bough_stability_judge_by(const bough_assembly *a, const bough_schem
 bool bough_stability_grows(const bough_stability *s);
 
 typedef struct bough_stability_advice {
-    bough_stability now; // at the macro step asked about
-    bool unstable;       // it grows, and less so with a smaller macro step or another scheme
-    double macro_step;   // the largest fraction of it that holds [s]; 0: none of those tried
-    bool instead_holds;  // the scheme to try instead holds at the macro step asked about
+    bough_stability now; // at the given macro step
+    bool unstable;       // it grows, and grows less with a smaller macro step or another scheme
+    double macro_step;   // the largest fraction of the macro step that is stable [s]; 0: none of those tried
+    bool instead_holds;  // the scheme to try instead is stable at this macro step
 } bough_stability_advice;
 
-// Judges, and when it grows looks for what would hold.
+// Analyses a scheme and, if it is unstable, searches a stable macro step and scheme.
 bough_status bough_stability_advise(const bough_assembly *a, const bough_scheme_options *options,
                                     double macro_step, bough_stability_advice *advice);
 

@@ -135,7 +135,20 @@ class Fmu(unittest.TestCase):
             listed = [int(x.get("valueReference")) for x in structure.findall(tag)]
             self.assertEqual(set(listed), outputs)
             self.assertEqual(len(listed), len(outputs))
+        for output in structure.findall("Output"):
+            self.assertEqual(output.get("dependencies"), "")
+        self.assertEqual(kind.get("providesDirectionalDerivatives"), "false")
         self.assertEqual(set(variables("input")), {"wind", "brake"})
+
+    def test_outputs_do_not_depend_on_inputs_at_the_same_time(self):
+        fmu, every = Instance(), sorted(variables("output").values())
+        fmu.start()
+        fmu.step(0, 0.2)
+        before = fmu.get(every)
+        for name, value in ("wind", 5), ("brake", -1e6):
+            self.assertEqual(fmu.set(variables("input")[name], value), OK)
+        self.assertEqual(fmu.get(every), before)
+        fmu.free()
 
     def test_its_run_is_boughs_own_to_the_bit(self):
         inputs, outputs = variables("input"), variables("output")

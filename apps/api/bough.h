@@ -1,6 +1,6 @@
-/* bough as a library: opens a scene, steps it, reads its channels, keeps copies of its state. One
-   session is used by one thread at a time; any number of sessions may live, and run, at once. Needs
-   nothing else of bough's headers.
+/* bough as a library: opens a scene, steps it, sets its inputs, reads its channels and stores copies of
+   its state. Only one thread at a time may use a session; any number of sessions may exist and run in
+   parallel. This header needs no other header of bough.
 
        bough_session *s = bough_session_open("runup.yaml", NULL, 0);
        int speed = bough_session_find(s, "RotSpeed");
@@ -28,7 +28,7 @@ extern "C" {
 
 typedef struct bough_session bough_session;
 
-/* The codes are those that the program ends with. */
+/* The codes from 1 on are also the exit codes of the program. */
 enum {
     BOUGH_SESSION_OK = 0,      /* a macro step was taken, a copy made */
     BOUGH_SESSION_DONE = -1,   /* the scene's duration is reached: nothing was done */
@@ -37,12 +37,12 @@ enum {
     BOUGH_SESSION_OTHER = 1,   /* a file, memory */
 };
 
-/* Reads and builds a scene with `count` replacements "key=value" (NULL: none). Never NULL but when
-   there is no memory at all: whether it worked is told by bough_session_code. */
+/* Reads and builds a scene with `count` replacements "key=value" (NULL: none). Returns NULL only if
+   memory is exhausted; bough_session_code tells whether the scene was built. */
 BOUGH_API bough_session *bough_session_open(const char *scene, const char *const *set, int count);
 
-/* How the last open, step, save or restore ended, and why if it failed: one or more lines, "" after
-   success. */
+/* Code of the last open, step, save, restore or set, and the message of a failure: one or more lines,
+   "" after success. */
 BOUGH_API int bough_session_code(const bough_session *session);
 BOUGH_API const char *bough_session_error(const bough_session *session);
 
@@ -56,44 +56,45 @@ BOUGH_API int bough_session_step(bough_session *session);
 BOUGH_API double bough_session_time(const bough_session *session);
 BOUGH_API double bough_session_duration(const bough_session *session);
 
-/* Channels, as in channels.out: their number, names, units, the index of a name (-1: none), the
-   value now (NaN when there is no such channel). The first read after a step computes all. */
+/* Channels, as in channels.out: number of channels, name, unit, index of a name (-1: no such channel),
+   current value (NaN: no such channel). The first read after a step computes all values. */
 BOUGH_API int bough_session_count(const bough_session *session);
 BOUGH_API const char *bough_session_name(const bough_session *session, int channel);
 BOUGH_API const char *bough_session_unit(const bough_session *session, int channel);
 BOUGH_API int bough_session_find(const bough_session *session, const char *name);
 BOUGH_API double bough_session_read(bough_session *session, int channel);
 
-/* All of them (count), always at the same place; NULL when there are none or a step has failed. */
+/* Current values of all channels (count), at an address that does not change; NULL if there are no
+   channels or a step has failed. */
 BOUGH_API const double *bough_session_values(bough_session *session);
 
-/* Inputs: what the scene leaves to the caller ('input: NAME' of a load, of a joint's motion, of the
-   wind; 'control: {kind: external}'). Their number, names, units (SI), the index of a name (-1:
-   none), the value now (NaN when there is no such input). */
+/* Inputs, which the scene declares ('input: NAME' of a load, of a joint's motion, of the wind;
+   'control: {kind: external}'): number of inputs, name, unit (SI), index of a name (-1: no such input),
+   current value (NaN: no such input). */
 BOUGH_API int bough_session_inputs(const bough_session *session);
 BOUGH_API const char *bough_session_input_name(const bough_session *session, int input);
 BOUGH_API const char *bough_session_input_unit(const bough_session *session, int input);
 BOUGH_API int bough_session_input(const bough_session *session, const char *name);
 BOUGH_API double bough_session_input_value(const bough_session *session, int input);
 
-/* Sets an input from the next step on, in SI, or as text with any unit that fits ("40 kN m"). A load
-   and the wind have the value from the step's beginning, a joint is there at its end; what is
-   demanded as control is sampled at the control's rate. BOUGH_SESSION_INVALID: no such input, no
-   finite number, a wrong unit; nothing is changed. */
+/* Sets an input from the next step on, in SI, or as text with any suitable unit ("40 kN m"). Loads have
+   the value from the beginning of the step, the wind from the next sample of the air; a joint reaches
+   the value at the end of the step; demands of the control are sampled at the rate of the control.
+   BOUGH_SESSION_INVALID: no such input, not a finite number, or a wrong unit; nothing is changed. */
 BOUGH_API int bough_session_set(bough_session *session, int input, double value);
 BOUGH_API int bough_session_set_text(bough_session *session, int input, const char *value);
 
-/* Copies of all that a session goes on from, of `size` bytes (0: not opened), in the caller's
-   memory, aligned as malloc aligns; good until the process ends.
+/* Copies of a session's state, of `size` bytes (0: the scene was not opened), in memory of the caller with
+   the alignment of malloc. A copy is valid until the process ends.
 
-   Integrators start anew where a copy is made, in the session that goes on as in one that is
-   restored: both go on to the same bits. Restored may be any session whose scene has the same
-   parts, coupling and macro step, also after a failed step; other values in its scene, a wind or a
-   stiffness, make it a what-if from that moment on.
+   Integrators restart where a copy is made, in the session itself and in a restored session, so both
+   continue to identical results. A copy may be restored into any session whose scene has the same
+   parts, coupling and macro step, also after a failed step. The scene may have other values, such as
+   another wind or stiffness, and then shows what changes from that moment on.
 
-   BOUGH_SESSION_INVALID, and the session is as it was: a copy of another kind of scene; between two
-   samples of the air or the control, whose past is not in a copy: step on; a controller's library,
-   whose memory is its own. */
+   BOUGH_SESSION_INVALID, with the session unchanged: the copy belongs to another kind of scene; the time
+   is between two samples of the air or the control (take further steps first); the scene has a
+   controller's library, whose memory cannot be copied. */
 BOUGH_API size_t bough_session_size(const bough_session *session);
 BOUGH_API int bough_session_save(bough_session *session, void *copy);
 BOUGH_API int bough_session_restore(bough_session *session, const void *copy);

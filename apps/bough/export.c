@@ -162,7 +162,7 @@ static void put_variables(const export *x, FILE *out) {
     }
     fputs("  </ModelVariables>\n  <ModelStructure>\n", out);
     for (int k = 0; k < x->channels.count; k++)
-        fprintf(out, "    <Output valueReference=\"%d\"/>\n", scene->n_input + k + 1);
+        fprintf(out, "    <Output valueReference=\"%d\" dependencies=\"\"/>\n", scene->n_input + k + 1);
     for (int k = 0; k < x->channels.count; k++)
         fprintf(out, "    <InitialUnknown valueReference=\"%d\"/>\n", scene->n_input + k + 1);
     fputs("  </ModelStructure>\n", out);
@@ -179,7 +179,7 @@ static void put_description(const export *x, FILE *out) {
                  "variableNamingConvention=\"flat\">\n", x->token);
     fprintf(out, "  <CoSimulation modelIdentifier=\"bough\" canHandleVariableCommunicationStepSize="
                  "\"true\" fixedInternalStepSize=\"%.17g\" canGetAndSetFMUState=\"%s\" "
-                 "maxOutputDerivativeOrder=\"0\"/>\n",
+                 "providesDirectionalDerivatives=\"false\" maxOutputDerivativeOrder=\"0\"/>\n",
             scene->simulation.macro_step, copies ? "true" : "false");
     put_units(x, out);
     fputs("  <LogCategories>\n    <Category name=\"logStatusError\"/>\n    <Category "

@@ -1,13 +1,13 @@
-"""bough from Python: opens a scene, steps it, reads its channels, keeps copies of its state.
+"""bough from Python: opens a scene, steps it, sets inputs, reads channels, stores copies of its state.
 
     import bough
     with bough.Session("runup.yaml", "simulation.duration=5 s") as run:
         rows = run.advance(2.0, ["RotSpeed"])
     print(rows["Time"][-1], rows["RotSpeed"][-1])
 
-Needs nothing beyond Python 3.8; where numpy is installed, values and rows are its arrays, on the
-same memory. The library is the one that BOUGH_LIBRARY names, else the one in the folder above this
-file's or the next, where `cmake --install` puts it, else one that the system finds.
+The module needs Python 3.8 and nothing else. If numpy is installed, values and rows are numpy arrays on
+the same memory. BOUGH_LIBRARY may name the library; otherwise the module searches for it where
+`cmake --install` puts it, one or two folders above this file, and then where the system searches.
 """
 import array
 import ctypes
@@ -23,7 +23,7 @@ OK, DONE, INVALID, FAILED, OTHER = 0, -1, 2, 3, 1
 
 
 class Error(Exception):
-    """What bough says of a scene, a step or a copy; `code` is INVALID, FAILED or OTHER."""
+    """A message of bough about a scene, a step or a copy; `code` is INVALID, FAILED or OTHER."""
 
     def __init__(self, code, text):
         super().__init__(text)
@@ -123,7 +123,7 @@ class Session:
 
     @property
     def time(self):
-        """Now [s]."""
+        """The current time [s]."""
         return self._call("time")
 
     @property
@@ -133,16 +133,16 @@ class Session:
 
     @property
     def warning(self):
-        """What was found about the stability of the coupling, or ""."""
+        """A warning that the coupling is unstable, or ""."""
         return self._call("warning").decode()
 
     def step(self):
-        """Takes one macro step; False at the scene's end, where nothing is done."""
+        """Takes one macro step; returns False at the end of the scene, without a step."""
         return self._check(self._call("step")) == OK
 
     @property
     def values(self):
-        """All channels now, in the order of `names`: a view for reading. Later reads change it."""
+        """Current values of all channels in the order of `names`: a read-only view, which later reads update."""
         address = self._call("values")
         if not address:
             raise Error(FAILED, "there are no values: no channels, or a step has failed")
@@ -151,12 +151,12 @@ class Session:
         return _view(memoryview(doubles).cast("B").cast("d").toreadonly())
 
     def __getitem__(self, name):
-        """A channel now: session["RotSpeed"]."""
+        """Current value of a channel: session["RotSpeed"]."""
         return float(self.values[self._index[name]])
 
     @property
     def inputs(self):
-        """What the scene leaves to be set: a dictionary of names and units (SI)."""
+        """The inputs that the scene declares: a dictionary of names and units (SI)."""
         return {name: self._call("input_unit", i).decode() for name, i in self._input.items()}
 
     def __setitem__(self, name, value):
@@ -168,8 +168,8 @@ class Session:
             self._check(self._call("set", i, value))
 
     def advance(self, until=None, channels=None):
-        """Steps to a time [s] or the end; a row per step of the channels, None for all, and one of
-        the start: a dictionary of columns, "Time" the first."""
+        """Steps to a time [s], or to the end. Returns a dictionary of columns, "Time" and the channels (None:
+        all), with one row for the start and one for each step."""
         until = self.duration if until is None else until
         names = self.names if channels is None else channels
         columns = {name: array.array("d") for name in ["Time", *names]}
