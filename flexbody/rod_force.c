@@ -119,7 +119,23 @@ static bool loads_lie_along(const bough_rod_loads *loads) {
     return false;
 }
 
-// Adds D q of the ramped loads along the segments: the dead ones turned into their middles.
+// Adds the moments about the chord of segment n of a dead load per length on the bent axis.
+static void add_chord_moments_of(const bough_rod_model *m, int n, bough_mat3 middle, bough_vec3 line,
+                       bough_rod_scratch *scratch) {
+    int s = m->stride;
+    bough_mat3 left = bough_rotation_matrix(load_vertex(scratch->vertex, s, n).p);
+    bough_mat3 right = bough_rotation_matrix(load_vertex(scratch->vertex, s, n + 1).p);
+    bough_vec3 change = bough_sub(right.c3, left.c3);
+    change = bough_sub(change, bough_mat3_mul(middle, load3(m->bend0, s, n)));
+    bough_vec3 moment = chord_moment(m->length[n], change, line);
+    double *load = scratch->load + 3 * s + n;
+    for (int side = 0; side < 2; side++, load++) {
+        store3(load, s, 0, bough_add(load3(load, s, 0), moment));
+    }
+}
+
+// Adds D q of the ramped loads along the segments, the dead ones turned into their middles, and the latter's
+// moments about the chords.
 static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                       bough_rod_scratch *scratch) {
     int s = m->stride;
@@ -140,6 +156,9 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
                 if (l->follower) continue;
                 q[part] = bough_mat3_tmul(r, q[part]);
                 store3(along, s, n, bough_add(load3(along, s, n), q[part]));
+            }
+            if (!l->follower) {
+                add_chord_moments_of(m, n, r, bough_scale(factor, load3(l->line, s, n)), scratch);
             }
             double *rest = scratch->own_rest;
             strain e = line_strain(m->line, s, n, q);

@@ -74,6 +74,26 @@ static inline strain add_turned(strain change, const double *restrict line,
     return (strain){bough_sub(change.v, e.v), bough_sub(change.u, e.u)};
 }
 
+// Beside the chord of a bent segment its axis lies by −(h/12) of the tangent's change in the mean, where a
+// load per length acts: its moment on each of the two vertices.
+static inline bough_vec3 chord_moment(double h, bough_vec3 change, bough_vec3 load) {
+    return bough_scale(-h * h / 24, bough_cross(change, load));
+}
+
+// Adds what the turns phi of the sections change in that moment of the dead loads `along` the segment.
+static inline segment_force add_chord_moments(segment_force f, bough_mat3 rl, bough_mat3 rr, bough_mat3 r,
+                                    bough_vec3 phi_l, bough_vec3 phi_r, bough_vec3 middle,
+                                    bough_vec3 bend0, bough_vec3 along, double h) {
+    const bough_vec3 tangent = {0, 0, 1};
+    bough_vec3 change = bough_sub(bough_mat3_mul(rr, bough_cross(phi_r, tangent)),
+                                  bough_mat3_mul(rl, bough_cross(phi_l, tangent)));
+    change = bough_sub(change, bough_mat3_mul(r, bough_cross(middle, bend0)));
+    bough_vec3 moment = chord_moment(h, change, bough_mat3_mul(r, along));
+    f.ll = bough_add(f.ll, bough_mat3_tmul(rl, moment));
+    f.lr = bough_add(f.lr, bough_mat3_tmul(rr, moment));
+    return f;
+}
+
 // Derivative of the forces of segment n along variations of its vertices.
 static inline segment_force segment_tangent(const bough_rod_model *m,
                                             const bough_rod_scratch *scratch, int n,
@@ -94,7 +114,10 @@ static inline segment_force segment_tangent(const bough_rod_model *m,
     strain drate = rate_variation(shape, motion, d, dl, dr, inverse);
     strain dstress = add_strain(symmetric_times(m->stiffness, s, n, de),
                                 symmetric_times(m->damping, s, n, drate));
-    return force_variation(shape, d, stress, dstress, h);
+    segment_force f = force_variation(shape, d, stress, dstress, h);
+    if (!scratch->turning) return f;
+    return add_chord_moments(f, bough_rotation_matrix(l.p), bough_rotation_matrix(r.p), shape.r, dl->phi,
+                   dr->phi, d.middle, load3(m->bend0, s, n), load3(scratch->along, s, n), h);
 }
 
 #endif

@@ -176,11 +176,9 @@ void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const
         for (int part = 0; part < 12 * n; part += 3 * n) {
             store3(turned + part, n, k, bough_mat3_tmul(r, load3(line + part, n, k)));
         }
-        // between tangents a and b the axis lies beside the chord, in the mean by −(h/12) (b − a)
         bough_vec3 turn = bough_sub(tangent_of(q), tangent_of(p));
         turn = bough_sub(turn, bough_mat3_mul(r, load3(m->bend0, m->stride, k)));
-        bough_vec3 moment = bough_cross(turn, load3(line, n, k));
-        moment = bough_scale(-m->length[k] * m->length[k] / 24, moment);
+        bough_vec3 moment = chord_moment(m->length[k], turn, load3(line, n, k));
         double *left = load + 3 * v, *right = left + 1;
         store3(left, v, k, bough_add(load3(left, v, k), moment));
         store3(right, v, k, bough_add(load3(right, v, k), moment));

@@ -84,14 +84,14 @@ static inline void store_force(double *restrict column, int l, segment_force f) 
     store3(column + LANES * DIRECTIONS * LR, LANES * DIRECTIONS, l, f.lr);
 }
 
-// `turning`: D q turns as well.
+// `turning`: D q turns as well, and what dead loads along the segment do beside its chord.
 static inline void position_direction(const bough_rod_model *m, const bough_rod_scratch *scratch,
                                       bool turning, int first, const double *restrict base,
                                       vertex_variation dl, vertex_variation dr,
                                       double *restrict column) {
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict along = scratch->along + first;
-    const double *restrict line = m->line + first;
+    const double *restrict line = m->line + first, *restrict bend = m->bend0 + first;
     const double *restrict c = m->stiffness + first, *restrict damping = m->damping + first;
     const double *restrict inverse = m->inverse_length + first, *restrict h = m->length + first;
 #pragma omp simd
@@ -110,7 +110,14 @@ static inline void position_direction(const bough_rod_model *m, const bough_rod_
         strain drate = rate_variation(shape, motion, d, &dl, &dr, inverse[l]);
         strain dstress = add_strain(symmetric_times(c, s, l, de),
                                     symmetric_times(damping, s, l, drate));
-        store_force(column, l, force_variation(shape, d, stress, dstress, h[l]));
+        segment_force f = force_variation(shape, d, stress, dstress, h[l]);
+        if (turning) {
+            bough_mat3 rl = bough_rotation_matrix(load_vertex(at, s, l).p);
+            bough_mat3 rr = bough_rotation_matrix(load_vertex(at, s, l + 1).p);
+            f = add_chord_moments(f, rl, rr, shape.r, dl.phi, dr.phi, d.middle, load3(bend, s, l),
+                        load3(along, s, l), h[l]);
+        }
+        store_force(column, l, f);
     }
 }
 
