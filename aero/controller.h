@@ -1,6 +1,6 @@
 // Variable speed and variable pitch: the baseline control of the NREL 5 MW turbine. Generator torque
 // over the filtered generator speed, region by region; above rated speed collective pitch by a PI
-// law whose gains fall with the pitch, since power answers the stronger the more is pitched.
+// law whose gains decrease with the pitch, because the sensitivity of the power increases with it.
 //
 // J. Jonkman, S. Butterfield, W. Musial, G. Scott, "Definition of a 5-MW Reference Wind Turbine for
 // Offshore System Development", NREL/TP-500-38060 (2009), section 7. All speeds are the generator's.
@@ -22,7 +22,7 @@ typedef struct bough_controller_def {
     double slip;               // of the line between the two, share of its synchronous speed [-]
     double most_torque;        // [N m]
     double torque_rate;        // the most [N m/s]
-    double power_pitch;        // constant power at any speed beyond this pitch [rad]
+    double power_pitch;        // pitch above which the power is constant at any speed [rad]
     double reference_speed;    // of the pitch [rad/s]
     double proportional;       // gain at no pitch [s]
     double integral;           // [-]
@@ -39,7 +39,7 @@ bough_status bough_controller_check(const bough_controller_def *def);
 
 // Doubles only, saved and restored as a row of them.
 typedef struct bough_controller_state {
-    double started;    // 0: the next advance starts at what it is told
+    double started;    // 0: the next advance starts from the measured values
     double speed;      // filtered [rad/s]
     double integral;   // of the speed error [rad]
     double torque;     // of the generator [N m]
@@ -49,8 +49,8 @@ typedef struct bough_controller_state {
 // The torque at a filtered speed and a pitch, without its limit in time [N m].
 double bough_controller_torque(const bough_controller_def *def, double speed, double pitch);
 
-// Goes on by `step` [s] to the measured generator speed [rad/s] and pitch [rad]; torque and pitch
-// that it demands are in the state.
+// Advances by `step` [s] with the measured generator speed [rad/s] and pitch [rad]. The demanded torque and
+// pitch are in the state.
 void bough_controller_advance(const bough_controller_def *def, double speed, double pitch,
                               double step, bough_controller_state *state);
 

@@ -5,8 +5,8 @@
 //
 // docs/import.md lists the records that are served.
 //
-// The library keeps its own memory: a run's samples cannot be repeated, and one process can use a
-// library in one run at a time.
+// The library has its own memory: samples of a run cannot be repeated, and a process can use a library in
+// one run at a time only.
 #ifndef BOUGH_AERO_DISCON_H
 #define BOUGH_AERO_DISCON_H
 
@@ -15,7 +15,7 @@
 
 enum { BOUGH_DISCON_BLADES = 3 };
 
-// What the controller is told, on the fast shaft where it is of the generator.
+// The measured values for the controller; those of the generator are at the fast shaft.
 typedef struct bough_discon_sensed {
     double time, step;       // [s]
     bool last;               // of the run

@@ -1,11 +1,11 @@
 // Blade element momentum at one station: the inflow angle at which blade forces and momentum
 // agree, by Ning's single residual, whose root is always bracketed.
 //
-// The solver keeps no memory: where a stalled polar gives several roots, a start from the last
-// answer would make the next depend on the past, and a repeated step would not repeat its loads. It
-// starts where linear lift would balance and takes the root of attached flow whatever others there
-// are; without attached flow it starts from no induction; where neither start has a root close by
-// it brackets as Ning does.
+// The solver has no memory. A stalled polar may have several roots; a start from the last result would then
+// make the next result depend on the past, and a repeated step would not repeat its loads. The solver
+// starts at the balance of linear lift and takes the root of attached flow if there is one. Without
+// attached flow it starts from zero induction. If neither start has a root close to it, it uses Ning's
+// bracket.
 //
 // S. A. Ning, "A simple solution method for the blade element momentum equations with guaranteed
 // convergence", Wind Energy 17 (2014).
@@ -16,7 +16,7 @@
 
 #include <stdbool.h>
 
-// How thrust goes on growing with a where momentum theory would have it fall.
+// Thrust as a function of a where momentum theory is not valid.
 typedef enum bough_high_thrust {
     // From a = 0.35/cos χ, at most 0.5, a parabola, smooth there, to CT = 2 at a = 1 and beyond; the
     // swirl fades with the momentum share of the thrust. AeroDyn's newer (polar) formulation does this.

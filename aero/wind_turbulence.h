@@ -3,10 +3,10 @@
 //
 // P. S. Veers, "Three-dimensional wind simulation", SAND88-0152 (1988): every frequency is a wave of
 // deterministic amplitude and random phases, mixed between the points by the Cholesky factor of their
-// coherence. Each wave carries the spectrum's variance around its frequency, the slowest all that is
-// slower, and what is faster than the time step resolves is folded as in any sampled process: so the
-// standard deviations are the standard's. The lateral and vertical component have no coherence, as
-// the standard gives none.
+// coherence. Each wave has the variance of the spectrum around its frequency; the slowest wave also has that
+// of all lower frequencies, and frequencies above the Nyquist frequency are aliased as in any sampled
+// process. The standard deviations are therefore those of the standard. The lateral and vertical
+// components have no coherence, because the standard defines none.
 #ifndef BOUGH_AERO_WIND_TURBULENCE_H
 #define BOUGH_AERO_WIND_TURBULENCE_H
 

@@ -41,7 +41,7 @@ void bough_accelerator_start(bough_accelerator *a);
 // Takes an evaluation, image = H(u), and returns the norm of its residual.
 double bough_accelerator_take(bough_accelerator *a, const double *u, const double *image);
 
-// Whether the iteration runs away: the residual is not finite or beyond all bounds.
+// Whether the iteration diverges: the residual is not finite or too large.
 bool bough_accelerator_diverges(const bough_accelerator *a);
 
 // Mean factor by which an iteration changed the residual, over the last few; 1 before the second.

@@ -1,5 +1,5 @@
-// Why a member broke down within a macro step: the coupling about the state it started from is judged,
-// so that the message tells whether it is the cause, how fast it grows and what would hold.
+// Diagnosis of a member that fails within a macro step: a stability analysis of the coupling about the state
+// at the start of the step shows whether the coupling is the cause, the growth, and a stable scheme.
 #ifndef BOUGH_COSIM_BREAKDOWN_H
 #define BOUGH_COSIM_BREAKDOWN_H
 
@@ -15,9 +15,9 @@ bough_status bough_breakdown_create(bough_arena *arena, const bough_assembly *as
 // Keeps the members' states; a macro step begins.
 void bough_breakdown_keep(bough_breakdown *b);
 
-// The failure of the coupling's present step with what the coupling has to do with it. `before`: what
-// the judgement before the run gave; if that was nothing, the states kept are judged: the members'
-// own are lost.
+// The failure of the coupling's present step, with the part of the coupling in it. `before`: result of the
+// analysis before the run; if that found nothing, the stored states are analysed, because the members' own
+// states are lost.
 bough_status bough_breakdown_explain(bough_breakdown *b, bough_coupling *c,
                                      const bough_stability_advice *before, bough_status cause);
 

@@ -1,13 +1,13 @@
 // The interface of linearised members, condensed to the coordinates in which the leading members
 // move all others.
 //
-// A leader's outputs change by Σ w_c ∂o/∂w_c. Its coordinates w are its states where those are
-// fewer than its inputs and its outputs depend on them alone, else its inputs. A follower hangs on leaders
-// only, so that eliminating it leaves, over all leaders,
-//     w = Z u,   u = b + K w,   hence   (I − Z K) w = Z b:
-// u the leaders' inputs, Z their coordinates' response to them (of inputs 1), K the inputs' response
-// to the coordinates through leaders and followers. Many bodies on one leader with two states so cost
-// two unknowns, and work in proportion to their number.
+// A leader's outputs change by Σ w_c ∂o/∂w_c. Its coordinates w are its states if these are fewer than its
+// inputs and its outputs depend on states only, else its inputs. A follower is connected with leaders only.
+// After its elimination the equations of all leaders are
+//     w = Z u,   u = b + K w,   hence   (I − Z K) w = Z b
+// with the leaders' inputs u, the response Z of their coordinates to them (1 for inputs), and the response
+// K of the inputs to the coordinates through leaders and followers. So many bodies on one leader with two
+// states cost two unknowns, and work in proportion to their number.
 #ifndef BOUGH_COSIM_CONDENSE_H
 #define BOUGH_COSIM_CONDENSE_H
 
@@ -50,7 +50,7 @@ typedef struct bough_condensed {
 bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *assembly,
                                     bough_condensed **condensed);
 
-// Where a member is linearised.
+// The point at which a member is linearised.
 typedef struct bough_operating_point {
     double time;
     const double *state, *input; // (n_state), (n_input) of the member
@@ -60,8 +60,7 @@ typedef struct bough_operating_point {
 // Linearises a member. False when its tangents are not finite.
 bool bough_condensed_linearise(bough_condensed *k, int member, const bough_operating_point *at);
 
-// Factors a leader where it was last linearised, and finds its columns and responses. False when
-// singular.
+// Factors a leader at its last linearisation, and computes its columns and responses. False when singular.
 bool bough_condensed_factor_leader(bough_condensed *k, int member, const bough_operating_point *at);
 
 // The same of a follower, whose leaders have been factored.

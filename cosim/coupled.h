@@ -1,16 +1,14 @@
-// All members of an assembly as one system ẏ = F(t, y), the inputs found from the outputs: its
-// rate, and solutions of (I − γ ∂F/∂y) x = r. It is an arrowhead matrix, solved by static
-// condensation,
-//     (I − γJ_i) x_i = r_i + γ B_i δu_i,   δo_i = C_i x_i + D_i δu_i,   δu = P δo,
-// so each member is factored by itself and the interface system is that of condense.h.
+// All members of an assembly as one system ẏ = F(t, y), whose inputs follow from the outputs: its rate, and
+// solutions of (I − γ ∂F/∂y) x = r. The matrix is an arrowhead matrix, solved by static condensation,
+//     (I − γJ_i) x_i = r_i + γ B_i δu_i,   δo_i = C_i x_i + D_i δu_i,   δu = P δo.
+// Each member is factored separately, and the interface system is that of condense.h.
 #ifndef BOUGH_COSIM_COUPLED_H
 #define BOUGH_COSIM_COUPLED_H
 
 #include "core/pool.h"
 #include "cosim/condense.h"
 
-// What else is to be done for a member by the thread that solves for it: makes its part of x, uses
-// it.
+// Further work for a member by the thread that solves for it: preparing its part of x, and using it.
 typedef struct bough_coupled_user {
     void *self;
     void (*before)(void *self, int member); // NULL: nothing
@@ -62,7 +60,7 @@ bough_status bough_coupled_create_evaluation(bough_arena *arena, const bough_ass
 bough_status bough_coupled_system(bough_arena *arena, const bough_assembly *assembly,
                                   bough_pool *pool, const char *name, bough_system *system);
 
-// From now on solutions keep these states (n, borrowed): x is 0 there, whatever force that takes.
+// Solutions keep these states from now on (n, borrowed): x is 0 there, by constraint forces.
 bough_status bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n, const int *held);
 
 // Outputs and inputs at a state (n_state) into coupled->output and coupled->input.

@@ -1,11 +1,11 @@
-// The bound on the coupling error of one interface. Its error is looked at over windows of at least
-// a second and 64 steps, by two measures that must agree:
-//   - the defect, what a force turned out to be minus what was applied to its receiver, as its root mean
-//     square relative to the largest force so far,
+// The bound on the coupling error of one interface. The error is evaluated over windows of at least a second
+// and 64 steps, by two measures:
+//   - the defect, which is the obtained force minus the applied force, as its root mean square relative
+//     to the largest force so far,
 //   - the gross energy residual Σ|∫ defect · twist dt| relative to the energy exchanged.
-// Beyond the bound on both over two windows that do not shrink, and well above the error that the
-// same run has had before, the solution is lost. The last condition tells an instability from a
-// coarse but stable coupling, whose error keeps to the level that the loads give it.
+// The solution is lost if both exceed the bound over two windows without a decrease, and are well above
+// the earlier error of the same run. The last condition distinguishes an instability from a coarse but
+// stable coupling, whose error stays at the level that the loads cause.
 //
 // Measured on a rotor of three flexible bodies, macro step 20 ms: stable explicit runs stay below
 // 0.05 and 0.07 in their start-up and 0.02 and 0.04 after it; unstable ones end at 0.3 and 0.3.
@@ -25,16 +25,16 @@ typedef struct bough_error_bound {
     double least;            // smallest defect of a window so far
     double good_time;        // end of the last window before the defect grew [s]
     int n_window;
-    int sustained; // windows in a row that are beyond the bound
+    int sustained; // number of successive windows beyond the bound
 } bough_error_bound;
 
-// Takes the window of n_step steps that ends at t.
+// Adds the window of n_step steps that ends at t.
 void bough_error_bound_close(bough_error_bound *b, bough_error_window window, int n_step, double t);
 
 // Whether the bound is broken for long enough.
 bool bough_error_bound_broken(const bough_error_bound *b);
 
-// Whether the error is so large that the run is meaningless whatever made it grow.
+// Whether the error is so large that the run is meaningless, whatever its cause.
 bool bough_error_bound_hopeless(const bough_error_bound *b);
 
 #endif

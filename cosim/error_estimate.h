@@ -1,7 +1,7 @@
 // An estimate of the coupling error of all states while a run goes on. The run has integrated every
-// member under inputs ũ(t) that differ from what the others really put out, u(t), by the defect
-// δ = ũ − u, which is known at the end of each macro step. To first order its states therefore err
-// from those of one monolithic system by ε with
+// member under inputs ũ(t) that differ from the actual outputs of the others, u(t), by the defect
+// δ = ũ − u, which is known at the end of each macro step. To first order the difference ε of its states
+// to those of one monolithic system satisfies
 //     ε̇ = J ε + B υ + s,   υ = P (C ε + D υ) + δ,   ε(0) = 0,
 // the linearised members coupled without any delay; s is the rate at which the members' own steps
 // err, by the estimate of those that have one. The defects of a batch of steps are kept, then
@@ -10,8 +10,8 @@
 // members are linearised once. Each step takes the mean of δ over it, so that impulses are exact. So
 // defects do not merely add up: they excite, ring and die as the mechanics let them.
 //
-// Not seen: the damping by loads from outside the members, so that of the air: ε errs on the safe
-// side; own errors of members that do not tell them; second order in ε.
+// Not included: damping by loads from outside the members, such as aerodynamic damping, so ε is too large
+// rather than too small; own errors of members without an estimate; terms of second order in ε.
 #ifndef BOUGH_COSIM_ERROR_ESTIMATE_H
 #define BOUGH_COSIM_ERROR_ESTIMATE_H
 

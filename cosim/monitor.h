@@ -7,7 +7,7 @@
 
 typedef struct bough_monitor bough_monitor;
 
-// What the monitor has to say at the end.
+// The monitor's result at the end of the run.
 typedef struct bough_coupling_report {
     double defect_max; // largest |obtained − applied| at a synchronisation point, of a force, moment
                        // or velocity relative to its own largest magnitude [1]
@@ -19,10 +19,11 @@ typedef struct bough_coupling_report {
 bough_status bough_monitor_create(bough_arena *arena, const bough_coupling *coupling,
                                   bough_monitor **monitor);
 
-// Whether growth is judged, as from the start: not where the run's error is known otherwise.
+// Switches the detection of growth, which is on by default; it is off where a second solution measures the
+// error.
 void bough_monitor_judge(bough_monitor *m, bool judges);
 
-// Judges the step just taken: BOUGH_FAILED with a diagnosis when the run has become meaningless.
+// Checks the last step: BOUGH_FAILED with a diagnosis when the run has become meaningless.
 bough_status bough_monitor_step(bough_monitor *m, bough_coupling *c);
 
 // Its windows, accounts and largest values so far.

@@ -1,8 +1,8 @@
 // Macro-step control: each span between two synchronisation points of the fixed grid (where loads are
-// sampled, events lie and results are recorded) is cut into 2ⁿ equal macro steps. A step whose defects
-// exceed the tolerance is taken back, with all that members and coupling had stored, and halved; where
-// they fall well below, the steps become twice as long again. Halves and doubles keep the sub-solvers'
-// and the estimate's factors, and the same results for any number of threads.
+// sampled, events occur and results are recorded) is divided into 2ⁿ equal macro steps. A step whose defects
+// exceed the tolerance is undone, by a stored copy of members and coupling, and halved. When the defects
+// are well below the tolerance, the length is doubled again. Halving and doubling keep the factors of
+// sub-solvers and error estimate, and the results for any number of threads.
 #ifndef BOUGH_COSIM_STEP_CONTROL_H
 #define BOUGH_COSIM_STEP_CONTROL_H
 
@@ -38,8 +38,8 @@ void bough_step_control_restore(bough_step_control *s, bough_coupling *c);
 // What the control itself remembers.
 void bough_step_control_snapshot(bough_step_control *s, bough_snapshot *snapshot);
 
-// Whether the step of that length stands; if not, the next are shorter. A step that failed has an
-// infinite error and never stands.
+// Whether the step of that length is accepted; if not, the next steps are shorter. A step that failed has
+// an infinite error and is never accepted.
 bool bough_step_control_accept(bough_step_control *s, double error, double length);
 
 // Whether a step cannot become shorter.

@@ -122,6 +122,7 @@ static bool create_body(bough_vertices *v, int i) {
 }
 
 static bool create_file(bough_vertices *v) {
+    H5dont_atexit(); // its clean-up writes again what a full disk has refused, and crashes
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL); // we tell errors ourselves
     H5Pset_fclose_degree(access, H5F_CLOSE_STRONG);

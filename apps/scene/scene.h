@@ -1,10 +1,9 @@
-// A scene as the user said it: plain structs in SI units and radians, names resolved to indices,
-// every value checked. Read from a YAML file by the tables of scene_schema*.c; apps/simulation
-// makes the model of it. Examples of every form: tests/scenes/example-*.yaml.
+// A scene as the user wrote it: plain structs in SI units and radians, with names resolved to indices and
+// all values checked. The tables of scene_schema*.c read it from a YAML file; apps/simulation builds the
+// model. Examples of every form: tests/scenes/example-*.yaml.
 //
-// All memory belongs to the arena given to bough_scene_read. Every struct begins with its place in
-// the text; a part that the file may leave out has `node == NULL` when it is absent, and its other
-// fields then hold the defaults.
+// All memory belongs to the arena given to bough_scene_read. Every struct begins with its place in the
+// text. An optional part that is absent has `node == NULL`, and its other fields have the defaults.
 //
 // Axes: ground z up. A placement is a list of steps, each in the frame reached so far. Section
 // quantities are in the section's axes, whose z is the tangent of the reference axis, and about the
@@ -422,7 +421,7 @@ typedef enum bough_scene_event_kind {
     BOUGH_SCENE_YAW_RUNAWAY,
 } bough_scene_event_kind;
 
-// What happens to the turbine at a time, or from then on when a channel passes a threshold.
+// An event of the turbine at a time, or later when a channel passes a threshold.
 typedef struct bough_scene_event {
     const bough_node *node;
     int kind;              // bough_scene_event_kind
@@ -459,7 +458,7 @@ typedef enum bough_scene_modes_of {
     BOUGH_SCENE_MODES_SCENE,
 } bough_scene_modes_of;
 
-// What `bough modes` finds; a run does not read it.
+// Settings of `bough modes`, which a run ignores.
 typedef enum bough_scene_modes_air {
     BOUGH_SCENE_AIR_FROZEN,
     BOUGH_SCENE_AIR_QUASI_STEADY,
@@ -481,7 +480,7 @@ typedef struct bough_scene_modes {
     bool linear;            // of the whole scene: its linear state space is written too
 } bough_scene_modes;
 
-// What is left to whoever steps the scene: a value by name, set between steps.
+// An input: a value with a name, which another program sets between steps.
 typedef enum bough_scene_input_kind {
     BOUGH_INPUT_LOAD,   // multiplies a load, or is one along a joint
     BOUGH_INPUT_MOTION, // where a joint is
@@ -534,7 +533,8 @@ typedef struct bough_scene {
 bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets,
                               int n_set, bough_errors *errors, bough_scene **scene);
 
-// Writes a line for everything that is valid but seldom meant: an inertia that no mass has.
+// Writes a warning for each value that is valid but probably an error: an inertia that no mass distribution
+// has.
 void bough_scene_warn(const bough_scene *scene, FILE *stream);
 
 // The sub-solver of a flexible body: its own or the simulation's.

@@ -1,5 +1,5 @@
-// Joins the rotor's aerodynamics to the bodies of a simulation: motion of the blades' vertices in,
-// loads on them out, sampled at the scene's rate and held or joined linearly between samples.
+// Connects the rotor's aerodynamics with the bodies of a simulation: it gets the motion of the blades'
+// vertices and sets the loads on them, sampled at the scene's rate.
 #ifndef BOUGH_APPS_SIMULATION_AERO_LINK_H
 #define BOUGH_APPS_SIMULATION_AERO_LINK_H
 

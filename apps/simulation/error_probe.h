@@ -1,5 +1,5 @@
-// What the estimated coupling error of the states means for the channels: the difference between a
-// channel of the states and of the states without their error, where a batch of the estimate ends.
+// The estimated error of the channels: the difference between a channel of the states and the same channel
+// of the states without their estimated error, at the end of each batch of the estimate.
 #ifndef BOUGH_APPS_SIMULATION_ERROR_PROBE_H
 #define BOUGH_APPS_SIMULATION_ERROR_PROBE_H
 
@@ -39,8 +39,8 @@ bool bough_error_probe_knows(const bough_error_probe *probe, int channel);
 // have one range, the largest of theirs.
 double bough_error_probe_relative(const bough_error_probe *probe, int channel);
 
-// What the errors mean for the run. Channels that hardly move, by less than a thousandth of what the
-// others with their unit do, have no say: a relative error of next to nothing is none.
+// Judgement of the errors. Channels that hardly move, by less than a thousandth of other channels with the
+// same unit, are left out, because their relative error has no meaning.
 typedef struct bough_error_verdict {
     int channel;     // with the largest relative error of those that are estimated; −1: none is
     double relative; // that error
@@ -53,20 +53,20 @@ bough_error_verdict bough_error_probe_verdict(const bough_error_probe *probe);
 // Of each channel the first of the vector X, Y, Z that it is a component of: vector (channels.count).
 void bough_error_probe_find_vectors(const bough_channels *channels, int *vector);
 
-// Counts how long the errors have been hopeless, after an update.
+// Counts the steps with errors of several times the range, after an update.
 void bough_error_probe_watch(bough_error_probe *probe);
 
 // Notes which errors are noticeable now, at t [s].
 void bough_error_probe_mark(bough_error_probe *probe, double t);
 
-// Whether the errors have for some time been larger than anything that moves: the run need not go on.
+// Whether the errors have been several times the range for so many steps that the run should end.
 bool bough_error_probe_hopeless(const bough_error_probe *probe);
 
-// One sentence for what is below the bound and yet worth a warning, "" for nothing: text (size).
+// A warning about an error below the bound, one sentence, or "": text (size).
 void bough_error_probe_warn(const bough_error_probe *probe, double bound, char *text, size_t size);
 
-// BOUGH_FAILED, with channel, time, cause and what would hold, when a relative error is beyond the
-// bound [1]; 0: there is none.
+// BOUGH_FAILED, with channel, time, cause and settings to try, when a relative error exceeds the bound [1];
+// 0: no bound.
 bough_status bough_error_probe_judge(const bough_error_probe *probe, double bound);
 
 #endif

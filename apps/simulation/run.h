@@ -1,5 +1,5 @@
-// One run of a scene: its model, its channels, its steps, what is recorded of it and when, and the
-// copy that it can go on from. The command line, the library and the studies all step this one.
+// One run of a scene: its model, its channels, its steps, the recording of results, and the copy from which
+// it can continue. The command line, the library and the studies use this run.
 #ifndef BOUGH_APPS_SIMULATION_RUN_H
 #define BOUGH_APPS_SIMULATION_RUN_H
 
@@ -47,11 +47,11 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
 // From now on `sample` is called at the multiples of the interval that are not past.
 void bough_run_record_at(bough_run *run, bough_run_record record);
 
-// Records what is due at the present time, the start.
+// Records the results of the present time, the start.
 bough_status bough_run_start(bough_run *run);
 
-// One macro step, the estimates after it, and what is due then. After a failure the state means
-// nothing, and the run can only go on from a copy.
+// One macro step, then error estimates and results. After a failure the state is not valid, and the run can
+// continue only from a copy.
 bough_status bough_run_step(bough_run *run);
 
 // Whether the duration is reached.
@@ -70,12 +70,11 @@ void bough_run_update_clock(bough_run *run);
 // Work of a member over the whole run; of member n_member, that of the integrator of all together.
 bough_statistics bough_run_statistics(const bough_run *run, int member);
 
-// All that the run goes on from, at a time when its loads are sampled: the simulation, the
-// estimates, what is due when, the work so far. Restored, also a failed run goes on.
+// The memory of the run at a time when its loads are sampled: simulation, error estimates, times of the next
+// results, work so far. After a restore, a failed run continues, too.
 void bough_run_snapshot(bough_run *run, bough_snapshot *snapshot);
 
-// Whether the scene can be stored at all, and whether it can at the present time: BOUGH_INVALID
-// tells what is in the way.
+// Whether the scene can be stored at all, and whether it can be stored now: BOUGH_INVALID gives the reason.
 bough_status bough_run_storable(const bough_run *run);
 
 #endif

@@ -1,5 +1,5 @@
-// The shape of a simulation as polylines in the ground: the axis of each rod; of a rigid body the
-// line from where it hangs on its parent over its origin to its mass centre.
+// The shape of a simulation as polylines in ground axes: the axis of each rod; for a rigid body the line from
+// its parent over its origin to its mass centre.
 #ifndef BOUGH_APPS_SIMULATION_SHAPE_H
 #define BOUGH_APPS_SIMULATION_SHAPE_H
 

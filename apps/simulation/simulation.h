@@ -16,8 +16,8 @@ struct bough_input_link;
 struct bough_drag_link;
 struct bough_validity;
 
-// A flexible blade, cable or tower, or the same body integrated to a rigid one: where it is and, if
-// it is a rod, its sub-solver.
+// A flexible blade, cable or tower, or the same body as a rigid one: its place and, if it is flexible, its
+// sub-solver.
 typedef struct bough_beam {
     const bough_scene_body *body;
     bough_rod_def def;    // the undeformed mesh in the body's frame
@@ -59,19 +59,19 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
 // Brings `view` to the current synchronisation point; queries and channels read it.
 void bough_simulation_update(bough_simulation *s);
 
-// All that a run goes on from, at a time when its loads are sampled: see bough_master_snapshot.
+// The memory that later steps depend on, at a time when all loads are sampled: see bough_master_snapshot.
 void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot);
 
 // BOUGH_INVALID where the scene has a part that cannot be stored.
 bough_status bough_simulation_storable(const bough_simulation *s);
 
-// How many bodies hang on a joint that moves.
+// Number of bodies on joints that move.
 int bough_simulation_n_joints(const bough_simulation *s);
 
 // The beam of a scene body; NULL when it has no rod.
 bough_beam *bough_simulation_beam(const bough_simulation *s, int body);
 
-// What a rod is told at the current synchronisation point: see rod.h.
+// The input of a rod at the current synchronisation point: see rod.h.
 const double *bough_simulation_rod_input(const bough_simulation *s, const bough_beam *beam);
 
 // Position of a beam's last vertex in the body's frame, in which `rotation` is its section's.
@@ -92,8 +92,8 @@ const double *bough_beam_state(const bough_simulation *s, const bough_beam *beam
 // in `input`.
 void bough_beam_ride(const bough_beam *beam, const double *input, double *state);
 
-// The turbine's rotor as it stands in `view`: hub and axis of its joint in the ground, and how far
-// the blades' undeformed tips are from that axis at most.
+// The turbine's rotor in `view`: hub and axis of its joint in ground axes, and the largest distance of the
+// blades' undeformed tips from that axis.
 typedef struct bough_rotor_place {
     bough_vec3 hub, axis;
     double radius; // [m]
@@ -103,7 +103,7 @@ bough_rotor_place bough_simulation_rotor(const bough_simulation *s);
 // The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);
 
-// The wrench of a rod on what carries it, in the body's axes [N, N m]; zero of a rigid one.
+// The wrench of a rod on its carrier, in the body's axes [N, N m]; zero for a rigid body.
 void bough_simulation_root(const bough_simulation *s, const bough_beam *beam, double t,
                            double root[BOUGH_ROD_MOST_OUTPUTS]);
 

@@ -1,4 +1,4 @@
-// Where a run leaves what its models are valid for: each limit is told once, when it is first passed.
+// Limits of the models' validity: a run reports each limit once, when it first exceeds it.
 #ifndef BOUGH_APPS_SIMULATION_VALIDITY_H
 #define BOUGH_APPS_SIMULATION_VALIDITY_H
 
@@ -29,7 +29,7 @@ typedef struct bough_validity {
 // Notes that a limit is passed, if it is the first time.
 void bough_validity_pass(bough_validity *v, bough_limit limit, int body, double time, double value);
 
-// Looks at the state after a step; changes no result.
+// Checks the state after a step, without changing a result.
 void bough_validity_check(bough_simulation *s);
 
 // The name of a limit in summary.json, and the sentence about its passing, at most `size` bytes.
