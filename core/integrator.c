@@ -7,6 +7,7 @@ static const bough_integrator_ops *const methods[] = {
     [BOUGH_RADAU5] = &bough_integrator_radau,
     [BOUGH_GENERALIZED_ALPHA] = &bough_integrator_alpha,
     [BOUGH_ROSENBROCK] = &bough_integrator_rosenbrock,
+    [BOUGH_AUTOMATIC] = &bough_integrator_automatic,
 };
 
 const bough_integrator_ops *bough_integrator_find(bough_integrator_kind kind) {

@@ -58,6 +58,7 @@ typedef enum bough_integrator_kind {
     BOUGH_RADAU5,
     BOUGH_GENERALIZED_ALPHA,
     BOUGH_ROSENBROCK,
+    BOUGH_AUTOMATIC,
 } bough_integrator_kind;
 
 typedef struct bough_integrator_options {
@@ -65,6 +66,7 @@ typedef struct bough_integrator_options {
     double rtol; // tolerance per state: rtol · scale; of Newton's method in generalised-α
     double step; // longest step of generalised-α and the Rosenbrock method [s]; 0: none
     double rho;  // of generalised-α: spectral radius at infinite frequency, 0 … 1
+    int most_steps; // of IDA and the Rosenbrock method in a macro step; 0: their own limits
 } bough_integrator_options;
 
 // A method. `create` returns its memory, which the other calls get as `self`.
@@ -110,6 +112,6 @@ static inline bough_status bough_integrator_advance(const bough_integrator *i, d
 
 extern const bough_integrator_ops bough_integrator_ida, bough_integrator_cvode,
     bough_integrator_arkode, bough_integrator_radau, bough_integrator_alpha,
-    bough_integrator_rosenbrock;
+    bough_integrator_rosenbrock, bough_integrator_automatic;
 
 #endif

@@ -11,12 +11,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MESSAGE = 160, MOST_STEPS = 200000 }; // per call
+enum { MESSAGE = 160, MOST_STEPS = 200000 };
 
 typedef struct ida_run {
     bough_ode ode;
     double gamma;         // of the factors: 1/cj
     bool started;
+    int most_steps;       // per call
     const double *weight; // 1/(rtol·scale) (n)
     SUNContext context;
     void *memory;
@@ -166,7 +167,7 @@ static bool configure(ida_run *ida) {
            IDAWFtolerances(m, weights) == IDA_SUCCESS &&
            IDASetLinearSolver(m, ida->solver, ida->matrix) == IDA_SUCCESS &&
            IDASetJacFn(m, jacobian) == IDA_SUCCESS &&
-           IDASetMaxNumSteps(m, MOST_STEPS) == IDA_SUCCESS;
+           IDASetMaxNumSteps(m, ida->most_steps) == IDA_SUCCESS;
 }
 
 static bough_status create(bough_arena *arena, const bough_ode *ode,
@@ -179,6 +180,7 @@ static bough_status create(bough_arena *arena, const bough_ode *ode,
     for (int i = 0; i < ode->n; i++)
         weight[i] = 1 / (options->rtol * ode->scale[i]);
     ida->ode = *ode;
+    ida->most_steps = options->most_steps > 0 ? options->most_steps : MOST_STEPS;
     ida->weight = weight;
     *self = ida;
     bool created = create_objects(ida) && configure(ida);
@@ -208,9 +210,10 @@ static bough_status failure(ida_run *ida, double t, int flag) {
     const char *advice = "try a smaller macro step, another tolerance or another coupling scheme";
     if (flag == IDA_TOO_MUCH_WORK) {
         return bough_fail(BOUGH_FAILED,
-                          "%s at t = %.9g s: IDA took %d steps without reaching the end of the "
-                          "macro step; %s",
-                          ida->ode.name, t, (int)MOST_STEPS, advice);
+                          "%s at t = %.9g s: %d steps of IDA do not reach the end of the macro step: it "
+                          "follows vibrations that fast, which damping of rods or a larger rtol would "
+                          "end",
+                          ida->ode.name, t, ida->most_steps);
     }
     return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: IDA failed (code %d: %s); %s", ida->ode.name,
                       t, flag, ida->message, advice);

@@ -11,6 +11,7 @@
 #include <string.h>
 
 enum { STAGES = 4, MOST_STEPS = 100000 };
+enum { KNOWN = 200 };   // steps after which their number in all is foreseen
 enum { YOUNG = 8 };     // tangents that a failed step does not blame
 enum { MOST_DRIFTED = 4 }; // the same of ∂f/∂t, and anew in every macro step
 enum { MOST_AGE = 24 }; // steps with the same tangents; on a blade, up to 64 cost no accuracy
@@ -41,6 +42,8 @@ typedef struct rosenbrock {
     bough_ode ode;
     double *weight; // 1/tolerance of each state (n)
     double step;    // longest [s]
+    int most_steps; // in a macro step
+    bool foresees;  // and stops once their number is clear
     double longest;  // step allowed next [s]
     double factored; // γh of the factors; 0: none
     int age;         // steps since the tangents were found
@@ -64,6 +67,8 @@ static bough_status create(bough_arena *arena, const bough_ode *ode,
     m->ode = *ode;
     if (m->ode.derivative_again == NULL) m->ode.derivative_again = ode->derivative;
     m->step = options->step > 0 ? options->step : (double)INFINITY;
+    m->foresees = options->most_steps > 0;
+    m->most_steps = m->foresees ? options->most_steps : MOST_STEPS;
     m->weight = bough_arena_doubles(arena, n);
     m->drift = bough_arena_doubles(arena, n);
     m->error = bough_arena_doubles(arena, n);
@@ -230,11 +235,11 @@ static const char *cross(rosenbrock *m, double *t, double pause, double t1, doub
     for (int n = 0; *t < pause; n++) {
         double parts = ceil((t1 - *t) / m->longest * (1 - 1e-12));
         double h = (t1 - *t) / fmax(parts, 1);
-        double error = try_step(m, *t, h, y);
-        if (n == MOST_STEPS) {
-            return "100000 steps do not reach the end of the macro step: it follows vibrations that fast,"
-                   " which damping of rods or a larger rtol would end";
+        if (n + (m->foresees && n >= KNOWN ? parts : 0) >= m->most_steps) {
+            return "too many steps to the end of the macro step: it follows vibrations that fast, which"
+                   " damping of rods or a larger rtol would end";
         }
+        double error = try_step(m, *t, h, y);
         if (error > 1 && h < 1e-12 * (fabs(*t) + 1e-3)) {
             return "the error test fails down to the smallest step (a segment that turns by more than"
                    " 120°, or a value that overflows)";

@@ -17,18 +17,22 @@ static const double heavy_interface = 0.25;
 
 static const double most_halvings = 6; // of the macro step that are worth trying
 
+static bool has_order_three(const bough_integrator_options *o) {
+    return o->kind == BOUGH_ROSENBROCK || o->kind == BOUGH_AUTOMATIC;
+}
+
 // Beside one system under the Rosenbrock method, its own kind with other steps; beside another method,
 // or a coupling, one that is far finer.
 static bough_second_solution_def choose(const bough_master *m) {
     const bough_integrator_options *own = &m->coupling->options.integrator;
     double most = m->macro_step, step = own->step > 0 ? fmin(own->step, most) : most;
     if (!m->coupling->scheme->one_system) {
-        return (bough_second_solution_def){BOUGH_ROSENBROCK, second_rtol, most, fine_share};
+        return (bough_second_solution_def){BOUGH_AUTOMATIC, second_rtol, most, fine_share};
     }
-    if (own->kind != BOUGH_ROSENBROCK) {
-        return (bough_second_solution_def){BOUGH_ROSENBROCK, fmin(second_rtol, own->rtol), most, fine_share};
+    if (!has_order_three(own)) {
+        return (bough_second_solution_def){BOUGH_AUTOMATIC, fmin(second_rtol, own->rtol), most, fine_share};
     }
-    return (bough_second_solution_def){BOUGH_ROSENBROCK, own->rtol / 8, step / 2, halved_share};
+    return (bough_second_solution_def){own->kind, own->rtol / 8, step / 2, halved_share};
 }
 
 static bool members_tell(const bough_assembly *a) {
@@ -57,7 +61,7 @@ static bool wants_second(const bough_master *m) {
     if (m->error != BOUGH_ERROR_BY_BEST) return false;
     const bough_integrator_options *own = &m->coupling->options.integrator;
     if (!m->coupling->scheme->one_system) return !linearised_serves(m);
-    return own->kind == BOUGH_ROSENBROCK || own->rtol > tight;
+    return has_order_three(own) || own->rtol > tight;
 }
 
 bough_status bough_master_watch(bough_master *m, bough_arena *arena) {
@@ -131,7 +135,7 @@ void bough_master_advise(const bough_master *m, double factor, char text[BOUGH_M
             snprintf(text, BOUGH_MASTER_ADVICE, "scheme: monolithic with master.solver: rosenbrock, which "
                      "couples at the stages");
         }
-    } else if (own->kind == BOUGH_ROSENBROCK) {
+    } else if (has_order_three(own)) {
         snprintf(text, BOUGH_MASTER_ADVICE, "master.rtol: %.1g", 0.1 * own->rtol / fmin(factor, 1e3));
     } else {
         snprintf(text, BOUGH_MASTER_ADVICE, "master.rtol: %.1g", 0.1 * own->rtol);

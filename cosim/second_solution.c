@@ -4,10 +4,12 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 // Steps that it may take: beyond them nobody would wait.
 static const double most_steps = 20000;
+static const double most_work = 4e6; // steps times states that small systems may take instead
 static const double most_ratio = 4; // besides, for each step of the run
 
 struct bough_second_solution {
@@ -18,6 +20,7 @@ struct bough_second_solution {
     double *error;                 // (n_state)
     double *input_error, *input_worst; // (n_input) of what inputs should be given: now, largest
     bool lost;
+    char reason[BOUGH_SECOND_SOLUTION_REASON]; // of its loss
     double left; // steps that it may still take
     double seen, seen_run; // steps of both that are counted in it, of this process
 };
@@ -40,7 +43,7 @@ bough_status bough_second_solution_create(bough_arena *arena, const bough_coupli
     const bough_assembly *a = s->assembly = c->assembly;
     s->share = def->share;
     if (!take(s, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    s->left = most_steps;
+    s->left = fmax(most_steps, most_work / fmax(a->n_state, 1));
     *second = s;
     bough_system system;
     bough_status status = bough_coupled_system(arena, a, c->pool, "second solution", &system);
@@ -72,6 +75,11 @@ static bool works_too_hard(bough_second_solution *s, const bough_coupling *c) {
     return s->left < 0;
 }
 
+static void give_up(bough_second_solution *s, double t, const char *why) {
+    s->lost = true;
+    snprintf(s->reason, sizeof s->reason, "from %.6g s on: %.150s", t, why);
+}
+
 static void compare(bough_second_solution *s, const bough_coupling *c) {
     const bough_assembly *a = s->assembly;
     bough_assembly_states(a, s->error);
@@ -87,8 +95,13 @@ void bough_second_solution_step(bough_second_solution *s, const bough_coupling *
     if (s->lost) return;
     assert(s->whole.time == c->t0);
     bough_status status = bough_member_advance(&s->whole, c->t1, NULL, c->restart);
-    s->lost = !bough_is_ok(&status) || works_too_hard(s, c);
-    if (!s->lost) compare(s, c);
+    if (!bough_is_ok(&status)) {
+        give_up(s, c->t0, status.message);
+    } else if (works_too_hard(s, c)) {
+        give_up(s, c->t0, "it takes more than four times the run's steps");
+    } else {
+        compare(s, c);
+    }
 }
 
 const double *bough_second_solution_error(const bough_second_solution *s) {
@@ -103,6 +116,10 @@ double bough_second_solution_input(const bough_second_solution *s, int j) {
     return s->lost ? (double)NAN : s->input_worst[j];
 }
 
+const char *bough_second_solution_reason(const bough_second_solution *s) {
+    return s->lost ? s->reason : NULL;
+}
+
 void bough_second_solution_snapshot(bough_second_solution *s, bough_snapshot *snapshot) {
     const bough_assembly *a = s->assembly;
     bough_member_snapshot(&s->whole, snapshot);
@@ -110,5 +127,6 @@ void bough_second_solution_snapshot(bough_second_solution *s, bough_snapshot *sn
     bough_snapshot_doubles(snapshot, s->input_error, a->n_input);
     bough_snapshot_doubles(snapshot, s->input_worst, a->n_input);
     bough_snapshot_take(snapshot, &s->lost, sizeof s->lost);
+    bough_snapshot_take(snapshot, s->reason, sizeof s->reason);
     bough_snapshot_take(snapshot, &s->left, sizeof s->left);
 }

@@ -16,6 +16,8 @@
 
 typedef struct bough_second_solution bough_second_solution;
 
+enum { BOUGH_SECOND_SOLUTION_REASON = 200 };
+
 typedef struct bough_second_solution_def {
     bough_integrator_kind kind; // method
     double rtol;  // of its steps, relative to the members' scales
@@ -39,6 +41,9 @@ const double *bough_second_solution_input_error(const bough_second_solution *s);
 
 // Largest error so far of the value of input j, in the port's unit; NaN if the second solution has failed.
 double bough_second_solution_input(const bough_second_solution *s, int j);
+
+// When and why it was given up; NULL while it follows the run.
+const char *bough_second_solution_reason(const bough_second_solution *s);
 
 void bough_second_solution_snapshot(bough_second_solution *s, bough_snapshot *snapshot);
 

@@ -36,7 +36,7 @@ static inline fixture build_with(const bough_tree_def *def, bough_integrator_kin
     assert_int_equal(status.code, BOUGH_OK);
     status = bough_tree_system_create(f.arena, f.tree, "tree", &f.s);
     assert_int_equal(status.code, BOUGH_OK);
-    f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8});
+    f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8, 0});
     assert_true(f.s.n_state <= MOST);
     return f;
 }

@@ -132,7 +132,7 @@ static void every_method_integrates_every_system(void **state) {
         specimen x = specimens[k];
         if (x.input == NULL) x.input = none;
         assert_true(x.system.n_state > 0 && x.system.n_state <= MOST_STATES);
-        assert_int_equal(check_system(arena, &x), x.system.n_state == MOST_STATES ? 5 : 6);
+        assert_int_equal(check_system(arena, &x), x.system.n_state == MOST_STATES ? 6 : 7);
     }
     bough_two_mass_destroy(&assembly);
     bough_arena_destroy(tree.arena);

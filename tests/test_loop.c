@@ -104,7 +104,7 @@ static fixture build(const bough_tree_def *def, bough_integrator_kind solver, do
         status = bough_tree_system_create(f.arena, f.tree, "tree", &f.s);
     }
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-    f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8});
+    f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8, 0});
     assert_true(f.s.n_state <= MOST);
     return f;
 }

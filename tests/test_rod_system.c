@@ -70,7 +70,7 @@ static void operations_agree_on_a_deformed_loaded_rod(void **context) {
     contract_point at = {0.5, state, input, 1e-5};
     contract_check(r.m, at, 0.03, 0.01);
     // by steps between which it may pause
-    bough_integrator_options steps = {BOUGH_ROSENBROCK, 1e-3, 2e-3, 0};
+    bough_integrator_options steps = {BOUGH_ROSENBROCK, 1e-3, 2e-3, 0, 0};
     contract_check(member_of(r.arena, &r.s, steps), at, 0.03, 0.01);
     for (int i = 0; i < N; i++) { // advance normalises the quaternions
         bough_quaternion p = turn_of(state, N, i + 1);

@@ -419,14 +419,14 @@ static bool is_named(const bough_node *map, const char *key) {
     return map && bough_node_find(map, key);
 }
 
-// Where nothing is said of how bodies are coupled, they are at the stages of a one-step method with error
-// control over the whole: what holds on most scenes.
+// Where nothing is said of how bodies are coupled, they are one system under a method with error control
+// over the whole: what holds on most scenes.
 static void choose_coupling(bough_scene_simulation *s) {
     bough_scene_solver *master = &s->master;
     if (is_named(s->coupling.node, "scheme") || is_named(master->node, "solver")) return;
     bool tolerance = is_named(master->node, "rtol");
     if (tolerance && master->rtol < fine_rtol) return;
-    master->solver = BOUGH_ROSENBROCK;
+    master->solver = BOUGH_AUTOMATIC;
     if (!tolerance) master->rtol = default_rtol;
 }
 

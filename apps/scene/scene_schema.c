@@ -20,11 +20,12 @@ static const bough_key master_keys[] = {
      .choice = bough_integrator_name, AT(solver),
      .help = "ida, cvode-bdf: BDF of variable order; arkode-esdirk: Runge-Kutta of order 4; "
              "radau5: Runge-Kutta of order 5, up to 400 states; generalized-alpha: order 2; "
-             "rosenbrock: linearly implicit Runge-Kutta of order 3"},
+             "rosenbrock: linearly implicit Runge-Kutta of order 3; automatic: rosenbrock, and ida at a "
+             "tenth of rtol where that would take a thousand steps in a macro step"},
     RTOL("1e-6"),
     {.name = "step", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = "[1e-7, 10]",
      AT(step), .example = "10 ms",
-     .help = "of generalized-alpha and rosenbrock: longest step; default the macro step"},
+     .help = "of generalized-alpha, rosenbrock and automatic: longest step; default the macro step"},
     RHO,
 };
 static const bough_key micro_keys[] = {
@@ -50,7 +51,7 @@ static const bough_key coupling_keys[] = {
     {.name = "scheme", .kind = BOUGH_KEY_CHOICE, .fallback = "monolithic",
      .choice = bough_scheme_name, .offset = offsetof(bough_scene_coupling, scheme),
      .help = "how sub-systems exchange their values. The default integrates all bodies as one "
-             "system: by rosenbrock to rtol 1e-5, unless master names a solver or an rtol below 1e-6"},
+             "system: by automatic to rtol 1e-5, unless master names a solver or an rtol below 1e-6"},
     {.name = "order", .kind = BOUGH_KEY_INTEGER, .range = "[0, 2]", .fallback = "1",
      AT(order), .example = "2", .help = "of extrapolated and of iterated end values: degree of the polynomial"},
     {.name = "theta", .kind = BOUGH_KEY_NUMBER, .word = "auto", .range = "[0.5, 1]",

@@ -74,8 +74,10 @@ static size_t count_corners(const bough_scene *scene) {
 // -- parts ----------------------------------------------------------------------------------------
 
 static bough_integrator_options solver_options(const bough_scene_solver *solver) {
-    return (bough_integrator_options){(bough_integrator_kind)solver->solver, solver->rtol,
-                                      solver->step, solver->rho};
+    return (bough_integrator_options){.kind = (bough_integrator_kind)solver->solver,
+                                      .rtol = solver->rtol,
+                                      .step = solver->step,
+                                      .rho = solver->rho};
 }
 
 static bough_scheme_options scheme_options(const bough_scene *scene) {
@@ -89,6 +91,10 @@ static bough_scheme_options scheme_options(const bough_scene *scene) {
     }
     if (!(options.tolerance > 0)) options.tolerance = 3 * noise;
     options.integrator = solver_options(&scene->simulation.master);
+    bool linearised = scene->simulation.error_estimate == BOUGH_ERROR_BY_LINEARISED_MEMBERS;
+    if (linearised && options.integrator.kind == BOUGH_AUTOMATIC) {
+        options.integrator.kind = BOUGH_ROSENBROCK; // IDA does not tell its errors
+    }
     return options;
 }
 

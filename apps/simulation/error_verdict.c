@@ -2,6 +2,7 @@
 #include "apps/simulation/error_probe.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 static const double noticeable = 0.01; // of a channel's range: the run warns from there on
@@ -148,6 +149,13 @@ static void describe(const bough_error_probe *p, const bough_error_verdict *v, c
 void bough_error_probe_warn(const bough_error_probe *p, double bound, char *text, size_t size) {
     bough_error_verdict v = bough_error_probe_verdict(p);
     text[0] = '\0';
+    const bough_second_solution *second = p->simulation->master->second;
+    const char *reason = second ? bough_second_solution_reason(second) : NULL;
+    if (reason) {
+        snprintf(text, size, "the second solution, by which errors are measured, was given up %s; errors "
+                 "since then: %s", reason, bough_master_error_source(p->simulation->master));
+        return;
+    }
     if (v.channel < 0 || v.relative <= noticeable || (bound > 0 && v.relative > bound)) return;
     describe(p, &v, text, size);
 }

@@ -1,0 +1,62 @@
+// What a scene gets that names no method: the Rosenbrock method, and IDA for macro steps that it would
+// cut into more than some hundreds. Its steps are long where motion is slow or stiff and damped. Where
+// stiff members vibrate without damping every method must follow them, and IDA then takes an
+// evaluation a step and order 5: a tenth of the cost at a tenth of the tolerance.
+#include "core/integrator.h"
+
+
+enum { ROSENBROCK_STEPS = 1000, IDA_STEPS = 60000 }; // most of them in a macro step
+static const double share = 0.1; // of the tolerance, for IDA: its errors add up over many short steps
+
+typedef struct automatic {
+    bough_integrator rosenbrock, ida;
+    bool fast; // IDA is at work, and its history goes on
+} automatic;
+
+static bough_status create(bough_arena *arena, const bough_ode *ode,
+                           const bough_integrator_options *options, void **self) {
+    automatic *m = bough_arena_take(arena, sizeof *m);
+    if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
+    *self = m;
+    bough_integrator_options own = *options;
+    own.kind = BOUGH_ROSENBROCK;
+    own.most_steps = ROSENBROCK_STEPS;
+    bough_status status = bough_integrator_create(arena, ode, &own, &m->rosenbrock);
+    if (!bough_is_ok(&status)) return status;
+    own.kind = BOUGH_IDA;
+    own.most_steps = IDA_STEPS;
+    own.rtol *= share;
+    return bough_integrator_create(arena, ode, &own, &m->ida);
+}
+
+// What stops the Rosenbrock method is left to IDA, from the last good step on.
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
+                            double *y) {
+    (void)pause;
+    automatic *m = self;
+    bough_status stopped = bough_ok();
+    if (!m->fast || restart) {
+        stopped = m->rosenbrock.ops->advance(m->rosenbrock.self, t, t1, t1, restart || m->fast, y);
+        m->fast = !bough_is_ok(&stopped);
+        if (!m->fast) return stopped;
+        restart = true;
+    }
+    double begun = *t;
+    bough_status status = m->ida.ops->advance(m->ida.self, t, t1, t1, restart, y);
+    m->fast = bough_is_ok(&status);
+    return m->fast || *t > begun || bough_is_ok(&stopped) ? status : stopped;
+}
+
+static void statistics(const void *self, bough_statistics *sum) {
+    const automatic *m = self;
+    m->rosenbrock.ops->statistics(m->rosenbrock.self, sum);
+    m->ida.ops->statistics(m->ida.self, sum);
+}
+
+const bough_integrator_ops bough_integrator_automatic = {
+    .name = "automatic",
+    .title = "Rosenbrock or IDA",
+    .create = create,
+    .advance = advance,
+    .statistics = statistics,
+};
