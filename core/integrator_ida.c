@@ -215,8 +215,10 @@ static bough_status failure(ida_run *ida, double t, int flag) {
                           "end",
                           ida->ode.name, t, ida->most_steps);
     }
-    return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: IDA failed (code %d: %s); %s", ida->ode.name,
-                      t, flag, ida->message, advice);
+    return bough_fail(BOUGH_FAILED,
+                      "%s at t = %.9g s: IDA failed (code %d: %s; a segment may turn by more than "
+                      "120°, or a value overflow); %s",
+                      ida->ode.name, t, flag, ida->message, advice);
 }
 
 // With order 1 from y, whose rate is f.
