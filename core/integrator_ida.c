@@ -212,7 +212,7 @@ static bough_status failure(ida_run *ida, double t, int flag) {
         return bough_fail(BOUGH_FAILED,
                           "%s at t = %.9g s: %d steps of IDA do not reach the end of the macro step: it "
                           "follows vibrations that fast, which damping of rods or a larger rtol would "
-                          "end",
+                          "end, or try a smaller macro step",
                           ida->ode.name, t, ida->most_steps);
     }
     return bough_fail(BOUGH_FAILED,

@@ -117,7 +117,7 @@ static void uniform_beam_needs_no_table(void **state) {
     check_near(s->simulation.output.interval, s->simulation.macro_step, 0, 0);
     assert_int_equal(s->simulation.threads, 0);
     assert_string_equal(bough_scheme_name(s->simulation.coupling.scheme), "monolithic");
-    assert_int_equal(s->simulation.master.solver, BOUGH_ROSENBROCK);
+    assert_int_equal(s->simulation.master.solver, BOUGH_AUTOMATIC);
     check_near(s->simulation.master.rtol, 1e-5, 0, 0);
     assert_null(s->aero.node);
     assert_null(s->turbine.node);
