@@ -143,14 +143,14 @@ static torque_line read_variable_speed(const bough_openfast *o) {
                      .full_speed = bough_deck_number(s, "VS_RtGnSp") * rpm,
                      .most = bough_deck_number(s, "VS_RtTq"),
                      .slip = bough_deck_number(s, "VS_SlPc") / 100};
-    bool good = l.full_speed > 0 && l.most > 0 && l.slip > 0 && l.gain >= 0;
+    bool good = l.full_speed > 0 && l.most > 0 && l.most <= 1e9 && l.slip > 0 && l.slip <= 1 && l.gain >= 0;
     if (good && l.gain * l.full_speed * l.full_speed <= l.most * (1 + 1e-6)) {
         l.gain = fmin(l.gain, l.most / (l.full_speed * l.full_speed));
         return l;
     }
     bough_deck_fail(s, bough_deck_line(s, "VS_RtGnSp"),
-                    "VS_RtGnSp, VS_RtTq, VS_Rgn2K, VS_SlPc: expected positive values, and "
-                    "VS_Rgn2K VS_RtGnSp^2 at most VS_RtTq");
+                    "VS_RtGnSp, VS_RtTq, VS_Rgn2K, VS_SlPc: expected positive values, VS_RtTq at most 1e9 N m, "
+                    "VS_SlPc at most 100 %%, and VS_Rgn2K VS_RtGnSp^2 at most VS_RtTq");
     return l;
 }
 

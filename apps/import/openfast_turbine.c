@@ -53,9 +53,6 @@ static void put_nacelle(bough_openfast *o) {
     double share = sum > 0 ? mass / sum : 0;
     double x = share * bough_deck_number(e, "NacCMxn"), y = share * bough_deck_number(e, "NacCMyn");
     double z = share * bough_deck_number(e, "NacCMzn"), polar = about_yaw - sum * (x * x + y * y);
-    if (mass < 0 || bearing < 0) {
-        bough_deck_fail(e, bough_deck_line(e, "NacMass"), "NacMass, YawBrMass: expected no negative ones");
-    }
     if (polar < 0) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
                          "NacYIner is less than the mass' distance gives: "
