@@ -54,6 +54,11 @@ typedef struct bough_system_ops {
     void (*output_drift)(void *self, double t, const double *state, const double *input,
                          double *drift);
 
+    // As output_tangent at the point where `factors` were last linearised, computed from what they store.
+    // False when they do not store it.
+    bool (*kept_tangent)(void *self, const void *factors, const double *state_rate,
+                         const double *input_rate, double *output_rate);
+
     // Projects a state that was integrated to t onto its constraints: prescribed motions, quaternions
     // of length 1. True when the change is so large that a multistep method must restart.
     bool (*constrain)(void *self, double t, double *state);

@@ -110,9 +110,12 @@ bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *as
 
 // -- members --------------------------------------------------------------------------------------
 
-// Change of the outputs with the state and the inputs; either may be NULL.
-static void output_change(const bough_system *s, const bough_operating_point *at,
-                          const double *state_change, const double *input_change, double *change) {
+void bough_condensed_output_change(const bough_condensed *k, int member,
+                                   const bough_operating_point *at, const double *state_change,
+                                   const double *input_change, double *change) {
+    const bough_system *s = system_of(k, member);
+    bool (*kept)(void *, const void *, const double *, const double *, double *) = s->ops->kept_tangent;
+    if (kept && kept(s->self, k->part[member].factors, state_change, input_change, change)) return;
     s->ops->output_tangent(s->self, at->time, at->state, at->input, state_change, input_change,
                            change);
 }
@@ -215,7 +218,7 @@ static void find_input_responses(const bough_condensed *k, int member,
             column[i] *= at->gamma;
         bough_condensed_solve_member(k, member, column);
         unit[j] = 1;
-        output_change(s, at, column, unit, response);
+        bough_condensed_output_change(k, member, at, column, unit, response);
         unit[j] = 0;
     }
 }
@@ -228,7 +231,7 @@ static void find_state_responses(const bough_condensed *k, int member,
     memset(state, 0, (size_t)s->n_state * sizeof(double));
     for (int i = 0; i < s->n_state; i++, response += s->n_output) {
         state[i] = 1;
-        output_change(s, at, state, NULL, response);
+        bough_condensed_output_change(k, member, at, state, NULL, response);
         state[i] = 0;
     }
 }
@@ -297,7 +300,7 @@ bool bough_condensed_factor_follower(bough_condensed *k, int member,
         if (!any(direction, s->n_input)) continue;
         bough_condensed_add_columns(k, member, at->gamma, direction, state);
         bough_condensed_solve_member(k, member, state);
-        output_change(s, at, state, direction, response);
+        bough_condensed_output_change(k, member, at, state, direction, response);
     }
     return true;
 }

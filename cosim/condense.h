@@ -67,6 +67,12 @@ bool bough_condensed_factor_leader(bough_condensed *k, int member, const bough_o
 bool bough_condensed_factor_follower(bough_condensed *k, int member,
                                      const bough_operating_point *at);
 
+// Change of a member's outputs with its state and its inputs, where it was last linearised, which is at
+// `at` or near; either change may be NULL.
+void bough_condensed_output_change(const bough_condensed *k, int member,
+                                   const bough_operating_point *at, const double *state_change,
+                                   const double *input_change, double *change);
+
 // Solves (I − γJ) x = b of the member by itself, in place.
 void bough_condensed_solve_member(const bough_condensed *k, int member, double *x);
 

@@ -156,11 +156,9 @@ bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double 
 // The outputs' change with x and the inputs' change δu, which may be NULL.
 static void find_output_change(bough_coupled *coupled, int i, const double *x,
                                const double *change) {
-    const bough_assembly *a = coupled->assembly;
-    const bough_system *s = &a->member[i]->system;
-    s->ops->output_tangent(s->self, coupled->setup_time, coupled->setup_state + a->state_offset[i],
-                           coupled->setup_input + a->input_offset[i], x, change,
-                           coupled->output_change + a->output_offset[i]);
+    bough_operating_point at = operating_point(coupled, i);
+    bough_condensed_output_change(coupled->interface, i, &at, x, change,
+                                  coupled->output_change + coupled->assembly->output_offset[i]);
 }
 
 // x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held; where the states are the

@@ -2,14 +2,15 @@
 #include "flexbody/rod_tangent.h"
 
 #include "flexbody/rod_lanes.h"
+#include "flexbody/rod_tangent_layout.h"
 
 #include <string.h>
 
 static bough_vec3 vector_at(const double *x) { return bough_v3(x[0], x[1], x[2]); }
 
 // p⁻¹∘r: the rotation 2·vector of a quaternion's variation r, any |p|
-static bough_vec3 turn_of(const double *p, const double *r, int stride) {
-    bough_quaternion q = {p[0], p[stride], p[2 * stride], p[3 * stride]};
+static bough_vec3 turn_of(const double *p, int p_stride, const double *r, int stride) {
+    bough_quaternion q = {p[0], p[p_stride], p[2 * p_stride], p[3 * p_stride]};
     bough_quaternion dq = {r[0], r[stride], r[2 * stride], r[3 * stride]};
     bough_quaternion d = bough_quaternion_product(bough_quaternion_conjugate(q), dq);
     double inverse = 1 / (q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
@@ -28,7 +29,7 @@ static vertex_variation state_variation(const bough_rod_model *m, const double *
                                         const double *d, int i) {
     int n = m->n;
     return (vertex_variation){.x = load3(d, n, i),
-                              .phi = turn_of(state + 3 * n + i, d + 3 * n + i, n),
+                              .phi = turn_of(state + 3 * n + i, n, d + 3 * n + i, n),
                               .u = load3(d + (size_t)BOUGH_ROD_U * n, n, i),
                               .w = load3(d + (size_t)BOUGH_ROD_W * n, n, i)};
 }
@@ -38,7 +39,7 @@ static vertex_variation end_variation(const double *end, const double *d) {
     return (vertex_variation){.u = vector_at(d),
                               .w = vector_at(d + 3),
                               .x = vector_at(d + 6),
-                              .phi = turn_of(end + 9, d + 9, 1)};
+                              .phi = turn_of(end + 9, 1, d + 9, 1)};
 }
 
 // -- the wrenches ---------------------------------------------------------------------------------
@@ -55,6 +56,36 @@ void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, con
     bough_vec3 moment = bough_mat3_mul(r0, f.ll);
     const double values[BOUGH_ROD_OUTPUTS] = {f.f.x, f.f.y, f.f.z, moment.x, moment.y, moment.z};
     memcpy(wrench, values, sizeof values);
+}
+
+void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
+                                   const double *state_rate, const double *input_rate,
+                                   double *wrench) {
+    const double *p = k->vertex + (size_t)KEPT_P * m->stride + 1, *t = k->variation;
+    double position[DIRECTIONS] = {0}, velocity[DIRECTIONS] = {0}, force[6];
+    if (state_rate != NULL) {
+        int n = m->n;
+        const double *u = state_rate + (size_t)BOUGH_ROD_U * n;
+        bough_vec3 phi = turn_of(p, m->stride, state_rate + (size_t)3 * n, n);
+        store3(position + DELTA, 1, 0, load3(state_rate, n, 0));
+        store3(position + RIGHT, 1, 0, phi);
+        store3(velocity + DELTA, 1, 0, load3(u, n, 0));
+        store3(velocity + RIGHT, 1, 0, load3(u + (size_t)3 * n, n, 0));
+    }
+    if (input_rate != NULL) {
+        vertex_variation root = root_variation(m, input_rate);
+        store3(velocity + DELTA, 1, 0, bough_sub(vector_at(velocity + DELTA), root.u));
+        store3(velocity + LEFT, 1, 0, root.w);
+    }
+    for (int f = 0; f < 6; f++, t += LANES * DIRECTIONS) { // F, then LL
+        force[f] = 0;
+        for (int d = 0; d < DIRECTIONS; d++) {
+            force[f] += t[LANES * d] * position[d] + k->root[DIRECTIONS * f + d] * velocity[d];
+        }
+    }
+    bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
+    store3(wrench, 1, 0, vector_at(force));
+    store3(wrench + 3, 1, 0, bough_mat3_mul(r0, vector_at(force + 3)));
 }
 
 // What turning the last vertex by phi changes in the loads on it: in section axes a dead moment

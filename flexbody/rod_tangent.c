@@ -14,6 +14,7 @@ bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
     k->vertex = bough_rod_vertex_rows(arena, m, KEPT);
     k->work = bough_rod_vertex_rows(arena, m, WORK);
     k->rate = bough_arena_doubles(arena, BOUGH_ROD_STATES * s);
+    k->root = bough_arena_doubles(arena, TANGENTS);
     k->force = bough_arena_doubles(arena, FORCES * s);
     k->packed = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * W8);
     bool ok = bough_block_tridiagonal_init(&k->matrix, arena, m->n);
@@ -200,6 +201,7 @@ static void linearise_eight(const bough_rod_model *m, const bough_rod_loads *loa
         velocity_columns(m, k, first, j, eight.own_velocity);
     }
     if (loads->damped) damping_columns(m, loads, k, first, eight.own_velocity);
+    for (int i = 0; i < TANGENTS && first == 0; i++) k->root[i] = eight.velocity[LANES * i];
     bough_rod_form_blocks(m, k, &eight);
 }
 

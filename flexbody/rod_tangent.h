@@ -27,6 +27,7 @@ typedef struct bough_rod_tangent {
     double *vertex;         // see rod_tangent_layout.h
     bough_vec3 omega;       // of the BRF
     double *rate;           // f (13 × stride)
+    double *root;           // of the first segment's forces by velocities, 9 f + d (81)
     bough_rod_blocks blocks;
     // computed by bough_rod_factor
     double gamma;
@@ -73,6 +74,11 @@ void bough_rod_input_columns(const bough_rod_model *m, const double *state, cons
 void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, const double *input,
                               const double *state_rate, const double *input_rate,
                               bough_rod_scratch *scratch, double *wrench);
+
+// The same where `k` was linearised, from its tangents.
+void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
+                                   const double *state_rate, const double *input_rate,
+                                   double *wrench);
 
 // Where and along what the wrench at the end is differentiated; rates as above.
 typedef struct bough_rod_variation {

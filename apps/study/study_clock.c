@@ -60,6 +60,13 @@ static void output_tangent(void *self, double t, const double *y, const double *
     CLOCKED(m->real.ops->output_tangent(m->real.self, t, y, u, dy, du, out));
 }
 
+static bool kept_tangent(void *self, const void *factors, const double *dy, const double *du,
+                         double *out) {
+    bool kept;
+    CLOCKED(kept = m->real.ops->kept_tangent(m->real.self, factors, dy, du, out));
+    return kept;
+}
+
 static void output_drift(void *self, double t, const double *y, const double *u, double *drift) {
     CLOCKED(m->real.ops->output_drift(m->real.self, t, y, u, drift));
 }
@@ -117,6 +124,7 @@ static void show_system(clocked_member *m, bough_system *shown, bough_arena *are
                               .factor = factor,
                               .solve = solve};
     if (real->derivative_again != NULL) ops->derivative_again = derivative_again;
+    if (real->kept_tangent != NULL) ops->kept_tangent = kept_tangent;
     if (real->output_drift != NULL) ops->output_drift = output_drift;
     if (real->constrain != NULL) ops->constrain = constrain;
     if (real->project != NULL) ops->project = project;
