@@ -79,6 +79,7 @@ static bough_status open_output(bough_arena *arena, const subject *x, bough_simu
                                    .n_line = shape.n_line,
                                    .line = shape.line,
                                    .points = bough_shape_points,
+                                   .loads = bough_shape_loads,
                                    .self = &shape};
     status = bough_frames_open(arena, &frames_def, &frames);
     return bough_is_ok(&status) ? bough_frames_sample(frames, 0) : status;
