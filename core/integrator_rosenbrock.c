@@ -11,8 +11,8 @@
 #include <string.h>
 
 enum { STAGES = 4, MOST_STEPS = 100000 };
-enum { KNOWN = 200 };   // steps after which their number in all is foreseen
-enum { YOUNG = 8 };     // tangents that a failed step does not blame
+enum { KNOWN = 200 };   // steps after which their total number is extrapolated
+enum { YOUNG = 8 };     // age of tangents [steps] up to which a failed step keeps them
 enum { MOST_DRIFTED = 4 }; // the same of ∂f/∂t, and anew in every macro step
 enum { MOST_AGE = 24 }; // steps with the same tangents; on a blade, up to 64 cost no accuracy
 
@@ -104,8 +104,7 @@ static bool evaluate(rosenbrock *m, double t, const double *y, double *rate) {
     return m->ode.derivative(m->ode.self, t, y, rate);
 }
 
-// ∂f/∂t as its mean over the step, since the inputs move; like the tangents it serves some steps, over
-// which the inputs go on alike.
+// ∂f/∂t as its mean over the step, because the inputs move; like the tangents it is used for several steps.
 static bool renew_drift(rosenbrock *m, double t, double h, const double *y) {
     double *restrict drift = m->drift;
     const double *restrict now = m->stage[0];
@@ -187,8 +186,8 @@ static double finish(rosenbrock *m) {
     return sqrt(sum / m->ode.n);
 }
 
-// The same of (I − γhJ)⁻¹ error: without what is stiff, which the method damps and the estimate, having
-// no such bound, tells too large where an input jumps (Hairer and Wanner, section IV.8).
+// The same for (I − γhJ)⁻¹ error: without the stiff part, which the method damps and the estimate
+// overestimates where an input jumps (Hairer and Wanner, section IV.8).
 static double filter(rosenbrock *m) {
     double *restrict error = m->error;
     const double *restrict u0 = m->stage[0], *restrict u1 = m->stage[1], *restrict u2 = m->stage[2];
@@ -229,8 +228,8 @@ static void accept(rosenbrock *m, double *restrict y) {
     }
 }
 
-// Equal parts of the way that is left, none longer than allowed. A step that fails with old tangents
-// is tried with new ones first. NULL, or why it cannot go on.
+// Equal steps over the remaining time, none longer than allowed. A step that fails with old tangents is
+// first repeated with new ones. Returns NULL, or the reason of a failure.
 static const char *cross(rosenbrock *m, double *t, double pause, double t1, double *y) {
     for (int n = 0; *t < pause; n++) {
         double parts = ceil((t1 - *t) / m->longest * (1 - 1e-12));

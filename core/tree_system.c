@@ -1,4 +1,4 @@
-// The tree behind the contract of a system.
+// The tree as a system.
 #include "core/tree_system.h"
 
 #include "core/base.h"
@@ -13,7 +13,7 @@
 // Central differences: the cube root of the rounding error balances truncation against cancellation.
 static const double central_increment = 6e-6;
 
-// A quaternion's length is no state of the motion; past this the integrator starts anew with 1.
+// A quaternion's length is not a state of the motion; beyond this deviation the integrator restarts with 1.
 static const double drift_limit = 1e-3;
 
 typedef struct tree_system {
@@ -44,8 +44,8 @@ static bool all_finite(const double *x, int n) {
     return true;
 }
 
-// The state with prescribed joints where they are at t: f and h depend on their motion, not on the
-// states that stand for it, so that nothing drifts whoever integrates.
+// The state with the positions of prescribed joints at t. f and h depend on the prescribed motion, not on
+// the states of these joints, so that no integrator causes a drift.
 static const double *place(tree_system *s, double t, const double *state) {
     if (!s->prescribed) return state;
     memcpy(s->placed, state, (size_t)s->n * sizeof(double));
@@ -160,7 +160,7 @@ static void output_tangent(void *self, double t, const double *state, const doub
     outputs_change(s, place(s, t, state), state_rate, out);
 }
 
-// ∂h/∂t: what prescribed joints do.
+// ∂h/∂t, by prescribed joints.
 static void output_drift(void *self, double t, const double *state, const double *input,
                          double *drift) {
     tree_system *s = self;

@@ -57,7 +57,7 @@ static bool in_stage(const bough_coupling *c, int stage, int member) {
     return stage == BOUGH_ALL_STAGES || c->assembly->stage[member] == stage;
 }
 
-// Lists the members of a stage in c->turn; nobody has failed yet.
+// Lists the members of a stage in c->turn, and clears failures.
 static int list_stage(bough_coupling *c, int stage) {
     int n = 0;
     for (int i = 0; i < c->assembly->n_member; i++) {
@@ -157,7 +157,7 @@ bough_status bough_coupling_not_finite(const bough_coupling *c, int member) {
     return bough_fail(BOUGH_RETRY, "%s: no finite rate of change at %.6g s", s->name, c->assembly->member[member]->time);
 }
 
-// What no method could follow comes of the signal, which a shorter macro step may spare the member.
+// A failure of the integrator may be due to the signal; a shorter macro step gives another signal.
 static void ask_for_retry(bough_status *status) {
     if (status->code == BOUGH_FAILED) status->code = BOUGH_RETRY;
 }
@@ -279,7 +279,7 @@ double bough_coupling_curvature(const bough_coupling *c, int j, double end) {
     return 2 * ((end - now) / h - (now - last) / before) / (h + before);
 }
 
-// What a port was over the step, by that parabola, less what its receiver saw.
+// Integral of the obtained value, by that parabola, minus the applied value.
 static void add_deficit(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const bough_signal *s = &c->signal[member];

@@ -93,7 +93,7 @@ bough_status bough_error_estimate_create(bough_arena *arena, const bough_couplin
 
 // -- defects --------------------------------------------------------------------------------------
 
-// What the scheme saw within the step tells more.
+// The values within the step are more accurate.
 static void reconstruct_within(bough_error_estimate *e, const bough_coupling *c) {
     const bough_assembly *a = e->assembly;
     double time[WITHIN + 1] = {c->t0};
@@ -119,8 +119,7 @@ static void add_remainder(bough_error_estimate *e, int j, double *defect) {
     e->cubic[j] = cubic;
 }
 
-// The inputs as they turned out to be: the polynomial through the last synchronisation points, none
-// of them before a jump.
+// The obtained inputs: the polynomial through the last synchronisation points, none of them before a jump.
 static void reconstruct(bough_error_estimate *e, const bough_coupling *c) {
     int past = c->restart ? 1 : e->n_point;
     const double *value[BOUGH_PAST];
@@ -149,8 +148,8 @@ static void keep_defects(bough_error_estimate *e, const bough_coupling *c) {
     e->n_step++;
 }
 
-// What the steps of all members together err by where they are long for what is stiff: on land.yaml and
-// power.yaml a whole errs by 0.7 to 6 of what its method alone tells.
+// Factor of the error of all members as one system, where steps are long for stiff members: on land.yaml
+// and power.yaml the error is 0.7 to 6 of the method's own estimate.
 static const double whole_share = 2.5;
 
 // Before the step is counted.
@@ -255,8 +254,8 @@ static bough_signal defect_of(const bough_error_estimate *e, int step) {
                           .coefficient = e->defect + (size_t)step * 4 * (size_t)n};
 }
 
-// Takes the scheme's factors where they serve a step of nearly the length h, and that length: ε
-// goes by a clock that errs by 1 % then.
+// Uses the scheme's factors if they are for a step of nearly the length h, with that length: the time scale
+// of ε then has an error of up to 1 %.
 static bool borrow(bough_error_estimate *e, const bough_coupling *c, double h) {
     if (!c->interface) return false;
     e->method = method_of(h, shared_radius);
@@ -268,7 +267,7 @@ static bool borrow(bough_error_estimate *e, const bough_coupling *c, double h) {
     return true;
 }
 
-// Linearises where the members are now.
+// Linearises at the members' current states.
 static bool linearise(bough_error_estimate *e, bough_coupling *c, double h) {
     const bough_assembly *a = e->assembly;
     bough_assembly_states(a, e->at);

@@ -1,21 +1,21 @@
-// The growth watch looks at the interface defect, what a force turned out to be at T_{k+1} minus
-// what was applied to its receiver. An explicit coupling beyond its limit makes it grow exponentially, at
-// rates as slow as 0.2 per second and under physical oscillation, so it is reduced to its maxima
-// over windows of two lengths, and a run of growing windows raises the alarm only when
+// The detection of growth uses the interface defect: the force obtained at T_{k+1} minus the force applied
+// to its receiver. An explicit coupling beyond its limit makes the defect grow exponentially, at rates as
+// slow as 0.2 per second and together with physical oscillations. The defect is therefore reduced to its
+// maxima over windows of two lengths. A sequence of growing windows counts as an instability only if
 //   - the total growth is large (limit below),
 //   - it does not slow down: the later half of the run grows at least 0.7 times as much as the
 //     earlier half in the logarithm, which a ramp, a start-up or any low power of time does not, and
 //   - the defect is no longer small against the force itself.
-// It sees growth over the time that growth takes: at +0.8 per second about nine seconds. It cannot
-// tell a numerical from a physical exponential growth, nor see one that beats within its windows.
+// The detection needs the time of this growth: at +0.8 per second about nine seconds. It cannot distinguish
+// numerical from physical exponential growth, and it misses growth with beats within its windows.
 //
-// An instability that the start-up's own error hides, or that saturates before it has grown so far,
-// is caught by the bound on the error itself (error_bound.h). That the coupling is the cause is
-// confirmed by its eigenvalues about the current state before the run is ended.
+// The bound on the error itself (error_bound.h) detects an instability that the error of the start-up hides,
+// or that saturates before it has grown so far. Before the run ends, the eigenvalues about the current state
+// must confirm that the coupling is the cause.
 //
-// Implicit couplings may grow without a defect, and few long steps fill no run of windows. So a force
-// that has grown a hundredfold since its first steps is looked into, again after each further
-// hundredfold: the coupling is the cause when its eigenvalues explain that growth and those of a
+// Implicit couplings may grow without a defect, and a few long steps give no sequence of windows. A force
+// that has grown by a factor of 100 since its first steps is therefore analysed, and again after each
+// further factor of 100: the coupling is the cause if its eigenvalues explain that growth and those of a
 // shorter macro step do not.
 #include "cosim/monitor.h"
 
@@ -263,7 +263,7 @@ static double dot(const double *x, const double *y, int n) {
     return sum;
 }
 
-// Trapezoidal work of the wrench that came out, and of its difference from the one applied.
+// Trapezoidal work of the obtained wrench, and of its difference to the applied wrench.
 static void keep_accounts(bough_monitor *m, const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     const double *before = c->past[1];
@@ -316,7 +316,7 @@ static bough_status lost(const bough_monitor *m, const bough_coupling *c, int in
                       m->advice);
 }
 
-// The eigenvalues about the current state tell a coupling that is unstable from one that is coarse.
+// The eigenvalues about the current state distinguish an unstable from a coarse coupling.
 static bough_status confirm(const bough_monitor *m, bough_coupling *c, int interface) {
     bough_scheme_options options = bough_scheme_options_in_use(c);
     bough_stability_advice advice = {0};
@@ -327,11 +327,11 @@ static bough_status confirm(const bough_monitor *m, bough_coupling *c, int inter
     return lost(m, c, interface, advice.macro_step > 0 ? advice.macro_step : h / 2);
 }
 
-// What the interfaces have made or lost of the energy that crossed them, over the whole run so far
-// and still in the last two windows: a start with a jolt, which no macro step resolves, is forgotten.
-// An implicit coupling that is stable but wrong (the damped ramp on a light body, say) shows here
-// and nowhere else; sound ones stay a hundred times below. Those that hold forces do not, being of
-// first order; they have the error bound.
+// The share of the exchanged energy that the interfaces have added or removed, over the whole run and in the
+// last two windows, so that a sudden start, which no macro step resolves, does not count. Only this
+// detects an implicit coupling that is stable but wrong, such as the damped ramp on a light body; accurate
+// couplings stay a hundred times below. Schemes with constant forces are of first order and exceed it; for
+// these there is the error bound.
 static const double most_energy_error = 0.01;
 enum { MOST_UNBALANCED = 2 };
 

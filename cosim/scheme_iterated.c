@@ -1,27 +1,26 @@
-// Iterated coupling: the macro step is repeated until the interface agrees with itself. The unknowns
-// are values of the inputs whose source advances in the same stage or later (the feedback), at nodes of
-// the step:
-//   - end values: at T_{k+1}. The input is a polynomial of degree `order` through it and earlier ones,
-//     so the order is degree + 1, from the interpolation and not from the iteration.
-//   - waveform: at the Lobatto points too, where the sub-solvers stop on their way. The input is the
-//     cubic through them. What it misses is orthogonal to linear functions: the order is 6.
-// Other inputs are the same polynomials through what their source really did. With end values a
-// member so gets a position and a speed that do not belong together, which a stiff one does not
-// forgive; and cubics through values and rates at both ends would, converged, ring on a light
-// interface body: measured, a carrier of a hundredth of its inertia fails at 20 ms.
+// Iterated coupling: the macro step is repeated until the interface agrees. The unknowns are values of the
+// inputs whose source advances in the same stage or later (the feedback), at nodes of the step:
+//   - end values: at T_{k+1}. The input is a polynomial of degree `order` through this value and earlier
+//     ones. The order is therefore degree + 1, by the interpolation and not by the iteration.
+//   - waveform: also at the Lobatto points, where the sub-solvers stop. The input is the cubic through
+//     all values. Its error is orthogonal to linear functions, so the order is 6.
+// Other inputs are the same polynomials through the actual values of their source. With end values a
+// member may get a position and a speed that are not consistent, which disturbs a stiff member. Cubics
+// through values and rates at both ends would be unstable on a light interface body: measured, a carrier
+// of a hundredth of its inertia fails at 20 ms.
 //
-// A sweep takes the stages in order and gives the feedback that results; an accelerator turns that
-// into the next values. Before each repetition the members return to T_k and restart their
-// integrators, the first sweep likewise, so that equal values give equal results.
+// A sweep advances the stages in order and gives the resulting feedback; an accelerator computes the next
+// values from it. Before each sweep the members return to T_k and restart their integrators, so that equal
+// values give equal results.
 //
-// Converged is not yet stable: measured on a mass a ten-thousandth of the other (test_scheme.c), a
-// linear force holds to a macro step of about 3.5 over its frequency (11 ms), a quadratic one at none
-// of 2.5 to 40 ms, a held one (degree 0) at all of these. The eigenvalues of the step are judged
-// before the run.
+// A converged step may still be unstable: measured on a mass of a ten-thousandth of the other one
+// (test_scheme.c), a linear force is stable up to a macro step of about 3.5 divided by the frequency
+// (11 ms), a quadratic one at no step from 2.5 to 40 ms, a constant one (degree 0) at all of these. The
+// eigenvalues of the step are therefore computed before the run.
 //
-// The residual is relative to the largest value of its port so far. It cannot become smaller than
-// the noise that the members' own tolerances leave on their answers; an adaptive multistep method,
-// restarted and stopped on its way, leaves a hundred times more within the step than at its end.
+// The residual is relative to the largest value of its port so far. It cannot become smaller than the noise
+// by the members' own tolerances. An adaptive multistep method that restarts and stops within the step has
+// a hundred times more noise there than at the end of the step.
 #include "cosim/accelerate.h"
 #include "cosim/interface_newton.h"
 #include "cosim/iteration.h"
@@ -185,8 +184,8 @@ static void interpolate(bough_coupling *c, int member, int j) {
     bough_port_polynomial(&c->signal[member], j - a->input_offset[member], 1, n, time, value);
 }
 
-// Advances a member from node to node, its feedback as prescribed and the rest as obtained, and
-// evaluates its outputs.
+// Advances a member from node to node, with assumed feedback and obtained other inputs, and evaluates its
+// outputs.
 static void advance(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const bough_system *s = &a->member[member]->system;
@@ -220,7 +219,7 @@ static bough_status sweep(bough_coupling *c) {
 
 // -- the iteration --------------------------------------------------------------------------------
 
-// First values: the earlier ones extrapolated, or held where the loads jump.
+// First values: extrapolated from earlier ones, or constant where the loads jump.
 static void predict(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     bough_iteration *it = c->iteration;
@@ -237,7 +236,7 @@ static void predict(bough_coupling *c) {
     }
 }
 
-// Sizes of the ports from what the first sweep gave; they hold for the step.
+// Magnitudes of the ports from the first sweep; they are constant over the step.
 static void update_scales(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     bough_iteration *it = c->iteration;

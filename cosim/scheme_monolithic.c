@@ -18,7 +18,7 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     return bough_member_create(arena, &system, c->t0, &c->options.integrator, whole);
 }
 
-// The members' states are set, for queries; nobody's integrator runs but that of the whole.
+// The members' states are set for queries; only the integrator of the whole system runs.
 static bough_status step(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     bough_member *whole = c->whole;

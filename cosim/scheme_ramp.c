@@ -1,20 +1,21 @@
-// Ramp, linearly implicit (the default scheme). From one linearly implicit θ-step of size H of
+// Ramp, linearly implicit. From one linearly implicit θ-step of size H of
 // every member, linearised at T_k,
 //     (I − θH J) Δ = H f(T_k + θH, y, u) + θH B δu,   o^ = h(T_{k+1}, y, u) + C Δ + D δu,
 // the end-of-step port values are found by solving the coupled linear interface equations. The
-// leaders (stage 0) then advance under forces that run linearly from the value applied at the last
-// step's end to the predicted one: continuous, so that their integrators keep their history. The
-// other members follow once with the cubic of the motion that resulted.
+// leaders (stage 0) then advance under forces that change linearly from the value applied at the end of the
+// last step to the predicted value. The forces are continuous, so integrators keep their history. The other
+// members then advance once with the cubic of the resulting motion.
 //
-// The ramp carries a parabola that is zero at both ends: it gives the impulse that the force's
-// curvature adds, and makes up for the impulse deficit of earlier steps. So momentum is handed over
-// to third order at no cost; on heavy interface bodies only, because elsewhere late payment rings.
+// A parabola that is zero at both ends is added to the linear force. It contains the impulse of the force's
+// curvature and compensates the impulse deficit of earlier steps, so the exchanged momentum is of third
+// order without further cost. It is used on heavy interface bodies only, because elsewhere the delayed
+// compensation causes oscillations.
 //
-// θ = 1/2: order 3 with that impulse, 2 without. On an interface body that is light against what
-// hangs on it, or with θ > 1/2, the first step takes θ = 1, damped and of order 1. Where, as the
-// eigenvalues of the macro step tell, the trapezoidal rule rings there, all steps take the least θ
-// that does not: somewhat above 1/2, of order 1 with an error 2θ − 1 times as large. Where none does,
-// the step is repeated with waveforms (iteration.h). The interface is solved as condense.h does.
+// θ = 1/2: order 3 with that impulse, 2 without. On an interface body that is lighter than the bodies it
+// carries, or with θ > 1/2, the first step has θ = 1, which is damped and of order 1. If the eigenvalues of
+// the macro step show that the trapezoidal rule is unstable, all steps have the smallest stable θ: slightly
+// above 1/2, of order 1 with an error 2θ − 1 times as large. If no θ is stable, the step is repeated with
+// waveforms (iteration.h). The interface is solved as in condense.h.
 #include "cosim/condense.h"
 #include "cosim/iteration.h"
 #include "cosim/port.h"
@@ -47,7 +48,7 @@ static bool leads(const bough_coupling *c, int member) { return c->assembly->sta
 
 // -- memory ---------------------------------------------------------------------------------------
 
-// The elimination needs leaders that answer by their states only and followers fed by leaders.
+// The elimination needs leaders whose outputs depend on states only, and followers connected with leaders.
 static bough_status check_shape(const bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     for (int i = 0; i < a->n_member; i++) {
@@ -101,7 +102,7 @@ static void choose_inputs(bough_coupling *c) {
     }
 }
 
-// Changes of the inputs without the leaders' answer to theirs.
+// Changes of the inputs without the leaders' response to their inputs.
 static void expect_inputs(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const ramp *r = c->scheme_data;
@@ -146,7 +147,7 @@ static void predict_leader(bough_coupling *c, int member) {
     const bough_system *s = &c->assembly->member[member]->system;
     const ramp *r = c->scheme_data;
     bough_operating_point at = operating_point(c, member);
-    if (s->n_input == 0 && s->n_output == 0) return; // nobody asks
+    if (s->n_input == 0 && s->n_output == 0) return; // no ports
     if (!evaluate(c, member) || !bough_condensed_linearise(r->interface, member, &at) ||
         !bough_condensed_factor_leader(r->interface, member, &at)) {
         c->status[member] = bough_coupling_not_finite(c, member);
@@ -171,8 +172,8 @@ static void predict_follower(bough_coupling *c, int member) {
     solve(c, member, r->change + c->assembly->input_offset[member]);
 }
 
-// Where the interface is heavy, followers keep their tangents and responses for some steps: what a
-// prediction so misses is seen in the next step and paid back.
+// With a heavy interface, followers keep their tangents and responses for some steps; the next step detects
+// and compensates the error of such a prediction.
 enum { MOST_AGE = 12 };
 
 static void choose_tangents(bough_coupling *c) {
@@ -208,17 +209,16 @@ static bough_status predict(bough_coupling *c) {
     return bough_fail(BOUGH_RETRY, "the interface equations are singular at %.6g s", c->t0);
 }
 
-// Above this gain the leaders weigh less than what hangs on them: the trapezoidal prediction rings.
+// Above this gain the leaders are lighter than the bodies they carry: the trapezoidal prediction oscillates.
 static const double light_interface = 1;
 
-// Below this gain late payment of impulses is damped: on two masses of any ratio the macro step's
-// eigenvalues turn unstable at gains of 0.3 to 1.
+// Below this gain the delayed compensation of impulses is damped: on two masses of any ratio the macro
+// step becomes unstable at gains of 0.3 to 1.
 static const double heavy_interface = 0.25;
 
-// Weights to choose from. Slightly above 1/2 the ramp damps what rings and loses little: measured
-// on masses of 3 to 1700 times the one that carries them (10 ms, stiff spring) 0.6 is stable
-// throughout, 1/2 grows by up to 18 per second between 30 and 500, and 1, held, at a low frequency
-// everywhere.
+// The weights. Slightly above 1/2 the ramp damps oscillations and loses little accuracy: measured on masses
+// of 3 to 1700 times the one that carries them (10 ms, stiff spring), 0.6 is always stable, 1/2 grows by up
+// to 18 per second between 30 and 500, and 1, a constant force, grows at a low frequency everywhere.
 static const double weights[] = {0.5, 0.55, 0.6, 0.65, 0.7, 0.8};
 enum { WEIGHTS = sizeof weights / sizeof *weights };
 static const double ringing = 0.05; // growth that does not count [1/s]
@@ -245,7 +245,7 @@ static bough_status growth_with(const bough_coupling *c, double theta, double *g
     return status;
 }
 
-// Whether iterated waveforms hold where no weight does.
+// Whether iterated waveforms are stable where no weight is.
 static bool waveforms_hold(const bough_coupling *c) {
     bough_scheme_options options = c->options;
     bough_stability stability;
@@ -256,9 +256,9 @@ static bool waveforms_hold(const bough_coupling *c) {
     return bough_is_ok(&status) && stability.suspected <= ringing && !rises;
 }
 
-// The first weight under which nothing rings. Where all do, no prediction is good enough and steps are
-// repeated with waveforms, if these hold; else the least growth is taken, which outer loads may damp. A
-// held force, θ = 1, loses the solution: it is for what nothing else tames.
+// The first stable weight. If there is none, no prediction is good enough and steps are repeated with
+// waveforms, if these are stable; else the weight with the smallest growth is taken, which outer loads may
+// damp. A constant force, θ = 1, loses the solution and is the last choice.
 static bough_status choose_weight(bough_coupling *c) {
     ramp *r = c->scheme_data;
     double least = HUGE_VAL;
@@ -276,7 +276,7 @@ static bough_status choose_weight(bough_coupling *c) {
     return status;
 }
 
-// The trapezoidal rule never forgets a light body's start, so its first step is damped.
+// The trapezoidal rule does not damp the start of a light body, so the first step is damped.
 static bough_status predict_damped(bough_coupling *c) {
     ramp *r = c->scheme_data;
     r->theta = c->t0 < r->damped ? 1 : r->final;
@@ -319,7 +319,7 @@ static bough_status prepare(bough_coupling *c, bough_arena *arena) {
 
 // -- the step -------------------------------------------------------------------------------------
 
-// Backward Euler's companion: a ramp would bring back the ringing that θ = 1 damps.
+// Constant force for backward Euler: a ramp would restore the oscillations that θ = 1 damps.
 static bool held(const ramp *r) { return r->theta >= 1; }
 
 // The ramp with its parabola.
@@ -379,7 +379,7 @@ static bough_status step(bough_coupling *c) {
     return bough_ok();
 }
 
-// Restored, it linearises anew.
+// After a restore it linearises again.
 static void snapshot(bough_coupling *c, bough_snapshot *s) {
     ramp *r = c->scheme_data;
     bough_snapshot_take(s, &r->theta, sizeof r->theta);

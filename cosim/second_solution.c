@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-// Steps that it may take: beyond them nobody would wait.
+// Largest number of steps, so that the second solution ends in an acceptable time.
 static const double most_steps = 20000;
 static const double most_work = 4e6; // steps times states that small systems may take instead
 static const double most_ratio = 4; // besides, for each step of the run

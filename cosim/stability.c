@@ -55,7 +55,7 @@ static bough_status take(map *m) {
     return taken ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
 }
 
-// What the iterated scheme converges to is judged, however it gets there: what its tolerance leaves
+// The analysis uses the converged solution of the iterated scheme, because the residual of its tolerance
 // would look like growth.
 static bough_scheme_options converged(const bough_scheme_options *options) {
     bough_scheme_options o = *options;
@@ -138,8 +138,7 @@ static void choose_weights(map *m, const double *z) {
     }
 }
 
-// A start in which every mode takes part, the stiff ones damped away: fixed pseudo-random numbers
-// after a few macro steps.
+// A start that contains every mode but the stiff ones: fixed pseudo-random numbers after a few macro steps.
 static bough_status start(map *m) {
     const bough_assembly *a = &m->assembly;
     double *x = m->pair, *image = m->pair + m->n;
@@ -193,8 +192,8 @@ static bool likely(const ritz *r) {
     return r->residual < margin(r) && r->residual < 0.05;
 }
 
-// Known well enough to say on which side of 1 it lies. Where modes are nearly parallel a small
-// residual is not enough: the value must have been there before the last vectors came.
+// Accurate enough to decide whether it is above 1. For nearly parallel modes a small residual is not
+// enough: the value must also have existed before the last vectors were added.
 static bool certain(const map *m, const ritz *r) {
     return likely(r) && moved(m, r) < margin(r);
 }
@@ -255,9 +254,9 @@ static int descending(const void *a, const void *b) {
     return (x < y) - (x > y);
 }
 
-// The fastest growing oscillation among the eigenvalues. What grows by more than it turns is no
-// oscillation: a free rotation, whose double eigenvalue 1 splits by rounding, or a fall. But what
-// changes sign from step to step is the coupling's, however fast it grows.
+// The fastest growing oscillation among the eigenvalues. A mode that grows faster than it oscillates is not
+// an oscillation: a free rotation, whose double eigenvalue 1 splits by rounding, or a fall. A mode that
+// changes its sign from step to step is due to the coupling, however fast it grows.
 static bough_status choose(map *m, bough_stability *result) {
     ritz found[DIMENSION];
     int count = 0;
@@ -344,7 +343,7 @@ bool bough_stability_grows(const bough_stability *s) {
     return s->growth > threshold;
 }
 
-// Judges an alternative; true when it holds. The least growth seen is kept.
+// Analyses an alternative; true when it is stable. The smallest growth is kept.
 static bool holds(const bough_assembly *a, const bough_scheme_options *options, double macro_step,
                   double *least) {
     bough_stability other = {0};
@@ -371,7 +370,7 @@ bough_status bough_stability_advise(const bough_assembly *a, const bough_scheme_
         double smaller = macro_step / divisor[k];
         if (holds(a, options, smaller, &least)) advice->macro_step = smaller;
     }
-    // what grows as fast whatever the coupling does is the mechanics' own
+    // growth that is independent of the coupling belongs to the mechanics
     advice->unstable = advice->now.growth > 2 * least;
     return status;
 }

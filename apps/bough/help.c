@@ -55,8 +55,8 @@ void bough_help_overview(FILE *stream) {
     for (size_t i = 0; i < sizeof topics / sizeof *topics; i++) {
         fprintf(stream, "  %-13s %s\n", topics[i].name, topics[i].summary);
     }
-    fprintf(stream, "\nexit codes: 0 done, 2 invalid input or usage, 3 numerical failure, "
-                    "130 interrupted, 1 anything else\n");
+    fprintf(stream, "\nexit codes: 0 success, 2 invalid input or usage, 3 numerical failure, "
+                    "130 interrupted, 1 any other failure\n");
 }
 
 bough_status bough_verb_help(bough_arena *arena, const bough_options *options) {

@@ -1,5 +1,5 @@
 // A record lock of fcntl(2) on a file in the folder: the system knows its owner and drops it with the
-// process. The file goes with the lock; what a killed process leaves of it holds nobody up.
+// process. The file goes with the lock; a file that a killed process leaves blocks no other process.
 #include "apps/output/lock.h"
 
 #include "apps/output/folder.h"
@@ -18,7 +18,7 @@ typedef struct lock {
 static void release(void *self) {
     lock *l = self;
     if (l->file < 0) return;
-    unlink(l->path); // before the lock goes: nobody may hold a file without a name
+    unlink(l->path); // before the lock is released: no process may lock a file without a name
     close(l->file);
     l->file = -1;
 }

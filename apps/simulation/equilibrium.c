@@ -155,7 +155,7 @@ static double move(void *self, const double *state, const double *change, double
     return turn;
 }
 
-// Joints rest but for those held, and the rods ride on them. Then each step starts at rest: it goes
+// All joints but the held ones are at rest, and the rods move with them. Each step then starts at rest: it goes
 // downhill and makes no vibration. A closed loop is not brought to rest unless something turns: it
 // may have to close, which takes velocities.
 static void bring_to_rest(void *self, double *state) {
