@@ -57,7 +57,7 @@ static void missing_wind_leaves_a_steady_one(void **context) {
     const edit none = {"parts/wind.dat", "1    WindType", "3    WindType\n\"none.bts\"  FileName_BTS"};
     trial t = import(&none);
     assert_string_equal(t.status.message, "");
-    assert_true(list_says(&t, "the wind, which --wind FILE gives: cannot open"));
+    assert_true(list_says(&t, "the wind file is missing (give it by --wind FILE): cannot open"));
     assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.wind.speed"), "12 m/s");
     assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.wind.kind"), "power");
     steps(&t);
@@ -179,7 +179,7 @@ static void polars_go_round(void **context) {
     check_near(number(rows, "0.1"), 0.1, 1e-9, 0);
     check_near(number(rows, "7.0"), 180, 1e-9, 0);
     check_near(number(rows, "7.2"), 0.03, 1e-9, 0);
-    assert_true(list_says(&t, "from -180 to 170 deg, at 180 deg the mean of its ends"));
+    assert_true(list_says(&t, "from -180 to 170 deg; the value at 180 deg is the mean of its ends"));
     steps(&t);
     done(&t);
 }

@@ -221,8 +221,8 @@ static void polars_go_round(void **context) {
     done(&t);
     t = import_with("VS_maxspd", "VS_other");
     assert_string_equal(t.status.message, "");
-    assert_true(list_says(&t, "no rated speed of the rotor: 80 m/s at the tip") ||
-                !list_says(&t, "no rated speed"));
+    assert_true(list_says(&t, "no rated rotor speed: tip speed of 80 m/s assumed") ||
+                !list_says(&t, "no rated rotor speed"));
     done(&t);
 }
 
@@ -255,7 +255,7 @@ static void bad_files_are_told_where(void **context) {
         {"values: [1.0, 1.0, 1.2, 0.4]", "values: [1.0, 1.0, 1.2, wide]",
          "turbine-1.yaml:15:67: values: expected a number, got 'wide'"},
         {"values: [1.0, 1.0, 1.2, 0.4]", "values: [1.0, 1.0, 1.2, 0.0]",
-         "turbine-1.yaml:15:14: chord: expected a positive one"},
+         "turbine-1.yaml:15:14: chord: expected a positive value"},
         {"grid: [0.0, 0.1, 0.5, 1.0]", "grid: [0.0, 0.6, 0.5, 1.0]",
          "turbine-1.yaml:15:14: grid: expected increasing numbers, but number 3 is not larger than the one before"},
         {"values: [0.0, 10.0]", "values: [0.0, 0.0]", "reference_axis.z: expected increasing values, but"},
@@ -269,11 +269,11 @@ static void bad_files_are_told_where(void **context) {
         {"[-3.14, -0.5, 0.5, 3.14]", "[-5.14, -0.5, 0.5, 3.14]",
          "grid: expected angles from -180 to 180 deg, got -294.5"},
         {"material: steel", "material: wood", "material: no material is named 'wood'"},
-        {"values: [0.02, 0.01]", "values: [1.02, 0.01]", "thickness: expected one from 0 to the"},
-        {"diameter: 2.0", "diameter: 0", "diameter: expected a positive one"},
+        {"values: [0.02, 0.01]", "values: [1.02, 0.01]", "thickness: expected a value from 0 to the"},
+        {"diameter: 2.0", "diameter: 0", "diameter: expected a positive value"},
         {"number_of_blades: 3", "number_of_blades: 2.5", "number_of_blades: expected 1 to 3"},
         {"gear_ratio: 10", "gear_ratio: 10\n      gear_ratio: 10", "is given twice"},
-        {"gear_ratio: 10", "gear_ratio: -1", "gear_ratio: expected a positive one"},
+        {"gear_ratio: 10", "gear_ratio: -1", "gear_ratio: expected a positive value"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         trial t = import_with(bad[i].from, bad[i].to);

@@ -26,8 +26,8 @@ static void leave_water(bough_openfast *o) {
             continue;
         }
         bough_deck_fail(o->main, bough_deck_line(o->main, part[i]),
-                        "%s: expected 0, a turbine on land; --clamp-base imports it as if clamped "
-                        "at the tower's base", part[i]);
+                        "%s: expected 0, a turbine on land; --clamp-base imports it clamped at "
+                        "the tower's base", part[i]);
     }
     if (bough_deck_whole_or(o->main, "MHK", 0) != 0) {
         bough_deck_fail(o->main, bough_deck_line(o->main, "MHK"),

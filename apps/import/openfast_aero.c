@@ -44,7 +44,7 @@ static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
         double angle = table[POLAR * i];
         if (fabs(angle) <= 180 + 1e-3 && (i == 0 || angle > table[POLAR * (i - 1)])) continue;
         bough_deck_fail(deck, line - 1,
-                        "alpha: expected angles that grow, from -180 to 180 deg, got %g", angle);
+                        "alpha: expected increasing angles from -180 to 180 deg, got %g", angle);
     }
     return bough_is_ok(o->draft.status) ? table : NULL;
 }
@@ -80,13 +80,12 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
     put_row(file, 180, end);
     if (!whole || gap > 1e-6) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "%s: from %g to %g deg, at 180 deg the mean of its ends", name, first[0],
+                         "%s: from %g to %g deg; the value at 180 deg is the mean of its ends", name, first[0],
                          last[0]);
     }
     if (bough_deck_whole_or(deck, "NumTabs", 1) > 1) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "%s: the first of its tables, whatever the "
-                         "Reynolds number",
+                         "%s: the first of its tables is used for all Reynolds numbers",
                          name);
     }
 }
@@ -144,8 +143,8 @@ static void put_span(bough_openfast *o, const double *row, int n, char (*name)[N
     }
     if (first > close || fabs(last - length) > close) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "blade elements from %g to %g m on a blade of %g m: cut at its tip, or gone "
-                         "on with as they end", first, last, length);
+                         "blade elements from %g to %g m on a blade of %g m: cut at its tip, or "
+                         "extended with the last element", first, last, length);
     }
 }
 
@@ -168,10 +167,11 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
             bough_deck_fail(deck, line, "BlAFID: row %d: expected an airfoil from 1 to %d, got %g",
                             i + 1, n_name, r[AIRFOIL]);
         } else if (!(r[SPAN] > last)) {
-            bough_deck_fail(deck, line, "BlSpn: row %d: expected spans that grow from 0, got %g m",
+            bough_deck_fail(deck, line, "BlSpn: row %d: expected increasing spans from 0, got %g "
+                                        "m",
                             i + 1, r[SPAN]);
         } else if (!(r[CHORD] > 0)) {
-            bough_deck_fail(deck, line, "BlChord: row %d: expected a positive one, got %g m", i + 1,
+            bough_deck_fail(deck, line, "BlChord: row %d: expected a positive chord, got %g m", i + 1,
                             r[CHORD]);
         }
         last = r[SPAN];
@@ -182,8 +182,7 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
     bough_draft_note(&o->draft, BOUGH_TAKEN, "%d blade elements", n);
     if (angle > 0) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
-                         "BlCrvAng, up to %g deg: elements stand across the "
-                         "structure's axis",
+                         "BlCrvAng, up to %g deg: elements are normal to the structure's axis",
                          angle);
     }
 }
@@ -227,32 +226,30 @@ static void put_induction(bough_openfast *o) {
     if (time > 0) fprintf(file, ", inflow_time: %.10g s", time);
     fputs("}\n", file);
     if (momentum && balance == 1) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "AeroDyn's SkewMomCorr: of BEM_Mod 2 only");
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "SkewMomCorr is only used with BEM_Mod 2");
     }
     if (bough_deck_flag_or(a, "AIDrag", true) != bough_deck_flag_or(a, "TIDrag", true)) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "TIDrag: drag in the tangential induction as "
-                         "AIDrag has it in the axial one");
+                         "TIDrag: drag in the tangential induction follows AIDrag");
     }
     if (balance == 1) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "BEM_Mod 1: Buhl's high thrust as there, the momentum balance else that of "
-                         "BEM_Mod 2");
+                         "BEM_Mod 1: Buhl's high-thrust correction, and otherwise the momentum "
+                         "balance of BEM_Mod 2");
     } else if (balance == 0) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "no BEM_Mod: high thrust by a smooth parabola, where AeroDyn before "
-                         "version 4 has Buhl's");
+                         "no BEM_Mod: smooth high-thrust correction, in place of Buhl's in "
+                         "AeroDyn before version 4");
     }
     if (wake == 0)
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "WakeMod 0: induction is computed");
     if (wake == 3) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "OLAF: blade element momentum theory instead");
+                         "OLAF: replaced by blade element momentum theory");
     }
     if (oye) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "DBEMT_Mod %d: Oye's dynamic inflow, each element "
-                         "by itself",
+                         "DBEMT_Mod %d: Oye's dynamic inflow, for each element separately",
                          dynamic);
     }
 }
@@ -302,8 +299,8 @@ static const double *above_ground(bough_openfast *o, const double *row, int *n) 
         double height = fmax(r[0], 0);
         if (!(r[1] > 0) || r[2] < 0 || (m > 0 && !(height > kept[3 * (m - 1)]))) {
             bough_deck_fail(o->aero, bough_deck_line(o->aero, "NumTwrNds"),
-                            "TwrElev, TwrDiam, TwrCd: row %d: expected heights that grow, positive "
-                            "diameters, drag from 0", i + 1);
+                            "TwrElev, TwrDiam, TwrCd: row %d: expected increasing heights, "
+                            "positive diameters, drag not negative", i + 1);
         }
         const double own[] = {height, r[1], r[2]};
         memcpy(kept + 3 * m++, own, sizeof own);
@@ -337,11 +334,12 @@ static void put_tower(bough_openfast *o) {
                      drag ? " and its drag" : "");
     if (potential == 0) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "TwrPotent 0: potential flow about the tower "
-                         "nevertheless, with its shadow or drag");
+                         "TwrPotent 0: potential flow about the tower is included with its shadow "
+                         "or drag");
     }
     if (shadow == 2) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "TwrShadow 2: Powles' shadow, not Eames'");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "TwrShadow 2: Powles' model replaces "
+                                        "Eames'");
     }
 }
 

@@ -42,14 +42,15 @@ static const line_point *read_line(bough_openfast *o, const bough_deck *deck, in
     *n = bough_deck_whole(deck, "kp_total", 2, MOST);
     if (bough_deck_whole_or(deck, "member_total", 1) != 1) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "BeamDyn's members: all as one row of points");
+                         "BeamDyn's members: joined to one row of points");
     }
     const char *const column[] = {"kp_xr", "kp_yr", "kp_zr", "initial_twist"};
     const line_point *p = (const line_point *)bough_deck_table(deck, column, 4, *n);
     for (int i = 1; p && i < *n; i++) {
         if (p[i].z > p[i - 1].z) continue;
         bough_deck_fail(deck, bough_deck_line(deck, "kp_total"),
-                        "kp_zr: expected points that go outwards, number %d does not", i + 1);
+                        "kp_zr: expected increasing values, but number %d is not larger than the "
+                        "one before", i + 1);
     }
     if (p && fabs(p[0].z) > 1e-9) {
         bough_deck_fail(deck, bough_deck_line(deck, "kp_total"),
@@ -104,7 +105,7 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
         bool good = i == 0 ? s[0] >= -close_enough : s[0] > last;
         if (!good || s[0] > 1 + close_enough) {
             bough_deck_fail(deck, start,
-                            "the station stands at %g: expected shares that grow from 0 to 1",
+                            "the station is at %g: expected increasing fractions from 0 to 1",
                             s[0]);
         }
         last = s[0];
@@ -118,7 +119,8 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
     }
     if (bough_is_ok(o->draft.status) && (fabs(first) > close_enough || fabs(last - 1) > close_enough)) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "stations from %g to %g of the length: the blade goes on as they end", first,
+                         "stations from %g to %g of the length: extended with the values at their "
+                         "ends", first,
                          last);
     }
     bough_draft_note(&o->draft, BOUGH_TAKEN,

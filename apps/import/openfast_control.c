@@ -55,8 +55,8 @@ static void lack(bough_openfast *o, const char *format, ...) {
     va_end(list);
     o->lacks_control = bough_arena_string(o->draft.arena, text);
     o->generator = BOUGH_GENERATOR_DRIVEN;
-    bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: the generator keeps the speed of the start, "
-                     "%g rpm of the rotor, and the pitch is held", text,
+    bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: the generator keeps its initial speed, %g "
+                                        "rpm of the rotor, and the pitch is constant", text,
                      bough_deck_number(o->elasto, "RotSpeed"));
 }
 
@@ -69,7 +69,8 @@ static bool take_library(bough_openfast *o, const char *path, char why[200]) {
     o->generator = BOUGH_GENERATOR_LIBRARY;
     bough_draft_note(&o->draft, BOUGH_TAKEN, "controller: %s, by its path", path);
     if (torque_mode(o) != pitch_mode(o)) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "the library steers both torque and pitch");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "the library controls both torque and "
+                                        "pitch");
     }
     return true;
 }
@@ -195,8 +196,9 @@ static torque_line read_line(bough_openfast *o) {
     }
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
     bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                     "GenModel %d: torque on a line from the synchronous speed to the pull-out "
-                     "torque, at which it stays; below that speed the generator does not drive",
+                     "GenModel %d: torque grows linearly from the synchronous speed to the "
+                     "pull-out torque and is then constant; below the synchronous speed it "
+                     "is zero",
                      model);
     return model == SIMPLE ? read_simple(o) : read_thevenin(o);
 }
@@ -219,8 +221,8 @@ static void put_law(bough_openfast *o) {
     if (!bough_is_ok(o->draft.status)) return;
     if (!(l.slip >= least) && isfinite(least)) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "torque grows to its most over %.2g %% of the speed, not %.2g %%, which "
-                         "samples each %g s could not hold", 100 * least, 100 * l.slip,
+                         "torque grows to its maximum over %.2g %% of the speed, not %.2g %%, "
+                         "which would be unstable with samples every %g s", 100 * least, 100 * l.slip,
                          o->draft.macro_step);
         if (l.gain == 0) full *= (1 + least) / (1 + l.slip);
         l.slip = least;
@@ -261,7 +263,8 @@ static void put_library(bough_openfast *o) {
     fputc('\n', file);
     double asked = o->servo ? bough_deck_number_or(o->servo, "DLL_DT", step) : step;
     if (fabs(asked - step) > 1e-9) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "DLL_DT %g s: the library is called each %g s",
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "DLL_DT %g s: the library is called every "
+                                        "%g s",
                          asked, step);
     }
 }

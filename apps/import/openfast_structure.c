@@ -102,11 +102,11 @@ static void extend(bough_openfast *o, const bough_deck *deck, slender *b, const 
     row[width * (size_t)(b->n - 1)] = 1;
     if (before || after) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "%s: the table goes on to both ends as it is there", count);
+                         "%s: the table is extended to both ends with its first and last values", count);
     }
     if (end > 1 + close || first < -close) {
         bough_deck_fail(deck, bough_deck_line(deck, count),
-                        "%s: expected shares of the span from 0 to 1, got %g to %g", count, first, end);
+                        "%s: expected fractions of the span from 0 to 1, got %g to %g", count, first, end);
     }
 }
 
@@ -117,8 +117,8 @@ static void check_rows(const bough_deck *deck, const slender *b, const char *cou
         bool grows = i == 0 || r[0] > r[-b->width];
         if (grows && r[b->mass] > 0 && r[b->bending] > 0 && r[second] > 0) continue;
         bough_deck_fail(deck, line,
-                        "%s: row %d of its table: expected shares of the span that grow "
-                        "from 0 to 1, positive mass and stiffness",
+                        "%s: row %d of its table: expected increasing fractions of the span from "
+                        "0 to 1, positive mass and stiffness",
                         count, i + 1);
     }
 }
@@ -184,18 +184,18 @@ void bough_openfast_blade(bough_openfast *o) {
                      "kg, without tip mass",
                      n, b.mass_factor, o->blade_mass);
     bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                     "blade: bends geometrically exactly, not in "
-                     "ElastoDyn's modes; its damping grows with the frequency from the first");
+                     "blade: geometrically exact instead of ElastoDyn's modes; its damping ratio "
+                     "grows with the frequency, from that of the first mode");
     if (!(b.row[AXIAL] > 0)) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "blade: axial stiffness mass x %.3g m2/s2, shear "
-                         "a tenth of it, sections' inertia as of one material",
+                         "blade: axial stiffness is mass x %.3g m2/s2, shear stiffness a tenth of "
+                         "it, rotary inertia as for one material",
                          laminate);
     }
     if (!(b.row[TORSION] > 0)) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "blade: ElastoDyn's has no torsion, this one the "
-                         "edgewise stiffness, which is stiff; no offsets of mass and shear centre");
+                         "blade: ElastoDyn has no torsion, so the torsional stiffness is the "
+                         "edgewise one, which is stiff; no offsets of mass and shear centre");
     }
 }
 
@@ -239,7 +239,7 @@ void bough_openfast_tower(bough_openfast *o, double top_mass) {
     bough_draft_note(&o->draft, BOUGH_TAKEN, "%d stations of the tower, which weighs %.7g kg", n,
                      total_mass(&b));
     bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                     "tower: axial, shear and torsional stiffness of a thin "
-                     "steel tube; damping grows with the frequency from the first mode's ratio, "
-                     "which is that of the tower without its top");
+                     "tower: axial, shear and torsional stiffness of a thin steel tube; the "
+                     "damping ratio grows with the frequency, from that of the first mode of "
+                     "the tower without its top");
 }

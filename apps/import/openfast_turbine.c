@@ -38,7 +38,8 @@ static void put_yaw(bough_openfast *o) {
                 bough_deck_number_or(o->servo, "YawNeut", 0));
         bough_draft_note(&o->draft, BOUGH_TAKEN, "yaw bearing with spring and damper");
     } else if (bough_deck_flag_or(e, "YawDOF", false)) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "YawDOF: without ServoDyn the nacelle is held");
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "YawDOF: without ServoDyn the yaw angle is "
+                                        "constant");
     }
     fputs("}\n", file);
 }
@@ -55,8 +56,8 @@ static void put_nacelle(bough_openfast *o) {
     double z = share * bough_deck_number(e, "NacCMzn"), polar = about_yaw - sum * (x * x + y * y);
     if (polar < 0) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "NacYIner is less than the mass' distance gives: "
-                         "no inertia about the nacelle's own centre");
+                         "NacYIner is less than the mass times its squared distance: zero inertia "
+                         "about the nacelle's centre of mass");
         polar = 0;
     }
     fputs("  - name: nacelle\n    fidelity: rigid\n", file);
@@ -112,7 +113,7 @@ static void put_generator(bough_openfast *o) {
     put_main_joint(o);
     fprintf(file, "    inertia: [%.10g, 0, 0]\n", bough_openfast_generator_inertia(o));
     bough_draft_note(&o->draft, BOUGH_TAKEN,
-                     "drive train: the hub turns against the generator on a spring and damper");
+                     "drive train: spring and damper between hub and generator");
 }
 
 static void put_spring(bough_openfast *o) {
@@ -192,7 +193,8 @@ static void put_tip(bough_openfast *o, int k) {
     double mass = bough_deck_number_or(o->elasto, name, 0);
     if (mass == 0) return;
     if (o->beamdyn) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "TipMass(%d): ElastoDyn's, not BeamDyn's", k);
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "TipMass(%d): only for ElastoDyn's blades, "
+                                        "not for BeamDyn's", k);
         return;
     }
     fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
@@ -225,7 +227,8 @@ static void put_rotor(bough_openfast *o) {
     if (twists) put_generator(o);
     if (!twists && bough_deck_flag_or(o->elasto, "DrTrDOF", false)) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
-                         "DrTrDOF: without the generator's inertia and a spring the shaft is rigid");
+                         "DrTrDOF: the shaft is rigid, because the generator's inertia or the "
+                         "spring is zero");
     }
     put_hub(o, twists);
     for (int k = 1; k <= o->n_blade; k++)
@@ -247,7 +250,8 @@ static void note_left(bough_openfast *o) {
     }
     for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
         if (bough_deck_number_or(o->elasto, starts[i], 0) != 0) {
-            bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: the run starts undeformed and in place", starts[i]);
+            bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: the run starts undeformed, without "
+                                        "initial displacement", starts[i]);
         }
     }
     if (bough_deck_flag_or(o->elasto, "PitchDOF", false)) {

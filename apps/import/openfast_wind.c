@@ -51,7 +51,8 @@ static void put_stand_in(bough_openfast *o, const char *why) {
     fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
             "  # This scene lacks its wind, which --wind FILE of the import gives:\n  # %s\n", why);
     put_steady(o, speed);
-    bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "the wind, which --wind FILE gives: %s; %g m/s instead",
+    bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "the wind file is missing (give it by --wind "
+                                        "FILE): %s; steady wind of %g m/s instead",
                      why, speed);
 }
 
@@ -121,7 +122,7 @@ static void put_type(bough_openfast *o, int type) {
     int line = file_line(o->inflow, type);
     if (line < 0) {
         bough_deck_fail(o->inflow, bough_deck_line(o->inflow, "WindType"),
-                        "WindType %d: expected a line that names its file", type);
+                        "WindType %d: expected a line with the name of its file", type);
         return;
     }
     static const bough_wind_form form[] = {[UNIFORM] = BOUGH_WIND_UNIFORM_FILE,

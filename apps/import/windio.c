@@ -60,7 +60,7 @@ static void read_assembly(bough_windio *w) {
     w->density = bough_entry_number_or(d, w->root, "environment.air_density", 1.225);
     w->hub_radius = bough_entry_number(d, w->hub, "diameter") / 2;
     if (bough_is_ok(d->status) && !(w->hub_radius > 0)) {
-        bough_entry_fail(d, w->hub, "diameter: expected a positive one");
+        bough_entry_fail(d, w->hub, "diameter: expected a positive value");
     }
     double cone = bough_entry_number_or(d, w->hub, "cone_angle", 0) * w->degree * BOUGH_PI / 180;
     w->radius = (w->hub_radius + w->blade_length) * cos(cone);
@@ -85,17 +85,17 @@ static void choose_start(bough_windio *w) {
     if (!(w->rated_speed > 0)) {
         w->rated_speed = usual_tip / w->radius;
         bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "no rated speed of the rotor: %g m/s at the tip", usual_tip);
+                         "no rated rotor speed: tip speed of %g m/s assumed", usual_tip);
     }
     w->speed = 0.75 * w->rated_speed;
     w->wind = ratio > 0 ? w->speed * w->radius / ratio : 8;
     if (!(ratio > 0)) {
         bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "no optimal tip speed ratio: wind of 8 m/s");
+                         "no optimal tip-speed ratio: wind of 8 m/s assumed");
     }
     bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                     "the file has no load case: %.3g m/s of wind and %.3g rpm, where the rotor "
-                     "works best below its rated speed",
+                     "the file has no load case: wind of %.3g m/s and %.3g rpm, at the optimal "
+                     "tip-speed ratio",
                      w->wind, w->speed / rpm);
 }
 

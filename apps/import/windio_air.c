@@ -104,7 +104,7 @@ static void put_airfoil(bough_windio *w, const bough_node *airfoil, int number) 
     put_polar(w, c, name);
     if (more) {
         bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "%s: the first of its polars, whatever the Reynolds number", name);
+                         "%s: the first of its polars is used for all Reynolds numbers", name);
     }
 }
 
@@ -147,7 +147,7 @@ static void put_element(bough_windio *w, const bough_windio_shape *a, double at)
             bough_curve_at(&w->axis[0], at) + back * sin(turn) + up * cos(turn),
             bough_curve_at(&w->axis[1], at) + back * cos(turn) - up * sin(turn), twist, chord, name,
             other, share);
-    if (!(chord > 0)) bough_entry_fail(&w->draft, a->chord.node, "chord: expected a positive one");
+    if (!(chord > 0)) bough_entry_fail(&w->draft, a->chord.node, "chord: expected a positive value");
 }
 
 static void put_elements(bough_windio *w, const bough_windio_shape *a) {
@@ -164,7 +164,7 @@ static void put_elements(bough_windio *w, const bough_windio_shape *a) {
         n++;
     }
     if (n < 2) bough_entry_fail(&w->draft, a->chord.node, "chord: expected two points from 0 to 1");
-    bough_draft_note(&w->draft, BOUGH_TAKEN, "%d blade elements, where the chord is given", n);
+    bough_draft_note(&w->draft, BOUGH_TAKEN, "%d blade elements, at the stations of the chord", n);
     bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "polars between airfoils: mixed linearly by %s",
                      a->by_thickness ? "thickness" : "place");
 }

@@ -200,13 +200,13 @@ static void put_damping(bough_windio *w, const bough_node *from) {
         any = any || mu[i] > 0;
         if (mu[i] < 0)
             bough_entry_fail(&w->draft, from,
-                             "structural_damping.mu: expected no "
-                             "negative time");
+                             "structural_damping.mu: expected times that are not negative");
     }
     if (!any || mu == usual) {
         mu = usual;
         bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "blade: no damping given: %g s times the rates of all strains",
+                         "blade: no damping given: damping coefficient of %g s assumed for all "
+                         "strains",
                          usual_damping);
     }
     fprintf(file, "length: %.10g\ndamping: ", w->blade_length);

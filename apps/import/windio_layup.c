@@ -160,7 +160,7 @@ static double property(parts *p, const bough_node *material, const char *key, in
         node = node->value[k < node->n ? k : node->n - 1];
     double value = node ? bough_entry_number(&p->w->draft, node, "") : 0;
     if (node && !(value > 0)) {
-        bough_entry_fail(&p->w->draft, node, "%s: expected a positive one", key);
+        bough_entry_fail(&p->w->draft, node, "%s: expected a positive value", key);
     }
     return value;
 }

@@ -55,7 +55,7 @@ static void read_items(bough_windio *w, const bough_node *list, bough_windio_sha
     }
     if (mixed) {
         bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "airfoils' configurations are not mixed: the first polar of each");
+                         "airfoils: the first configuration of each is used");
     }
 }
 
@@ -68,7 +68,7 @@ static void choose_measure(bough_windio *w, const bough_node *where, bough_windi
     }
     for (int i = 0; i < a->n && !a->by_thickness; i++) {
         if (a->place[i].share >= (i > 0 ? a->place[i - 1].share : 0)) continue;
-        bough_entry_fail(&w->draft, where, "airfoil %d: expected shares of the span that grow",
+        bough_entry_fail(&w->draft, where, "airfoil %d: expected increasing fractions of the span",
                          i + 1);
     }
 }

@@ -29,7 +29,7 @@ static double property(bough_windio *w, const bough_node *material, const char *
     const bough_node *node = bough_entry_need(&w->draft, material, key);
     if (node && node->kind == BOUGH_SEQUENCE && node->n > 0) node = node->value[0];
     double value = node ? bough_entry_number(&w->draft, node, "") : 0;
-    if (node && !(value > 0)) bough_entry_fail(&w->draft, node, "%s: expected a positive one", key);
+    if (node && !(value > 0)) bough_entry_fail(&w->draft, node, "%s: expected a positive value", key);
     return value;
 }
 
@@ -54,7 +54,7 @@ static bough_curve read_height(bough_windio *w) {
     bough_curve z = bough_entry_curve(&w->draft, w->tower, path);
     for (int i = 1; i < z.n; i++) {
         if (z.y[i] > z.y[i - 1] && z.x[i] > z.x[i - 1]) continue;
-        bough_entry_fail(&w->draft, z.node, "reference_axis.z: expected points that go upwards");
+        bough_entry_fail(&w->draft, z.node, "reference_axis.z: expected increasing heights");
     }
     if (z.n < 2 || z.y[0] < 0) {
         bough_entry_fail(&w->draft, w->tower,
@@ -90,7 +90,7 @@ static bough_section section_at(bough_windio *w, const tube *t, double share) {
         double thickness = bough_curve_at(&l->thickness, share), inner = outer - 2 * thickness;
         if (!(thickness >= 0) || !(inner >= 0)) {
             bough_entry_fail(&w->draft, l->thickness.node,
-                             "thickness: expected one from 0 to the tower's radius, got %g m",
+                             "thickness: expected a value from 0 to the tower's radius, got %g m",
                              thickness);
         }
         double area = BOUGH_PI / 4 * (outer * outer - inner * inner);
@@ -127,8 +127,8 @@ static void put_tube(bough_windio *w, const tube *t) {
                      "weighs %.7g kg",
                      t->height.n, t->n, t->mass_factor, mass);
     bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                     "tower: walls between stations linear; shear stiffness of a thin tube; "
-                     "damping %g s times the rates of all strains",
+                     "tower: wall thickness linear between stations; shear stiffness of a thin "
+                     "tube; damping coefficient of %g s for all strains",
                      usual_damping);
 }
 
@@ -137,7 +137,7 @@ void bough_windio_tower(bough_windio *w) {
     if (!w->tower) {
         w->tower_base = 0;
         w->tower_top = bough_entry_number(&w->draft, w->root, "assembly.hub_height");
-        bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "no tower: the hub is held at its height");
+        bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "no tower: the hub is fixed at its height");
         return;
     }
     tube t = {.height = read_height(w)};

@@ -80,7 +80,8 @@ static lump hub_lump(bough_windio *w) {
     if (read_lump(w, w->hub, &l)) return l;
     double inertia = 2.0 / 3 * hub_per_blade * w->blade_mass * w->hub_radius * w->hub_radius;
     bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                     "hub: no mass given: %g blades' mass as a shell of its radius", hub_per_blade);
+                     "hub: no mass given: %g times the mass of a blade assumed, as a shell of the "
+                     "hub's radius", hub_per_blade);
     return (lump){hub_per_blade * w->blade_mass, {0}, {inertia, inertia, inertia}};
 }
 
@@ -96,7 +97,8 @@ static bool assembly_lump(bough_windio *w, double overhang, lump *l) {
     if (!part || !read_lump(w, part, &all)) return false;
     double head = hub_mass(w) + w->n_blade * w->blade_mass, mass = all.mass - head;
     if (!(mass > 0)) {
-        bough_entry_fail(&w->draft, part, "mass: %g kg, less than hub and blades weigh: %g kg",
+        bough_entry_fail(&w->draft, part, "mass: %g kg, which is less than the mass of hub and "
+                                        "blades, %g kg",
                          all.mass, head);
         return false;
     }
@@ -201,7 +203,7 @@ static void put_blades(bough_windio *w, double cone, double pitch) {
 static double gear_ratio(bough_windio *w) {
     const char *path = w->second ? "gearbox.gear_ratio" : "gear_ratio";
     double ratio = bough_entry_number_or(&w->draft, w->train, path, 1);
-    if (!(ratio > 0)) bough_entry_fail(&w->draft, w->train, "gear_ratio: expected a positive one");
+    if (!(ratio > 0)) bough_entry_fail(&w->draft, w->train, "gear_ratio: expected a positive value");
     return ratio;
 }
 
@@ -228,7 +230,7 @@ void bough_windio_bodies(bough_windio *w) {
     bough_draft_note(d, BOUGH_TAKEN,
                      "hub radius %g m, cone %.4g deg, tilt %.4g deg, overhang %g m, pitch %.4g deg",
                      w->hub_radius, cone, tilt, overhang, pitch * 180 / BOUGH_PI);
-    bough_draft_note(d, BOUGH_LEFT_OUT, "yaw bearing and drive train: both are rigid");
+    bough_draft_note(d, BOUGH_LEFT_OUT, "yaw bearing and drive train are rigid");
 }
 
 // -- air ------------------------------------------------------------------------------------------
@@ -305,7 +307,7 @@ static double efficiency_of(bough_windio *w) {
     const char *path = w->second ? "gearbox.efficiency" : "gearbox_efficiency";
     double efficiency = bough_entry_number_or(&w->draft, w->train, path, 1);
     if (!(efficiency > 0 && efficiency <= 1)) {
-        bough_entry_fail(&w->draft, w->train, "efficiency: expected one above 0, at most 1");
+        bough_entry_fail(&w->draft, w->train, "efficiency: expected a value above 0 and at most 1");
     }
     return efficiency;
 }
