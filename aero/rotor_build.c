@@ -92,6 +92,9 @@ static void place_station(const bough_rotor_def *def, const bough_station_def *f
     to->weight[j] = w;
     store_matrix(to->section, rotor->stride, j, section);
     lane_store(to->centre, rotor->stride, j, bough_mat3_tmul(structure, arm));
+    bough_vec3 ends = bough_sub(def->vertex_rotation[i + 1].c3, def->vertex_rotation[i].c3);
+    lane_store(to->ends, rotor->stride, j, bough_mat3_tmul(structure, ends));
+    to->bow[j] = -0.5 * w * (1 - w) * (end - start);
     to->chord[j] = from->chord;
     to->tip_factor[j] = def->n_blade * (tip - radius) / (2 * radius);
     to->hub_factor[j] = def->n_blade * from->span / (2 * def->hub_radius);
@@ -106,6 +109,8 @@ static bool take_stations(bough_arena *arena, int stride, station_rows *rows) {
     rows->weight = bough_arena_doubles(arena, n);
     rows->section = bough_arena_doubles(arena, 9 * n);
     rows->centre = bough_arena_doubles(arena, 3 * n);
+    rows->ends = bough_arena_doubles(arena, 3 * n);
+    rows->bow = bough_arena_doubles(arena, n);
     rows->chord = bough_arena_doubles(arena, n);
     rows->tip_factor = bough_arena_doubles(arena, n);
     rows->hub_factor = bough_arena_doubles(arena, n);

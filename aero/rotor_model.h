@@ -13,6 +13,8 @@ typedef struct station_rows {
     double *weight;            // (stride) of the next
     double *section; // (9 × stride) aero section axes in the interpolated structural section
     double *centre;  // (3 × stride) aerodynamic centre there, from the reference axis [m]
+    double *ends;    // (3 × stride) change of the undeformed tangent between the two vertices, there
+    double *bow;     // (stride) of an arc beside its chord by that change [m]
     double *chord, *tip_factor, *hub_factor; // (stride)
     double *free; // (stride) 0: at the very tip or root, where the loss factor sets the induction
 } station_rows;

@@ -29,11 +29,41 @@ static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
     m->stiffness = bough_arena_doubles(arena, 21 * s);
     m->damping = bough_arena_doubles(arena, 21 * s);
     m->line = bough_arena_doubles(arena, 72 * s);
+    m->gradient = bough_arena_doubles(arena, 25 * s);
     m->mass = bough_arena_doubles(arena, s);
     m->moment = bough_arena_doubles(arena, 3 * s);
     m->inertia = bough_arena_doubles(arena, 6 * s);
     m->inverse_mass = bough_arena_doubles(arena, 21 * s);
     return !bough_arena_exhausted(arena);
+}
+
+// h²/12 times the change of curvature along a segment, F m' + F' m (rod_elastic.h): L by the strains,
+// G = h²/12 F by m', and R.
+static void set_gradient(bough_rod_model *m, const bough_rod_def *def, int n, const double *compliance) {
+    const double *c = def->stiffness + 21 * n, *u = m->strain0 + 3 * m->stride + n;
+    double h = def->span[n + 1] - def->span[n], part = h * h / 12;
+    double x = u[0], y = u[m->stride], z = u[2 * m->stride], stiffest = 0, softest = 0;
+    const double turned[3][3] = {{0, z, -y}, {-z, 0, x}, {y, -x, 0}}; // m×κ⁰
+    for (int i = 0; i < 3; i++) {
+        double f[3];
+        for (int j = 0; j < 3; j++) f[j] = compliance[bough_symmetric6_index(3 + i, 3 + j)];
+        double change[6] = {-f[1], f[0]};
+        for (int j = 0; j < 3; j++) {
+            change[3 + j] = def->taper ? def->taper[9 * n + 3 * i + j] : 0;
+            for (int k = 0; k < 3; k++) change[3 + j] += f[k] * turned[k][j];
+        }
+        for (int j = 0; j < 6; j++) {
+            double sum = 0;
+            for (int k = 0; k < 6; k++) sum += change[k] * c[bough_symmetric6_index(k, j)];
+            m->gradient[(6 * i + j) * m->stride + n] = part * sum;
+        }
+        for (int j = i; j < 3; j++) {
+            m->gradient[(18 + (i == 0 ? j : i + j + 1)) * m->stride + n] = part * f[j];
+        }
+        stiffest += c[bough_symmetric6_index(3 + i, 3 + i)];
+        softest += f[i];
+    }
+    m->gradient[24 * m->stride + n] = part * stiffest * softest;
 }
 
 static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, int n) {
@@ -67,6 +97,7 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
     const double e0[6] = {shape.stretch.x,  shape.stretch.y,  shape.stretch.z,
                           shape.phi.x / h, shape.phi.y / h, shape.phi.z / h};
     for (int k = 0; k < 6; k++) m->strain0[k * s + n] = e0[k];
+    set_gradient(m, def, n, compliance);
     return bough_ok();
 }
 

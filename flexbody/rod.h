@@ -56,6 +56,8 @@ typedef struct bough_rod_def {
     const double *line;                   // D per segment, 6×12 in two 6×6 by rows (N × 72): mean
                                           // strain per load along it and per slope of the load
                                           // [1/N, 1/N m …]; NULL: none
+    const double *taper;                  // per segment, how the sections' compliance in bending and
+                                          // twist changes along it (N × 9) [1/(N m³)]; NULL: not
     bool carries; // bodies at its end: the last vertex belongs to them as the root to the carrier
 } bough_rod_def;
 
@@ -75,6 +77,8 @@ typedef struct bough_rod_model {
     double *stiffness;          // C (21 × stride)
     double *damping;            // (21 × stride)
     double *line;               // D (72 × stride), two 6×6 by rows
+    double *gradient;           // L (18 × stride), 3×6 by rows, G (6 × stride) and R (stride):
+                                // rod_elastic.h
     double *mass;               // of moving vertices (stride) [kg]
     double *moment;             // first moment s = mζ of moving vertices (3 × stride) [kg m]
     double *inertia;            // of moving vertices (6 × stride) [kg m²]

@@ -60,6 +60,7 @@ static double least_cosine(const bough_rod_model *m, int first, int last, bough_
     int s = m->stride;
     const double *restrict vertex = scratch->vertex, *restrict rest = scratch->rest;
     const double *restrict c = m->stiffness, *restrict d = m->damping;
+    const double *restrict gradient = m->gradient;
     const double *restrict length = m->length, *restrict inverse = m->inverse_length;
     double *restrict out = scratch->segment;
     double least = 1;
@@ -69,7 +70,8 @@ static double least_cosine(const bough_rod_model *m, int first, int last, bough_
         segment_geometry shape = segment_shape(l, r, inverse[n]);
         strain e = elastic_strain(shape, inverse[n], rest, s, n);
         strain rate = strain_rate(shape, segment_motion(shape, l, r), inverse[n]);
-        strain elastic = symmetric_times(c, s, n, e), viscous = symmetric_times(d, s, n, rate);
+        strain elastic = segment_stress(c, gradient, s, n, e);
+        strain viscous = symmetric_times(d, s, n, rate);
         segment_force f = stress_force(shape, add_strain(elastic, viscous), length[n]);
         store3(out, s, n, f.f);
         store3(out + 3 * s, s, n, f.ll);
@@ -392,8 +394,7 @@ double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratc
     double energy = 0;
     for (int n = 0; n < m->n_segment; n++) {
         strain e = strain_of(m, scratch, n);
-        strain stress = symmetric_times(m->stiffness, m->stride, n, e);
-        energy += 0.5 * m->length[n] * (bough_dot(e.v, stress.v) + bough_dot(e.u, stress.u));
+        energy += m->length[n] * segment_energy(m->stiffness, m->gradient, m->stride, n, e);
     }
     return energy;
 }
@@ -405,7 +406,8 @@ void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch
     vertex_state l = load_vertex(scratch->vertex, m->stride, n);
     vertex_state r = load_vertex(scratch->vertex, m->stride, n + 1);
     segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
-    strain e = strain_of(m, scratch, n), s = symmetric_times(m->stiffness, m->stride, n, e);
+    strain e = strain_of(m, scratch, n);
+    strain s = segment_stress(m->stiffness, m->gradient, m->stride, n, e);
     segment_force f = stress_force(shape, s, m->length[n]);
     bough_vec3 half = bough_scale(0.5 * m->length[n], shape.chord);
     bough_vec3 force = along_axis(shape.v, s.v);

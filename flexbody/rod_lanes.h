@@ -3,7 +3,7 @@
 #define BOUGH_FLEXBODY_ROD_LANES_H
 
 #include "flexbody/rod.h"
-#include "flexbody/rod_segment.h"
+#include "flexbody/rod_elastic.h"
 
 static inline vertex_state load_vertex(const double *restrict v, int s, int i) {
     return (vertex_state){{v[i], v[s + i], v[2 * s + i]},
@@ -106,13 +106,15 @@ static inline segment_force segment_tangent(const bough_rod_model *m,
     segment_rate motion = segment_motion(shape, l, r);
     strain e = elastic_strain(shape, inverse, scratch->rest, s, n);
     strain rate = strain_rate(shape, motion, inverse);
-    strain stress = add_strain(symmetric_times(m->stiffness, s, n, e),
+    strain stress = add_strain(segment_stress(m->stiffness, m->gradient, s, n, e),
                                symmetric_times(m->damping, s, n, rate));
     segment_variation d = shape_variation(shape, *dl, *dr, inverse);
     strain de = {d.stretch, bough_scale(inverse, d.phi)};
     if (scratch->turning) de = add_turned(de, m->line, scratch->along, s, n, d.middle);
     strain drate = rate_variation(shape, motion, d, dl, dr, inverse);
-    strain dstress = add_strain(symmetric_times(m->stiffness, s, n, de),
+    double tangent[21];
+    segment_stiffness(m->stiffness, m->gradient, s, n, e, 1, 0, tangent);
+    strain dstress = add_strain(symmetric_times(tangent, 1, 0, de),
                                 symmetric_times(m->damping, s, n, drate));
     segment_force f = force_variation(shape, d, stress, dstress, h);
     if (!scratch->turning) return f;

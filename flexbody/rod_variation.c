@@ -15,6 +15,7 @@ enum {
     BASE_DU = 24,
     BASE_STRESS = 27,
     BASE_W = 33, // then c, g, 1/(1 + w), dg/dw
+    BASE_TANGENT = 38, // of the elastic law
 };
 
 static inline void store_shape(double *restrict base, int l, segment_geometry s) {
@@ -49,7 +50,7 @@ void bough_rod_base(const bough_rod_model *m, const bough_rod_scratch *scratch, 
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict c = m->stiffness + first;
     const double *restrict d = m->damping + first, *restrict rest = scratch->rest + first;
-    const double *restrict inverse = m->inverse_length + first;
+    const double *restrict inverse = m->inverse_length + first, *restrict gradient = m->gradient + first;
     double *restrict out = base;
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
@@ -58,7 +59,9 @@ void bough_rod_base(const bough_rod_model *m, const bough_rod_scratch *scratch, 
         segment_rate motion = segment_motion(shape, left, right);
         strain e = elastic_strain(shape, inverse[l], rest, s, l);
         strain rate = strain_rate(shape, motion, inverse[l]);
-        strain stress = add_strain(symmetric_times(c, s, l, e), symmetric_times(d, s, l, rate));
+        strain elastic = segment_stress(c, gradient, s, l, e);
+        strain stress = add_strain(elastic, symmetric_times(d, s, l, rate));
+        segment_stiffness(c, gradient, s, l, e, LANES, l, out + LANES * BASE_TANGENT);
         store_shape(out, l, shape);
         store3(out + LANES * BASE_RELATIVE, LANES, l, motion.relative);
         store3(out + LANES * BASE_MIDDLE, LANES, l, motion.middle);
@@ -92,7 +95,8 @@ static inline void position_direction(const bough_rod_model *m, const bough_rod_
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict along = scratch->along + first;
     const double *restrict line = m->line + first, *restrict bend = m->bend0 + first;
-    const double *restrict c = m->stiffness + first, *restrict damping = m->damping + first;
+    const double *restrict elastic = base + LANES * BASE_TANGENT;
+    const double *restrict damping = m->damping + first;
     const double *restrict inverse = m->inverse_length + first, *restrict h = m->length + first;
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
@@ -108,7 +112,7 @@ static inline void position_direction(const bough_rod_model *m, const bough_rod_
         strain de = {d.stretch, bough_scale(inverse[l], d.phi)};
         if (turning) de = add_turned(de, line, along, s, l, d.middle);
         strain drate = rate_variation(shape, motion, d, &dl, &dr, inverse[l]);
-        strain dstress = add_strain(symmetric_times(c, s, l, de),
+        strain dstress = add_strain(symmetric_times(elastic, LANES, l, de),
                                     symmetric_times(damping, s, l, drate));
         segment_force f = force_variation(shape, d, stress, dstress, h[l]);
         if (turning) {

@@ -124,6 +124,7 @@ typedef struct segment_sum {
     double compliance[21]; // ∫ Tᵀ F T
     double loss[21];       // ∫ Tᵀ F D F T
     matrix6 line[2];       // ∫ Tᵀ F S, S of line_stress
+    double taper[9];       // ∫ F (s − s_mid) of bending and twist
     matrix6 weight;        // the same of weight_stress, three columns
     bool definite;
 } segment_sum;
@@ -176,6 +177,8 @@ static void add_compliance(void *context, double s, double weight) {
         return;
     }
     section_damping(c->axis->table->damping, x.stiffness, damping);
+    unpack(compliance, f);
+    for (int i = 0; i < 9; i++) c->taper[i] += weight * (s - c->middle) * f[3 + i / 3][3 + i % 3];
     bough_symmetric6_turn(compliance, turn, compliance);
     bough_symmetric6_turn(damping, turn, damping);
     unpack(compliance, f);
@@ -267,6 +270,7 @@ static void change_strains(segment_sum *c, matrix6 q) {
 typedef struct segment_law {
     double *stiffness, *damping; // (21)
     double *line;                // (72): two matrices by rows
+    double *taper;               // (9)
     bough_section_share *gain;
 } segment_law;
 
@@ -298,13 +302,14 @@ static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *d
     memset(law.damping, 0, 21 * sizeof *law.damping);
     add_congruent(1, k, loss, law.damping);
     memcpy(law.line, c.line, sizeof c.line);
+    for (int i = 0; i < 9; i++) law.taper[i] = 12 / (c.length * c.length * c.length) * c.taper[i];
     return true;
 }
 
 // -- whole ----------------------------------------------------------------------------------------
 
 typedef struct arrays {
-    double *span, *stiffness, *damping, *line;
+    double *span, *stiffness, *damping, *line, *taper;
     bough_vec3 *position;
     bough_quaternion *rotation;
     bough_vertex_inertia *inertia;
@@ -317,6 +322,7 @@ static arrays take_arrays(bough_arena *arena, int n) {
                 .stiffness = bough_arena_doubles(arena, 21 * (size_t)n),
                 .damping = bough_arena_doubles(arena, 21 * (size_t)n),
                 .line = bough_arena_doubles(arena, 72 * (size_t)n),
+                .taper = bough_arena_doubles(arena, 9 * (size_t)n),
                 .gain = bough_arena_take(arena, (size_t)n * sizeof(bough_section_share)),
                 .position = bough_arena_take(arena, vertices * sizeof(bough_vec3)),
                 .rotation = bough_arena_take(arena, vertices * sizeof(bough_quaternion)),
@@ -340,6 +346,7 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
                            .stiffness = m.stiffness,
                            .damping = m.damping,
                            .line = m.line,
+                           .taper = m.taper,
                            .inertia = m.inertia};
     for (int i = 0; i <= n_segment; i++) {
         m.span[i] = bough_section_length(&a) * i / n_segment;
@@ -348,7 +355,7 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
     }
     for (int k = 0; k < n_segment; k++) {
         segment_law law = {m.stiffness + 21 * (size_t)k, m.damping + 21 * (size_t)k,
-                           m.line + 72 * (size_t)k, m.gain + k};
+                           m.line + 72 * (size_t)k, m.taper + 9 * (size_t)k, m.gain + k};
         if (!segment_matrices(&a, def, k, law)) {
             return bough_fail(BOUGH_INVALID, "rod %s: the stiffness between %g m and %g m is not"
                               " positive definite", table->name, m.span[k], m.span[k + 1]);

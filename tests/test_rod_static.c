@@ -3,6 +3,7 @@
 
 #include "flexbody/rod_load.h"
 #include "flexbody/rod_static.h"
+#include "flexbody/section.h"
 #include "tests/sample_rod.h"
 
 static const double beam_inertia[4] = {1, 0.01, 0.01, 0.02};
@@ -113,6 +114,45 @@ static void load_that_falls_along_the_rod_bends_it_as_beam_theory_says(void **co
     }
 }
 
+// A cantilever under a force askew to its two ways of bending twists, to second order in the force, by
+// Px Py (1/EIx − 1/EIy) L⁴/(12 GJ): what bends one way is the arm of the moment by the other force. Also of a
+// pretwisted strip, against many segments.
+static double askew_twist(int n, double pretwist) {
+    const bough_section_station station[2] = {
+        {.stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3}, .mass = 1,
+         .inertia = {0.01, 0.01, 0, 0.02}},
+        {.position = {0, 0, 1.5}, .twist = pretwist,
+         .stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3}, .mass = 1,
+         .inertia = {0.01, 0.01, 0, 0.02}}};
+    const bough_section_table table = {.name = "strip", .n_station = 2, .station = station};
+    bough_arena *arena = bough_arena_create();
+    bough_rod_def def;
+    bent b;
+    bough_status s = bough_section_discretise(arena, &table, n, &def);
+    assert_int_equal(s.code, BOUGH_OK);
+    s = bough_rod_create(arena, &def, &b.model);
+    assert_int_equal(s.code, BOUGH_OK);
+    const double at_rest[BOUGH_ROD_INPUTS] = {0};
+    b.state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * n);
+    assert_true(bough_rod_loads_init(&b.loads, arena, b.model));
+    assert_true(bough_rod_static_init(&b.work, arena, b.model));
+    bough_rod_rest_state(b.model, at_rest, b.state);
+    double before = b.state[(BOUGH_ROD_P + 3) * n + n - 1];
+    b.loads.value[n] = 0.02;
+    b.loads.value[b.model->stride + n] = 0.01;
+    solve(&b, bough_rod_static_options_default());
+    double twist = 2 * (b.state[(BOUGH_ROD_P + 3) * n + n - 1] - before);
+    bough_arena_destroy(arena);
+    return twist;
+}
+
+static void bending_two_ways_twists(void **context) {
+    (void)context;
+    double exact = 0.02 * 0.01 * (1.0 / 2 - 1.0 / 36) * pow(1.5, 4) / (12 * 3);
+    check_near(fabs(askew_twist(4, 0)), exact, 1e-3, 0);
+    check_near(askew_twist(6, 1), askew_twist(48, 1), 1e-3, 0);
+}
+
 // Tip of the follower cantilever of Argyris and Symeonidis (1981), displacement along the rod and
 // across it, with 100·2^mesh segments.
 static void follower_tip(double force, int mesh, double tip[2]) {
@@ -210,6 +250,7 @@ int main(void) {
         cmocka_unit_test(end_moment_bends_rod_to_circle),
         cmocka_unit_test(dead_tip_force_gives_the_elastica),
         cmocka_unit_test(load_that_falls_along_the_rod_bends_it_as_beam_theory_says),
+        cmocka_unit_test(bending_two_ways_twists),
         cmocka_unit_test(follower_force_bends_the_rod_beyond_a_half_turn),
         cmocka_unit_test(turning_bar_stretches),
         cmocka_unit_test(slender_rod_takes_few_iterations),

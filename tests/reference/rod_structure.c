@@ -1,7 +1,7 @@
 #include "tests/reference/rod_structure.h"
 
 #include "tests/reference/lumped.h"
-#include "flexbody/rod_segment.h"
+#include "flexbody/rod_elastic.h"
 
 #include <string.h>
 
@@ -47,7 +47,7 @@ static strain strain_of(const bough_rod_model *m, const segment *g) {
 
 // Ĉ e of (4) and D̂ ė of (5)
 static strain elastic_stress(const bough_rod_model *m, const segment *g) {
-    return symmetric_times(m->stiffness, m->stride, g->n, strain_of(m, g));
+    return segment_stress(m->stiffness, m->gradient, m->stride, g->n, strain_of(m, g));
 }
 
 static strain viscous_stress(const bough_rod_model *m, const segment *g) {
@@ -58,7 +58,9 @@ static strain viscous_stress(const bough_rod_model *m, const segment *g) {
 static strain elastic_stress_change(const bough_rod_model *m, const segment *g,
                                     const segment_variation *d) {
     strain change = {d->stretch, bough_scale(g->inverse, d->phi)};
-    return symmetric_times(m->stiffness, m->stride, g->n, change);
+    double tangent[21];
+    segment_stiffness(m->stiffness, m->gradient, m->stride, g->n, strain_of(m, g), 1, 0, tangent);
+    return symmetric_times(tangent, 1, 0, change);
 }
 
 static strain viscous_stress_change(const bough_rod_model *m, const segment *g,
@@ -143,8 +145,7 @@ static double elastic_energy(void *self, const bough_vertex *vertex) {
     double energy = 0;
     for (int n = 0; n < m->n_segment; n++) { // (4)
         segment g = segment_at(m, vertex, n);
-        strain e = strain_of(m, &g), stress = elastic_stress(m, &g);
-        energy += 0.5 * g.h * (bough_dot(e.v, stress.v) + bough_dot(e.u, stress.u));
+        energy += g.h * segment_energy(m->stiffness, m->gradient, m->stride, n, strain_of(m, &g));
     }
     return energy;
 }
