@@ -29,10 +29,20 @@ void bough_run_tell_channel_shares(const bough_job *job, int channel, FILE *stre
     }
 }
 
+// Whether the scene has what the share is of.
+static bool has_part(const bough_scene *scene, int kind) {
+    if (kind == BOUGH_SHARE_AIR) return scene->aero.node != NULL;
+    for (int i = 0; i < scene->n_body; i++) {
+        if (scene->body[i].rod.node && scene->body[i].fidelity != BOUGH_SCENE_RIGID) return true;
+    }
+    return false;
+}
+
 void bough_run_tell_shares(const bough_job *job, FILE *stream) {
     for (int kind = 0; kind < BOUGH_SHARES; kind++) {
         const bough_error_share *share = &job->shares.share[kind];
         const char *name = bough_error_share_name((bough_error_share_kind)kind);
+        if (!has_part(job->run.simulation->scene, kind)) continue;
         if (share->unknown[0]) fprintf(stream, "%s error: not estimated: %s\n", name, share->unknown);
     }
 }
