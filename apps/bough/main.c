@@ -83,8 +83,13 @@ static bough_status end_output(bough_status status) {
 }
 
 // OpenBLAS starts threads that we never use and that spin at first, unless the environment forbids it
-// before main begins; so where the user has not, the program does and starts itself once more.
+// before main begins; so where the user has not, the program does and starts itself once more. Not where
+// OpenMP has bound this thread to a place already: the program started would know of no other place.
 static void quiet_threads(char **argv) {
+    static const char *const bound[] = {"OMP_PLACES", "OMP_PROC_BIND", "GOMP_CPU_AFFINITY"};
+    for (size_t i = 0; i < sizeof bound / sizeof *bound; i++) {
+        if (getenv(bound[i])) return;
+    }
     if (getenv("OPENBLAS_NUM_THREADS") || setenv("OPENBLAS_NUM_THREADS", "1", 1) != 0) return;
     execv("/proc/self/exe", argv);
 }
