@@ -4,8 +4,11 @@
 // evaluation a step and order 5: a tenth of the cost at a tenth of the tolerance.
 #include "core/integrator.h"
 
+#include <math.h>
 
-enum { ROSENBROCK_STEPS = 1000, IDA_STEPS = 60000 }; // most of them in a macro step
+
+enum { ROSENBROCK_STEPS = 1000, IDA_STEPS = 60000, LEAST_IDA_STEPS = 5000 }; // most in a macro step
+static const double most_work = 2e7; // of IDA in a macro step: steps times states
 static const double share = 0.1; // of the tolerance, for IDA: its errors add up over many short steps
 
 typedef struct automatic {
@@ -24,7 +27,7 @@ static bough_status create(bough_arena *arena, const bough_ode *ode,
     bough_status status = bough_integrator_create(arena, ode, &own, &m->rosenbrock);
     if (!bough_is_ok(&status)) return status;
     own.kind = BOUGH_IDA;
-    own.most_steps = IDA_STEPS;
+    own.most_steps = (int)fmax(LEAST_IDA_STEPS, fmin(IDA_STEPS, most_work / ode->n));
     own.rtol *= share;
     return bough_integrator_create(arena, ode, &own, &m->ida);
 }

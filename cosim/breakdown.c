@@ -9,6 +9,7 @@
 struct bough_breakdown {
     const bough_assembly *assembly;
     double *state; // (n_state)
+    double *input; // (n_input)
 };
 
 enum { ADVICE = 240 };
@@ -19,13 +20,27 @@ bough_status bough_breakdown_create(bough_arena *arena, const bough_assembly *as
     if (!b) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     b->assembly = assembly;
     b->state = bough_arena_doubles(arena, (size_t)assembly->n_state);
+    b->input = bough_arena_doubles(arena, (size_t)assembly->n_input);
     *breakdown = b;
     return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
                                         : bough_ok();
 }
 
-void bough_breakdown_keep(bough_breakdown *b) {
+void bough_breakdown_keep(bough_breakdown *b, const bough_coupling *c) {
     bough_assembly_states(b->assembly, b->state);
+    memcpy(b->input, c->input, (size_t)b->assembly->n_input * sizeof *b->input);
+}
+
+static void restore_members(const bough_breakdown *b, const bough_coupling *c) {
+    const bough_assembly *a = b->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        bough_member_set(a->member[i], c->t0, b->state + a->state_offset[i]);
+    }
+}
+
+void bough_breakdown_undo(const bough_breakdown *b, bough_coupling *c) {
+    restore_members(b, c);
+    memcpy(c->input, b->input, (size_t)b->assembly->n_input * sizeof *b->input);
 }
 
 // Nothing when the judgement fails too: the state may be past judging.
@@ -33,9 +48,7 @@ static bough_stability_advice judge_again(bough_breakdown *b, bough_coupling *c)
     const bough_assembly *a = b->assembly;
     bough_scheme_options options = bough_scheme_options_in_use(c);
     bough_stability_advice advice;
-    for (int i = 0; i < a->n_member; i++) {
-        bough_member_set(a->member[i], c->t0, b->state + a->state_offset[i]);
-    }
+    restore_members(b, c);
     bough_status status = bough_stability_advise(a, &options, c->t1 - c->t0, &advice);
     return bough_is_ok(&status) ? advice : (bough_stability_advice){0};
 }

@@ -12,8 +12,11 @@ typedef struct bough_breakdown bough_breakdown;
 bough_status bough_breakdown_create(bough_arena *arena, const bough_assembly *assembly,
                                     bough_breakdown **breakdown);
 
-// Keeps the members' states; a macro step begins.
-void bough_breakdown_keep(bough_breakdown *b);
+// Keeps the members' states and inputs; a macro step begins.
+void bough_breakdown_keep(bough_breakdown *b, const bough_coupling *c);
+
+// Members and inputs are again what they were then.
+void bough_breakdown_undo(const bough_breakdown *b, bough_coupling *c);
 
 // The failure of the coupling's present step, with the part of the coupling in it. `before`: result of the
 // analysis before the run; if that found nothing, the stored states are analysed, because the members' own

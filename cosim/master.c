@@ -198,6 +198,10 @@ static bough_status take_controlled_step(bough_master *m) {
     }
 }
 
+static bough_status interrupted(const bough_master *m) {
+    return bough_fail(BOUGH_INTERRUPTED, "interrupted at %.9g s of %.9g s", m->time, m->duration);
+}
+
 static bough_status macro_step(bough_master *m) {
     bough_coupling *c = m->coupling;
     c->t0 = m->time;
@@ -207,8 +211,12 @@ static bough_status macro_step(bough_master *m) {
     bough_status status = sample_loads(m, &c->restart);
     if (!bough_is_ok(&status)) return status;
 
-    bough_breakdown_keep(m->breakdown);
+    bough_breakdown_keep(m->breakdown, c);
     status = m->control ? take_controlled_step(m) : take_step(m);
+    if (!bough_is_ok(&status) && m->stop && m->stop()) {
+        bough_breakdown_undo(m->breakdown, c);
+        return interrupted(m);
+    }
     if (!bough_is_ok(&status)) {
         return bough_breakdown_explain(m->breakdown, c, &m->advice, status);
     }
@@ -219,7 +227,7 @@ static bough_status macro_step(bough_master *m) {
     set_time(m, c->t1);
     m->steps++;
     evaluate_loads(m);
-    if (m->second) bough_second_solution_step(m->second, c);
+    if (m->second && !bough_second_solution_step(m->second, c)) return interrupted(m);
     if (m->estimate) bough_error_estimate_step(m->estimate, c);
     if (m->estimate && bough_master_done(m)) bough_error_estimate_finish(m->estimate, c);
     return bough_ok();
@@ -233,6 +241,13 @@ typedef struct stepping {
 static void macro_step_in_region(void *self) {
     stepping *w = self;
     w->status = macro_step(w->master);
+}
+
+void bough_master_stop_by(bough_master *m, bool (*stop)(void)) {
+    m->stop = stop;
+    for (int i = 0; i < m->assembly->n_member; i++) m->assembly->member[i]->stop = stop;
+    if (m->coupling->whole) m->coupling->whole->stop = stop;
+    if (m->second) bough_second_solution_stop_by(m->second, stop);
 }
 
 bough_status bough_step(bough_master *m) {

@@ -73,6 +73,7 @@ typedef struct bough_master {
     bool at_event;   // `time` is an event
     double begun;    // start of the last macro step [s]
     bough_stability_advice advice; // about the initial state; empty when not judged
+    bool (*stop)(void); // NULL: never
     char verdict[BOUGH_VERDICT]; // a warning that the coupling is unstable; may be empty
 } bough_master;
 
@@ -87,6 +88,10 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
 // One macro step: samples loads, advances the members, exchanges values, checks the result. A caller that
 // takes many steps should do so within one bough_pool_region; otherwise each step opens its own.
 bough_status bough_step(bough_master *m);
+
+// Steps ask stop() at each evaluation and, once it is true, end with BOUGH_INTERRUPTED and with time and states
+// of the start of the macro step in progress. They must not go on then. NULL: never.
+void bough_master_stop_by(bough_master *m, bool (*stop)(void));
 
 // The memory that later steps and the reports depend on, without that of the loads, at a time when all
 // loads are sampled. After a restore, integrators restart and Newton matrices are computed again. A run

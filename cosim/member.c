@@ -13,6 +13,7 @@ static const double *input_at(const bough_member *m, double t) {
 
 static bool derivative(void *self, double t, const double *y, double *rate) {
     const bough_member *m = self;
+    if (m->stop && m->stop()) return false;
     return m->system.ops->derivative(m->system.self, t, y, input_at(m, t), rate);
 }
 

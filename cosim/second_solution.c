@@ -91,10 +91,15 @@ static void compare(bough_second_solution *s, const bough_coupling *c) {
     }
 }
 
-void bough_second_solution_step(bough_second_solution *s, const bough_coupling *c) {
-    if (s->lost) return;
+void bough_second_solution_stop_by(bough_second_solution *s, bool (*stop)(void)) {
+    s->whole.stop = stop;
+}
+
+bool bough_second_solution_step(bough_second_solution *s, const bough_coupling *c) {
+    if (s->lost) return true;
     assert(s->whole.time == c->t0);
     bough_status status = bough_member_advance(&s->whole, c->t1, NULL, c->restart);
+    if (!bough_is_ok(&status) && s->whole.stop && s->whole.stop()) return false;
     if (!bough_is_ok(&status)) {
         give_up(s, c->t0, status.message);
     } else if (works_too_hard(s, c)) {
@@ -102,6 +107,7 @@ void bough_second_solution_step(bough_second_solution *s, const bough_coupling *
     } else {
         compare(s, c);
     }
+    return true;
 }
 
 const double *bough_second_solution_error(const bough_second_solution *s) {

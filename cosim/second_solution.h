@@ -31,7 +31,11 @@ bough_status bough_second_solution_create(bough_arena *arena, const bough_coupli
                                           bough_second_solution **second);
 
 // Advances the second solution over the last macro step of the run.
-void bough_second_solution_step(bough_second_solution *s, const bough_coupling *c);
+// False: it was stopped on the way, and must not go on.
+bool bough_second_solution_step(bough_second_solution *s, const bough_coupling *c);
+
+// Asks stop() at each of its evaluations; NULL: never.
+void bough_second_solution_stop_by(bough_second_solution *s, bool (*stop)(void));
 
 // Error of the run's states (n_state), in their units; NULL if the second solution has failed.
 const double *bough_second_solution_error(const bough_second_solution *s);

@@ -127,6 +127,7 @@ static void step_all(void *self) {
     bough_run *run = self;
     run->wall_from = bough_wall_clock();
     run->cpu_from = cpu_clock(run);
+    bough_master_stop_by(run->simulation->master, run->stop);
     bough_status status = bough_run_start(run);
     while (bough_is_ok(&status) && !bough_run_done(run)) {
         status = step(run);
