@@ -174,7 +174,7 @@ static void bad_inputs_are_refused(void **state) {
         {"loads=[{joint: bob, torque: 1, input: a, ramp: [0 s, 1 s]}]", "only without a ramp or a table"},
         {"loads=[{joint: bob, torque: 1, input: a}, {joint: bob, torque: 1, input: a}]",
          "two inputs are named 'a'"},
-        {"bodies[0].joint.motion={speed: 1 rad/s, input: a}", "only with a constant place"},
+        {"bodies[0].joint.motion={speed: 1 rad/s, input: a}", "only with a constant initial position"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         s = bough_session_open(APPS "mechanisms/pendulum.yaml", &bad[i][0], 1);
