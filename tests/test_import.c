@@ -260,6 +260,8 @@ static void bad_decks_are_told_where(void **context) {
          "elasto.dat:26: HubMass: expected 0 to 1e+09, got -2000"},
         {{"parts/servo.dat", "95   GenEff", "195   GenEff"},
          "servo.dat:4: GenEff: expected 0 to 100, got 195"},
+        {{"parts/wind.dat", "12    HWindSpeed", "-1 HWindSpeed"},
+         "wind.dat:5: HWindSpeed: expected 0 to 200, got -1"},
         {{"parts/elasto.dat", "3    NumBl", "4    NumBl"},
          "elasto.dat:13: NumBl: expected a whole"},
         {{"parts/elasto.dat", "True          YawDOF", "Maybe         YawDOF"},

@@ -95,66 +95,6 @@ static void read_shape(bough_openfast *o) {
     o->rigid_tower = !any(e, tower);
 }
 
-// -- limits ---------------------------------------------------------------------------------------
-
-// What a number may be, in its line's unit. A value beyond would be refused later, in the scene, where nobody
-// has written it.
-typedef struct limit {
-    const char *names;
-    double low, high;
-} limit;
-
-static const limit elasto_limits[] = {
-    {"RotSpeed", -1e4, 1e4},
-    {"NacYaw", -360, 360},
-    {"TipRad", 0.01, 1e3},
-    {"HubRad", 1e-3, 1e3},
-    {"HubCM", -1e3, 1e3},
-    {"UndSling", -1e3, 1e3},
-    {"OverHang", -1e3, 1e3},
-    {"ShftTilt", -360, 360},
-    {"NacCMxn", -1e3, 1e3},
-    {"NacCMyn", -1e3, 1e3},
-    {"NacCMzn", -1e3, 1e3},
-    {"Twr2Shft", -1e3, 1e3},
-    {"TowerHt", -1e3, 1e4},
-    {"TowerBsHt", -1e3, 1e4},
-    {"TipMass(1)|TipMass1", 0, 1e9},
-    {"TipMass(2)|TipMass2", 0, 1e9},
-    {"TipMass(3)|TipMass3", 0, 1e9},
-    {"HubMass", 0, 1e9},
-    {"HubIner", 0, 1e15},
-    {"GenIner", 0, 1e9},
-    {"NacMass", 0, 1e9},
-    {"NacYIner", 0, 1e15},
-    {"YawBrMass", 0, 1e9},
-    {"TeetDmp", 0, 1e20},
-    {"TeetHSSp", 0, 1e20},
-    {"GBRatio", 1e-3, 1e4},
-    {"DTTorSpr", 0, 1e20},
-    {"DTTorDmp", 0, 1e20},
-};
-static const limit servo_limits[] = {
-    {"GenEff", 0, 100},
-    {"YawSpr", 0, 1e20},
-    {"YawDamp", 0, 1e20},
-};
-
-static void check_limits(const bough_deck *deck, int n, const limit *limits) {
-    for (int k = 0; k < n && deck; k++) {
-        const limit *x = &limits[k];
-        double value = bough_deck_number_or(deck, x->names, x->low);
-        if (value >= x->low && value <= x->high) continue;
-        bough_deck_fail(deck, bough_deck_line(deck, x->names), "%.*s: expected %g to %g, got %g",
-                        (int)strcspn(x->names, "|"), x->names, x->low, x->high, value);
-    }
-}
-
-static void check_decks(const bough_openfast *o) {
-    check_limits(o->elasto, sizeof elasto_limits / sizeof *elasto_limits, elasto_limits);
-    check_limits(o->servo, sizeof servo_limits / sizeof *servo_limits, servo_limits);
-}
-
 // -- writing --------------------------------------------------------------------------------------
 
 static void put_head(bough_openfast *o, const char *path) {
@@ -203,7 +143,9 @@ static void write_scene(bough_openfast *o, const char *path) {
 static void convert(bough_openfast *o, const char *path) {
     o->main = bough_deck_open(o->draft.arena, path, o->draft.status);
     if (o->main) open_modules(o);
-    if (bough_is_ok(o->draft.status)) check_decks(o);
+    bough_openfast_check(o->elasto, BOUGH_LIMITS_ELASTO);
+    bough_openfast_check(o->servo, BOUGH_LIMITS_SERVO);
+    bough_openfast_check(o->inflow, BOUGH_LIMITS_INFLOW);
     if (bough_is_ok(o->draft.status)) read_shape(o);
     write_scene(o, path);
 }

@@ -37,6 +37,16 @@ typedef struct bough_openfast {
 // A whole file on the list: which, from where.
 bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names);
 
+// Fails at the line of a number that no turbine has; a deck of NULL has none.
+typedef enum bough_openfast_limits {
+    BOUGH_LIMITS_ELASTO,
+    BOUGH_LIMITS_SERVO,
+    BOUGH_LIMITS_INFLOW,
+    BOUGH_LIMITS_BLADE,
+    BOUGH_LIMITS_TOWER,
+} bough_openfast_limits;
+void bough_openfast_check(const bough_deck *deck, bough_openfast_limits which);
+
 // Tables of blade and tower; with `top_mass` [kg] on the tower.
 void bough_openfast_beamdyn(bough_openfast *o);
 void bough_openfast_blade(bough_openfast *o);
