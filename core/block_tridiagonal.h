@@ -1,5 +1,6 @@
 // Factorisation and solution of block-tridiagonal systems with 6×6 blocks, in O(n), without
-// pivoting: the Newton matrices of a rod are close to symmetric positive definite (THEORY 3).
+// pivoting: the Newton matrices of a rod are close to symmetric positive definite (docs/theory.md,
+// "Newton matrix").
 //
 // Columns of a block are padded to 8 doubles so that one column is one vector register. A block at
 // `b` has entry (i, j) at b[8 j + i]; rows 6 and 7 are zero. Arrays of blocks have room for a

@@ -1,4 +1,4 @@
-// The kinds of joints. Reference: theory page, (3) and (13); speeds are components in body axes.
+// The kinds of joints. Reference: docs/theory.md, "The tree"; speeds are components in body axes.
 #include "core/joint.h"
 
 #include "core/base.h"

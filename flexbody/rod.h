@@ -1,4 +1,5 @@
-// The discrete geometrically exact Cosserat rod (THEORY 1): constant model and scratch.
+// The discrete geometrically exact Cosserat rod (docs/theory.md, "The rod"): constant model and
+// scratch.
 //
 // Vertex 0 is the root: it is welded to the body reference frame (BRF) and moves as the input
 // says. Of a rod that carries bodies at its end, vertex N is the bodies' and moves as the input
@@ -96,8 +97,8 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
     return bough_rod_carries(m) ? BOUGH_ROD_MOST_OUTPUTS : BOUGH_ROD_OUTPUTS;
 }
 
-// A load along the rod acts twice (THEORY 6): lumped to the vertices by hat functions, which is all
-// that the balances see, and as the strain D q of each segment under a load per length, by which its
+// A load along the rod acts twice (docs/theory.md, "Bow within a segment"): lumped to the vertices
+// by hat functions, which is all that the balances see, and as the strain D q of each segment under a load per length, by which its
 // elastic law, stress = C (e − e⁰ − D q), is that of the loaded segment. q are the load's mean over
 // the segment and its slope. Linear statics is then exact at the vertices for loads that are linear
 // over each segment. Weight and slow inertia forces

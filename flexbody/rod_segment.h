@@ -1,6 +1,6 @@
 // The kernel of one rod segment: strains, strain rates and the forces that are the exact gradient
-// of its energy (THEORY 1), with their directional derivative. Inline, so that loops over segments
-// vectorise.
+// of its energy (docs/theory.md, "Segments"), with their directional derivative. Inline, so that
+// loops over segments vectorise.
 //
 // Everything rotational is resolved in the segment's mid frame R_mid = Rₙ exp(φ/2), φ = log(RₙᵀRₙ₊₁).
 // With the relative quaternion d = p̄ₙ∘pₙ₊₁ = (w, v), w = cos θ/2, v = sin θ/2 n, t = tan θ/4 n:

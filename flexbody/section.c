@@ -278,7 +278,7 @@ typedef struct segment_law {
 // inverse of the compliance that the stress, constant force and linear moment, meets on its way
 // through the section tables. Bending within the segment appears as compliance in shear
 // (MacNeal's residual bending flexibility). Damping dissipates what the sections would. `line` is the
-// mean strain that a load along the segment makes (THEORY 6).
+// mean strain that a load along the segment makes (docs/theory.md, "Section tables to segments").
 static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *def, int n,
                              segment_law law) {
     double from = def->span[n], to = def->span[n + 1];
