@@ -322,9 +322,11 @@ static bough_status look(void *self) {
     return bough_ok();
 }
 
-// What a step of the tree takes.
+// What a step of the tree takes, by itself or in the integrator of all bodies.
 static void count_work(case_run *r) {
-    bough_statistics work = bough_member_statistics(&r->run->simulation->leader);
+    bough_statistics work = bough_run_statistics(r->run, 0);
+    bough_statistics whole = bough_run_statistics(r->run, r->run->simulation->master->assembly->n_member);
+    bough_statistics_add(&work, &whole);
     for (int i = 0; i < r->x->n_expect; i++) {
         const bough_verify_expect *e = &r->x->expect[i];
         if (e->diagnosis || e->quantity.what != BOUGH_VERIFY_WORK || work.steps == 0) continue;
