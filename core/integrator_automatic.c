@@ -6,7 +6,6 @@
 
 #include <math.h>
 
-
 enum { ROSENBROCK_STEPS = 1000, IDA_STEPS = 60000, LEAST_IDA_STEPS = 5000 }; // most in a macro step
 static const double most_work = 2e7; // of IDA in a macro step: steps times states
 static const double share = 0.1; // of the tolerance, for IDA: its errors add up over many short steps
