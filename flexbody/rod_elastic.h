@@ -11,6 +11,10 @@
 
 #include "flexbody/rod_segment.h"
 
+static inline strain add_strain(strain a, strain b) {
+    return (strain){bough_add(a.v, b.v), bough_add(a.u, b.u)};
+}
+
 // L e and G y of segment n, its arrays L by rows and G's upper triangle of the given stride.
 static inline bough_vec3 gradient_linear(const double *restrict gradient, int stride, int n, strain e) {
 #define L(k) gradient[(k) * stride + n]
@@ -43,44 +47,65 @@ static inline strain moment_times(const double *restrict c, int stride, int n, b
 #undef C
 }
 
-// What a segment's energy varies by.
+// The law at one strain.
 typedef struct elastic_state {
-    strain stress;   // C e
-    bough_vec3 y, b; // m×κ, L e + G y
-    double value;    // Π
-    double limit;    // χ
-    double slope;    // ∂χ/∂κ = slope κ
+    strain stress;       // C e, its moment m
+    strain bent;         // ∂Π/∂e
+    bough_vec3 kappa, b; // κ, L e + G y
+    double value;        // Π
+    double limit;        // χ
+    double slope;        // ∂χ/∂κ = slope κ
 } elastic_state;
 
+// ∂Π/∂e by δΠ = δm·(κ×b) + δκ·(b×m) + y·L δe.
 static inline elastic_state elastic_at(const double *restrict c, const double *restrict gradient,
                                        int stride, int n, strain e) {
-    elastic_state s = {.stress = symmetric_times(c, stride, n, e)};
-    s.y = bough_cross(s.stress.u, e.u);
+    elastic_state s = {.stress = symmetric_times(c, stride, n, e), .kappa = e.u};
+    bough_vec3 m = s.stress.u, y = bough_cross(m, e.u);
     bough_vec3 linear = gradient_linear(gradient, stride, n, e);
-    bough_vec3 bend = gradient_bend(gradient, stride, n, s.y);
+    bough_vec3 bend = gradient_bend(gradient, stride, n, y);
     s.b = bough_add(linear, bend);
-    s.value = bough_dot(s.y, bough_axpy(0.5, bend, linear));
+    s.bent = add_strain(moment_times(c, stride, n, bough_cross(e.u, s.b)),
+                        gradient_transposed(gradient, stride, n, y));
+    s.bent.u = bough_add(s.bent.u, bough_cross(s.b, m));
+    s.value = bough_dot(y, bough_axpy(0.5, bend, linear));
     s.limit = 1 / (1 + L(24) * bough_dot(e.u, e.u));
     s.slope = -2 * L(24) * s.limit * s.limit;
     return s;
 }
 
-// ∂Π/∂e, δΠ = δm·(κ×b) + δκ·(b×m) + y·L δe.
-static inline strain gradient_stress(const double *restrict c, const double *restrict gradient,
-                                     int stride, int n, strain e, elastic_state s) {
-    strain x = moment_times(c, stride, n, bough_cross(e.u, s.b));
-    strain y = gradient_transposed(gradient, stride, n, s.y);
-    bough_vec3 u = bough_add(bough_add(x.u, y.u), bough_cross(s.b, s.stress.u));
-    return (strain){bough_add(x.v, y.v), u};
+// The derivative of the energy: C e − χ ∂Π/∂e − Π ∂χ/∂e.
+static inline strain elastic_stress(elastic_state s) {
+    bough_vec3 u = bough_axpy(-s.limit, s.bent.u, s.stress.u);
+    return (strain){bough_axpy(-s.limit, s.bent.v, s.stress.v),
+                    bough_axpy(-s.value * s.slope, s.kappa, u)};
 }
 
-// The derivative of the energy: C e − χ ∂Π/∂e − Π ∂χ/∂e.
 static inline strain segment_stress(const double *restrict c, const double *restrict gradient,
                                     int stride, int n, strain e) {
-    elastic_state s = elastic_at(c, gradient, stride, n, e);
-    strain p = gradient_stress(c, gradient, stride, n, e, s);
-    bough_vec3 u = bough_axpy(-s.limit, p.u, s.stress.u);
-    return (strain){bough_axpy(-s.limit, p.v, s.stress.v), bough_axpy(-s.value * s.slope, e.u, u)};
+    return elastic_stress(elastic_at(c, gradient, stride, n, e));
+}
+
+// Its variation: C δe − δχ ∂Π/∂e − χ δ∂Π/∂e − δ(Π slope) κ − Π slope δκ.
+static inline strain elastic_variation(const double *restrict c, const double *restrict gradient,
+                                       int stride, int n, elastic_state s, strain de) {
+    strain stress = symmetric_times(c, stride, n, de);
+    bough_vec3 m = s.stress.u, dm = stress.u;
+    bough_vec3 dy = bough_add(bough_cross(dm, s.kappa), bough_cross(m, de.u));
+    bough_vec3 db = bough_add(gradient_linear(gradient, stride, n, de),
+                              gradient_bend(gradient, stride, n, dy));
+    bough_vec3 dp = bough_add(bough_cross(de.u, s.b), bough_cross(s.kappa, db));
+    strain bent = add_strain(moment_times(c, stride, n, dp),
+                             gradient_transposed(gradient, stride, n, dy));
+    bent.u = bough_add(bent.u, bough_add(bough_cross(db, m), bough_cross(s.b, dm)));
+    double along = bough_dot(s.kappa, de.u), dlimit = s.slope * along;
+    double dvalue = bough_dot(s.bent.v, de.v) + bough_dot(s.bent.u, de.u);
+    double dslope = -4 * L(24) * s.limit * dlimit;
+    bough_vec3 u = bough_axpy(-(dvalue * s.slope + s.value * dslope), s.kappa, stress.u);
+    u = bough_axpy(-s.value * s.slope, de.u, u);
+    return (strain){
+        bough_axpy(-dlimit, s.bent.v, bough_axpy(-s.limit, bent.v, stress.v)),
+        bough_axpy(-dlimit, s.bent.u, bough_axpy(-s.limit, bent.u, u))};
 }
 
 // Per length [N].
@@ -89,42 +114,6 @@ static inline double segment_energy(const double *restrict c, const double *rest
     elastic_state s = elastic_at(c, gradient, stride, n, e);
     double straight = 0.5 * (bough_dot(e.v, s.stress.v) + bough_dot(e.u, s.stress.u));
     return straight - s.limit * s.value;
-}
-
-// The derivative of the stress: 21 entries of a symmetric matrix as C's, of stride `lanes`, at place l.
-static inline void segment_stiffness(const double *restrict c, const double *restrict gradient,
-                                     int stride, int n, strain e, int lanes, int l,
-                                     double *restrict tangent) {
-    static const int place[6][6] = {{0, 1, 2, 3, 4, 5},     {1, 6, 7, 8, 9, 10},
-                                    {2, 7, 11, 12, 13, 14}, {3, 8, 12, 15, 16, 17},
-                                    {4, 9, 13, 16, 18, 19}, {5, 10, 14, 17, 19, 20}};
-    elastic_state s = elastic_at(c, gradient, stride, n, e);
-    strain p = gradient_stress(c, gradient, stride, n, e, s);
-    bough_vec3 m = s.stress.u;
-    const double first[6] = {p.v.x, p.v.y, p.v.z, p.u.x, p.u.y, p.u.z};
-    const double kappa[6] = {0, 0, 0, e.u.x, e.u.y, e.u.z};
-    const bough_vec3 turned[6] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0},
-                                  {0, m.z, -m.y}, {-m.z, 0, m.x}, {m.y, -m.x, 0}}; // m×δκ
-    double bend = s.slope * s.value, twice = -4 * L(24) * s.limit * bend; // of Π ∂²χ/∂κ²
-    bough_vec3 a[6], g[6];
-    double q[6][6]; // δm of strain i times δκ of strain j, times b
-    for (int j = 0; j < 6; j++) {
-        bough_vec3 dm = {c[place[3][j] * stride + n], c[place[4][j] * stride + n],
-                         c[place[5][j] * stride + n]};
-        bough_vec3 row = {L(j), L(6 + j), L(12 + j)}, cross = bough_cross(s.b, dm);
-        a[j] = bough_add(bough_cross(dm, e.u), turned[j]);
-        g[j] = bough_axpy(0.5, gradient_bend(gradient, stride, n, a[j]), row);
-        q[j][0] = q[j][1] = q[j][2] = 0;
-        q[j][3] = cross.x, q[j][4] = cross.y, q[j][5] = cross.z;
-    }
-    for (int i = 0; i < 6; i++) {
-        for (int j = i; j < 6; j++) {
-            double second = bough_dot(a[i], g[j]) + bough_dot(g[i], a[j]) + q[i][j] + q[j][i];
-            double sum = s.limit * second + s.slope * (first[i] * kappa[j] + kappa[i] * first[j]);
-            sum += twice * kappa[i] * kappa[j] + (i == j && i > 2 ? bend : 0);
-            tangent[place[i][j] * lanes + l] = c[place[i][j] * stride + n] - sum;
-        }
-    }
 }
 
 #undef L

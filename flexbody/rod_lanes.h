@@ -38,10 +38,6 @@ static inline bough_vec3 unit_vector(int j) {
     return (bough_vec3){j == 0, j == 1, j == 2};
 }
 
-static inline strain add_strain(strain a, strain b) {
-    return (strain){bough_add(a.v, b.v), bough_add(a.u, b.u)};
-}
-
 // e − e⁰ − D q of a segment, `rest` the strains without stress
 static inline strain elastic_strain(segment_geometry shape, double inverse_h,
                                     const double *restrict rest, int s, int n) {
@@ -106,15 +102,13 @@ static inline segment_force segment_tangent(const bough_rod_model *m,
     segment_rate motion = segment_motion(shape, l, r);
     strain e = elastic_strain(shape, inverse, scratch->rest, s, n);
     strain rate = strain_rate(shape, motion, inverse);
-    strain stress = add_strain(segment_stress(m->stiffness, m->gradient, s, n, e),
-                               symmetric_times(m->damping, s, n, rate));
+    elastic_state elastic = elastic_at(m->stiffness, m->gradient, s, n, e);
+    strain stress = add_strain(elastic_stress(elastic), symmetric_times(m->damping, s, n, rate));
     segment_variation d = shape_variation(shape, *dl, *dr, inverse);
     strain de = {d.stretch, bough_scale(inverse, d.phi)};
     if (scratch->turning) de = add_turned(de, m->line, scratch->along, s, n, d.middle);
     strain drate = rate_variation(shape, motion, d, dl, dr, inverse);
-    double tangent[21];
-    segment_stiffness(m->stiffness, m->gradient, s, n, e, 1, 0, tangent);
-    strain dstress = add_strain(symmetric_times(tangent, 1, 0, de),
+    strain dstress = add_strain(elastic_variation(m->stiffness, m->gradient, s, n, elastic, de),
                                 symmetric_times(m->damping, s, n, drate));
     segment_force f = force_variation(shape, d, stress, dstress, h);
     if (!scratch->turning) return f;

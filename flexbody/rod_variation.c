@@ -15,7 +15,7 @@ enum {
     BASE_DU = 24,
     BASE_STRESS = 27,
     BASE_W = 33, // then c, g, 1/(1 + w), dg/dw
-    BASE_TANGENT = 38, // of the elastic law
+    BASE_ELASTIC = 38, // the elastic law's state
 };
 
 static inline void store_shape(double *restrict base, int l, segment_geometry s) {
@@ -45,6 +45,28 @@ static inline segment_geometry load_shape(const double *restrict base, int l) {
     return s;
 }
 
+static inline void store_elastic(double *restrict base, int l, elastic_state s) {
+    double *restrict to = base + LANES * BASE_ELASTIC;
+    store3(to, LANES, l, s.stress.u);
+    store3(to + LANES * 3, LANES, l, s.bent.v);
+    store3(to + LANES * 6, LANES, l, s.bent.u);
+    store3(to + LANES * 9, LANES, l, s.kappa);
+    store3(to + LANES * 12, LANES, l, s.b);
+    store3(to + LANES * 15, LANES, l, (bough_vec3){s.value, s.limit, s.slope});
+}
+
+static inline elastic_state load_elastic(const double *restrict base, int l) {
+    const double *restrict from = base + LANES * BASE_ELASTIC;
+    return (elastic_state){.stress.u = load3(from, LANES, l),
+                           .bent = {load3(from + LANES * 3, LANES, l),
+                                    load3(from + LANES * 6, LANES, l)},
+                           .kappa = load3(from + LANES * 9, LANES, l),
+                           .b = load3(from + LANES * 12, LANES, l),
+                           .value = from[LANES * 15 + l],
+                           .limit = from[LANES * 16 + l],
+                           .slope = from[LANES * 17 + l]};
+}
+
 void bough_rod_base(const bough_rod_model *m, const bough_rod_scratch *scratch, int first,
                     double *base) {
     int s = m->stride;
@@ -59,9 +81,9 @@ void bough_rod_base(const bough_rod_model *m, const bough_rod_scratch *scratch, 
         segment_rate motion = segment_motion(shape, left, right);
         strain e = elastic_strain(shape, inverse[l], rest, s, l);
         strain rate = strain_rate(shape, motion, inverse[l]);
-        strain elastic = segment_stress(c, gradient, s, l, e);
-        strain stress = add_strain(elastic, symmetric_times(d, s, l, rate));
-        segment_stiffness(c, gradient, s, l, e, LANES, l, out + LANES * BASE_TANGENT);
+        elastic_state elastic = elastic_at(c, gradient, s, l, e);
+        strain stress = add_strain(elastic_stress(elastic), symmetric_times(d, s, l, rate));
+        store_elastic(out, l, elastic);
         store_shape(out, l, shape);
         store3(out + LANES * BASE_RELATIVE, LANES, l, motion.relative);
         store3(out + LANES * BASE_MIDDLE, LANES, l, motion.middle);
@@ -95,7 +117,7 @@ static inline void position_direction(const bough_rod_model *m, const bough_rod_
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict along = scratch->along + first;
     const double *restrict line = m->line + first, *restrict bend = m->bend0 + first;
-    const double *restrict elastic = base + LANES * BASE_TANGENT;
+    const double *restrict c = m->stiffness + first, *restrict gradient = m->gradient + first;
     const double *restrict damping = m->damping + first;
     const double *restrict inverse = m->inverse_length + first, *restrict h = m->length + first;
 #pragma omp simd
@@ -112,7 +134,8 @@ static inline void position_direction(const bough_rod_model *m, const bough_rod_
         strain de = {d.stretch, bough_scale(inverse[l], d.phi)};
         if (turning) de = add_turned(de, line, along, s, l, d.middle);
         strain drate = rate_variation(shape, motion, d, &dl, &dr, inverse[l]);
-        strain dstress = add_strain(symmetric_times(elastic, LANES, l, de),
+        elastic_state elastic = load_elastic(base, l);
+        strain dstress = add_strain(elastic_variation(c, gradient, s, l, elastic, de),
                                     symmetric_times(damping, s, l, drate));
         segment_force f = force_variation(shape, d, stress, dstress, h[l]);
         if (turning) {

@@ -6,7 +6,7 @@
 
 // Shape, motion and stress of segments first..first + 7, from vertices and loads in `scratch`, into
 // base (BOUGH_ROD_BASE rows of 8). Segments beyond the last exert nothing.
-enum { BOUGH_ROD_BASE = 59 };
+enum { BOUGH_ROD_BASE = 56 };
 void bough_rod_base(const bough_rod_model *m, const bough_rod_scratch *scratch, int first,
                     double *base);
 

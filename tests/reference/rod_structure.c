@@ -46,7 +46,7 @@ static strain strain_of(const bough_rod_model *m, const segment *g) {
 }
 
 // Ĉ e of (4) and D̂ ė of (5)
-static strain elastic_stress(const bough_rod_model *m, const segment *g) {
+static strain law_stress(const bough_rod_model *m, const segment *g) {
     return segment_stress(m->stiffness, m->gradient, m->stride, g->n, strain_of(m, g));
 }
 
@@ -55,12 +55,12 @@ static strain viscous_stress(const bough_rod_model *m, const segment *g) {
     return symmetric_times(m->damping, m->stride, g->n, rate);
 }
 
-static strain elastic_stress_change(const bough_rod_model *m, const segment *g,
+static strain law_stress_change(const bough_rod_model *m, const segment *g,
                                     const segment_variation *d) {
     strain change = {d->stretch, bough_scale(g->inverse, d->phi)};
-    double tangent[21];
-    segment_stiffness(m->stiffness, m->gradient, m->stride, g->n, strain_of(m, g), 1, 0, tangent);
-    return symmetric_times(tangent, 1, 0, change);
+    int s = m->stride;
+    elastic_state at = elastic_at(m->stiffness, m->gradient, s, g->n, strain_of(m, g));
+    return elastic_variation(m->stiffness, m->gradient, s, g->n, at, change);
 }
 
 static strain viscous_stress_change(const bough_rod_model *m, const segment *g,
@@ -90,7 +90,7 @@ static bool elastic(void *self, const bough_vertex *vertex, bough_wrench *force)
     clear(m, force);
     for (int n = 0; n < m->n_segment; n++) {
         segment g = segment_at(m, vertex, n);
-        segment_force f = stress_force(g.shape, elastic_stress(m, &g), g.h);
+        segment_force f = stress_force(g.shape, law_stress(m, &g), g.h);
         ok = add_segment(&g, f, force + n) && ok;
     }
     return ok;
@@ -117,7 +117,7 @@ static bool elastic_tangent(void *self, const bough_vertex *vertex,
         segment g = segment_at(m, vertex, n);
         vertex_variation l = variation_of(change + n), r = variation_of(change + n + 1);
         segment_variation d = shape_variation(g.shape, l, r, g.inverse);
-        strain stress = elastic_stress(m, &g), varied = elastic_stress_change(m, &g, &d);
+        strain stress = law_stress(m, &g), varied = law_stress_change(m, &g, &d);
         segment_force f = force_variation(g.shape, d, stress, varied, g.h);
         ok = add_segment(&g, f, force_change + n) && ok;
     }
