@@ -77,8 +77,9 @@ static void induce(const bough_rotor *rotor, const bough_rotor_motion *motion, i
     }
 }
 
-// With dynamic stall, the share of a change of lift that comes within a sample, the wake's part later.
-static const double prompt = 0.58;
+static bough_stall_inflow stall_inflow(const blade_rows *r, int j) {
+    return (bough_stall_inflow){r->speed[j], r->alpha[j], r->turning[j]};
+}
 
 // Lift, drag and moment coefficients: of the static polars, or what dynamic stall makes of them.
 static void ask_polars(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data) {
@@ -86,8 +87,7 @@ static void ask_polars(const bough_rotor *rotor, double time, int blade, bough_r
     for (int j = 0; j < rotor->n_station; j++) {
         bough_coefficients k;
         if (data->memory.stall) {
-            bough_stall_inflow inflow = {r->speed[j], r->alpha[j], r->turning[j]};
-            k = bough_stall_advance(rotor->airfoil + j, rotor->station.chord[j], inflow,
+            k = bough_stall_advance(rotor->airfoil + j, rotor->station.chord[j], stall_inflow(r, j),
                                     time - data->memory.clock->time,
                                     data->memory.stall + blade * rotor->n_station + j);
         } else {
@@ -99,14 +99,23 @@ static void ask_polars(const bough_rotor *rotor, double time, int blade, bough_r
     }
 }
 
-// How the coefficients follow the angle of attack.
-static void ask_slopes(const bough_rotor *rotor, int blade, bough_rotor_data *data) {
+// How the coefficients follow the angle of attack and the section's rotation.
+static void ask_slopes(const bough_rotor *rotor, double time, int blade, bough_rotor_data *data) {
     const blade_rows *r = data->scratch->blade + blade;
     for (int j = 0; j < rotor->n_station; j++) {
-        bough_coefficients k = bough_polar_slope(rotor->station.polar[j], r->alpha[j]);
-        r->lift_slope[j] = data->memory.stall ? prompt * k.lift : k.lift;
-        r->drag_slope[j] = k.drag;
-        r->moment_slope[j] = k.moment;
+        bough_stall_slopes k = {.angle = bough_polar_slope(rotor->station.polar[j], r->alpha[j])};
+        r->static_slope[j] = k.angle.lift;
+        if (data->memory.stall) {
+            k = bough_stall_slopes_of(rotor->airfoil + j, rotor->station.chord[j], stall_inflow(r, j),
+                                      time - data->memory.clock->time,
+                                      data->memory.stall + blade * rotor->n_station + j);
+        }
+        r->lift_slope[j] = k.angle.lift;
+        r->drag_slope[j] = k.angle.drag;
+        r->moment_slope[j] = k.angle.moment;
+        r->lift_rate[j] = k.rate.lift;
+        r->drag_rate[j] = k.rate.drag;
+        r->moment_rate[j] = k.rate.moment;
     }
 }
 
@@ -148,15 +157,16 @@ static inline response in_balance(double axial, double load) {
     return (response){lane_clamp((1 - axial) * scale, 0, 1.2), lane_clamp(free * scale, 0, 1.2)};
 }
 
-// At the very tip and root the loss factor holds the induction, dynamic inflow holds it everywhere.
-static inline response section_response(const bough_rotor *rotor, blade_rows r, bool delayed, int j,
-                                        double lift_slope) {
+// At the very tip and root the loss factor holds the induction, dynamic inflow holds it everywhere, and
+// without a wake there is none.
+static inline response section_response(const bough_rotor *rotor, blade_rows r, bool delayed,
+                                        double wake, int j, double lift_slope) {
     double wind = fabs(r.inflow_x[j]), loss = r.loss[j] > 1e-3 ? r.loss[j] : 1e-3;
     double load = r.solidity[j] * r.speed[j] * lift_slope / (4 * loss * (wind > 1 ? wind : 1));
     response k = in_balance(r.axial[j], load);
     bool free = rotor->station.free[j] > 0;
-    k.flow = delayed ? 1 : free ? k.flow : 1 - r.axial[j];
-    k.angle = delayed ? 1 : free ? k.angle : 0;
+    k.flow = delayed ? 1 : free ? 1 + wake * (k.flow - 1) : 1 - r.axial[j];
+    k.angle = delayed ? 1 : free ? 1 + wake * (k.angle - 1) : 0;
     return k;
 }
 
@@ -175,8 +185,9 @@ static inline void store_slope(double *restrict to, plane d, bough_vec3 n, bough
 
 // … by the velocity of the vertices, and by the section's rotation about its normal and its rate.
 static void slope_stations(const bough_rotor *rotor, const blade_rows *rows,
-                           const bough_rotor_memory *memory) {
-    bool delayed = memory->station != NULL, stall = memory->stall != NULL;
+                           const bough_rotor_data *data) {
+    bool delayed = data->memory.station != NULL;
+    double wake = data->scratch->wake;
     const blade_rows r = *rows;
     const double *restrict chord = rotor->station.chord;
     double density = rotor->density, pitching = rotor->pitching_moment ? 1 : 0;
@@ -197,7 +208,8 @@ static void slope_stations(const bough_rotor *rotor, const blade_rows *rows,
         plane dc = {q * (2 * f.normal * k.cosine - g.normal * k.sine),
                     q * (2 * f.chord * k.cosine - g.chord * k.sine),
                     q * (2 * f.moment * k.cosine - g.moment * k.sine)}; // and along the chord
-        response to = section_response(rotor, r, delayed, j, g.normal);
+        double still = r.static_slope[j] * k.cosine + r.drag_slope[j] * k.sine + f.chord;
+        response to = section_response(rotor, r, delayed, wake, j, still);
         bough_vec3 n = lane_load(r.normal, s, j), c = lane_load(r.chord, s, j);
         bough_vec3 x = lane_load(r.x, s, j), y = lane_load(r.y, s, j), z = lane_load(r.z, s, j);
         bough_vec3 arm = lane_load(r.arm, s, j);
@@ -213,12 +225,9 @@ static void slope_stations(const bough_rotor *rotor, const blade_rows *rows,
                       -dn.moment * un.y - dc.moment * uc.y};
         plane by_rate = {-dn.normal * rn - dc.normal * rc, -dn.chord * rn - dc.chord * rc,
                          -dn.moment * rn - dc.moment * rc};
-        // with dynamic stall the rotation's rate counts at three quarters of the chord, and as added mass
-        double late = stall ? w * chord[j] / (2 * (r.speed[j] > 1 ? r.speed[j] : 1)) : 0;
-        double lift = late * (to.angle * r.lift_slope[j] + BOUGH_PI);
-        by_rate.normal += lift * k.cosine;
-        by_rate.chord -= lift * k.sine;
-        by_rate.moment += late * nose * (r.moment_slope[j] - BOUGH_PI / 2);
+        by_rate.normal += w * (r.lift_rate[j] * k.cosine + r.drag_rate[j] * k.sine);
+        by_rate.chord += w * (r.drag_rate[j] * k.cosine - r.lift_rate[j] * k.sine);
+        by_rate.moment += w * nose * r.moment_rate[j];
         // the force turns with the section: z×n = c, z×c = −n
         plane by_angle = {w * (to.angle * g.normal - f.chord), w * (to.angle * g.chord + f.normal),
                           w * to.angle * g.moment};
@@ -276,8 +285,8 @@ void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion
     spread(n - 1, rotor->mean, LOAD, 6, r->load, line);
     spread(n - 1, rotor->slope, LOAD, 6, r->load, line + 6 * (n - 1));
     if (rotor->slopes) {
-        ask_slopes(rotor, blade, data);
-        slope_stations(rotor, r, &data->memory);
+        ask_slopes(rotor, motion->time, blade, data);
+        slope_stations(rotor, r, data);
         spread(n, rotor->row, SLOPE, BOUGH_SLOPES, r->slope,
                data->slope + BOUGH_SLOPES * blade * n);
     }

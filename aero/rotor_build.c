@@ -299,7 +299,8 @@ static void take_rows(bough_arena *arena, const bough_rotor *rotor, blade_rows *
         &rows->skew_normal, &rows->skew_chord, &rows->inflow_x, &rows->inflow_y, &rows->axial,
         &rows->tangential,  &rows->loss,       &rows->phi,      &rows->alpha,    &rows->speed,
         &rows->lift,        &rows->drag,       &rows->moment,   &rows->force_x,  &rows->force_y,
-        &rows->lift_slope,  &rows->drag_slope, &rows->moment_slope};
+        &rows->lift_slope,  &rows->drag_slope, &rows->moment_slope, &rows->lift_rate,
+        &rows->drag_rate,   &rows->moment_rate, &rows->static_slope};
     size_t n = (size_t)rotor->stride;
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
         *vectors[i] = bough_arena_doubles(arena, 3 * n);

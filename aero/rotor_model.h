@@ -57,6 +57,8 @@ typedef struct blade_rows {
     double *phi, *alpha, *speed;     // (stride) [rad], [rad], [m/s]
     double *lift, *drag, *moment;    // (stride) coefficients
     double *lift_slope, *drag_slope, *moment_slope; // (stride) by the angle [1/rad]
+    double *lift_rate, *drag_rate, *moment_rate;    // (stride) by the rotation nose up [s/rad]
+    double *static_slope;                           // (stride) of the static lift [1/rad]
     double *force_x, *force_y;       // (stride) [N/m]
     double *load;                    // (stride × LOAD) [N/m], [N]
     double *slope;                   // (stride × SLOPE) bough_rotor_data.slope, per length

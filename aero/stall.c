@@ -112,11 +112,12 @@ static void advance(const bough_stall_airfoil *airfoil, double semi_chords, doub
 
 // -- coefficients ---------------------------------------------------------------------------------
 
-// `late`: the angle of attack at three quarters of the chord, `turning` the rotation's part of it.
-// The circulation's lift leans back by what the wake withholds and by the rotation once more.
-static bough_coefficients dynamic(const bough_stall_airfoil *airfoil, const bough_stall_state *s,
+// `x`: the lagging f, `angle`: the effective one, `late`: that at three quarters of the chord, `turning`
+// the rotation's part of it. The circulation's lift leans back by what the wake withholds and by the
+// rotation once more.
+static bough_coefficients dynamic(const bough_stall_airfoil *airfoil, double x, double angle,
                                   double late, double turning) {
-    double angle = effective(s), f, separated, x = s->separation;
+    double f, separated;
     bough_stall_split(airfoil, angle, &f, &separated);
     bough_coefficients k = bough_polar_at(airfoil->polar, angle);
     double linear = airfoil->slope * remainder(angle - airfoil->zero_lift, turn);
@@ -130,6 +131,21 @@ static bough_coefficients dynamic(const bough_stall_airfoil *airfoil, const boug
 
 static double mixed(double a, double b, double w) { return a + w * (b - a); }
 
+static bough_coefficients mixture(bough_coefficients a, bough_coefficients b, double w) {
+    return (bough_coefficients){mixed(a.lift, b.lift, w), mixed(a.drag, b.drag, w),
+                                mixed(a.moment, b.moment, w)};
+}
+
+// How much of the coefficients is dynamic.
+static double dynamic_share(double alpha) {
+    return bough_clamp((faded - fabs(alpha)) / (faded - fading), 0, 1);
+}
+
+// The rotation as the downwash at three quarters of the chord.
+static double downwash(double chord, bough_stall_inflow inflow) {
+    return bough_clamp(chord * inflow.rate / (2 * inflow.speed), -0.5, 0.5);
+}
+
 bough_coefficients bough_stall_advance(const bough_stall_airfoil *airfoil, double chord,
                                        bough_stall_inflow inflow, double step,
                                        bough_stall_state *state) {
@@ -139,19 +155,59 @@ bough_coefficients bough_stall_advance(const bough_stall_airfoil *airfoil, doubl
         state->started = 0;
         return fixed;
     }
-    // The rotation as the downwash at three quarters of the chord.
-    double turning = bough_clamp(chord * inflow.rate / (2 * speed), -0.5, 0.5);
-    double late = alpha + turning;
+    double turning = downwash(chord, inflow), late = alpha + turning;
     if (state->started == 0) {
         start(airfoil, late, speed, state);
     } else if (step > 0) {
         double semi_chords = step * (state->speed + speed) / chord;
         advance(airfoil, semi_chords, late, speed, BOUGH_PI * turning / airfoil->slope, state);
     }
-    double share = bough_clamp((faded - fabs(alpha)) / (faded - fading), 0, 1);
+    double share = dynamic_share(alpha);
     if (share == 0) return fixed;
-    bough_coefficients k = dynamic(airfoil, state, late, turning);
-    return (bough_coefficients){mixed(fixed.lift, k.lift, share),
-                                mixed(fixed.drag, k.drag, share),
-                                mixed(fixed.moment, k.moment, share)};
+    bough_coefficients k = dynamic(airfoil, state->separation, effective(state), late, turning);
+    return mixture(fixed, k, share);
+}
+
+// -- slopes ---------------------------------------------------------------------------------------
+
+// How the effective angle follows that of attack within an advance.
+static double prompt_share(double semi_chords) {
+    double share = 1;
+    for (int i = 0; i < 2; i++) {
+        double h = wake_rate[i] * semi_chords;
+        share -= wake_share[i] * (h > 1e-6 ? -expm1(-h) / h : 1);
+    }
+    return share;
+}
+
+static bough_coefficients quotient(bough_coefficients a, bough_coefficients b, double step) {
+    return (bough_coefficients){(a.lift - b.lift) / step, (a.drag - b.drag) / step,
+                                (a.moment - b.moment) / step};
+}
+
+bough_stall_slopes bough_stall_slopes_of(const bough_stall_airfoil *airfoil, double chord,
+                                         bough_stall_inflow inflow, double step,
+                                         const bough_stall_state *state) {
+    const double d = 1e-4; // [rad]
+    double alpha = remainder(inflow.alpha, turn), share = dynamic_share(alpha);
+    bough_stall_slopes slopes = {.angle = bough_polar_slope(airfoil->polar, alpha)};
+    if (state->started == 0 || share == 0) return slopes;
+    double turning = downwash(chord, inflow), late = alpha + turning, x = state->separation;
+    double angle = effective(state), prompt = prompt_share(2 * step * inflow.speed / chord);
+    bough_coefficients k = dynamic(airfoil, x, angle, late, turning);
+    bough_coefficients more = dynamic(airfoil, x, angle + prompt * d, late + d, turning);
+    bough_coefficients turned = dynamic(airfoil, x, angle + prompt * d, late + d, turning + d);
+    slopes.angle = mixture(slopes.angle, quotient(more, k, d), share);
+    if (share < 1) { // the share changes, too
+        bough_coefficients fixed = bough_polar_at(airfoil->polar, alpha);
+        double fading_rate = -copysign(1 / (faded - fading), alpha);
+        bough_coefficients by_share = quotient(k, fixed, 1 / fading_rate);
+        slopes.angle.lift += by_share.lift;
+        slopes.angle.drag += by_share.drag;
+        slopes.angle.moment += by_share.moment;
+    }
+    bool limited = fabs(turning) >= 0.5;
+    double quarter = limited ? 0 : share * chord / (2 * inflow.speed);
+    slopes.rate = mixture((bough_coefficients){0}, quotient(turned, k, d), quarter);
+    return slopes;
 }

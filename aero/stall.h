@@ -53,4 +53,14 @@ bough_coefficients bough_stall_advance(const bough_stall_airfoil *airfoil, doubl
                                        bough_stall_inflow inflow, double step,
                                        bough_stall_state *state);
 
+// How the coefficients that the last advance by `step` told follow its angle of attack [1/rad] and its
+// rotation [s/rad], with the separation as it is: that follows later.
+typedef struct bough_stall_slopes {
+    bough_coefficients angle, rate;
+} bough_stall_slopes;
+
+bough_stall_slopes bough_stall_slopes_of(const bough_stall_airfoil *airfoil, double chord,
+                                         bough_stall_inflow inflow, double step,
+                                         const bough_stall_state *state);
+
 #endif

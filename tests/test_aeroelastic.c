@@ -1,5 +1,5 @@
 // Modes in the air: damping of a rigid rotor on a slide beside its thrust's slope and beside time
-// marching; without density the modes of the bodies alone.
+// marching; without density the modes of the bodies alone. And a blade that the air brings to rest.
 #include "apps/analysis/vibration.h"
 #include "apps/simulation/aero_link.h"
 #include "tests/built_scene.h"
@@ -138,10 +138,53 @@ static void thin_air_leaves_the_modes_as_they_are(void **state) {
     bough_arena_destroy(arena);
 }
 
+// The fastest turning of a tip in the next steps [rad/s].
+static double fastest(bough_simulation *s, const bough_beam *beam, int steps) {
+    enum { MOST_VERTICES = 64 };
+    bough_vec3 position[MOST_VERTICES], velocity[MOST_VERTICES], angular[MOST_VERTICES];
+    bough_mat3 rotation[MOST_VERTICES];
+    double most = 0;
+    for (int k = 0; k < steps; k++) {
+        scene_step(s);
+        bough_simulation_update(s);
+        bough_simulation_beam_motion(s, beam, (bough_beam_motion){position, velocity, angular, rotation});
+        most = fmax(most, bough_norm(angular[beam->def.n_segment]));
+    }
+    return most;
+}
+
+// Blades that do not turn, flat across the wind or nearly, at a rate of the air with four samples a period of
+// their torsion: dynamic stall fades there, and slopes that take it for whole feed that mode.
+static void held_blades_come_to_rest_in_stall(void **state) {
+    (void)state;
+    static const char *const pitch[] = {"bodies[3-5].pitch=285 deg", "bodies[3-5].pitch=45 deg",
+                                        "bodies[3-5].pitch=20 deg"};
+    for (int k = 0; k < 3; k++) {
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(
+            arena, "apps/turbine/runup.yaml",
+            (const char *const[]){"bodies[2].joint={kind: revolute, parent: nacelle, axis: x, motion: {angle: 0}, "
+                                  "placement: [move z 2 m, move x -5 m]}",
+                                  "bodies[3-5].rod.segments=10", pitch[k], "loads=[]", "aero.wind.speed=24 m/s",
+                                  "aero.dynamic_stall=hgm", "aero.rate=25 Hz", "simulation.macro_step=40 ms",
+                                  "simulation.coupling.scheme=monolithic", "simulation.master.step=20 ms",
+                                  "simulation.master.rtol=3e-3", "simulation.error_estimate=none",
+                                  "simulation.threads=1", NULL});
+        fastest(s, &s->beam[0], 50);
+        double early = fastest(s, &s->beam[0], 50);
+        fastest(s, &s->beam[0], 100);
+        double late = fastest(s, &s->beam[0], 50);
+        print_message("%s: %.2g rad/s, 6 s later %.2g\n", pitch[k], early, late);
+        assert_true(late < 0.7 * early);
+        bough_arena_destroy(arena);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(quasi_steady_damping_is_the_slope_of_the_thrust),
         cmocka_unit_test(dynamic_damping_is_that_of_time_marching),
+        cmocka_unit_test(held_blades_come_to_rest_in_stall),
         cmocka_unit_test(thin_air_leaves_the_modes_as_they_are),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
