@@ -48,16 +48,22 @@ static void turn_vertices(const bough_rotor *rotor, const double *restrict verte
                           blade_rows *restrict to) {
     int n = rotor->n_vertex;
     double *restrict turn = to->turn, *restrict bend = to->bend;
+    const bough_quaternion *restrict undeformed = rotor->undeformed;
+#pragma omp simd
     for (int i = 0; i < n; i++) {
         bough_quaternion d = bough_quaternion_product(
-            section_at(vertex, n, i), bough_quaternion_conjugate(rotor->undeformed[i]));
+            section_at(vertex, n, i), bough_quaternion_conjugate(undeformed[i]));
         lane_store(turn, n, i, bough_scale(copysign(2.0, d.w), bough_v3(d.x, d.y, d.z)));
     }
-    for (int i = 0; i < n; i++) {
-        int k = n < 3 ? 0 : i == 0 ? 1 : i == n - 1 ? n - 2 : i;
-        bough_vec3 sum = bough_add(lane_load(turn, n, k > 0 ? k - 1 : 0), lane_load(turn, n, k + 1));
-        bough_vec3 second = bough_axpy(-2, lane_load(turn, n, k), sum);
-        lane_store(bend, n, i, n < 3 ? bough_v3(0, 0, 0) : second);
+#pragma omp simd
+    for (int i = 1; i < n - 1; i++) {
+        bough_vec3 sum = bough_add(lane_load(turn, n, i - 1), lane_load(turn, n, i + 1));
+        lane_store(bend, n, i, bough_axpy(-2, lane_load(turn, n, i), sum));
+    }
+    for (int i = 0; i < n; i += n - 1) {
+        bough_vec3 second = {0, 0, 0};
+        if (n > 2) second = lane_load(bend, n, i == 0 ? 1 : n - 2);
+        lane_store(bend, n, i, second);
     }
 }
 

@@ -244,7 +244,10 @@ void bough_rod_loads_along(const bough_rod_model *m, const double *line, const d
     bough_rod_line_strain(m, line, loads->rest);
     bough_rod_line_strain(m, rate, loads->rest_rate);
     loads->moving = true;
-    for (int k = 0; k < 6 * m->stride; k++) loads->rest[k] += m->strain0[k];
+    double *restrict rest = loads->rest;
+    const double *restrict strain0 = m->strain0;
+#pragma omp simd
+    for (int k = 0; k < 6 * m->stride; k++) rest[k] += strain0[k];
 }
 
 double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t) {

@@ -115,7 +115,9 @@ static void take_fresh(bough_aero_signal *s, bough_aero_fresh fresh, const doubl
                             s->beam->rod != NULL ? s->fresh + 6 * n : s->along, s->fresh);
         if (s->beam->modal != NULL) lump_line(s);
     }
-    for (int k = 0; k < s->n; k++) s->fresh[k] *= fresh.factor;
+    double *restrict loads = s->fresh;
+#pragma omp simd
+    for (int k = 0; k < s->n; k++) loads[k] *= fresh.factor;
 }
 
 // -- slopes ---------------------------------------------------------------------------------------
@@ -123,6 +125,7 @@ static void take_fresh(bough_aero_signal *s, bough_aero_fresh fresh, const doubl
 // 2 p₀*∘p, the part along the section's normal, as a row times p.
 static void set_angle(int n, const double *rows, double *restrict angle) {
     const double *restrict p = rows + BOUGH_BLADE_ROTATION * n;
+#pragma omp simd
     for (int i = 0; i < n; i++) {
         double w = p[i], x = p[n + i], y = p[2 * n + i], z = p[3 * n + i];
         double scale = 2 / sqrt(w * w + x * x + y * y + z * z);
@@ -165,16 +168,19 @@ static void add_slope(const bough_aero_signal *s, double factor, const double *f
     static const int place[3] = {0, 1, 5};
     for (int c = 0; c < 3; c++) {
         double *restrict row = to + place[c] * n;
+#pragma omp simd
         for (int i = 0; i < n; i++) row[i] += factor * from[c * n + i];
     }
 }
 
 static void take_slope(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course) {
     int n = s->n_vertex;
-    for (int k = 0; k < BOUGH_SLOPES * n; k++) s->slope[k] = fresh.factor * fresh.slope[k];
+    double *restrict slope = s->slope;
+#pragma omp simd
+    for (int k = 0; k < BOUGH_SLOPES * n; k++) slope[k] = fresh.factor * fresh.slope[k];
     for (int c = 0; c < BOUGH_SLOPES; c++) { // what moves as the input says is no state of the rod
-        s->slope[c * n] = 0;
-        if (s->beam->rod && bough_rod_carries(bough_beam_mesh(s->beam))) s->slope[c * n + n - 1] = 0;
+        slope[c * n] = 0;
+        if (s->beam->rod && bough_rod_carries(bough_beam_mesh(s->beam))) slope[c * n + n - 1] = 0;
     }
     set_angle(n, course.now, s->angle);
     apply_slope(s, course.next, s->expected);
@@ -204,10 +210,12 @@ static void put(bough_aero_signal *s) {
         memcpy(rod->slope + c * stride, s->slope + c * n, n * sizeof(double));
     for (size_t c = 0; c < 4 && rod->damped; c++)
         memcpy(rod->angle + c * stride, s->angle + c * n, n * sizeof(double));
-    size_t first = 6 * n; // along the segments: on the straight line
-    for (size_t k = first; k < (size_t)s->n; k++)
-        s->along[k - first] = (s->reached[k] - s->value[k]) / s->span;
-    bough_rod_loads_along(bough_beam_mesh(beam), s->value + first, s->along, rod);
+    int first = 6 * s->n_vertex, count = s->n - first; // along the segments: on the straight line
+    const double *restrict from = s->value + first, *restrict to = s->reached + first;
+    double *restrict along = s->along, inverse = 1 / s->span;
+#pragma omp simd
+    for (int k = 0; k < count; k++) along[k] = (to[k] - from[k]) * inverse;
+    bough_rod_loads_along(bough_beam_mesh(beam), from, along, rod);
 }
 
 void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_aero_course course,
@@ -232,11 +240,12 @@ void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_
 static void bend(bough_aero_signal *s, const double *from, const double *next, const double *now,
                  const double *last) {
     double *restrict value = s->value, *restrict rate = s->rate, *restrict curve = s->curve;
-    double span = s->span, square = 1 / (span * span);
+    double inverse = 1 / s->span, square = inverse * inverse;
+#pragma omp simd
     for (int k = 0; k < s->n; k++) {
         double bump = -0.5 * (next[k] - 2 * now[k] + last[k]) + 3 * (now[k] - from[k]);
         value[k] = from[k];
-        rate[k] = (next[k] - from[k] + bump) / span;
+        rate[k] = (next[k] - from[k] + bump) * inverse;
         curve[k] = -bump * square;
     }
 }
