@@ -115,7 +115,6 @@ static bough_status read_all(bough_arena *arena, FILE *stream, const char *path,
     if (bough_is_ok(&status)) status = count_values(path, box, text, size, &n);
     if (!bough_is_ok(&status)) return status;
     int16_t *value = bough_arena_take(arena, (size_t)n * sizeof *value);
-    if (!value) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind of %s.", path);
     box->value = value;
     if (fseek(stream, (long)(HEAD + text), SEEK_SET) != 0) return bad(path, "it is no plain file");
     return read_values(stream, path, n, value);

@@ -272,9 +272,7 @@ static bough_status make_in(bough_arena *scratch, maker *m) {
     m->table = bough_arena_doubles(scratch, n);
     place *places = bough_arena_take(scratch, n * sizeof *places);
     m->fourier = bough_fourier_create(m->box->n_time);
-    if (bough_arena_exhausted(scratch) || !m->fourier) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for turbulent wind.");
-    }
+    if (!m->fourier) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for turbulent wind");
     set_order(m, places);
     bough_status status = bough_ok();
     for (int c = 0; c < 3 && bough_is_ok(&status); c++) status = make_component(m, c);
@@ -292,9 +290,8 @@ bough_status bough_turbulence_make(bough_arena *arena, const bough_wind_iec_def 
     lay_out(def, box);
     size_t values = 3 * (size_t)m.n_point * (size_t)box->n_time;
     box->value = m.value = bough_arena_take(arena, values * sizeof *m.value);
-    bough_arena *scratch = bough_arena_create();
-    bough_status status = bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for turbulent wind.");
-    if (scratch && m.value) status = make_in(scratch, &m);
+    bough_arena *scratch = bough_arena_child(arena);
+    bough_status status = make_in(scratch, &m);
     bough_fourier_destroy(m.fourier);
     bough_arena_destroy(scratch);
     return status;

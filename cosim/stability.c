@@ -20,6 +20,9 @@ static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
 // The map z → z after `repeat` macro steps; z is what a step depends on, see bough_coupling_load.
 typedef struct map {
     bough_arena *arena;
+    const bough_assembly *real;
+    const bough_scheme_options *options;
+    bough_stability *result;
     bough_assembly assembly; // of the linear members
     bough_member *linear;    // (n_member)
     bough_coupling *coupling;
@@ -300,9 +303,10 @@ static bool decided(const map *m) {
     return turns && top.modulus > 1.2 && top.residual < exact * top.modulus && certain(m, &top);
 }
 
-static bough_status judge(map *m, const bough_assembly *a, const bough_scheme_options *options,
-                          bough_stability *result) {
-    bough_status status = build(m, a, options);
+static bough_status judge(bough_arena *arena, void *self) {
+    map *m = self;
+    m->arena = arena;
+    bough_status status = build(m, m->real, m->options);
     if (bough_is_ok(&status)) status = start(m);
     for (int wanted = 2; bough_is_ok(&status) && wanted <= DIMENSION; wanted += 2) {
         bough_arnoldi *space = &m->arnoldi;
@@ -314,7 +318,7 @@ static bough_status judge(map *m, const bough_assembly *a, const bough_scheme_op
         }
         if (bough_is_ok(&status) && (space->done == space->count || decided(m))) break;
     }
-    return bough_is_ok(&status) ? choose(m, result) : status;
+    return bough_is_ok(&status) ? choose(m, m->result) : status;
 }
 
 bough_status bough_stability_judge(const bough_assembly *a, const bough_scheme_options *options,
@@ -328,13 +332,12 @@ bough_status bough_stability_judge_by(const bough_assembly *a, const bough_schem
     if (!scheme || scheme->one_system) {
         return bough_fail(BOUGH_INVALID, "scheme %s has no coupling to judge", options->name);
     }
-    map m = {.arena = bough_arena_create(),
+    map m = {.real = a,
+             .options = options,
              .macro_step = macro_step,
-             .sub_step = fmin(macro_step, longest)};
-    if (!m.arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_status status = judge(&m, a, options, result);
-    bough_arena_destroy(m.arena);
-    return status;
+             .sub_step = fmin(macro_step, longest),
+             .result = result};
+    return bough_arena_use(judge, &m);
 }
 
 // -- advice ---------------------------------------------------------------------------------------

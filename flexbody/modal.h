@@ -60,7 +60,7 @@ bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options,
                                bough_modal_piece *piece);
 
 // All other matrices from the shapes.
-bough_status bough_modal_matrices(bough_arena *arena, bough_modal_options options,
-                                  bough_modal_piece *piece);
+void bough_modal_matrices(bough_arena *arena, bough_modal_options options,
+                          bough_modal_piece *piece);
 
 #endif

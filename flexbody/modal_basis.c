@@ -149,7 +149,7 @@ static bool add_modes(basis *b, int wanted) {
     double *value = bough_arena_doubles(b->arena, n), *work = bough_arena_doubles(b->arena, 26 * n);
     int *index = bough_arena_take(b->arena, 12 * n * sizeof *index);
     double *factor = bough_arena_doubles(b->arena, 36 * (size_t)b->rod->n);
-    if (bough_arena_exhausted(b->arena) || !factor_mass(b, factor)) return false;
+    if (!factor_mass(b, factor)) return false;
     for (int i = 0; i < b->rod->n; i++) {
         const double *diagonal = b->stiffness.diagonal + (size_t)i * BOUGH_BLOCK;
         const double *lower = b->stiffness.lower + (size_t)i * BOUGH_BLOCK;
@@ -197,7 +197,6 @@ static bool add_others(basis *b, bool statics, bool inner) {
     double *x = bough_arena_doubles(b->arena, (size_t)b->size);
     double *y = bough_arena_doubles(b->arena, (size_t)b->size);
     double *work = bough_arena_doubles(b->arena, (size_t)W8 * b->rod->n);
-    if (bough_arena_exhausted(b->arena)) return false;
     for (int k = 0; k < RIGID; k++) {
         rigid_motion(b->rod, k, x);
         add_vector(b, x);
@@ -263,7 +262,7 @@ static void store(const basis *b, const double *value, const double *damping,
     }
 }
 
-static bool take_memory(bough_arena *arena, int m, bough_modal_piece *piece) {
+static void take_memory(bough_arena *arena, int m, bough_modal_piece *piece) {
     piece->m = m;
     piece->stride = bough_padded(m);
     size_t s = (size_t)piece->stride;
@@ -271,14 +270,13 @@ static bool take_memory(bough_arena *arena, int m, bough_modal_piece *piece) {
     piece->scale = bough_arena_doubles(arena, s);
     piece->damping = bough_arena_doubles(arena, (size_t)m * s);
     piece->shape = bough_arena_doubles(arena, 6 * (size_t)piece->n * s);
-    return !bough_arena_exhausted(arena);
 }
 
 static bool find_shapes(basis *b, bough_modal_options options, bool inner) {
     size_t most = (size_t)options.modes + 3 * RIGID + 1; // one more than can be kept, as work
     b->vector = bough_arena_doubles(b->arena, most * (size_t)b->size);
     b->product = bough_arena_doubles(b->arena, most * (size_t)b->size);
-    return !bough_arena_exhausted(b->arena) && linearise(b) && add_modes(b, options.modes) &&
+    return linearise(b) && add_modes(b, options.modes) &&
            add_others(b, options.statics, inner);
 }
 
@@ -291,7 +289,6 @@ static bool diagonalise(basis *b, const bough_block_tridiagonal *stiffness, doub
     double *work = bough_arena_doubles(b->arena, (size_t)b->size + 26 * m);
     double *rotated = bough_arena_doubles(b->arena, m * (size_t)b->size);
     int *index = bough_arena_take(b->arena, 12 * m * sizeof *index);
-    if (bough_arena_exhausted(b->arena)) return false;
     project(b, stiffness, -1, work, reduced);
     if (!bough_symmetric_smallest(b->count, reduced, b->count, value, eigen, work, index)) {
         return false;
@@ -304,21 +301,18 @@ static bool diagonalise(basis *b, const bough_block_tridiagonal *stiffness, doub
 
 bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options,
                                bough_modal_piece *piece) {
-    basis b = {.arena = bough_arena_create(), .rod = piece->rod, .size = 6 * piece->n};
+    basis b = {.arena = bough_arena_child(arena), .rod = piece->rod, .size = 6 * piece->n};
     if (options.modes > b.size) options.modes = b.size;
     bough_status status = bough_fail(BOUGH_FAILED, "%s: its modes cannot be found",
                                      piece->rod->name);
-    if (b.arena != NULL && find_shapes(&b, options, piece->inner)) {
+    if (find_shapes(&b, options, piece->inner)) {
         double *value = bough_arena_doubles(b.arena, (size_t)b.count);
         double *damping = bough_arena_doubles(b.arena, (size_t)b.count * (size_t)b.count);
-        bool ok = value != NULL && damping != NULL && take_memory(arena, b.count, piece);
-        if (ok && diagonalise(&b, &b.blocks.position, value, damping)) {
+        take_memory(arena, b.count, piece);
+        if (diagonalise(&b, &b.blocks.position, value, damping)) {
             store(&b, value, damping, piece);
             status = bough_ok();
         }
-    }
-    if (b.arena == NULL || bough_arena_exhausted(b.arena) || bough_arena_exhausted(arena)) {
-        status = bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", piece->rod->name);
     }
     bough_arena_destroy(b.arena);
     return status;

@@ -209,7 +209,7 @@ static vertex_mass mass_of(const bough_rod_model *rod, int i) {
     return (vertex_mass){v->mass, arm, bough_add(rod->position0[i], arm), about};
 }
 
-static bool take_memory(bough_arena *arena, bough_arena *work, fields *f) {
+static void take_memory(bough_arena *arena, bough_arena *work, fields *f) {
     bough_modal_piece *p = f->piece;
     size_t s = (size_t)p->stride, matrix = (size_t)p->m * s, field = 6 * (size_t)p->n * s;
     p->rigid = bough_arena_doubles(arena, 6 * s);
@@ -221,7 +221,6 @@ static bool take_memory(bough_arena *arena, bough_arena *work, fields *f) {
     f->shape = bough_arena_doubles(work, field);
     f->product = bough_arena_doubles(work, field);
     for (int a = 0; a < 3; a++) f->rest[a] = bough_arena_doubles(work, field);
-    return !bough_arena_exhausted(arena) && !bough_arena_exhausted(work);
 }
 
 static void set_all(fields *f, bool stiffening) {
@@ -243,15 +242,13 @@ static void set_all(fields *f, bool stiffening) {
     for (int j = 0; j < BOUGH_MODAL_FIELDS && stiffening; j++) set_stiffening(f, j);
 }
 
-bough_status bough_modal_matrices(bough_arena *arena, bough_modal_options options,
-                                  bough_modal_piece *piece) {
+void bough_modal_matrices(bough_arena *arena, bough_modal_options options,
+                          bough_modal_piece *piece) {
     fields f = {.piece = piece};
-    bough_arena *work = bough_arena_create();
-    bool ok = work != NULL && take_memory(arena, work, &f);
-    if (ok) set_all(&f, options.stiffening);
+    bough_arena *work = bough_arena_child(arena);
+    take_memory(arena, work, &f);
+    set_all(&f, options.stiffening);
     bough_arena_destroy(work);
-    if (ok) return bough_ok();
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", piece->rod->name);
 }
 
 // -- a piece --------------------------------------------------------------------------------------
@@ -262,7 +259,6 @@ bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *d
     size_t vertices = (size_t)(last - first) + 1;
     bough_vec3 *position = bough_arena_take(arena, vertices * sizeof *position);
     bough_rod_model *rod = NULL;
-    if (position == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", def->name);
     for (size_t i = 0; i < vertices; i++) {
         position[i] = bough_sub(def->position[first + i], def->position[first]);
     }
@@ -280,6 +276,6 @@ bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *d
     *piece = (bough_modal_piece){
         .rod = rod, .first = first, .n = last - first, .inner = last < def->n_segment};
     if (bough_is_ok(&status)) status = bough_modal_basis(arena, options, piece);
-    if (bough_is_ok(&status)) status = bough_modal_matrices(arena, options, piece);
+    if (bough_is_ok(&status)) bough_modal_matrices(arena, options, piece);
     return status;
 }

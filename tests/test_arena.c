@@ -1,4 +1,4 @@
-// The arena: alignment, zeroing, remembered exhaustion, release in reverse order.
+// The arena: alignment, zeroing, work that is left where memory ends, release in reverse order.
 #include "tests/check.h"
 
 #include "core/arena.h"
@@ -23,7 +23,6 @@ static void blocks_are_aligned_zeroed_and_apart(void **state) {
         assert_int_equal(blocks[i][37 * i], i + 1);
     }
     assert_true(bough_arena_bytes(arena) >= 50 * (1 + 37 * 49) / 2);
-    assert_false(bough_arena_exhausted(arena));
     bough_arena_destroy(arena);
 }
 
@@ -38,18 +37,43 @@ static void strings_are_copied(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void exhaustion_is_remembered(void **state) {
+static bool reached;
+
+static bough_status take_too_much(bough_arena *arena, void *self) {
+    bough_arena *child = bough_arena_child(bough_arena_child(arena));
+    bough_arena_take(child, 8);
+    if (*(bool *)self) bough_arena_doubles(child, (size_t)-1 / 4); // its bytes overflow
+    else bough_arena_take(arena, (size_t)-1);
+    reached = true;
+    return bough_ok();
+}
+
+static bough_status take_little(bough_arena *arena, void *self) {
+    bough_arena_take(arena, 8);
+    reached = true;
+    return *(bool *)self ? bough_fail(BOUGH_FAILED, "its own") : bough_ok();
+}
+
+// The guards outside stay as they are.
+static bough_status guard_both(bough_arena *arena, void *self) {
+    assert_int_equal(bough_arena_guard(arena, take_too_much, self).code, BOUGH_OUT_OF_MEMORY);
+    return take_too_much(arena, self);
+}
+
+static void work_is_left_where_memory_ends(void **state) {
     (void)state;
-    bough_arena *arena = bough_arena_create();
-    assert_null(bough_arena_take(arena, (size_t)-1));
-    assert_true(bough_arena_exhausted(arena));
-    assert_non_null(bough_arena_take(arena, 8));
-    assert_true(bough_arena_exhausted(arena));
-    bough_arena_destroy(arena);
-    arena = bough_arena_create();
-    assert_null(bough_arena_doubles(arena, (size_t)-1 / 4)); // its bytes overflow
-    assert_true(bough_arena_exhausted(arena));
-    bough_arena_destroy(arena);
+    bool of_child = false, fails = true;
+    reached = false;
+    assert_int_equal(bough_arena_use(take_too_much, &of_child).code, BOUGH_OUT_OF_MEMORY);
+    of_child = true;
+    bough_status status = bough_arena_use(guard_both, &of_child);
+    assert_int_equal(status.code, BOUGH_OUT_OF_MEMORY);
+    assert_non_null(strstr(status.message, "memory"));
+    assert_false(reached);
+    assert_int_equal(bough_arena_use(take_little, &fails).code, BOUGH_FAILED);
+    fails = false;
+    assert_int_equal(bough_arena_use(take_little, &fails).code, BOUGH_OK);
+    assert_true(reached);
 }
 
 typedef struct record {
@@ -88,7 +112,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blocks_are_aligned_zeroed_and_apart),
         cmocka_unit_test(strings_are_copied),
-        cmocka_unit_test(exhaustion_is_remembered),
+        cmocka_unit_test(work_is_left_where_memory_ends),
         cmocka_unit_test(objects_are_released_newest_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -86,12 +86,14 @@ static bough_status open_output(bough_arena *arena, const subject *x, bough_simu
 }
 
 // What `bough run` does before its first step, and that step.
-static bough_status set_up(bough_arena *arena, const subject *x, bough_errors *errors) {
+static bough_status set_up(bough_arena *arena, void *self) {
+    const subject *x = self;
+    bough_errors errors = {.arena = arena};
     bough_scene *scene;
     bough_simulation *s;
     int n = 0;
     while (x->set[n]) n++;
-    bough_status status = bough_scene_read(arena, x->path, x->set, n, errors, &scene);
+    bough_status status = bough_scene_read(arena, x->path, x->set, n, &errors, &scene);
     if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &s);
     if (bough_is_ok(&status)) status = open_output(arena, x, s);
     return bough_is_ok(&status) ? bough_step(s->master) : status;
@@ -102,21 +104,17 @@ static bool tells(const bough_status *status) {
 }
 
 // Returns whether an allocation was refused.
-static bool try_without(const subject *x, long k, bool only_one) {
+static bool try_without(subject *x, long k, bool only_one) {
     left = k;
     once = only_one;
     armed = true;
-    bough_arena *arena = bough_arena_create();
-    bough_errors errors = {.arena = arena};
-    bough_status status =
-        arena ? set_up(arena, x, &errors) : bough_fail(BOUGH_OUT_OF_MEMORY, "no memory");
+    bough_status status = bough_arena_use(set_up, x);
     armed = false;
     bool refused = left < 0;
     if (refused ? !bough_is_ok(&status) && !tells(&status) : !bough_is_ok(&status)) {
         print_error("%s, allocation %ld: code %d: %s\n", x->path, k, status.code, status.message);
         fail();
     }
-    bough_arena_destroy(arena);
     return refused;
 }
 

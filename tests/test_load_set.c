@@ -49,8 +49,7 @@ static bough_load_set made(bough_load_case cases[CASES], bough_load_group group[
 // A result of a sine of range 2a about m over n periods, sampled 8 times each, every 0.5 s.
 static bough_case_result sine(bough_arena *arena, const bough_load_set *set, double m, double a,
                               int n) {
-    bough_case_result r;
-    assert_true(bough_case_take(arena, set, &r));
+    bough_case_result r = bough_case_take(arena, set);
     for (int i = 0; i <= 8 * n; i++) {
         const double value[2] = {m + a * cos(0.25 * 3.14159265358979323846 * i), i};
         bough_counts_add(&r.counts, 0.5 * i, value);

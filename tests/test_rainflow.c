@@ -152,7 +152,7 @@ static void extremes_come_with_all_channels(void **state) {
     static const double slope[] = {4}, rows[][2] = {{1, 10}, {5, 20}, {-2, 30}, {5, 40}, {0, NAN}};
     bough_arena *arena = bough_arena_create();
     bough_counts c;
-    assert_true(bough_counts_take(arena, 2, 1, slope, &c));
+    bough_counts_take(arena, 2, 1, slope, &c);
     for (int i = 0; i < 5; i++) bough_counts_add(&c, 0.5 * i, rows[i]);
     bough_counts_finish(&c);
     const bough_channel_counts *first = &c.channel[0];

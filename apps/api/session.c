@@ -115,17 +115,25 @@ int bough_session_restore(bough_session *s, const void *copy) {
 // The first region of a thread starts its team; later ones find it.
 static void start_threads(void *unused) { (void)unused; }
 
-static bough_status build(bough_session *s, const char *path, const char *const *set, int count) {
-    bough_errors errors = {.arena = s->arena};
+typedef struct opening {
+    bough_session *session;
+    const char *path, *const *set;
+    int n_set;
+} opening;
+
+static bough_status build(bough_arena *arena, void *self) {
+    const opening *o = self;
+    bough_session *s = o->session;
+    bough_errors errors = {.arena = arena};
     bough_scene *scene = NULL;
-    bough_status status = bough_scene_read(s->arena, path, set, count, &errors, &scene);
+    bough_status status = bough_scene_read(arena, o->path, o->set, o->n_set, &errors, &scene);
     if (!bough_is_ok(&status)) {
         bool listed = errors.n > 0 && status.code == BOUGH_INVALID;
         if (listed) keep_errors(s, &errors);
         if (listed) status.message[0] = '\0';
         return status;
     }
-    status = bough_run_create(s->arena, scene, &s->run);
+    status = bough_run_create(arena, scene, &s->run);
     if (!bough_is_ok(&status)) return status;
     s->open = true;
     bough_pool_region(s->run.simulation->pool, start_threads, NULL);
@@ -137,8 +145,12 @@ bough_session *bough_session_open(const char *scene, const char *const *set, int
     bough_session *s = calloc(1, sizeof *s);
     if (!s) return NULL;
     s->arena = bough_arena_create();
-    conclude(s, s->arena ? build(s, scene, set, count)
-                       : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory"));
+    if (!s->arena) {
+        free(s);
+        return NULL;
+    }
+    opening o = {s, scene, set, count};
+    conclude(s, bough_arena_guard(s->arena, build, &o));
     return s;
 }
 

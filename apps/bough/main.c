@@ -62,10 +62,13 @@ const bough_verb bough_verbs[] = {
     {0},
 };
 
-static bough_status call(bough_arena *arena, int argc, char **argv) {
+// self: the arguments, from the command on, ended by NULL
+static bough_status call(bough_arena *arena, void *self) {
+    char **argv = self;
+    int argc = 1;
+    while (argv[argc]) argc++;
     const bough_verb *verb = bough_verb_find(argv[0]);
     if (!verb) return bough_verb_unknown("command", argv[0], NULL);
-    if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_options options;
     bough_status status = bough_options_read(arena, argc, argv, &verb->syntax, &options);
     if (!bough_is_ok(&status)) return status;
@@ -101,9 +104,7 @@ int main(int argc, char **argv) {
         bough_help_overview(stderr);
         return bough_exit_code(BOUGH_INVALID);
     }
-    bough_arena *arena = bough_arena_create();
-    bough_status status = end_output(call(arena, argc - 1, argv + 1));
-    bough_arena_destroy(arena);
+    bough_status status = end_output(bough_arena_use(call, argv + 1));
     if (!bough_is_ok(&status) && status.message[0]) {
         const char *grade = status.code == BOUGH_INTERRUPTED ? "" : "error: ";
         fprintf(stderr, "bough: %s%s\n", grade, status.message);

@@ -159,11 +159,10 @@ static void add_modes(const bough_simulation *sim, const bough_vibration *v, int
 
 static bough_status solve_point(bough_arena *keep, const bough_options *options, int point,
                                 tracks *track, bough_sweep *s) {
-    bough_arena *arena = bough_arena_create();
+    bough_arena *arena = bough_arena_child(keep);
     bough_options at;
     bough_simulation *sim = NULL;
     bough_vibration v = {0};
-    if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = set_point(arena, options, s, point, &at);
     if (bough_is_ok(&status)) status = bough_open(arena, &at, &sim);
     int count = sim ? sim->scene->modes.count : 0;

@@ -32,15 +32,16 @@ typedef struct open_container {
 } open_container;
 
 typedef struct reader {
-    bough_arena *arena;
+    bough_arena *arena, *work; // of the tree; of the reader itself
     bough_errors *errors;
     const char *file;
     const char *text;
     size_t size;
     yaml_parser_t parser;
+    yaml_event_t event; // the present one
     char *pool; // small objects are cut from blocks: the arena's smallest block has 128 bytes
     size_t pool_left, pool_size;
-    bough_node **stack; // malloc
+    bough_node **stack; // (stack_capacity)
     int n_stack, stack_capacity;
     open_container open[MAX_DEPTH];
     int depth;
@@ -54,36 +55,30 @@ typedef struct reader {
 // -- errors
 // -----------------------------------------------------------------------------------------
 
-static bool grow_errors(bough_errors *errors) {
-    if (errors->n < errors->capacity) return true;
+static void grow_errors(bough_errors *errors) {
+    if (errors->n < errors->capacity) return;
     int capacity = errors->capacity == 0 ? 8 : 2 * errors->capacity;
     bough_error *item = bough_arena_take(errors->arena, (size_t)capacity * sizeof *item);
-    if (item == NULL) return false;
     if (errors->n > 0) memcpy(item, errors->item, (size_t)errors->n * sizeof *item);
     errors->item = item;
     errors->capacity = capacity;
-    return true;
-}
-
-static const char *keep(const bough_errors *errors, const char *text, const char *instead) {
-    const char *copy = bough_arena_string(errors->arena, text);
-    return copy == NULL ? instead : copy;
 }
 
 void bough_errors_add(bough_errors *errors, const bough_node *where, const char *path,
                       const char *format, ...) {
-    if (errors->n >= MAX_ERRORS || !grow_errors(errors)) {
+    if (errors->n >= MAX_ERRORS) {
         errors->dropped++;
         return;
     }
+    grow_errors(errors);
     char text[400];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     errors->item[errors->n++] = (bough_error){
-        keep(errors, where->file, ""), where->line, where->column, keep(errors, path, ""),
-        keep(errors, text, "memory is exhausted")};
+        bough_arena_string(errors->arena, where->file), where->line, where->column,
+        bough_arena_string(errors->arena, path), bough_arena_string(errors->arena, text)};
 }
 
 // Rank of an error's file: those without a position, the first file, the others.
@@ -142,8 +137,7 @@ static void *take(reader *r, size_t size) {
     if (size > r->pool_size / 8) return bough_arena_take(r->arena, size);
     if (size > r->pool_left) {
         r->pool = bough_arena_take(r->arena, r->pool_size);
-        r->pool_left = r->pool == NULL ? 0 : r->pool_size;
-        if (r->pool == NULL) return NULL;
+        r->pool_left = r->pool_size;
     }
     void *p = r->pool;
     r->pool += size;
@@ -151,16 +145,14 @@ static void *take(reader *r, size_t size) {
     return p;
 }
 
-static bool push(reader *r, bough_node *node) {
-    if (r->n_stack == r->stack_capacity) {
-        int capacity = r->stack_capacity == 0 ? 64 : 2 * r->stack_capacity;
-        bough_node **stack = realloc(r->stack, (size_t)capacity * sizeof *stack);
-        if (stack == NULL) return false;
-        r->stack = stack;
-        r->stack_capacity = capacity;
-    }
-    r->stack[r->n_stack++] = node;
-    return true;
+// Room for so many more nodes on the stack.
+static void make_room(reader *r, int more) {
+    if (r->n_stack + more <= r->stack_capacity) return;
+    int capacity = r->n_stack + more > 64 ? 2 * (r->n_stack + more) : 64;
+    bough_node **stack = bough_arena_take(r->work, (size_t)capacity * sizeof *stack);
+    if (r->n_stack > 0) memcpy(stack, r->stack, (size_t)r->n_stack * sizeof *stack);
+    r->stack = stack;
+    r->stack_capacity = capacity;
 }
 
 // -- refusals
@@ -169,13 +161,6 @@ static bool push(reader *r, bough_node *node) {
 static bool refuse(reader *r, yaml_mark_t at, const char *text) {
     bough_node where = {.file = r->file, .line = (int)at.line + 1, .column = (int)at.column + 1};
     bough_errors_add(r->errors, &where, "", "%s", text);
-    return false;
-}
-
-static bool exhausted(reader *r) {
-    bough_node where = {.file = r->file};
-    r->errors->exhausted = true;
-    bough_errors_add(r->errors, &where, "", "memory is exhausted");
     return false;
 }
 
@@ -217,7 +202,7 @@ static yaml_mark_t mark_of_offset(const reader *r, size_t offset) {
 
 static bool syntax_error(reader *r) {
     const yaml_parser_t *p = &r->parser;
-    if (p->error == YAML_MEMORY_ERROR) return exhausted(r);
+    if (p->error == YAML_MEMORY_ERROR) bough_arena_leave(r->work);
     if (p->error != YAML_READER_ERROR) {
         return refuse(r, p->problem_mark, readable(p->problem));
     }
@@ -235,10 +220,6 @@ static bough_node *new_node(reader *r, bough_node_kind kind, yaml_mark_t at) {
         return NULL;
     }
     bough_node *node = take(r, sizeof *node);
-    if (node == NULL) {
-        exhausted(r);
-        return NULL;
-    }
     *node = (bough_node){.kind = kind, .file = r->file, .weight = 1};
     node->line = (int)at.line + 1;
     node->column = (int)at.column + 1;
@@ -260,7 +241,9 @@ static bool attach(reader *r, bough_node *node, yaml_mark_t at) {
         r->root = node;
         return true;
     }
-    return push(r, node) || exhausted(r);
+    make_room(r, 1);
+    r->stack[r->n_stack++] = node;
+    return true;
 }
 
 static bool remember_anchor(reader *r, const yaml_char_t *name, bough_node *node, yaml_mark_t at) {
@@ -268,7 +251,6 @@ static bool remember_anchor(reader *r, const yaml_char_t *name, bough_node *node
     if (r->n_anchor == MAX_ANCHORS) return refuse(r, at, "more than a thousand anchors");
     size_t size = strlen((const char *)name) + 1;
     char *copy = take(r, size);
-    if (copy == NULL) return exhausted(r);
     memcpy(copy, name, size);
     r->anchors[r->n_anchor++] = (anchor){copy, node};
     return true;
@@ -284,7 +266,6 @@ static bool add_scalar(reader *r, const yaml_event_t *e) {
         return refuse(r, e->start_mark, "a control character is not allowed");
     }
     char *text = take(r, length + 1);
-    if (text == NULL) return exhausted(r);
     memcpy(text, e->data.scalar.value, length + 1);
     node->text = text;
     node->quoted = e->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
@@ -336,10 +317,10 @@ static int compare_keys(const void *a, const void *b) {
 }
 
 // Adds an error for every key given before. Sorted: a hostile file may hold half a million keys.
-static bool check_duplicates(reader *r, const bough_node *mapping) {
-    if (mapping->n < 2) return true;
-    bough_node **sorted = malloc((size_t)mapping->n * sizeof *sorted);
-    if (sorted == NULL) return exhausted(r);
+static void check_duplicates(reader *r, const bough_node *mapping) {
+    if (mapping->n < 2) return;
+    make_room(r, mapping->n);
+    bough_node **sorted = r->stack + r->n_stack;
     memcpy(sorted, mapping->key, (size_t)mapping->n * sizeof *sorted);
     qsort(sorted, (size_t)mapping->n, sizeof *sorted, compare_keys);
     for (int i = 1; i < mapping->n; i++) {
@@ -348,8 +329,6 @@ static bool check_duplicates(reader *r, const bough_node *mapping) {
                              sorted[i]->text, sorted[i - 1]->line);
         }
     }
-    free(sorted);
-    return true;
 }
 
 // Moves the children of the container from the stack into it.
@@ -358,7 +337,6 @@ static bool take_children(reader *r, bough_node *node, int start) {
     node->n = count / stride;
     if (count == 0) return true;
     bough_node **slots = take(r, (size_t)count * sizeof *slots);
-    if (slots == NULL) return exhausted(r);
     node->value = slots;
     node->key = stride == 2 ? slots + node->n : NULL;
     for (int i = 0; i < node->n; i++) {
@@ -380,7 +358,8 @@ static bool take_children(reader *r, bough_node *node, int start) {
 static bool close_node(reader *r) {
     open_container c = r->open[--r->depth];
     if (!take_children(r, c.node, c.start)) return false;
-    return c.node->kind != BOUGH_MAPPING || check_duplicates(r, c.node);
+    if (c.node->kind == BOUGH_MAPPING) check_duplicates(r, c.node);
+    return true;
 }
 
 static bool handle(reader *r, const yaml_event_t *e) {
@@ -400,11 +379,10 @@ static bool handle(reader *r, const yaml_event_t *e) {
 
 static bool parse_events(reader *r) {
     for (bool more = true; more;) {
-        yaml_event_t event;
-        if (!yaml_parser_parse(&r->parser, &event)) return syntax_error(r);
-        more = event.type != YAML_STREAM_END_EVENT;
-        bool handled = handle(r, &event);
-        yaml_event_delete(&event);
+        if (!yaml_parser_parse(&r->parser, &r->event)) return syntax_error(r);
+        more = r->event.type != YAML_STREAM_END_EVENT;
+        bool handled = handle(r, &r->event);
+        yaml_event_delete(&r->event);
         if (!handled) return false;
     }
     if (r->root != NULL) return true;
@@ -414,18 +392,21 @@ static bool parse_events(reader *r) {
 // -- reading
 // ----------------------------------------------------------------------------------------
 
+static void release(void *self) {
+    reader *r = self;
+    yaml_event_delete(&r->event);
+    yaml_parser_delete(&r->parser);
+}
+
 bough_node *bough_text_parse(bough_arena *arena, const char *file, const char *text, size_t size,
                              bough_errors *errors) {
-    reader *r = calloc(1, sizeof *r);
-    bough_node nowhere = {.file = file};
-    if (r == NULL || !yaml_parser_initialize(&r->parser)) {
-        free(r);
-        errors->exhausted = true;
-        bough_errors_add(errors, &nowhere, "", "memory is exhausted");
-        return NULL;
-    }
+    bough_arena *work = bough_arena_child(arena);
+    reader *r = bough_arena_take(work, sizeof *r);
+    if (!yaml_parser_initialize(&r->parser)) bough_arena_leave(work);
+    bough_arena_on_destroy(work, release, r);
     bool bom = size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0;
     r->arena = arena;
+    r->work = work;
     r->errors = errors;
     r->file = bough_arena_string(arena, file);
     r->text = bom ? text + 3 : text;
@@ -436,14 +417,14 @@ bough_node *bough_text_parse(bough_arena *arena, const char *file, const char *t
     int before = errors->n + errors->dropped;
     bool parsed = parse_events(r) && errors->n + errors->dropped == before;
     bough_node *root = parsed ? r->root : NULL;
-    yaml_parser_delete(&r->parser);
-    free(r->stack);
-    free(r);
+    bough_arena_destroy(work);
     return root;
 }
 
-// The file's bytes in memory of malloc, NULL after an error.
-static char *read_bytes(const char *path, size_t *size, bough_errors *errors) {
+static void close_file(void *stream) { fclose(stream); }
+
+// The file's bytes; NULL after an error.
+static char *read_bytes(bough_arena *arena, const char *path, size_t *size, bough_errors *errors) {
     bough_node where = {.file = path};
     char why[BOUGH_INPUT_REASON];
     FILE *stream = bough_input_open(path, MAX_BYTES, why);
@@ -451,31 +432,25 @@ static char *read_bytes(const char *path, size_t *size, bough_errors *errors) {
         bough_errors_add(errors, &where, "", "cannot be read: %s", why);
         return NULL;
     }
-    char *bytes = malloc(MAX_BYTES + 1);
+    bough_arena_on_destroy(arena, close_file, stream);
+    fseek(stream, 0, SEEK_END);
+    long most = ftell(stream);
+    rewind(stream);
+    char *bytes = bough_arena_take(arena, (size_t)(most > 0 ? most : 0) + 1);
     errno = 0;
-    *size = bytes == NULL ? 0 : fread(bytes, 1, MAX_BYTES + 1, stream);
-    if (bytes == NULL || ferror(stream)) {
-        bool full = bytes == NULL;
-        errors->exhausted = errors->exhausted || full;
-        bough_errors_add(errors, &where, "", "cannot be read: %s",
-                         full ? "memory is exhausted" : strerror(errno));
-    } else if (*size > MAX_BYTES) { // it has grown meanwhile
-        bough_errors_add(errors, &where, "", "the file is larger than 16 MB");
-    } else {
-        fclose(stream);
-        return bytes;
-    }
-    fclose(stream);
-    free(bytes);
+    *size = fread(bytes, 1, (size_t)(most > 0 ? most : 0) + 1, stream);
+    if (most >= 0 && !ferror(stream) && *size <= (size_t)most) return bytes;
+    bough_errors_add(errors, &where, "", "cannot be read: %s",
+                     errno ? strerror(errno) : "it grows while it is read");
     return NULL;
 }
 
 bough_node *bough_text_read(bough_arena *arena, const char *path, bough_errors *errors) {
     size_t size = 0;
-    char *bytes = read_bytes(path, &size, errors);
-    if (bytes == NULL) return NULL;
-    bough_node *root = bough_text_parse(arena, path, bytes, size, errors);
-    free(bytes);
+    bough_arena *work = bough_arena_child(arena);
+    const char *bytes = read_bytes(work, path, &size, errors);
+    bough_node *root = bytes ? bough_text_parse(arena, path, bytes, size, errors) : NULL;
+    bough_arena_destroy(work);
     return root;
 }
 

@@ -44,7 +44,6 @@ typedef struct bough_errors {
     bough_error *item; // (n)
     int n, capacity;
     int dropped; // beyond the hundred that are kept
-    bool exhausted; // memory ended while reading
 } bough_errors;
 
 // Adds an error with a printf-style text at the node.

@@ -84,14 +84,13 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
 
 // -- files ----------------------------------------------------------------------------------------
 
-void bough_draft_start(bough_draft *d, bough_status *status) {
-    *d = (bough_draft){.arena = bough_arena_create(), .status = status};
-    bool good = d->arena != NULL;
+static bough_status open_texts(bough_draft *d) {
+    bool good = true;
     for (int i = 0; i < BOUGH_N_NOTE; i++)
         good = (d->note[i] = open_memstream(&d->note_text[i], &d->note_size[i])) && good;
     for (int i = 0; i < BOUGH_N_IMPORT_FILE; i++)
         good = (d->file[i] = open_memstream(&d->file_text[i], &d->file_size[i])) && good;
-    *status = good ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    return good ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
 }
 
 static bough_status write_file(const char *folder, int kind, const char *text) {
@@ -197,20 +196,37 @@ static bool close_all(FILE **file, int n) {
     bool good = true;
     for (int i = 0; i < n; i++) {
         if (file[i] && (ferror(file[i]) | fclose(file[i])) != 0) good = false;
+        file[i] = NULL;
     }
     return good;
 }
 
-void bough_draft_finish(bough_draft *d, const char *folder, FILE *echo) {
+static bough_status import(bough_arena *arena, void *self) {
+    const bough_draft_def *def = self;
+    bough_draft *d = def->draft;
+    d->arena = arena;
+    def->convert(def->self, def->path);
     bool good = close_all(d->note, BOUGH_N_NOTE);
     if (good && bough_is_ok(d->status)) put_list(d);
     good = close_all(d->file, BOUGH_N_IMPORT_FILE) && good;
-    if (!good) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    if (bough_is_ok(d->status)) *d->status = publish(d, folder);
-    if (bough_is_ok(d->status) && echo) fputs(d->file_text[BOUGH_IMPORT_LIST], echo);
+    if (!good) return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
+    if (bough_is_ok(d->status)) *d->status = publish(d, def->folder);
+    if (bough_is_ok(d->status) && def->echo) fputs(d->file_text[BOUGH_IMPORT_LIST], def->echo);
+    return *d->status;
+}
+
+bough_status bough_draft_import(const bough_draft_def *def) {
+    bough_draft *d = def->draft;
+    bough_draft_def own = *def;
+    bough_status kept = bough_ok();
+    *d = (bough_draft){.status = &kept};
+    bough_status status = open_texts(d);
+    if (bough_is_ok(&status)) status = bough_arena_use(import, &own);
+    close_all(d->note, BOUGH_N_NOTE);
+    close_all(d->file, BOUGH_N_IMPORT_FILE);
     for (int i = 0; i < BOUGH_N_NOTE; i++)
         free(d->note_text[i]);
     for (int i = 0; i < BOUGH_N_IMPORT_FILE; i++)
         free(d->file_text[i]);
-    bough_arena_destroy(d->arena);
+    return status;
 }

@@ -42,12 +42,17 @@ typedef struct bough_draft {
 
 #define BOUGH_IMPORT_BOX "wind.bts"
 
-// Takes memory; a failure is in *status. The draft must then stay where it is.
-void bough_draft_start(bough_draft *d, bough_status *status);
+// An import: convert(self, path) fills the draft, then the files are written unless there was a failure or
+// they make no scene that can be built and stepped; the list also to `echo` (NULL: nobody).
+typedef struct bough_draft_def {
+    bough_draft *draft;
+    void (*convert)(void *self, const char *path);
+    void *self;
+    const char *path, *folder;
+    FILE *echo;
+} bough_draft_def;
 
-// Writes the files unless there was a failure or they make no scene that can be built and stepped,
-// the list also to `echo` (NULL: nobody), and gives the memory back.
-void bough_draft_finish(bough_draft *d, const char *folder, FILE *echo);
+bough_status bough_draft_import(const bough_draft_def *def);
 
 // A line of the list.
 void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...)

@@ -140,7 +140,8 @@ static void write_scene(bough_openfast *o, const char *path) {
     if (o->aero) note_other_blades(o, o->aero, "ADBlFile");
 }
 
-static void convert(bough_openfast *o, const char *path) {
+static void convert(void *self, const char *path) {
+    bough_openfast *o = self;
     o->main = bough_deck_open(o->draft.arena, path, o->draft.status);
     if (o->main) open_modules(o);
     bough_openfast_check(o->elasto, BOUGH_LIMITS_ELASTO);
@@ -152,10 +153,11 @@ static void convert(bough_openfast *o, const char *path) {
 
 bough_status bough_import_openfast(const char *path, const char *folder,
                                    const bough_import_options *options, FILE *echo) {
-    bough_status status;
     bough_openfast o = {.options = options};
-    bough_draft_start(&o.draft, &status);
-    if (bough_is_ok(&status)) convert(&o, path);
-    bough_draft_finish(&o.draft, folder, echo);
-    return status;
+    return bough_draft_import(&(bough_draft_def){.draft = &o.draft,
+                                                 .convert = convert,
+                                                 .self = &o,
+                                                 .path = path,
+                                                 .folder = folder,
+                                                 .echo = echo});
 }

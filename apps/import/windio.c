@@ -118,7 +118,8 @@ static void note_left(bough_windio *w) {
                      "strength, costs, site");
 }
 
-static void convert(bough_windio *w, const char *path) {
+static void convert(void *self, const char *path) {
+    bough_windio *w = self;
     w->root = bough_entry_read(&w->draft, path);
     find_parts(w);
     read_axis(w);
@@ -140,10 +141,11 @@ static void convert(bough_windio *w, const char *path) {
 
 bough_status bough_import_windio(const char *path, const char *folder,
                                  const bough_import_options *options, FILE *echo) {
-    bough_status status;
     bough_windio w = {.options = options};
-    bough_draft_start(&w.draft, &status);
-    if (bough_is_ok(&status)) convert(&w, path);
-    bough_draft_finish(&w.draft, folder, echo);
-    return status;
+    return bough_draft_import(&(bough_draft_def){.draft = &w.draft,
+                                                 .convert = convert,
+                                                 .self = &w,
+                                                 .path = path,
+                                                 .folder = folder,
+                                                 .echo = echo});
 }

@@ -337,19 +337,18 @@ static void put_web(parts *p, section *s, int web) {
 // -- stations -------------------------------------------------------------------------------------
 
 static void solve_station(parts *p, section *s, double stiffness[36], double mass[36]) {
-    bough_arena *scratch = bough_arena_create();
     bough_draft *d = &p->w->draft;
+    bough_arena *scratch = bough_arena_child(d->arena);
     bough_windio_outline_at(p->w, p->airfoils, p->share, &p->outline);
     p->twist = bough_curve_at(&p->w->outline.twist, p->share) * p->w->degree * BOUGH_PI / 180;
     s->n_wall = s->n_ply = 0;
     put_skin(p, s);
     for (int i = 0; p->webs && i < p->webs->n; i++)
         put_web(p, s, i);
-    bough_status status = bough_is_ok(d->status) && scratch
+    bough_status status = bough_is_ok(d->status)
                               ? bough_wall_section(scratch, s->n_node, s->x, s->y, s->n_wall, s->wall,
                                                    stiffness, mass)
                               : bough_ok();
-    if (!scratch) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!bough_is_ok(&status)) {
         bough_entry_fail(d, p->layers, "layers at %.4g of the span: %s", p->share, status.message);
     }

@@ -3,13 +3,12 @@
 #include <math.h>
 #include <string.h>
 
-bool bough_counts_take(bough_arena *arena, int n_channel, int n_slope, const double *slope,
+void bough_counts_take(bough_arena *arena, int n_channel, int n_slope, const double *slope,
                        bough_counts *counts) {
     size_t n = (size_t)n_channel;
     *counts = (bough_counts){.n_channel = n_channel};
     counts->channel = bough_arena_take(arena, n * sizeof *counts->channel);
     double *rows = bough_arena_doubles(arena, 2 * n * n);
-    if (!counts->channel || !rows) return false;
     for (size_t i = 0; i < n; i++) {
         bough_channel_counts *c = &counts->channel[i];
         c->rainflow.n_slope = n_slope;
@@ -17,7 +16,6 @@ bool bough_counts_take(bough_arena *arena, int n_channel, int n_slope, const dou
         c->at_least = rows + 2 * i * n;
         c->at_most = c->at_least + n;
     }
-    return true;
 }
 
 static bool are_finite(const double *value, int n) {

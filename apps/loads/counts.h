@@ -21,8 +21,8 @@ typedef struct bough_counts {
     double broken;                 // samples left out because a value was not finite
 } bough_counts;
 
-// Counts for n channels and the slopes (n_slope ≤ BOUGH_MOST_SLOPES), empty. False without memory.
-bool bough_counts_take(bough_arena *arena, int n_channel, int n_slope, const double *slope,
+// Counts for n channels and the slopes (n_slope ≤ BOUGH_MOST_SLOPES), empty.
+void bough_counts_take(bough_arena *arena, int n_channel, int n_slope, const double *slope,
                        bough_counts *counts);
 
 // Takes the values (n_channel) at t [s].

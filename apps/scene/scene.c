@@ -22,10 +22,7 @@ static bough_node *replace(bough_arena *arena, bough_node *root, const char *con
     return root;
 }
 
-static bough_status finish(const char *path, bough_arena *arena, bough_errors *errors) {
-    if (bough_arena_exhausted(arena) || errors->exhausted) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: memory is exhausted", path);
-    }
+static bough_status finish(const char *path, bough_errors *errors) {
     int n = errors->n + errors->dropped;
     if (n == 0) return bough_ok();
     bough_errors_sort(errors, path);
@@ -37,17 +34,15 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     *scene = NULL;
     bough_scene *s = bough_arena_take(arena, sizeof *s);
     bough_node *root = bough_text_read(arena, path, errors);
-    if (s == NULL || root == NULL) return finish(path, arena, errors);
+    if (root == NULL) return finish(path, errors);
     root = replace(arena, root, sets, n_set, errors);
-    if (bough_arena_exhausted(arena)) return finish(path, arena, errors);
     bough_schema_reader reader = {
         .arena = arena, .errors = errors, .directory = directory_of(arena, path)};
     s->file = bough_arena_string(arena, path);
     bough_schema_read(&reader, &bough_scene_schema, root, s);
-    if (bough_arena_exhausted(arena)) return finish(path, arena, errors);
     if (s->node != NULL && errors->n == 0) bough_scene_repeat(&reader, s);
     if (s->node != NULL) bough_scene_link(&reader, s);
-    bough_status status = finish(path, arena, errors);
+    bough_status status = finish(path, errors);
     if (bough_is_ok(&status)) *scene = s;
     return status;
 }

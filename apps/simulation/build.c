@@ -201,15 +201,15 @@ static void connect(bough_builder *b) {
 }
 
 // The run starts from equilibrium: the members move there before their master is built.
-static bough_status find_equilibrium(const bough_assembly_def *def, bough_simulation *s) {
-    bough_arena *arena = bough_arena_create();
+static bough_status find_equilibrium(bough_arena *parent, const bough_assembly_def *def,
+                                     bough_simulation *s) {
+    bough_arena *arena = bough_arena_child(parent);
     bough_assembly *assembly;
     bough_equilibrium_work work;
     bough_trim trim;
-    if (arena == NULL) return out_of_memory();
     bough_status status = bough_assembly_build(arena, def, &assembly);
     if (bough_is_ok(&status) && s->scene->simulation.initial == BOUGH_SCENE_IN_OPERATION) {
-        status = bough_simulation_trim(s, assembly, &trim);
+        status = bough_simulation_trim(arena, s, assembly, &trim);
     } else if (bough_is_ok(&status)) {
         status = bough_simulation_equilibrium(s, assembly, 0, &work);
     }
@@ -243,7 +243,7 @@ static bough_status build_master(bough_builder *b) {
     if (s->jump != NULL) load[def.n_load++] = bough_jump_link_load(s->jump, sim->macro_step);
     def.load = load;
     if (sim->initial != BOUGH_SCENE_UNDEFORMED) {
-        bough_status status = find_equilibrium(&def.assembly, s);
+        bough_status status = find_equilibrium(b->arena, &def.assembly, s);
         if (!bough_is_ok(&status)) return status;
     }
     return bough_master_build(b->arena, &def, &s->master);

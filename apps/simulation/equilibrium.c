@@ -196,14 +196,22 @@ static double *rod_changes(bough_arena *arena, const bough_simulation *s) {
     return bough_arena_doubles(arena, BOUGH_ROD_CHANGE * (size_t)most);
 }
 
-static bough_status balance_members(bough_arena *arena, bough_simulation *s,
-                                   const bough_assembly *assembly, double time,
-                                   bough_equilibrium_work *work) {
+typedef struct balancing {
+    bough_simulation *simulation;
+    const bough_assembly *assembly;
+    double time;
+    bough_equilibrium_work *work;
+} balancing;
+
+static bough_status balance_members(bough_arena *arena, void *data) {
+    const balancing *b = data;
+    bough_simulation *s = b->simulation;
+    const bough_assembly *assembly = b->assembly;
+    double time = b->time;
     bough_coupled *coupled;
     bough_equilibrium_def def = bough_equilibrium_def_default();
     double *state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
     int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
-    if (!state || !row) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = bough_coupled_create(arena, assembly, NULL, &coupled);
     if (!bough_is_ok(&status)) return status;
     def.time = time;
@@ -213,21 +221,17 @@ static bough_status balance_members(bough_arena *arena, bough_simulation *s,
     bough_assembly_states(assembly, state);
     bough_tree_prescribe(s->tree, time, state);
     search self = {s, coupled, time, rod_changes(arena, s)};
-    if (!self.change) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     def.self = &self;
     def.move = move;
     bring_to_rest(&self, state);
     if (turns(coupled, s->tree, state) || s->tree->n_closures == 0) def.rest = bring_to_rest;
-    return s->aero ? balance_in_air(arena, s, coupled, &def, state, work)
-                   : balance(arena, s, coupled, &def, state, work);
+    return s->aero ? balance_in_air(arena, s, coupled, &def, state, b->work)
+                   : balance(arena, s, coupled, &def, state, b->work);
 }
 
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                           bough_equilibrium_work *work) {
-    bough_arena *arena = bough_arena_create();
+    balancing b = {s, assembly, time, work};
     *work = (bough_equilibrium_work){0};
-    if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_status status = balance_members(arena, s, assembly, time, work);
-    bough_arena_destroy(arena);
-    return status;
+    return bough_arena_use(balance_members, &b);
 }

@@ -130,36 +130,40 @@ static bool change(bough_arena *arena, bough_error_share_kind kind, bough_scene 
     return kind == BOUGH_SHARE_MESH ? coarsen_mesh(arena, scene, share) : refine_air(scene, share);
 }
 
-static void find(bough_arena *arena, bough_error_share_kind kind, const bough_run *run, double interval,
-                 bough_error_shares *shares) {
-    bough_error_share *share = &shares->share[kind];
-    bough_scene scene = *run->simulation->scene;
-    follower f = {.shares = shares, .share = share};
+typedef struct finding {
+    bough_error_share_kind kind;
+    const bough_run *run;
+    double interval;
+    bough_error_shares *shares;
+} finding;
+
+static bough_status find(bough_arena *arena, void *self) {
+    const finding *x = self;
+    bough_error_share *share = &x->shares->share[x->kind];
+    bough_scene scene = *x->run->simulation->scene;
+    follower f = {.shares = x->shares, .share = share};
     share->unknown[0] = '\0';
-    if (!change(arena, kind, &scene, share)) return;
+    if (!change(arena, x->kind, &scene, share)) return bough_ok();
     bough_status status = bough_run_create(arena, &scene, &f.run);
     if (bough_is_ok(&status)) {
-        f.run.stop = run->stop;
-        bough_run_record_at(&f.run, (bough_run_record){interval, true, .sample = compare_row, .self = &f});
+        f.run.stop = x->run->stop;
+        bough_run_record_at(&f.run, (bough_run_record){x->interval, true, .sample = compare_row, .self = &f});
         bough_run_all(&f.run);
         status = f.run.outcome;
         share->cpu_s = f.run.cpu_s;
     }
     if (!bough_is_ok(&status)) {
         unknown(share, "the run that would tell it failed: %.100s", status.message);
-    } else if (f.row != shares->n_row) {
+    } else if (f.row != x->shares->n_row) {
         unknown(share, "the run was resumed: its rows before are not in memory");
     }
+    return bough_ok();
 }
 
 void bough_error_shares_find(bough_error_shares *shares, const bough_run *run, double interval) {
     for (int k = 0; k < BOUGH_SHARES && shares->row; k++) {
-        bough_arena *arena = bough_arena_create();
-        if (arena) {
-            find(arena, (bough_error_share_kind)k, run, interval, shares);
-        } else {
-            unknown(&shares->share[k], "out of memory");
-        }
-        bough_arena_destroy(arena);
+        finding f = {(bough_error_share_kind)k, run, interval, shares};
+        bough_status status = bough_arena_use(find, &f);
+        if (!bough_is_ok(&status)) unknown(&shares->share[k], "%s", status.message);
     }
 }

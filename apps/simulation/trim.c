@@ -106,21 +106,16 @@ static void seek_speed(search *x, double speed, double f, double pitch) {
     }
 }
 
-bough_status bough_simulation_trim(bough_simulation *s, const bough_assembly *assembly,
-                                   bough_trim *trim) {
-    bough_arena *arena = bough_arena_create();
-    if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s,
+                                   const bough_assembly *assembly, bough_trim *trim) {
+    bough_arena *own = bough_arena_child(arena);
     const bough_scene_control *control = &s->scene->control;
     search x = {.simulation = s,
                 .assembly = assembly,
                 .law = &control->law,
                 .gear = control->gear_ratio,
-                .state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1),
+                .state = bough_arena_doubles(own, (size_t)assembly->n_state + 1),
                 .status = bough_ok()};
-    if (!x.state) {
-        bough_arena_destroy(arena);
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
     bool pitches = bough_control_link_pitches(s->control);
     double speed = x.law->reference_speed / x.gear;
     double pitch = pitches ? x.law->least_pitch
@@ -135,6 +130,6 @@ bough_status bough_simulation_trim(bough_simulation *s, const bough_assembly *as
         x.status = bough_fail(BOUGH_FAILED, "no steady operation found in %d tries", MOST_TRIES);
     }
     *trim = x.at;
-    bough_arena_destroy(arena);
+    bough_arena_destroy(own);
     return x.status;
 }

@@ -14,7 +14,7 @@ typedef struct bough_trim {
 } bough_trim;
 
 // Needs a control law. BOUGH_FAILED where there is no steady operation.
-bough_status bough_simulation_trim(bough_simulation *s, const bough_assembly *assembly,
-                                   bough_trim *trim);
+bough_status bough_simulation_trim(bough_arena *arena, bough_simulation *s,
+                                   const bough_assembly *assembly, bough_trim *trim);
 
 #endif

@@ -8,6 +8,10 @@
 
 typedef struct case_run {
     const bough_load_set *set;
+    const bough_load_case *chosen_case;
+    const char *folder;
+    bool (*stop)(void);
+    bough_case_result *result;
     bough_run run;
     bough_recorder *recorder; // NULL: no series
     int *column;              // (n_channel) of the set's channels among the run's
@@ -21,9 +25,10 @@ static double cpu_clock(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-bool bough_case_take(bough_arena *arena, const bough_load_set *set, bough_case_result *result) {
-    *result = (bough_case_result){.outcome = bough_ok()};
-    return bough_counts_take(arena, set->n_channel, set->n_slope, set->slope, &result->counts);
+bough_case_result bough_case_take(bough_arena *arena, const bough_load_set *set) {
+    bough_case_result result = {.outcome = bough_ok()};
+    bough_counts_take(arena, set->n_channel, set->n_slope, set->slope, &result.counts);
+    return result;
 }
 
 // -- recording ------------------------------------------------------------------------------------
@@ -87,14 +92,15 @@ static bough_status build(bough_arena *arena, const bough_load_case *c, const ch
     return bough_is_ok(&status) ? open_series(arena, c, folder, r) : status;
 }
 
-static bough_status run_in(bough_arena *arena, const bough_load_case *c, const char *folder,
-                           bool (*stop)(void), case_run *r, bough_case_result *result) {
-    bough_status status = build(arena, c, folder, r);
+static bough_status run_in(bough_arena *arena, void *self) {
+    case_run *r = self;
+    bough_case_result *result = r->result;
+    bough_status status = build(arena, r->chosen_case, r->folder, r);
     if (!bough_is_ok(&status)) return status;
     double interval = r->run.simulation->scene->simulation.output.interval;
     bough_run_record_at(&r->run, (bough_run_record){interval, .sample = sample, .self = r});
     r->run.beside = true;
-    r->run.stop = stop;
+    r->run.stop = r->stop;
     bough_run_all(&r->run);
     bough_counts_finish(r->counts);
     result->time = r->run.simulation->master->time;
@@ -111,14 +117,16 @@ static bool ends_study(bough_code code) {
 
 bough_status bough_case_run(const bough_load_set *set, const bough_load_case *c, const char *folder,
                             bool (*stop)(void), bough_case_result *result) {
-    bough_arena *arena = bough_arena_create();
-    if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     double wall = bough_wall_clock(), cpu = cpu_clock();
-    case_run r = {.set = set, .counts = &result->counts};
-    result->outcome = run_in(arena, c, folder, stop, &r, result);
+    case_run r = {.set = set,
+                  .chosen_case = c,
+                  .folder = folder,
+                  .stop = stop,
+                  .result = result,
+                  .counts = &result->counts};
+    result->outcome = bough_arena_use(run_in, &r);
     result->cpu = cpu_clock() - cpu;
     result->wall = bough_wall_clock() - wall;
-    bough_arena_destroy(arena);
     if (ends_study(result->outcome.code)) return result->outcome;
     result->done = true;
     return bough_ok();

@@ -13,8 +13,8 @@ typedef struct bough_case_result {
     bool done;
 } bough_case_result;
 
-// An empty result whose memory is the arena's. False without memory.
-bool bough_case_take(bough_arena *arena, const bough_load_set *set, bough_case_result *result);
+// An empty result whose memory is the arena's.
+bough_case_result bough_case_take(bough_arena *arena, const bough_load_set *set);
 
 // Runs the case on one thread. What the run itself comes to is in the result; the status tells what
 // ends the study: BOUGH_INTERRUPTED, no memory, a file. `folder` receives its series where asked for.

@@ -114,8 +114,7 @@ static void check_from(const bough_load_set *s, const bough_scene *scene, const 
 
 static bough_status check_case(bough_arena *arena, bough_load_set *s, int i, uint64_t program,
                                bough_errors *errors) {
-    bough_arena *own = bough_arena_create();
-    if (!own) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_arena *own = bough_arena_child(arena);
     bough_errors found = {.arena = own};
     bough_load_case *c = &s->cases[i];
     bough_scene *scene;

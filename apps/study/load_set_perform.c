@@ -47,15 +47,19 @@ static void count(work *w, int number, const bough_case_result *r) {
     pthread_mutex_unlock(&w->mutex);
 }
 
-static bough_status run_case(work *w, int number) {
+typedef struct one_case {
+    work *work;
+    int number;
+} one_case;
+
+static bough_status run_case(bough_arena *arena, void *self) {
+    const one_case *x = self;
+    work *w = x->work;
+    int number = x->number;
     char name[48], folder[BOUGH_PATH_MAX];
-    bough_case_result result;
+    bough_case_result result = bough_case_take(arena, w->set);
     snprintf(name, sizeof name, "cases/%06d", number + 1);
     bough_status status = bough_folder_path(w->options->folder, name, folder);
-    bough_arena *arena = bough_arena_create();
-    if (!arena || !bough_case_take(arena, w->set, &result)) {
-        status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
     if (bough_is_ok(&status)) {
         status = bough_case_run(w->set, &w->set->cases[number], folder, w->options->stop, &result);
     }
@@ -63,7 +67,6 @@ static bough_status run_case(work *w, int number) {
         status = bough_case_write(w->options->folder, w->set, number, &result);
     }
     if (bough_is_ok(&status)) count(w, number, &result);
-    bough_arena_destroy(arena);
     return status;
 }
 
@@ -77,7 +80,8 @@ static void perform_case(void *self, int i) {
     pthread_mutex_unlock(&w->mutex);
     if (!go_on || !bough_claim(w->claims, number)) return;
     if (!bough_case_exists(w->options->folder, w->set, number, &outcome)) {
-        bough_status status = run_case(w, number);
+        one_case x = {w, number};
+        bough_status status = bough_arena_use(run_case, &x);
         pthread_mutex_lock(&w->mutex);
         if (bough_is_ok(&w->worst)) w->worst = status;
         pthread_mutex_unlock(&w->mutex);
@@ -175,10 +179,7 @@ static bough_status run_cases(bough_arena *arena, work *w) {
 // Reads the results one after the other: their number costs no memory.
 static bough_status read_all(bough_arena *arena, const work *w, bough_case_tables *tables,
                              bough_case_plot *plot, bough_lifetime *lifetime, FILE *failures) {
-    bough_case_result result;
-    if (!bough_case_take(arena, w->set, &result)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
+    bough_case_result result = bough_case_take(arena, w->set);
     for (int i = 0; i < w->set->n_case; i++) {
         bough_status status = bough_case_read(w->options->folder, w->set, i, &result);
         if (!bough_is_ok(&status)) return status;

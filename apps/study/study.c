@@ -317,21 +317,18 @@ const char *bough_study_path(bough_arena *arena, const char *study, const char *
 
 static bool find_scene(bough_arena *arena, bough_study *s, bough_errors *errors) {
     s->scene = bough_study_path(arena, s->file, s->scene_name);
-    char why[BOUGH_INPUT_REASON] = "memory is exhausted";
-    FILE *file = s->scene ? bough_input_open(s->scene, BOUGH_INPUT_TEXT, why) : NULL;
+    char why[BOUGH_INPUT_REASON];
+    FILE *file = bough_input_open(s->scene, BOUGH_INPUT_TEXT, why);
     if (!file) {
         bough_errors_add(errors, bough_node_find(s->node, "scene"), "scene",
-                         "file '%.200s' cannot be read: %s", s->scene ? s->scene : s->scene_name, why);
+                         "file '%.200s' cannot be read: %s", s->scene, why);
         return false;
     }
     fclose(file);
     return true;
 }
 
-static bough_status finish(const char *path, bough_arena *arena, bough_errors *errors) {
-    if (bough_arena_exhausted(arena) || errors->exhausted) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: memory is exhausted", path);
-    }
+static bough_status finish(const char *path, bough_errors *errors) {
     int n = errors->n + errors->dropped;
     if (n == 0) return bough_ok();
     bough_errors_sort(errors, path);
@@ -373,25 +370,25 @@ bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
     *study = NULL;
     bough_study *s = bough_arena_take(arena, sizeof *s);
     bough_node *root = bough_text_read(arena, path, errors);
-    if (!s || !root) return finish(path, arena, errors);
+    if (!root) return finish(path, errors);
     s->file = bough_arena_string(arena, path);
     s->threads = threads;
-    if (is_verification(root, errors)) return finish(path, arena, errors);
+    if (is_verification(root, errors)) return finish(path, errors);
     if (is_load_set(root)) {
         bough_status status = read_load_set(arena, root, errors, s);
-        if (bough_is_ok(&status)) status = finish(path, arena, errors);
+        if (bough_is_ok(&status)) status = finish(path, errors);
         if (bough_is_ok(&status)) *study = s;
         return status;
     }
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
     bough_schema_read(&reader, &study_schema, root, s);
-    bough_status status = finish(path, arena, errors);
+    bough_status status = finish(path, errors);
     if (!bough_is_ok(&status)) return status;
     if (find_scene(arena, s, errors)) {
         bough_study_expand(arena, s, errors);
         status = bough_study_check(arena, s, errors);
     }
-    if (bough_is_ok(&status)) status = finish(path, arena, errors);
+    if (bough_is_ok(&status)) status = finish(path, errors);
     if (bough_is_ok(&status)) *study = s;
     return status;
 }

@@ -130,15 +130,13 @@ static void check_times(const bough_study *s, const bough_study_cell *cell,
     }
 }
 
-static bough_status check_cells(bough_study *s, bool times, bough_errors *errors) {
+static void check_cells(bough_study *s, bool times, bough_errors *errors) {
     for (int i = 0; i < s->n_cell && errors->dropped == 0; i++) {
-        bough_arena *arena = bough_arena_create();
-        if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+        bough_arena *arena = bough_arena_child(errors->arena);
         const bough_scene *scene = read_scene(arena, s, &s->cell[i], errors);
         if (scene && times) check_times(s, &s->cell[i], &scene->simulation, errors);
         bough_arena_destroy(arena);
     }
-    return bough_ok();
 }
 
 // -- channels -------------------------------------------------------------------------------------
@@ -202,13 +200,9 @@ static bough_status check_channels(bough_arena *arena, bough_study *s, const bou
 
 bough_status bough_study_check(bough_arena *arena, bough_study *s, bough_errors *errors) {
     assert(errors->arena == arena);
+    if (!s->reference_cell) return bough_ok(); // the caller sees the error of the grid
     s->channel = bough_arena_take(arena, (size_t)count_channels(s) * sizeof *s->channel);
-    bough_arena *own = bough_arena_create();
-    if (!own) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    if (!s->reference_cell || !s->channel) {
-        bough_arena_destroy(own);
-        return bough_ok(); // the caller sees the error of the grid, or the exhausted arena
-    }
+    bough_arena *own = bough_arena_child(arena);
     bough_status status = bough_ok();
     const bough_scene *scene = read_scene(own, s, s->reference_cell, errors);
     if (scene) {
@@ -220,6 +214,6 @@ bough_status bough_study_check(bough_arena *arena, bough_study *s, bough_errors 
         status = check_channels(own, s, scene, errors);
     }
     bough_arena_destroy(own);
-    if (bough_is_ok(&status)) status = check_cells(s, scene != NULL, errors);
+    if (bough_is_ok(&status)) check_cells(s, scene != NULL, errors);
     return status;
 }

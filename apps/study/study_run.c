@@ -12,6 +12,9 @@ enum { MAX_REPEAT = 99 };
 
 typedef struct cell_run {
     const bough_study *study;
+    const bough_study_cell *cell;
+    bough_study_drive *drive;
+    bough_study_result *result;
     bough_run run;
     int *column; // (n_channel) of the study's channels among the run's
     bough_study_series *series;
@@ -140,9 +143,11 @@ static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell
     return status;
 }
 
-static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, cell_run *r,
-                           bough_study_drive *drive, bough_study_result *result) {
-    bough_status status = build(arena, cell, r);
+static bough_status run_in(bough_arena *arena, void *self) {
+    cell_run *r = self;
+    bough_study_drive *drive = r->drive;
+    bough_study_result *result = r->result;
+    bough_status status = build(arena, r->cell, r);
     if (!bough_is_ok(&status)) return status;
     bough_run *run = &r->run;
     const bough_master *m = run->simulation->master;
@@ -191,11 +196,8 @@ bough_status bough_study_run(const bough_study *study, const bough_study_cell *c
     assert(repeat >= 1 && repeat <= MAX_REPEAT);
     *result = (bough_study_result){.outcome = bough_ok()};
     while (n < repeat && bough_is_ok(&result->outcome)) {
-        bough_arena *arena = bough_arena_create();
-        if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-        cell_run r = {.study = study, .series = series};
-        result->outcome = run_in(arena, cell, &r, drive, result);
-        bough_arena_destroy(arena);
+        cell_run r = {study, cell, drive, result, .series = series};
+        result->outcome = bough_arena_use(run_in, &r);
         wall[n] = result->wall;
         cpu[n] = result->cpu;
         n++;

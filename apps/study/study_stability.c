@@ -58,17 +58,21 @@ static bough_status run_reference(stability *x, int group, bough_study_series *s
     return keep(x, cell, r);
 }
 
-static bough_status run_group(stability *x, int group) {
+typedef struct one_group {
+    stability *study;
+    int group;
+} one_group;
+
+static bough_status run_group(bough_arena *arena, void *self) {
+    const one_group *one = self;
+    stability *x = one->study;
+    int group = one->group;
     const bough_study *s = x->study;
-    bough_arena *arena = bough_arena_create();
-    if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_study_drive drive = {.stop = x->options->stop,
                                .progress = bough_progress_start(0, s->duration, true)};
     bough_study_series reference = bough_study_series_take(arena, s);
     bough_study_series series = bough_study_series_take(arena, s);
-    bough_status status = bough_arena_exhausted(arena)
-                              ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
-                              : run_reference(x, group, &reference, &drive);
+    bough_status status = run_reference(x, group, &reference, &drive);
     for (int i = 0; i < s->n_cell && bough_is_ok(&status); i++) {
         bough_study_result *r = &x->result[i];
         if (s->cell[i].reference != group || r->done) continue;
@@ -78,14 +82,14 @@ static bough_status run_group(stability *x, int group) {
         if (both) bough_study_compare(s, &series, &reference, r->error);
         status = keep(x, &s->cell[i], r);
     }
-    bough_arena_destroy(arena);
     return status;
 }
 
 static void perform_group(void *self, int group) {
     stability *x = self;
     if (!is_mine(x, group) || count_missing(x, group) == 0) return;
-    bough_status status = run_group(x, group);
+    one_group one = {x, group};
+    bough_status status = bough_arena_use(run_group, &one);
     if (bough_is_ok(&status)) return;
     pthread_mutex_lock(&x->mutex);
     x->worst = status;

@@ -8,7 +8,10 @@
 
 typedef struct timed {
     const bough_study *study;
+    const bough_study_cell *cell;
     const bough_study_options *options;
+    bool parts; // a clock is asked for
+    bough_timing_run *result;
     bough_run run;
     bough_recorder *recorder;
     bough_clock *clock; // NULL unless asked for
@@ -23,11 +26,11 @@ static bough_status record(void *self, double time) {
     return status;
 }
 
-static bough_status build(bough_arena *arena, const bough_study_cell *cell, timed *t) {
+static bough_status build(bough_arena *arena, timed *t) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
     bough_status status =
-        bough_scene_read(arena, t->study->scene, cell->set, cell->n_set, &errors, &scene);
+        bough_scene_read(arena, t->study->scene, t->cell->set, t->cell->n_set, &errors, &scene);
     if (bough_is_ok(&status)) bough_study_estimate_cheaply(scene);
     if (bough_is_ok(&status)) status = bough_run_create(arena, scene, &t->run);
     if (!bough_is_ok(&status)) return status;
@@ -37,12 +40,13 @@ static bough_status build(bough_arena *arena, const bough_study_cell *cell, time
     return bough_ok();
 }
 
-static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, timed *t, bool parts,
-                           bough_timing_run *run) {
+static bough_status run_in(bough_arena *arena, void *self) {
+    timed *t = self;
+    bough_timing_run *run = t->result;
     double began = bough_wall_clock();
-    bough_status status = build(arena, cell, t);
+    bough_status status = build(arena, t);
     run->build = bough_wall_clock() - began;
-    if (bough_is_ok(&status) && parts) {
+    if (bough_is_ok(&status) && t->parts) {
         status = bough_clock_create(arena, t->run.simulation, &t->clock);
     }
     bough_recorder_def def = {
@@ -61,11 +65,7 @@ static bough_status run_in(bough_arena *arena, const bough_study_cell *cell, tim
 bough_status bough_timing_run_cell(const bough_study *study, const bough_study_cell *cell,
                                    const bough_study_options *options, bool parts,
                                    bough_timing_run *run) {
-    timed t = {.study = study, .options = options};
+    timed t = {.study = study, .cell = cell, .options = options, .parts = parts, .result = run};
     *run = (bough_timing_run){0};
-    bough_arena *arena = bough_arena_create();
-    if (!arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_status status = run_in(arena, cell, &t, parts, run);
-    bough_arena_destroy(arena);
-    return status;
+    return bough_arena_use(run_in, &t);
 }

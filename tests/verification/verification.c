@@ -35,7 +35,7 @@ bough_status bough_verification_read(bough_arena *arena, const char *path, bough
     if (verification->kind) {
         verification->study = verification->kind->read(arena, path, root, errors);
     }
-    if (bough_arena_exhausted(arena) || errors->exhausted) {
+    if (bough_arena_exhausted(arena)) {
         return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: memory is exhausted", path);
     }
     int n = errors->n + errors->dropped;
