@@ -34,12 +34,12 @@ static vertex_variation state_variation(const bough_rod_model *m, const double *
                               .w = load3(d + (size_t)BOUGH_ROD_W * n, n, i)};
 }
 
-// Of the last vertex, whose motion is `end`: u, W, x, p.
-static vertex_variation end_variation(const double *end, const double *d) {
+// Of the last vertex, whose quaternion is p; its motion: u, W, x, p.
+static vertex_variation end_variation(const double *p, const double *d) {
     return (vertex_variation){.u = vector_at(d),
                               .w = vector_at(d + 3),
                               .x = vector_at(d + 6),
-                              .phi = turn_of(end + 9, 1, d + 9, 1)};
+                              .phi = turn_of(p, 1, d + 9, 1)};
 }
 
 // -- the wrenches ---------------------------------------------------------------------------------
@@ -56,36 +56,6 @@ void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, con
     bough_vec3 moment = bough_mat3_mul(r0, f.ll);
     const double values[BOUGH_ROD_OUTPUTS] = {f.f.x, f.f.y, f.f.z, moment.x, moment.y, moment.z};
     memcpy(wrench, values, sizeof values);
-}
-
-void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
-                                   const double *state_rate, const double *input_rate,
-                                   double *wrench) {
-    const double *p = k->vertex + (size_t)KEPT_P * m->stride + 1, *t = k->variation;
-    double position[DIRECTIONS] = {0}, velocity[DIRECTIONS] = {0}, force[6];
-    if (state_rate != NULL) {
-        int n = m->n;
-        const double *u = state_rate + (size_t)BOUGH_ROD_U * n;
-        bough_vec3 phi = turn_of(p, m->stride, state_rate + (size_t)3 * n, n);
-        store3(position + DELTA, 1, 0, load3(state_rate, n, 0));
-        store3(position + RIGHT, 1, 0, phi);
-        store3(velocity + DELTA, 1, 0, load3(u, n, 0));
-        store3(velocity + RIGHT, 1, 0, load3(u + (size_t)3 * n, n, 0));
-    }
-    if (input_rate != NULL) {
-        vertex_variation root = root_variation(m, input_rate);
-        store3(velocity + DELTA, 1, 0, bough_sub(vector_at(velocity + DELTA), root.u));
-        store3(velocity + LEFT, 1, 0, root.w);
-    }
-    for (int f = 0; f < 6; f++, t += LANES * DIRECTIONS) { // F, then LL
-        force[f] = 0;
-        for (int d = 0; d < DIRECTIONS; d++) {
-            force[f] += t[LANES * d] * position[d] + k->root[DIRECTIONS * f + d] * velocity[d];
-        }
-    }
-    bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
-    store3(wrench, 1, 0, vector_at(force));
-    store3(wrench + 3, 1, 0, bough_mat3_mul(r0, vector_at(force + 3)));
 }
 
 // What turning the last vertex by phi changes in the loads on it: in section axes a dead moment
@@ -105,6 +75,73 @@ static segment_force load_variation(const bough_rod_model *m, const bough_rod_lo
     return d;
 }
 
+void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, const double *end,
+                        const bough_rod_scratch *scratch, bough_rod_tangent *k) {
+    memcpy(k->end_rotation, end + 9, 4 * sizeof(double));
+    for (int j = 0; j < 3; j++) {
+        segment_force load = load_variation(m, loads, scratch, unit_vector(j));
+        store3(k->end_load + 3 * j, 1, 0, load.f);
+        store3(k->end_load + 9 + 3 * j, 1, 0, load.lr);
+    }
+}
+
+// Of the moving vertex i + 1, where k was linearised.
+static vertex_variation kept_variation(const bough_rod_model *m, const bough_rod_tangent *k,
+                                       const double *d, int i) {
+    int n = m->n, s = m->stride;
+    return (vertex_variation){
+        .x = load3(d, n, i),
+        .phi = turn_of(k->vertex + (size_t)KEPT_P * s + i + 1, s, d + 3 * n + i, n),
+        .u = load3(d + (size_t)BOUGH_ROD_U * n, n, i),
+        .w = load3(d + (size_t)BOUGH_ROD_W * n, n, i)};
+}
+
+// A segment's forces by the motion of its vertices, `position` being in lanes.
+static segment_force kept_force(const double *position, const double *velocity,
+                                vertex_variation l, vertex_variation r) {
+    double q[DIRECTIONS], v[DIRECTIONS], force[FORCES];
+    store3(q + DELTA, 1, 0, bough_sub(r.x, l.x));
+    store3(q + LEFT, 1, 0, l.phi);
+    store3(q + RIGHT, 1, 0, r.phi);
+    store3(v + DELTA, 1, 0, bough_sub(r.u, l.u));
+    store3(v + LEFT, 1, 0, l.w);
+    store3(v + RIGHT, 1, 0, r.w);
+    for (int f = 0; f < FORCES; f++, position += LANES * DIRECTIONS, velocity += DIRECTIONS) {
+        force[f] = 0;
+        for (int d = 0; d < DIRECTIONS; d++) {
+            force[f] += position[LANES * d] * q[d] + velocity[d] * v[d];
+        }
+    }
+    return (segment_force){vector_at(force + F), vector_at(force + LL), vector_at(force + LR)};
+}
+
+static void kept_end_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
+                             const double *state_rate, const double *input_rate, double *wrench) {
+    int lane = m->n % LANES;
+    const double *position = k->variation + (size_t)TANGENTS * (m->n - lane) + lane;
+    vertex_variation l = {0}, r = {0};
+    if (state_rate != NULL) l = kept_variation(m, k, state_rate, m->n - 1);
+    if (input_rate != NULL) r = end_variation(k->end_rotation, input_rate + BOUGH_ROD_INPUTS);
+    segment_force f = kept_force(position, k->end, l, r);
+    bough_mat3 pull = load_matrix(k->end_load, 1, 0), turn = load_matrix(k->end_load + 9, 1, 0);
+    store3(wrench, 1, 0, bough_sub(bough_mat3_mul(pull, r.phi), f.f));
+    store3(wrench + 3, 1, 0, bough_add(bough_mat3_mul(turn, r.phi), f.lr));
+}
+
+void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
+                                   const double *state_rate, const double *input_rate,
+                                   double *wrench) {
+    bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
+    vertex_variation l = {0}, r = {0};
+    if (input_rate != NULL) l = root_variation(m, input_rate);
+    if (state_rate != NULL) r = kept_variation(m, k, state_rate, 0);
+    segment_force f = kept_force(k->variation, k->root, l, r);
+    store3(wrench, 1, 0, f.f);
+    store3(wrench + 3, 1, 0, bough_mat3_mul(r0, f.ll));
+    if (!bough_rod_carries(m)) return;
+    kept_end_tangent(m, k, state_rate, input_rate, wrench + BOUGH_ROD_OUTPUTS);
+}
+
 void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                            const bough_rod_variation *at, bough_rod_scratch *scratch,
                            double *wrench) {
@@ -113,7 +150,7 @@ void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *load
     vertex_variation l = {0}, r = {0};
     if (at->state_rate != NULL) l = state_variation(m, at->state, at->state_rate, m->n - 1);
     if (at->input_rate != NULL) {
-        r = end_variation(at->input + BOUGH_ROD_INPUTS, at->input_rate + BOUGH_ROD_INPUTS);
+        r = end_variation(at->input + BOUGH_ROD_INPUTS + 9, at->input_rate + BOUGH_ROD_INPUTS);
     }
     segment_force f = segment_tangent(m, scratch, m->n, &l, &r);
     segment_force load = load_variation(m, loads, scratch, r.phi);
@@ -177,7 +214,7 @@ static void end_columns(const bough_rod_model *m, const double *end,
     for (int j = 0; j < BOUGH_ROD_END_INPUTS; j++, column += (size_t)BOUGH_ROD_STATES * m->n) {
         double e[BOUGH_ROD_END_INPUTS] = {0};
         e[j] = 1;
-        vertex_variation l = {0}, r = end_variation(end, e);
+        vertex_variation l = {0}, r = end_variation(end + 9, e);
         segment_force f = segment_tangent(m, scratch, m->n, &l, &r);
         vertex_response(m, scratch, m->n - 1, f.f, f.ll, column);
     }

@@ -45,11 +45,9 @@ static void output_tangent(void *self, double t, const double *state, const doub
     bough_rod_end_tangent(b->model, &b->loads, t, &at, &b->scratch, rate + BOUGH_ROD_OUTPUTS);
 }
 
-// What ends of rods that carry bodies answer is not kept.
 static bool kept_tangent(void *self, const void *factors, const double *state_rate,
                          const double *input_rate, double *rate) {
     const bough_rod_body *b = self;
-    if (bough_rod_carries(b->model)) return false;
     bough_rod_kept_wrench_tangent(b->model, factors, state_rate, input_rate, rate);
     return true;
 }

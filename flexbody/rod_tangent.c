@@ -15,6 +15,7 @@ bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
     k->work = bough_rod_vertex_rows(arena, m, WORK);
     k->rate = bough_arena_doubles(arena, BOUGH_ROD_STATES * s);
     k->root = bough_arena_doubles(arena, TANGENTS);
+    k->end = bough_arena_doubles(arena, TANGENTS);
     k->force = bough_arena_doubles(arena, FORCES * s);
     k->packed = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * W8);
     bool ok = bough_block_tridiagonal_init(&k->matrix, arena, m->n);
@@ -186,6 +187,13 @@ static void add_turning(const bough_rod_model *m, const bough_rod_loads *loads,
     }
 }
 
+// The velocities' tangents of a segment that is one of the eight.
+static void keep_velocity(const bough_rod_eight *eight, int segment, double *to) {
+    int lane = segment - eight->first;
+    if (lane < 0 || lane >= LANES) return;
+    for (int i = 0; i < TANGENTS; i++) to[i] = eight->velocity[LANES * i + lane];
+}
+
 // Segments first..first + 7 and the vertices at their right ends.
 static void linearise_eight(const bough_rod_model *m, const bough_rod_loads *loads,
                             const bough_rod_scratch *scratch, int first, bough_rod_tangent *k) {
@@ -201,7 +209,8 @@ static void linearise_eight(const bough_rod_model *m, const bough_rod_loads *loa
         velocity_columns(m, k, first, j, eight.own_velocity);
     }
     if (loads->damped) damping_columns(m, loads, k, first, eight.own_velocity);
-    for (int i = 0; i < TANGENTS && first == 0; i++) k->root[i] = eight.velocity[LANES * i];
+    keep_velocity(&eight, 0, k->root);
+    if (bough_rod_carries(m)) keep_velocity(&eight, m->n, k->end);
     bough_rod_form_blocks(m, k, &eight);
 }
 
@@ -215,6 +224,7 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
     rotation_columns(m, rate + (size_t)BOUGH_ROD_U * m->n, input, scratch, k);
     if (bough_rod_loads_follow(loads)) add_followers(m, scratch, k);
     if (loads->damped) add_turning(m, loads, k);
+    if (bough_rod_carries(m)) bough_rod_keep_end(m, loads, input + BOUGH_ROD_INPUTS, scratch, k);
     for (int first = 0; first < m->n_segment; first += LANES) {
         linearise_eight(m, loads, scratch, first, k);
     }

@@ -28,6 +28,9 @@ typedef struct bough_rod_tangent {
     bough_vec3 omega;       // of the BRF
     double *rate;           // f (13 × stride)
     double *root;           // of the first segment's forces by velocities, 9 f + d (81)
+    double *end;            // the same of the last segment of a rod that carries bodies (81)
+    double end_rotation[4]; // of such a rod's last vertex, whose turn changes
+    double end_load[18];    // the loads on it: force and moment by columns
     bough_rod_blocks blocks;
     // computed by bough_rod_factor
     double gamma;
@@ -75,7 +78,12 @@ void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, con
                               const double *state_rate, const double *input_rate,
                               bough_rod_scratch *scratch, double *wrench);
 
-// The same where `k` was linearised, from its tangents.
+// Into a linearisation of a rod that carries bodies: what the turn of the last vertex, whose motion is
+// `end`, changes in the loads in scratch.
+void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, const double *end,
+                        const bough_rod_scratch *scratch, bough_rod_tangent *k);
+
+// The same where `k` was linearised, from its tangents, and of the wrench at the end.
 void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
                                    const double *state_rate, const double *input_rate,
                                    double *wrench);

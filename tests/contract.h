@@ -80,10 +80,13 @@ static inline void contract_difference(const bough_system *s, contract_point at,
     free(y), free(u), free(back);
 }
 
-// output_tangent against differences of output, along state and input, together and apart.
+// output_tangent against differences of output, along state and input, together and apart; what factors keep of it.
 static inline void contract_output_tangent(const bough_system *s, contract_point at) {
     double *dy = contract_doubles(s->n_state), *du = contract_doubles(s->n_input);
     double *slope = contract_doubles(s->n_output), *tangent = contract_doubles(s->n_output);
+    bough_arena *arena = bough_arena_create();
+    void *factors = s->ops->factors(s->self, arena);
+    assert_true(s->ops->linearise(s->self, at.t, at.state, at.input, factors));
     for (int which = 1; which < 4; which++) {
         contract_direction(s->scale, s->n_state, which, dy);
         contract_direction(NULL, s->n_input, which, du);
@@ -91,7 +94,11 @@ static inline void contract_output_tangent(const bough_system *s, contract_point
         contract_difference(s, at, CONTRACT_OUTPUT, y, u, slope);
         s->ops->output_tangent(s->self, at.t, at.state, at.input, y, u, tangent);
         contract_near(tangent, slope, s->n_output, at.tolerance, "output_tangent");
+        if (s->ops->kept_tangent && s->ops->kept_tangent(s->self, factors, y, u, slope)) {
+            contract_near(slope, tangent, s->n_output, 1e-10, "kept_tangent");
+        }
     }
+    bough_arena_destroy(arena);
     free(dy), free(du), free(slope), free(tangent);
 }
 
