@@ -238,12 +238,34 @@ static double ramp_factor(const double ramp[2], double t) {
     return bough_ramp_factor(ramp[0], ramp[1], jump ? t * (1 + 1e-12) : t);
 }
 
+static bough_aero_fresh fresh_loads(const bough_aero_link *l, int b) {
+    const bough_rotor_data *data = &l->data[l->found];
+    size_t n = (size_t)l->n_vertex, blade = (size_t)b;
+    bool slopes = l->simulation->scene->aero.hold != BOUGH_SCENE_CONSTANT;
+    return (bough_aero_fresh){.load = data->load + 6 * n * blade,
+                              .line = data->line + 12 * (n - 1) * blade,
+                              .slope = slopes ? data->slope + BOUGH_SLOPES * n * blade : NULL,
+                              .factor = l->factor[l->found]};
+}
+
+static bough_aero_course course_of(const bough_aero_link *l, int b) {
+    return (bough_aero_course){.before = bough_aero_motion_before(l->motion, b),
+                               .now = bough_aero_motion_now(l->motion, b),
+                               .next = bough_aero_motion_found(l->motion)->blade[b].vertex};
+}
+
+// The time that a signal is found for.
+typedef struct interval {
+    double start, span; // [s]
+} interval;
+
 // An evaluation in stages, whose tasks are a blade each.
 typedef struct evaluation {
     bough_aero_link *link;
     const bough_rotor_motion *motion;
     bough_rotor_data *data;
     void (*move)(bough_aero_motion *m, int blade);
+    const interval *next; // for which the blades' signals follow; NULL: they do not
 } evaluation;
 
 static void approach_blade(void *self, int b, bough_part part) {
@@ -255,27 +277,32 @@ static void approach_blade(void *self, int b, bough_part part) {
     if (part != BOUGH_FIRST_HALF) bough_rotor_induce(e->link->rotor, e->motion, b, e->data);
 }
 
-static void load_blade(void *self, int b) {
+static void load_blade(void *self, int b, bough_part part) {
     const evaluation *e = self;
-    bough_rotor_load(e->link->rotor, e->motion, b, e->data);
+    const bough_aero_link *l = e->link;
+    if (part != BOUGH_SECOND_HALF) bough_rotor_load(l->rotor, e->motion, b, e->data);
+    if (part == BOUGH_FIRST_HALF || e->next == NULL) return;
+    bough_aero_signal_follow(l->signal[b], fresh_loads(l, b), course_of(l, b), e->next->start,
+                             e->next->span);
 }
 
 // Of the motion that was found for the rotor; `move` finds it for a blade.
-static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_motion *, int)) {
+static void evaluate_rotor(bough_aero_link *l, int to, void (*move)(bough_aero_motion *, int),
+                           const interval *next) {
     bough_pool *pool = l->simulation->pool;
-    evaluation e = {l, bough_aero_motion_found(l->motion), &l->data[to], move};
-    bough_pool_run_turns(pool, l->n_blade, approach_blade, &e);
-    bough_rotor_survey(l->rotor, e.motion, e.data);
-    bough_pool_run(pool, l->n_blade, load_blade, &e);
-    bough_rotor_conclude(l->rotor, e.motion, e.data);
+    evaluation e = {l, bough_aero_motion_found(l->motion), &l->data[to], move, next};
     l->time[to] = e.motion->time;
     l->factor[to] = ramp_factor(l->simulation->scene->aero.ramp, e.motion->time);
     l->found = to;
+    bough_pool_run_turns(pool, l->n_blade, approach_blade, &e);
+    bough_rotor_survey(l->rotor, e.motion, e.data);
+    bough_pool_run_turns(pool, l->n_blade, load_blade, &e);
+    bough_rotor_conclude(l->rotor, e.motion, e.data);
 }
 
 static void evaluate_present(bough_aero_link *l, double t) {
     bough_aero_motion_rotor(l->motion, t);
-    evaluate_rotor(l, l->shown, bough_aero_motion_blade);
+    evaluate_rotor(l, l->shown, bough_aero_motion_blade, NULL);
 }
 
 // The sample before has looked ahead to this one; times are equal but for rounding.
@@ -295,38 +322,11 @@ static void evaluate(void *self, double t) {
     }
 }
 
-static bough_aero_fresh fresh_loads(const bough_aero_link *l, int b) {
-    const bough_rotor_data *data = &l->data[l->found];
-    size_t n = (size_t)l->n_vertex, blade = (size_t)b;
-    bool slopes = l->simulation->scene->aero.hold != BOUGH_SCENE_CONSTANT;
-    return (bough_aero_fresh){.load = data->load + 6 * n * blade,
-                              .line = data->line + 12 * (n - 1) * blade,
-                              .slope = slopes ? data->slope + BOUGH_SLOPES * n * blade : NULL,
-                              .factor = l->factor[l->found]};
-}
-
-static bough_aero_course course_of(const bough_aero_link *l, int b) {
-    return (bough_aero_course){.before = bough_aero_motion_before(l->motion, b),
-                               .now = bough_aero_motion_now(l->motion, b),
-                               .next = bough_aero_motion_found(l->motion)->blade[b].vertex};
-}
-
 // The present loads stay from t on.
 static void hold(bough_aero_link *l, double t) {
     if (l->time[l->shown] != t || l->found != l->shown) evaluate_present(l, t);
     for (int b = 0; b < l->n_blade; b++)
         bough_aero_signal_hold(l->signal[b], fresh_loads(l, b), course_of(l, b), t);
-}
-
-typedef struct interval {
-    bough_aero_link *link;
-    double start, span; // [s]
-} interval;
-
-static void follow_blade(void *self, int b) {
-    const interval *i = self;
-    const bough_aero_link *l = i->link;
-    bough_aero_signal_follow(l->signal[b], fresh_loads(l, b), course_of(l, b), i->start, i->span);
 }
 
 static bough_status sample(void *self, double t, double t_next, bool *jumped) {
@@ -340,10 +340,9 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     }
     l->started = true;
     if (constant) return bough_ok();
-    interval next = {l, t, t_next - t};
+    interval next = {t, t_next - t};
     bough_aero_motion_expect_rotor(l->motion, t, next.span);
-    evaluate_rotor(l, 1 - l->shown, bough_aero_motion_expect_blade);
-    bough_pool_run(l->simulation->pool, l->n_blade, follow_blade, &next);
+    evaluate_rotor(l, 1 - l->shown, bough_aero_motion_expect_blade, &next);
     return bough_ok();
 }
 
