@@ -19,6 +19,7 @@ static void take_members(bough_assembly *a, bough_arena *arena, const bough_asse
         a->member[i] = def->member[i].member;
         const bough_system *s = &a->member[i]->system;
         a->stage[i] = def->member[i].stage;
+        a->opaque = a->opaque || a->member[i]->opaque;
         if (a->stage[i] >= a->n_stage) a->n_stage = a->stage[i] + 1;
         a->state_offset[i + 1] = a->state_offset[i] + s->n_state;
         a->input_offset[i + 1] = a->input_offset[i] + s->n_input;

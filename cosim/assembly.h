@@ -39,6 +39,7 @@ typedef struct bough_interface {
 typedef struct bough_assembly {
     int n_member, n_stage;
     bough_member **member;          // (n_member)
+    bool opaque;                    // one of them is: no tangents of the whole
     int *stage;                     // (n_member)
     int n_state, n_input, n_output; // sums over the members
     int *state_offset;              // (n_member + 1)

@@ -56,8 +56,8 @@ static bough_stability_advice judge_again(bough_breakdown *b, bough_coupling *c)
 static void advise(const bough_coupling *c, const bough_stability_advice *advice, char *text) {
     char other[BOUGH_SCHEME_ADVICE];
     bough_scheme_advise(c->scheme, other);
-    if (!advice->unstable) {
-        snprintf(text, ADVICE, "; try a smaller macro step%s", other);
+    if (!advice->unstable) { // of an opaque member nothing is known, and no other scheme suits it
+        snprintf(text, ADVICE, "; try a smaller macro step%s", c->assembly->opaque ? "" : other);
         return;
     }
     int n = snprintf(text, ADVICE, ": the coupling grows by a factor of %.3g in each macro step; ",

@@ -16,6 +16,7 @@ typedef struct bough_member {
     double *own_error;   // (n_state) estimated errors of its own steps, summed since a reader last set
                          // them to zero; NULL: no estimate
     bough_integrator integrator; // ops NULL: there are no states
+    bool opaque; // a foreign simulator, which has outputs and own steps but neither states nor tangents
 
     // own steps
     const bough_signal *signal; // the input on the step in progress

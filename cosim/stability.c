@@ -332,6 +332,9 @@ bough_status bough_stability_judge_by(const bough_assembly *a, const bough_schem
     if (!scheme || scheme->one_system) {
         return bough_fail(BOUGH_INVALID, "scheme %s has no coupling to judge", options->name);
     }
+    if (a->opaque) {
+        return bough_fail(BOUGH_INVALID, "the tangents of a foreign simulator are not known");
+    }
     map m = {.real = a,
              .options = options,
              .macro_step = macro_step,

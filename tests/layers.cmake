@@ -144,7 +144,7 @@ app(analysis config scene output simulation)
 app(report output)
 app(import config scene output simulation)
 app(api config scene output simulation)
-app(fmu api)
+app(fmu api simulation)
 app(loads output)
 app(study config scene output simulation analysis loads)
 
@@ -165,6 +165,7 @@ owned_by("^none$" "pthread_create|thrd_create" "threads are OpenMP's")
 owned_by("^aero/wind_fourier\\.c$" "${include}fftw3\\.h" "only aero/wind_fourier.c uses FFTW")
 owned_by("^apps/config/text\\.c$" "${include}yaml\\.h" "only apps/config/text.c uses libyaml")
 
+owned_by("^apps/scene/fmu_description\\.c$" "${include}expat\\.h" "only apps/scene/fmu_description.c uses expat")
 owned_by("^apps/output/vertices\\.c$" "${include}hdf5\\.h" "only apps/output/vertices.c uses HDF5")
 
 if(found)

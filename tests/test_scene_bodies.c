@@ -122,7 +122,7 @@ static void body_keys_fit_the_fidelity(void **state) {
     refuses(ROD_BODY "    mass: 1\n"
                      "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, "
                      "0]}\n",
-            "s.yaml:6:5: error: bodies[0].mass: only used with 'fidelity: rigid'\n");
+            "s.yaml:6:5: error: bodies[0].mass: only used with 'fidelity: rigid/fmu'\n");
     refuses(ONE_BODY "    mass: 1\n    inertia: [1, 1, 1]\n"
                      "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, "
                      "0]}\n",

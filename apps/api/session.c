@@ -1,7 +1,8 @@
-#include "apps/api/bough.h"
+#include "apps/api/session_body.h"
 
 #include "apps/config/schema.h"
 #include "apps/scene/fingerprint.h"
+#include "apps/simulation/body_alone.h"
 #include "apps/simulation/input_link.h"
 #include "apps/simulation/run.h"
 
@@ -15,6 +16,7 @@ struct bough_session {
     bough_arena *arena;
     bool open; // the run is there
     bough_run run;
+    bough_body *body; // stepped by itself; NULL: the scene is
     uint64_t kind; // fingerprint of what its copies hold
     size_t size;   // of a copy [bytes]
     int code;
@@ -54,6 +56,10 @@ static void take(bough_session *s, bough_snapshot *snapshot) {
     head h = {.kind = s->kind};
     memcpy(h.magic, magic, sizeof magic);
     bough_snapshot_take(snapshot, &h, sizeof h);
+    if (s->body) {
+        bough_body_snapshot(s->body, snapshot);
+        return;
+    }
     bough_snapshot_doubles(snapshot, s->run.value, s->run.channels.count);
     bough_run_snapshot(&s->run, snapshot);
 }
@@ -94,7 +100,7 @@ size_t bough_session_size(const bough_session *s) { return s->size; }
 
 int bough_session_save(bough_session *s, void *copy) {
     if (!s->open || failed(s)) return s->code;
-    bough_status status = bough_run_storable(&s->run);
+    bough_status status = s->body ? bough_ok() : bough_run_storable(&s->run);
     if (!bough_is_ok(&status)) return conclude(s, status);
     bough_session_values(s);
     take(s, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0});
@@ -119,6 +125,7 @@ typedef struct opening {
     bough_session *session;
     const char *path, *const *set;
     int n_set;
+    const char *body; // NULL: the whole scene
 } opening;
 
 static bough_status build(bough_arena *arena, void *self) {
@@ -134,6 +141,9 @@ static bough_status build(bough_arena *arena, void *self) {
         return status;
     }
     status = bough_run_create(arena, scene, &s->run);
+    if (bough_is_ok(&status) && o->body) {
+        status = bough_body_create(arena, s->run.simulation, o->body, &s->body);
+    }
     if (!bough_is_ok(&status)) return status;
     s->open = true;
     bough_pool_region(s->run.simulation->pool, start_threads, NULL);
@@ -142,6 +152,11 @@ static bough_status build(bough_arena *arena, void *self) {
 }
 
 bough_session *bough_session_open(const char *scene, const char *const *set, int count) {
+    return bough_session_open_body(scene, set, count, NULL);
+}
+
+bough_session *bough_session_open_body(const char *scene, const char *const *set, int count,
+                                       const char *body) {
     bough_session *s = calloc(1, sizeof *s);
     if (!s) return NULL;
     s->arena = bough_arena_create();
@@ -149,7 +164,7 @@ bough_session *bough_session_open(const char *scene, const char *const *set, int
         free(s);
         return NULL;
     }
-    opening o = {s, scene, set, count};
+    opening o = {s, scene, set, count, body};
     conclude(s, bough_arena_guard(s->arena, build, &o));
     return s;
 }
@@ -164,37 +179,48 @@ const char *bough_session_warning(const bough_session *s) {
 
 int bough_session_step(bough_session *s) {
     if (!s->open || failed(s)) return s->code;
+    if (s->body) return conclude(s, s->run.outcome = bough_body_step(s->body));
     if (bough_run_done(&s->run)) return BOUGH_SESSION_DONE;
     return conclude(s, bough_run_step(&s->run));
 }
 
 double bough_session_time(const bough_session *s) {
+    if (s->body) return bough_body_time(s->body);
     return s->open ? s->run.simulation->master->time : (double)NAN;
 }
 
 double bough_session_duration(const bough_session *s) {
+    if (s->body) return HUGE_VAL;
     return s->open ? s->run.simulation->master->duration : (double)NAN;
 }
 
-int bough_session_count(const bough_session *s) { return s->run.channels.count; }
+int bough_session_count(const bough_session *s) {
+    return s->body ? BOUGH_BODY_OUTPUTS : s->run.channels.count;
+}
 
 static bool known(const bough_session *s, int channel) {
-    return channel >= 0 && channel < s->run.channels.count;
+    return channel >= 0 && channel < bough_session_count(s);
 }
 
 const char *bough_session_name(const bough_session *s, int channel) {
-    return known(s, channel) ? s->run.channels.channel[channel].name : "";
+    if (!known(s, channel)) return "";
+    return s->body ? bough_body_outputs[channel].name : s->run.channels.channel[channel].name;
 }
 
 const char *bough_session_unit(const bough_session *s, int channel) {
-    return known(s, channel) ? s->run.channels.channel[channel].unit : "";
+    if (!known(s, channel)) return "";
+    return s->body ? bough_body_outputs[channel].unit : s->run.channels.channel[channel].unit;
 }
 
 int bough_session_find(const bough_session *s, const char *name) {
-    return s->run.channels.count > 0 ? bough_channels_find(&s->run.channels, name) : -1;
+    for (int k = 0; k < bough_session_count(s); k++) {
+        if (strcmp(bough_session_name(s, k), name) == 0) return k;
+    }
+    return -1;
 }
 
 const double *bough_session_values(bough_session *s) {
+    if (s->body) return failed(s) ? NULL : bough_body_wrench(s->body);
     return s->open && s->run.channels.count > 0 ? bough_run_values(&s->run) : NULL;
 }
 
@@ -206,32 +232,40 @@ double bough_session_read(bough_session *s, int channel) {
 // -- inputs ---------------------------------------------------------------------------------------
 
 static const bough_scene_input *input_at(const bough_session *s, int input) {
-    if (!s->open || input < 0) return NULL;
-    const bough_scene *scene = s->run.simulation->scene;
-    return input < scene->n_input ? &scene->input[input] : NULL;
+    return &s->run.simulation->scene->input[input];
+}
+
+static bool is_input(const bough_session *s, int input) {
+    return input >= 0 && input < bough_session_inputs(s);
 }
 
 static double *input_value(const bough_session *s, int input) {
-    return input_at(s, input) ? bough_input_link_values(s->run.simulation->inputs) + input : NULL;
+    if (!is_input(s, input)) return NULL;
+    return (s->body ? bough_body_motion(s->body) : bough_input_link_values(s->run.simulation->inputs)) +
+           input;
+}
+
+static bough_dimension input_dimension(const bough_session *s, int input) {
+    return s->body ? bough_body_inputs[input].dimension : (bough_dimension)input_at(s, input)->dimension;
 }
 
 int bough_session_inputs(const bough_session *s) {
+    if (s->body) return BOUGH_BODY_INPUTS;
     return s->open ? s->run.simulation->scene->n_input : 0;
 }
 
 const char *bough_session_input_name(const bough_session *s, int input) {
-    const bough_scene_input *x = input_at(s, input);
-    return x ? x->name : "";
+    if (!is_input(s, input)) return "";
+    return s->body ? bough_body_inputs[input].name : input_at(s, input)->name;
 }
 
 const char *bough_session_input_unit(const bough_session *s, int input) {
-    const bough_scene_input *x = input_at(s, input);
-    return x ? bough_dimension_unit((bough_dimension)x->dimension) : "";
+    return is_input(s, input) ? bough_dimension_unit(input_dimension(s, input)) : "";
 }
 
 int bough_session_input(const bough_session *s, const char *name) {
     for (int k = 0; k < bough_session_inputs(s); k++) {
-        if (strcmp(input_at(s, k)->name, name) == 0) return k;
+        if (strcmp(bough_session_input_name(s, k), name) == 0) return k;
     }
     return -1;
 }
@@ -248,22 +282,25 @@ int bough_session_set(bough_session *s, int input, double value) {
     }
     if (!isfinite(value)) {
         return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a finite number, got %g",
-                                      input_at(s, input)->name, value));
+                                      bough_session_input_name(s, input), value));
     }
     *to = value;
     return conclude(s, bough_ok());
 }
 
 int bough_session_set_text(bough_session *s, int input, const char *text) {
-    const bough_scene_input *x = input_at(s, input);
     double value = (double)NAN;
     char why[160] = "";
-    if (x && !bough_quantity(text, (bough_dimension)x->dimension, &value, why)) {
+    if (is_input(s, input) && !bough_quantity(text, input_dimension(s, input), &value, why)) {
         return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a value in %s, got '%.80s'%s%s",
-                                      x->name, bough_session_input_unit(s, input), text,
+                                      bough_session_input_name(s, input), bough_session_input_unit(s, input), text,
                                       why[0] ? ": " : "", why));
     }
     return bough_session_set(s, input, value);
+}
+
+void bough_session_begin_body(bough_session *s) {
+    if (s->body) bough_body_begin(s->body);
 }
 
 void bough_session_close(bough_session *s) {

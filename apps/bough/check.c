@@ -83,7 +83,8 @@ static void print_body(const bough_simulation *s, int body) {
     printf("body %s: %s", s->scene->body[body].name,
            flexible ? s->rod[beam->port].system.kind
            : beam   ? "rigid: no states of its own, integrated from its rod"
-                    : "rigid");
+           : s->scene->body[body].fidelity == BOUGH_SCENE_FMU ? "FMU"
+                                                              : "rigid");
     print_joint(s->scene, body);
     if (flexible) print_rod(s, beam);
     printf("; mass %.6g kg", beam ? beam_mass(beam) : s->scene->body[body].mass);
@@ -238,6 +239,7 @@ static bough_status print_cost(const bough_simulation *s, bough_arena *arena) {
     double *rate = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     if (!rate) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {
+        if (a->member[i]->opaque) continue;
         double time = derivative_time(s->master->coupling, i, rate);
         printf("derivative_us %s: %.3g\n", a->member[i]->system.name, 1e6 * time);
     }

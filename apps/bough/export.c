@@ -7,6 +7,7 @@
 #include "apps/output/archive.h"
 #include "apps/output/folder.h"
 #include "apps/scene/fingerprint.h"
+#include "apps/simulation/body_alone.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -15,11 +16,17 @@
 
 enum { MOST_FILES = 40 };
 
+typedef struct variable {
+    const char *name, *unit;
+    double start; // of an input, SI
+} variable;
+
 typedef struct export {
     bough_arena *arena;
     const bough_options *options;
-    const bough_simulation *simulation;
-    bough_channels channels;
+    bough_simulation *simulation;
+    int n_input, n_output;
+    variable *input, *output; // (n_input), (n_output)
     char token[40];
     const char *scene; // in resources/
     int n_file;
@@ -105,30 +112,17 @@ static void put_text(const char *text, FILE *out) {
     }
 }
 
-static const char *input_unit(const bough_scene *scene, int k) {
-    return bough_dimension_unit((bough_dimension)scene->input[k].dimension);
-}
-
 // Every unit once.
 static void put_units(const export *x, FILE *out) {
-    const bough_scene *scene = x->simulation->scene;
-    int n = scene->n_input + x->channels.count;
     fputs("  <UnitDefinitions>\n    <Unit name=\"s\"/>\n", out);
-    for (int i = 0; i < n; i++) {
-        bool known = false;
-        const char *unit = "";
-        for (int k = 0; k <= i && !known; k++) {
-            const char *other = k < scene->n_input ? input_unit(scene, k)
-                                                   : x->channels.channel[k - scene->n_input].unit;
-            if (k == i) {
-                unit = other;
-                break;
-            }
-            const char *own = i < scene->n_input ? input_unit(scene, i)
-                                                 : x->channels.channel[i - scene->n_input].unit;
-            known = strcmp(own, other) == 0;
+    for (int i = 0; i < x->n_input + x->n_output; i++) {
+        const char *unit = i < x->n_input ? x->input[i].unit : x->output[i - x->n_input].unit;
+        bool known = unit[0] == '\0' || strcmp(unit, "s") == 0;
+        for (int k = 0; k < i && !known; k++) {
+            const variable *other = k < x->n_input ? &x->input[k] : &x->output[k - x->n_input];
+            known = strcmp(unit, other->unit) == 0;
         }
-        if (known || unit[0] == '\0' || strcmp(unit, "s") == 0) continue;
+        if (known) continue;
         fputs("    <Unit name=\"", out);
         put_text(unit, out);
         fputs("\"/>\n", out);
@@ -136,35 +130,31 @@ static void put_units(const export *x, FILE *out) {
     fputs("  </UnitDefinitions>\n", out);
 }
 
+static void put_variable(const variable *v, int reference, bool input, FILE *out) {
+    fputs("    <Float64 name=\"", out);
+    put_text(v->name, out);
+    fprintf(out, "\" valueReference=\"%d\" causality=\"%s\" variability=\"continuous\"", reference,
+            input ? "input" : "output");
+    if (input) fprintf(out, " start=\"%.17g\"", v->start);
+    if (v->unit[0]) {
+        fputs(" unit=\"", out);
+        put_text(v->unit, out);
+        fputc('"', out);
+    }
+    fputs("/>\n", out);
+}
+
 static void put_variables(const export *x, FILE *out) {
-    const bough_scene *scene = x->simulation->scene;
+    int first = x->n_input + 1;
     fputs("  <ModelVariables>\n    <Float64 name=\"time\" valueReference=\"0\" "
           "causality=\"independent\" variability=\"continuous\" unit=\"s\"/>\n", out);
-    for (int k = 0; k < scene->n_input; k++) {
-        fprintf(out, "    <Float64 name=\"");
-        put_text(scene->input[k].name, out);
-        fprintf(out, "\" valueReference=\"%d\" causality=\"input\" variability=\"continuous\" "
-                     "start=\"%.17g\"", k + 1, scene->input[k].initial);
-        if (input_unit(scene, k)[0]) {
-            fputs(" unit=\"", out);
-            put_text(input_unit(scene, k), out);
-            fputc('"', out);
-        }
-        fputs("/>\n", out);
-    }
-    for (int k = 0; k < x->channels.count; k++) {
-        fprintf(out, "    <Float64 name=\"");
-        put_text(x->channels.channel[k].name, out);
-        fprintf(out, "\" valueReference=\"%d\" causality=\"output\" variability=\"continuous\" "
-                     "unit=\"", scene->n_input + k + 1);
-        put_text(x->channels.channel[k].unit, out);
-        fputs("\"/>\n", out);
-    }
+    for (int k = 0; k < x->n_input; k++) put_variable(&x->input[k], k + 1, true, out);
+    for (int k = 0; k < x->n_output; k++) put_variable(&x->output[k], first + k, false, out);
     fputs("  </ModelVariables>\n  <ModelStructure>\n", out);
-    for (int k = 0; k < x->channels.count; k++)
-        fprintf(out, "    <Output valueReference=\"%d\" dependencies=\"\"/>\n", scene->n_input + k + 1);
-    for (int k = 0; k < x->channels.count; k++)
-        fprintf(out, "    <InitialUnknown valueReference=\"%d\"/>\n", scene->n_input + k + 1);
+    for (int k = 0; k < x->n_output; k++)
+        fprintf(out, "    <Output valueReference=\"%d\" dependencies=\"\"/>\n", first + k);
+    for (int k = 0; k < x->n_output; k++)
+        fprintf(out, "    <InitialUnknown valueReference=\"%d\"/>\n", first + k);
     fputs("  </ModelStructure>\n", out);
 }
 
@@ -192,23 +182,57 @@ static void put_description(const export *x, FILE *out) {
 
 // -- the command ----------------------------------------------------------------------------------
 
-static bough_status check_names(const export *x) {
+static bough_status list_body(export *x) {
+    bough_body *body;
+    bough_status status = bough_body_create(x->arena, x->simulation, x->options->body, &body);
+    if (!bough_is_ok(&status)) return status;
+    x->n_input = BOUGH_BODY_INPUTS;
+    x->n_output = BOUGH_BODY_OUTPUTS;
+    for (int k = 0; k < x->n_input; k++) {
+        const bough_body_variable *from = &bough_body_inputs[k];
+        x->input[k] = (variable){from->name, bough_dimension_unit(from->dimension), bough_body_motion(body)[k]};
+    }
+    for (int k = 0; k < x->n_output; k++)
+        x->output[k] = (variable){bough_body_outputs[k].name, bough_body_outputs[k].unit, 0};
+    return status;
+}
+
+static bough_status list_scene(export *x, const bough_channels *channels) {
     const bough_scene *scene = x->simulation->scene;
-    for (int k = 0; k < scene->n_input; k++) {
-        const char *name = scene->input[k].name;
-        if (strcmp(name, "time") != 0 && bough_channels_find(&x->channels, name) < 0) continue;
-        return bough_fail(BOUGH_INVALID, "the input '%.80s' has the name of an output: rename it", name);
+    x->n_input = scene->n_input;
+    x->n_output = channels->count;
+    for (int k = 0; k < x->n_output; k++)
+        x->output[k] = (variable){channels->channel[k].name, channels->channel[k].unit, 0};
+    for (int k = 0; k < x->n_input; k++) {
+        const bough_scene_input *from = &scene->input[k];
+        x->input[k] = (variable){from->name, bough_dimension_unit((bough_dimension)from->dimension),
+                                 from->initial};
+        if (strcmp(from->name, "time") != 0 && bough_channels_find(channels, from->name) < 0) continue;
+        return bough_fail(BOUGH_INVALID, "the input '%.80s' has the name of an output: rename it",
+                          from->name);
     }
     return bough_ok();
 }
 
-// What a session opens: the token, the scene, the settings, a line each.
+static bough_status list_variables(export *x) {
+    bough_channels channels = bough_channels_start(x->arena);
+    bough_status status = bough_simulation_channels(x->simulation, &channels);
+    if (!bough_is_ok(&status)) return status;
+    size_t inputs = (size_t)x->simulation->scene->n_input + BOUGH_BODY_INPUTS;
+    size_t outputs = (size_t)channels.count + BOUGH_BODY_OUTPUTS;
+    x->input = bough_arena_take(x->arena, inputs * sizeof *x->input);
+    x->output = bough_arena_take(x->arena, outputs * sizeof *x->output);
+    return x->options->body ? list_body(x) : list_scene(x, &channels);
+}
+
+// What a session opens: the token, the scene, the body, the settings, a line each.
 static bough_status add_settings(const export *x, bough_archive *archive) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    fprintf(out, "%s\n%s\nsimulation.threads=1\n", x->token, x->scene);
+    const char *body = x->options->body;
+    fprintf(out, "%s\n%s\n%s\nsimulation.threads=1\n", x->token, x->scene, body ? body : "");
     for (int k = 0; k < x->options->n_set; k++) fprintf(out, "%s\n", x->options->set[k]);
     fclose(out);
     bough_status status = bough_archive_add(archive, "resources/scene.txt", text, size);
@@ -268,7 +292,24 @@ static void make_token(export *x) {
     uint64_t hash = BOUGH_FINGERPRINT_START;
     bough_mix_scene(&hash, x->simulation->scene);
     for (int k = 0; k < x->options->n_set; k++) bough_mix_text(&hash, x->options->set[k]);
+    if (x->options->body) bough_mix_text(&hash, x->options->body);
     snprintf(x->token, sizeof x->token, "{bough-" BOUGH_VERSION "-%016" PRIx64 "}", hash);
+}
+
+// How another scene takes the body: its root vertex' inertia belongs to the carrier.
+static void print_body(const bough_simulation *s, const char *name) {
+    const bough_beam *beam = s->beam;
+    while (strcmp(beam->body->name, name) != 0) beam++;
+    bough_inertia root = bough_beam_root(&beam->def);
+    bough_vec3 centre = bough_scale(root.mass > 0 ? 1 / root.mass : 0, root.first);
+    bough_mat3 steiner = bough_steiner(bough_scale(-0.5, root.first), centre);
+    bough_mat3 i = bough_mat3_add(root.rotational, steiner);
+    printf("In a scene, unpacked to %s, in place of the rod:\n"
+           "    fidelity: fmu\n    fmu: {folder: %s, inputs: reached}\n    mass: %.17g\n"
+           "    centre_of_mass: [%.17g, %.17g, %.17g]\n"
+           "    inertia: [%.17g, %.17g, %.17g, %.17g, %.17g, %.17g]\n",
+           name, name, root.mass, centre.x, centre.y, centre.z, i.c1.x, i.c2.y, i.c3.z, i.c2.x, i.c3.x,
+           i.c3.y);
 }
 
 bough_status bough_verb_export(bough_arena *arena, const bough_options *options) {
@@ -283,9 +324,8 @@ bough_status bough_verb_export(bough_arena *arena, const bough_options *options)
     bough_status status = bough_open(arena, &named, &simulation);
     if (!bough_is_ok(&status)) return status;
     x.simulation = simulation;
-    x.channels = bough_channels_start(arena);
-    status = bough_simulation_channels(simulation, &x.channels);
-    if (bough_is_ok(&status)) status = check_names(&x);
+    status = bough_simulation_known(simulation, "it has files of its own, which are not exported");
+    if (bough_is_ok(&status)) status = list_variables(&x);
     if (!bough_is_ok(&status)) return status;
     list_files(&x);
     status = place_files(&x);
@@ -297,6 +337,7 @@ bough_status bough_verb_export(bough_arena *arena, const bough_options *options)
     if (bough_is_ok(&status)) status = bough_folder_path(folder, "bough.fmu", path);
     if (bough_is_ok(&status)) status = write_archive(&x, path);
     if (!bough_is_ok(&status)) return status;
-    printf("inputs: %d\noutputs: %d\nfmu: %s\n", simulation->scene->n_input, x.channels.count, path);
+    printf("inputs: %d\noutputs: %d\nfmu: %s\n", x.n_input, x.n_output, path);
+    if (options->body) print_body(simulation, options->body);
     return status;
 }

@@ -142,6 +142,7 @@ bough_status bough_verb_modes(bough_arena *arena, const bough_options *options) 
     if (options->n_sweep > 0) return bough_modes_sweep(arena, options);
     bough_simulation *s;
     bough_status status = bough_open(arena, options, &s);
+    if (bough_is_ok(&status)) status = bough_simulation_known(s, "it has no modes");
     if (!bough_is_ok(&status)) return status;
     if (bough_vibration_wanted(s)) return bough_modes_whole(arena, options, s);
     if (bough_steady_rods(s) == 0) {

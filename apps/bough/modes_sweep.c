@@ -165,6 +165,7 @@ static bough_status solve_point(bough_arena *keep, const bough_options *options,
     bough_vibration v = {0};
     bough_status status = set_point(arena, options, s, point, &at);
     if (bough_is_ok(&status)) status = bough_open(arena, &at, &sim);
+    if (bough_is_ok(&status)) status = bough_simulation_known(sim, "it has no modes");
     int count = sim ? sim->scene->modes.count : 0;
     if (bough_is_ok(&status)) status = bough_vibration_find(arena, sim, count, &v);
     if (bough_is_ok(&status)) {

@@ -38,6 +38,8 @@ static const option_row rows[] = {
      BOUGH_OPTION_CONTROLLER, false},
     {"clamp-base", NULL, "imports an offshore turbine as clamped at the base of its tower",
      BOUGH_OPTION_CLAMP_BASE, false},
+    {"body", "NAME", "exports only this flexible body, for an FMU inside other models", BOUGH_OPTION_BODY,
+     false},
     {"json-schema", NULL, "of scene (default) or study: the keys as JSON Schema, for editors",
      BOUGH_OPTION_JSON, false},
     {"quiet", NULL, "no progress line", BOUGH_OPTION_QUIET, false},
@@ -127,6 +129,7 @@ static bough_status take_option(bough_option_flag flag, const char *text, bough_
     case BOUGH_OPTION_WIND: options->wind = text; break;
     case BOUGH_OPTION_CONTROLLER: options->controller = text; break;
     case BOUGH_OPTION_CLAMP_BASE: options->clamp_base = true; break;
+    case BOUGH_OPTION_BODY: options->body = text; break;
     case BOUGH_OPTION_JSON: options->json = true; break;
     case BOUGH_OPTION_QUIET: options->quiet = true; break;
     }

@@ -23,6 +23,7 @@ typedef enum bough_option_flag {
     BOUGH_OPTION_CLAMP_BASE = 1 << 10,
     BOUGH_OPTION_JSON = 1 << 11,
     BOUGH_OPTION_SWEEP = 1 << 12,
+    BOUGH_OPTION_BODY = 1 << 13,
 } bough_option_flag;
 
 typedef enum bough_operand {
@@ -51,6 +52,7 @@ typedef struct bough_options {
     const char **sweep; // (n_sweep) "key=value, value, ..."
     const char *out;  // NULL: named after the scene
     int threads;      // 0: as the scene says
+    const char *body; // to be exported by itself; NULL: the whole scene
     const char *only; // load case of a study; NULL: all
     int part, parts;  // of a study, from 1; 0: all of it
     const char *checkpoint; // simulated time between checkpoints; NULL: none

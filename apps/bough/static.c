@@ -212,6 +212,7 @@ static void print_modal(bough_simulation *s) {
 bough_status bough_verb_static(bough_arena *arena, const bough_options *options) {
     bough_simulation *s;
     bough_status status = bough_open(arena, options, &s);
+    if (bough_is_ok(&status)) status = bough_simulation_known(s, "it has no equilibrium");
     if (!bough_is_ok(&status)) return status;
     if (s->n_rod == 0 && s->tree->n_v == 0) {
         return bough_fail(BOUGH_INVALID, "%.200s: no body of the scene can move or bend", s->scene->file);

@@ -1,6 +1,6 @@
 // The standard's functions that a co-simulation FMU of real numbers, without events, clocks and
 // derivatives, only shows: each answers that it is not there.
-#include "apps/fmu/fmi3.h"
+#include "apps/simulation/fmi3.h"
 
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 

@@ -15,6 +15,7 @@
 #include "aero/rotor.h"
 #include "aero/wind_iec.h"
 #include "apps/config/text.h"
+#include "apps/scene/fmu_description.h"
 #include "core/arena.h"
 #include "core/status.h"
 #include "core/tree.h"
@@ -163,7 +164,30 @@ typedef enum bough_scene_fidelity {
     BOUGH_SCENE_ROD,
     BOUGH_SCENE_MODAL,
     BOUGH_SCENE_SEGMENTED_MODAL,
+    BOUGH_SCENE_FMU,
 } bough_scene_fidelity;
+
+enum { BOUGH_SCENE_MOTION = 9, BOUGH_SCENE_WRENCH = 6 };
+
+// A model of another program behind a body's frame: a co-simulation FMU of FMI 3.0, unpacked. Its inputs are
+// velocity, angular velocity and gravity of the frame in body axes, its outputs force and moment on the
+// frame's carrier about the frame's origin in body axes; SI.
+typedef struct bough_scene_fmu {
+    const bough_node *node;
+    const char *folder; // its path once it is checked
+    int n_motion, n_wrench;
+    const char **motion, **wrench; // names of its variables, "none" where it has none; 0: the usual ones
+    int hold;  // bough_scene_fmu_hold
+    int steps; // communication steps per macro step
+    bough_fmu_description description;
+    const bough_fmu_variable *input[BOUGH_SCENE_MOTION], *output[BOUGH_SCENE_WRENCH]; // NULL: none
+} bough_scene_fmu;
+
+// What an FMU does with its inputs over a communication step.
+typedef enum bough_scene_fmu_hold {
+    BOUGH_SCENE_FMU_HELD,    // it keeps them
+    BOUGH_SCENE_FMU_REACHED, // it reaches them at the end of the step
+} bough_scene_fmu_hold;
 
 typedef struct bough_scene_body {
     const bough_node *node;
@@ -172,13 +196,14 @@ typedef struct bough_scene_body {
     int fidelity; // bough_scene_fidelity
     bough_scene_joint joint;
     double pitch;             // [rad]: last rotation of the placement, about z by −pitch
-    double mass;              // [kg]; rigid bodies without a rod
+    double mass;              // [kg]; rigid bodies without a rod, and what a frame of an FMU carries
     double centre_of_mass[3]; // [m] body axes
     double inertia[6];        // Ixx Iyy Izz Ixy Ixz Iyz about the centre of mass [kg m²]: entries
                               // of the inertia matrix, Ixy = −∫xy
     bough_scene_solver micro; // of this body in place of the simulation's; node NULL: none
     bough_scene_rod rod;      // any fidelity but rigid, or rigid: integrated to a rigid body
     bough_scene_modal modal;  // fidelity modal and segmented-modal
+    bough_scene_fmu fmu;      // fidelity fmu
 } bough_scene_body;
 
 typedef enum bough_scene_load_frame {

@@ -46,6 +46,7 @@ void bough_scene_check_wind_table(bough_schema_reader *r, void *item);
 void bough_scene_check_wind(bough_schema_reader *r, void *item);
 void bough_scene_check_tower(bough_schema_reader *r, void *item);
 void bough_scene_check_joint(bough_schema_reader *r, void *item);
+void bough_scene_check_fmu(bough_schema_reader *r, void *item);
 void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint);
 void bough_scene_check_load(bough_schema_reader *r, void *item);
 void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]);
@@ -74,6 +75,7 @@ int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_no
 const bough_node *bough_link_value(const bough_node *node, const char *key);
 
 // Parts of bough_scene_link, in this order.
+void bough_link_fmus(bough_schema_reader *r, bough_scene *s);
 void bough_link_turbine(bough_schema_reader *r, bough_scene *s);
 void bough_link_aero(bough_schema_reader *r, bough_scene *s);
 void bough_link_control(bough_schema_reader *r, bough_scene *s);

@@ -101,6 +101,10 @@ static void check_rod_use(bough_schema_reader *r, const bough_scene_body *b) {
     if (!has_rod && pitch != NULL) {
         bough_schema_error(r, pitch, "pitch", "only used with a rod");
     }
+    if (b->fidelity == BOUGH_SCENE_FMU) {
+        if (has_rod) bough_schema_error(r, bough_node_find(b->node, "rod"), "rod", "not used with 'fidelity: fmu'");
+        return;
+    }
     static const char *const flexible[] = {"", "rod", "modal", "segmented-modal"};
     if (b->fidelity != BOUGH_SCENE_RIGID && !has_rod) {
         bough_schema_error(r, b->node, "", "required key 'rod' is missing (with 'fidelity: %s')",
@@ -134,8 +138,10 @@ static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
     const bough_node *node = bough_link_value(joint->node, "parent");
     joint->parent = bough_link_body(r, s, node, "parent", joint->parent_name);
     if (joint->parent >= 0 && s->body[joint->parent].fidelity > BOUGH_SCENE_ROD) {
-        bough_schema_error(r, node, "parent", "'%s' is a modal body, which cannot carry bodies; "
-                                        "make it a rod", joint->parent_name);
+        bool fmu = s->body[joint->parent].fidelity == BOUGH_SCENE_FMU;
+        bough_schema_error(r, node, "parent", "'%s' is %s, which cannot carry bodies; %s",
+                           joint->parent_name, fmu ? "an FMU" : "a modal body",
+                           fmu ? "let the body that carries it carry them" : "make it a rod");
     }
 }
 
@@ -194,7 +200,8 @@ static bool order_bodies(bough_schema_reader *r, bough_scene *s) {
 }
 
 static bool has_mass(const bough_scene_body *b) {
-    return bough_node_find(b->node, "rod") != NULL || b->fidelity != BOUGH_SCENE_RIGID ||
+    bool flexible = b->fidelity != BOUGH_SCENE_RIGID && b->fidelity != BOUGH_SCENE_FMU;
+    return bough_node_find(b->node, "rod") != NULL || flexible ||
            !(b->mass == 0 && b->inertia[0] == 0 && b->inertia[1] == 0 && b->inertia[2] == 0);
 }
 
@@ -271,7 +278,7 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
         body[end] = bough_link_body(r, s, node, keys[end], name[end]);
         if (body[end] < 0 || s->body[body[end]].fidelity <= BOUGH_SCENE_RIGID) continue;
         bough_schema_error(r, node, keys[end],
-                           "'%s' is a rod; it must be a rigid body, which may hang on the rod and "
+                           "'%s' is no rigid body; it must be one, which may hang on a rod and "
                            "needs no mass", name[end]);
     }
     if (name[0] != NULL && name[1] != NULL && strcmp(name[0], name[1]) == 0) {
@@ -291,7 +298,9 @@ static void link_marker(bough_schema_reader *r, const bough_scene *s, bough_scen
     const bough_node *node = bough_link_value(marker->node, "body");
     marker->body = bough_link_body(r, s, node, "body", marker->body_name);
     if (marker->body < 0 || s->body[marker->body].fidelity <= BOUGH_SCENE_RIGID) return;
-    bough_schema_error(r, node, "body", "'%s' is a rod, whose tip is recorded", marker->body_name);
+    bough_schema_error(r, node, "body", s->body[marker->body].fidelity == BOUGH_SCENE_FMU
+                           ? "'%s' is an FMU: name the body that carries it"
+                           : "'%s' is a rod, whose tip is recorded", marker->body_name);
 }
 
 static bool is_sensed_before(const bough_scene *s, const bough_scene_sensor *sensor) {
@@ -464,6 +473,7 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
         bough_link_at(r, "closures[%d]", i);
         if (scene->closure[i].node != NULL) link_closure(r, scene, &scene->closure[i]);
     }
+    bough_link_fmus(r, scene);
     bough_link_turbine(r, scene);
     if (bough_arena_exhausted(r->arena)) return;
     bough_link_aero(r, scene);

@@ -285,6 +285,11 @@ void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scen
     const bough_node *name = bough_node_find(load->node, "body");
     if (body->fidelity == BOUGH_SCENE_RIGID) check_rigid_load(r, load);
     if (body->fidelity <= BOUGH_SCENE_RIGID) return;
+    if (body->fidelity == BOUGH_SCENE_FMU) {
+        bough_schema_error(r, name, "body", "'%s' is an FMU: loads act on rigid bodies and rods",
+                           load->body_name);
+        return;
+    }
     refuse_rigid_keys(r, load);
     if (!check_either(r, load->node, "at", "along")) return;
     if (body->fidelity > BOUGH_SCENE_ROD && load->frame == BOUGH_SCENE_LOAD_FOLLOWER) {

@@ -212,6 +212,34 @@ static const bough_key modal_keys[] = {
 static const bough_schema modal_schema = {
     SCHEMA("a modal body", bough_scene_modal, modal_keys)};
 
+#define AT(member) .offset = offsetof(bough_scene_fmu, member)
+static const bough_key fmu_keys[] = {
+    {.name = "folder", .kind = BOUGH_KEY_TEXT, .required = true, AT(folder), .example = "damper",
+     .help = "unpacked FMU of FMI 3.0 for co-simulation, relative to the scene"},
+    {.name = "motion", .kind = BOUGH_KEY_TEXTS, .count = 1, AT(motion),
+     .count_offset = offsetof(bough_scene_fmu, n_motion),
+     .example = "[none, none, v, none, none, none, none, none, none]",
+     .help = "names of its inputs for the frame's velocity [m/s], angular velocity [rad/s] and "
+             "gravity [m/s^2], x, y and z in body axes; none: no input; default [vx, vy, vz, wx, wy, wz, "
+             "gx, gy, gz]"},
+    {.name = "wrench", .kind = BOUGH_KEY_TEXTS, .count = 1, AT(wrench),
+     .count_offset = offsetof(bough_scene_fmu, n_wrench),
+     .example = "[none, none, force, none, none, none]",
+     .help = "names of its outputs for the force [N] and the moment [N m] about the frame's origin "
+             "that act on the body that carries the FMU, x, y and z in body axes; none: zero; default "
+             "[Fx, Fy, Fz, Mx, My, Mz]"},
+    {.name = "inputs", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("held", "reached"),
+     .fallback = "held", AT(hold),
+     .help = "what the FMU does with its inputs in a communication step: it keeps them, and gets the "
+             "motion in the middle of the step; or they are reached at the end of the step, as FMUs of "
+             "bough do"},
+    {.name = "steps", .kind = BOUGH_KEY_INTEGER, .range = "[1, 100000]", .fallback = "1", AT(steps),
+     .example = "10", .help = "communication steps in a macro step"},
+};
+#undef AT
+static const bough_schema fmu_schema = {SCHEMA("an FMU", bough_scene_fmu, fmu_keys),
+                                        .check = bough_scene_check_fmu};
+
 #define AT(member) .offset = offsetof(bough_scene_body, member)
 static const bough_key body_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
@@ -221,23 +249,23 @@ static const bough_key body_keys[] = {
      .help = "number of such bodies in a chain, each carried by the previous one on the same "
              "joint; their names end with numbers from 1"},
     {.name = "fidelity", .kind = BOUGH_KEY_CHOICE, .required = true, AT(fidelity),
-     .choices = CHOICES("rigid", "rod", "modal", "segmented-modal"),
-     .help = "model of the body: rigid, a geometrically exact rod, or the rod's linear modes in "
-             "one frame or in pieces"},
+     .choices = CHOICES("rigid", "rod", "modal", "segmented-modal", "fmu"),
+     .help = "model of the body: rigid, a geometrically exact rod, the rod's linear modes in one "
+             "frame or in pieces, or a model of another program (FMU)"},
     {.name = "joint", .kind = BOUGH_KEY_MAPPING, .of = &joint_schema, .required = true, AT(joint),
      .help = "the joint that carries the body"},
     {.name = "pitch", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .fallback = "0",
      AT(pitch), .example = "6.5 deg",
      .help = "rotation of a body with a rod about its z axis by -pitch, after the joint"},
     {.name = "mass", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_MASS, .range = "[0, 1e12]",
-     .fallback = "0", .when_key = "fidelity", .when = "rigid", AT(mass),
-     .example = "240 t", .help = "of a rigid body without a rod"},
+     .fallback = "0", .when_key = "fidelity", .when = "rigid|fmu", AT(mass),
+     .example = "240 t", .help = "of a rigid body without a rod; of an FMU what it leaves to its carrier"},
     {.name = "centre_of_mass", .kind = BOUGH_KEY_VECTOR, .count = 3, .dimension = BOUGH_LENGTH,
-     .fallback = ZERO3, .when_key = "fidelity", .when = "rigid", AT(centre_of_mass),
+     .fallback = ZERO3, .when_key = "fidelity", .when = "rigid|fmu", AT(centre_of_mass),
      .example = "[1.9, 0, 1.75]", .help = "in the body's frame"},
     {.name = "inertia", .kind = BOUGH_KEY_CUSTOM, .read = bough_scene_read_inertia,
      .form = "[Ixx, Iyy, Izz] or with Ixy, Ixz, Iyz, in kg m^2", .fallback = ZERO3,
-     .when_key = "fidelity", .when = "rigid", AT(inertia),
+     .when_key = "fidelity", .when = "rigid|fmu", AT(inertia),
      .example = "[5.1e6, 2.6e6, 2.6e6]",
      .help = "entries of the inertia matrix about the centre of mass (Ixy = -integral of x y)"},
     {.name = "micro", .kind = BOUGH_KEY_MAPPING, .of = &bough_scene_micro_schema,
@@ -248,6 +276,9 @@ static const bough_key body_keys[] = {
      .help = "the rod; a rigid body takes mass and inertia from it"},
     {.name = "modal", .kind = BOUGH_KEY_MAPPING, .of = &modal_schema, .when_key = "fidelity",
      .when = "modal|segmented-modal", AT(modal), .help = "how the rod is reduced to modes"},
+    {.name = "fmu", .kind = BOUGH_KEY_MAPPING, .of = &fmu_schema, .required = true,
+     .when_key = "fidelity", .when = "fmu", AT(fmu),
+     .help = "the model of the other program, at the body's frame"},
 };
 #undef AT
 const bough_schema bough_scene_body_schema = {SCHEMA("a body", bough_scene_body, body_keys)};

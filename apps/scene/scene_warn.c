@@ -18,6 +18,7 @@ static bool is_about_one_axis(const double v[6]) {
 }
 
 static void warn_inertia(const bough_scene_body *b, FILE *stream) {
+    if (b->fidelity == BOUGH_SCENE_FMU) return; // what is left to the carrier is no body by itself
     const double *v = b->inertia;
     if (has_distribution(v) || is_about_one_axis(v)) return;
     const bough_node *at = bough_link_value(b->node, "inertia");

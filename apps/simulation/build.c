@@ -5,6 +5,7 @@
 #include "apps/simulation/build_internal.h"
 #include "apps/simulation/control_link.h"
 #include "apps/simulation/drag_link.h"
+#include "apps/simulation/fmu_member.h"
 #include "apps/simulation/input_link.h"
 #include "apps/simulation/jump_link.h"
 #include "apps/simulation/trim.h"
@@ -99,7 +100,7 @@ static bough_scheme_options scheme_options(const bough_scene *scene) {
 }
 
 static bough_status build_tree(bough_builder *b) {
-    b->force.n_marker = b->s->n_beam;
+    b->force.n_marker = b->s->n_beam + b->s->n_fmu;
     bough_force_link_fill(b->scene, &b->force);
     b->s->first_marker = b->force.first_own;
     const bough_scene *scene = b->scene;
@@ -108,7 +109,7 @@ static bough_status build_tree(bough_builder *b) {
                                               scene->gravity[2]),
                           .n_bodies = scene->n_body + s->n_end,
                           .n_markers = b->force.n_marker,
-                          .n_ports = s->n_rod,
+                          .n_ports = s->n_rod + s->n_fmu,
                           .n_loads = b->n_load,
                           .bodies = b->body,
                           .markers = b->force.marker,
@@ -157,6 +158,14 @@ static bough_status build_rods(bough_builder *b) {
                                                &s->rod[beam->port]);
         if (!bough_is_ok(&status)) return status;
     }
+    for (int k = s->n_rod, i = 0; k < s->n_rod + s->n_fmu; i++) {
+        if (b->scene->body[i].fidelity != BOUGH_SCENE_FMU) continue;
+        bough_status status =
+            bough_fmu_member_create(b->arena, &b->scene->body[i], motion + BOUGH_PORT_OUTPUTS * k,
+                                    b->scene->simulation.duration, &s->rod[k]);
+        if (!bough_is_ok(&status)) return status;
+        k++;
+    }
     return bough_ok();
 }
 
@@ -183,21 +192,23 @@ static void connect_end(bough_builder *b, const bough_beam *beam) {
     add_port(b, beam->port, &motion, &wrench);
 }
 
+// Port k, of a rod or an FMU.
+static void connect_root(bough_builder *b, int k) {
+    b->member[k + 1] = (bough_assembly_member){&b->s->rod[k], 1};
+    bough_connection motion = {.from_offset = BOUGH_PORT_OUTPUTS * k, .count = BOUGH_PORT_OUTPUTS};
+    bough_connection wrench = {.to_offset = BOUGH_PORT_INPUTS * k, .count = BOUGH_PORT_INPUTS};
+    add_port(b, k, &motion, &wrench);
+}
+
 static void connect(bough_builder *b) {
     bough_simulation *s = b->s;
     b->member[0] = (bough_assembly_member){&s->leader, 0};
     for (int i = 0; i < s->n_beam; i++) {
         const bough_beam *beam = &s->beam[i];
-        int k = beam->port;
-        if (k < 0) continue;
-        b->member[k + 1] = (bough_assembly_member){&s->rod[k], 1};
-        bough_connection motion = {.from_offset = BOUGH_PORT_OUTPUTS * k,
-                                   .count = BOUGH_PORT_OUTPUTS};
-        bough_connection wrench = {.to_offset = BOUGH_PORT_INPUTS * k,
-                                   .count = BOUGH_PORT_INPUTS};
-        add_port(b, k, &motion, &wrench);
+        if (beam->port >= 0) connect_root(b, beam->port);
         if (beam->end >= 0) connect_end(b, beam);
     }
+    for (int k = s->n_rod; k < s->n_rod + s->n_fmu; k++) connect_root(b, k);
 }
 
 // The run starts from equilibrium: the members move there before their master is built.
@@ -222,7 +233,7 @@ static bough_status build_master(bough_builder *b) {
     const bough_scene_simulation *sim = &b->scene->simulation;
     bough_master_def def = bough_master_def_default();
     bough_sampled_load load[5];
-    def.assembly = (bough_assembly_def){s->n_rod + 1, b->member, b->n_connection,
+    def.assembly = (bough_assembly_def){s->n_rod + s->n_fmu + 1, b->member, b->n_connection,
                                         b->connection};
     def.scheme = scheme_options(b->scene);
     def.macro_step = sim->macro_step;

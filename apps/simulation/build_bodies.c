@@ -141,8 +141,7 @@ static bough_inertia vertex_inertia(const bough_vertex_inertia *v) {
     return (bough_inertia){v->mass, v->moment, tensor(v->inertia)};
 }
 
-// The root vertex' inertia in the body's frame, about its origin.
-static bough_inertia root_inertia(const bough_rod_def *def) {
+bough_inertia bough_beam_root(const bough_rod_def *def) {
     bough_transform x = {{0, 0, 0}, bough_rotation_matrix(def->rotation[0])};
     return bough_inertia_to_parent(&x, vertex_inertia(&def->inertia[0]));
 }
@@ -191,8 +190,16 @@ static bough_status add_beam(bough_builder *b, int index) {
     if (beam->body->fidelity == BOUGH_SCENE_RIGID) return bough_ok();
     beam->port = s->n_rod;
     b->port[s->n_rod++] = (bough_port_def){beam->body->name, beam->marker,
-                                           root_inertia(&beam->def)};
+                                           bough_beam_root(&beam->def)};
     return carries_bodies(b->scene, index) ? add_end(b, beam, index) : bough_ok();
+}
+
+// Its marker and port come after those of all beams.
+static void add_fmu(bough_builder *b, int index) {
+    const char *name = b->scene->body[index].name;
+    int marker = b->s->n_beam + b->s->n_fmu, port = b->s->n_rod + b->s->n_fmu++;
+    b->force.marker[marker] = (bough_marker_def){name, index, bough_transform_identity()};
+    b->port[port] = (bough_port_def){.name = name, .marker = marker};
 }
 
 bough_status bough_build_bodies(bough_builder *b) {
@@ -202,12 +209,15 @@ bough_status bough_build_bodies(bough_builder *b) {
         if (!bough_is_ok(&status)) return status;
     }
     for (int i = 0; i < b->scene->n_body; i++) {
+        if (b->scene->body[i].fidelity == BOUGH_SCENE_FMU) add_fmu(b, i);
+    }
+    for (int i = 0; i < b->scene->n_body; i++) {
         const bough_scene_body *from = &b->scene->body[i];
         bough_body_def *to = &b->body[i];
         *to = bough_body_def_default();
         to->name = from->name;
         set_joint(b, from, to);
-        if (from->fidelity != BOUGH_SCENE_RIGID) continue;
+        if (from->fidelity != BOUGH_SCENE_RIGID && from->fidelity != BOUGH_SCENE_FMU) continue;
         set_mass(from, bough_simulation_beam(b->s, i), to);
     }
     return bough_ok();

@@ -122,6 +122,14 @@ static const bough_channel_row tip[] = {
     {"{a}TipY", "m", "position of the rod's end along ground y", NULL},
     {"{a}TipZ", "m", "position of the rod's end along ground z", NULL},
 };
+static const bough_channel_row fmu[] = {
+    {"{a}Fx", "N", "force of the FMU on the body that carries it, x axis of its frame", NULL},
+    {"{a}Fy", "N", "force of the FMU on the body that carries it, y axis of its frame", NULL},
+    {"{a}Fz", "N", "force of the FMU on the body that carries it, z axis of its frame", NULL},
+    {"{a}Mx", "N-m", "moment of the FMU about its frame's origin, x axis of its frame", NULL},
+    {"{a}My", "N-m", "moment of the FMU about its frame's origin, y axis of its frame", NULL},
+    {"{a}Mz", "N-m", "moment of the FMU about its frame's origin, z axis of its frame", NULL},
+};
 // The twelve channels of a place on a rod: P before, S behind "TDx".
 #define SECTION(P, S, EP, ES)                                                                                                     \
     {P "TDx" S, "m", "displacement along the body's x", EP "TDx" ES},                                                             \
@@ -229,6 +237,7 @@ const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS] = {
     [BOUGH_CHANNELS_BLADE] = {"Blade of a turbine", numbered, N(blade)},
     [BOUGH_CHANNELS_TOWER] = {"Tower: rods that carry a turbine's rotor", NULL, N(tower)},
     [BOUGH_CHANNELS_TIP] = {"Any other body with a rod", "{a}: its name", N(tip)},
+    [BOUGH_CHANNELS_FMU] = {"Body of fidelity fmu", named, N(fmu)},
     [BOUGH_CHANNELS_BLADE_SECTION] = {"Sensor on a blade",
         "{a}: number of the blade; {b}: number of the place in the sensor's list, from 1. The section axes are the body's "
         "axes, turned with the section", N(blade_section)},

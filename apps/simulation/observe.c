@@ -489,6 +489,25 @@ static bough_status add_aero(bough_simulation *s, bough_channels *list) {
     return status;
 }
 
+// -- FMUs -----------------------------------------------------------------------------------------
+
+static void sample_fmus(void *self, double t, double *value) {
+    const bough_simulation *s = self;
+    for (int k = 0; k < s->n_fmu; k++, value += BOUGH_SCENE_WRENCH) {
+        const bough_system *fmu = &s->rod[s->n_rod + k].system;
+        fmu->ops->output(fmu->self, t, NULL, NULL, value);
+    }
+}
+
+static bough_status add_fmus(bough_simulation *s, bough_channels *list) {
+    bough_status status = bough_channels_group(list, sample_fmus, s);
+    for (int k = 0; k < s->n_fmu && bough_is_ok(&status); k++) {
+        const char *name = s->rod[s->n_rod + k].system.name;
+        status = bough_channel_family_add(list, BOUGH_CHANNELS_FMU, name, "");
+    }
+    return status;
+}
+
 // -- control --------------------------------------------------------------------------------------
 
 static void sample_control(void *self, double t, double *value) {
@@ -555,6 +574,7 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
         status = bough_observe_yaw_bearing(s, channels);
     }
     s->n_motion_channel = channels->count;
+    if (bough_is_ok(&status) && s->n_fmu > 0) status = add_fmus(s, channels);
     if (bough_is_ok(&status) && s->scene->turbine.node != NULL) {
         status = bough_observe_shaft(s, channels);
     }

@@ -37,8 +37,8 @@ typedef struct bough_simulation {
     int first_marker;      // of the tree, the first of those that the scene names
     int n_beam;
     bough_beam *beam;      // (n_beam) bodies that have a rod, in the scene's order
-    bough_member *rod;     // (number of rods) in port order
-    int n_rod, n_end;
+    bough_member *rod;     // (n_rod + n_fmu) in port order, the FMUs last
+    int n_rod, n_end, n_fmu;
     struct bough_aero_link *aero; // NULL without an aero block
     struct bough_input_link *inputs; // NULL without inputs
     struct bough_drag_link *drag; // NULL without drag of tower and hub
@@ -65,6 +65,9 @@ void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot);
 // BOUGH_INVALID where the scene has a part that cannot be stored.
 bough_status bough_simulation_storable(const bough_simulation *s);
 
+// BOUGH_INVALID where the equations of a part are not known: an FMU's. `what` cannot be done then.
+bough_status bough_simulation_known(const bough_simulation *s, const char *what);
+
 // Number of bodies on joints that move.
 int bough_simulation_n_joints(const bough_simulation *s);
 
@@ -77,6 +80,10 @@ const double *bough_simulation_rod_input(const bough_simulation *s, const bough_
 // Position of a beam's last vertex in the body's frame, in which `rotation` is its section's.
 bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam *beam,
                                      bough_quaternion *rotation);
+
+// Inertia of the root vertex, which belongs to the carrier, in the body's frame about its origin.
+bough_inertia bough_beam_root(const bough_rod_def *def);
+
 // Builds the flexible body of a beam, a rod or a modal body, in a frame that moves with `input` (9)
 // at the start.
 bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integrator_options micro,

@@ -1,0 +1,267 @@
+"""Bodies that are FMUs of other programs, and bough's own blade as one of them:
+test_fmu_member.py BOUGH SOURCE SAMPLE LACKING EXPORTS. SAMPLE and LACKING are libraries of sample_fmu.c, the
+latter without fmi3DoStep; EXPORTS is 1 where bough can export FMUs."""
+import math
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import zipfile
+
+import bough
+
+PROGRAM, SOURCE, SAMPLE, LACKING, EXPORTS = sys.argv[1:6]
+
+DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="%s" modelName="damper" instantiationToken="%s">
+  <CoSimulation modelIdentifier="sample" canGetAndSetFMUState="%s"
+    canBeInstantiatedOnlyOncePerProcess="%s"/>
+  <UnitDefinitions>
+    <Unit name="N"><BaseUnit kg="1" m="1" s="-2"/></Unit>
+    <Unit name="kN"><BaseUnit kg="1" m="1" s="-2" factor="1000"/></Unit>
+  </UnitDefinitions>
+  <ModelVariables>
+    <Float64 name="v" valueReference="10" causality="input" variability="continuous" start="0"/>
+    <Float64 name="f" valueReference="20" causality="output" variability="continuous" unit="N"/>
+    <Float64 name="f_kN" valueReference="21" causality="output" variability="continuous" unit="kN"/>
+    <Float64 name="all" valueReference="22" causality="output" variability="continuous">
+      <Dimension start="3"/>
+    </Float64>
+  </ModelVariables>
+  <ModelStructure><Output valueReference="20"/></ModelStructure>
+</fmiModelDescription>
+"""
+SCENE = """
+gravity: [0, 0, 0]
+simulation:
+  duration: 5 s
+  macro_step: 20 ms
+  error_estimate: none
+  coupling: {scheme: extrapolated, order: 2}
+  master: {rtol: 1e-10}
+bodies:
+  - name: mass
+    fidelity: rigid
+    mass: 2 kg
+    joint: {kind: prismatic, axis: z, parent: ground, speed: 1 m/s}
+  - name: damper
+    fidelity: fmu
+    joint: {kind: fixed, parent: mass}
+    fmu:
+      folder: sample
+      motion: [none, none, v, none, none, none, none, none, none]
+      wrench: [none, none, f, none, none, none]
+"""
+STIFFNESS, DAMPING, MASS = 8, 0.4, 2  # of sample_fmu.c, of the scene
+
+BLADE = """
+gravity: [0, 0, -9.81]
+simulation:
+  duration: 0.5 s
+  macro_step: 0.5 ms
+  error_estimate: none
+  coupling: {scheme: extrapolated, order: 2}
+  master: {rtol: 1e-12}
+  micro: {solver: rosenbrock, rtol: 1e-11}
+bodies:
+  - name: hub
+    fidelity: rigid
+    mass: 40 kg
+    inertia: [60, 60, 60]
+    joint: {kind: revolute, axis: x, parent: ground, speed: 0.5 rad/s}
+  - name: blade
+    joint: {kind: fixed, parent: hub, placement: [move z 0.5 m]}
+%s
+loads:
+  - {joint: hub, torque: 60 N m, ramp: [0.1 s, 0.3 s]}
+"""
+ROD = """    fidelity: rod
+    rod:
+      segments: 6
+      length: 4 m
+      damping: [0, 0, 0, 10 ms, 10 ms, 10 ms]
+      stiffness: [1e7, 1e7, 3e7, 4e4, 6e4, 3e4]
+      mass: [2, 0.01, 0, 0.01, 0.02, 0]
+"""
+
+
+def write(path, text):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    with open(path, "w") as file:
+        file.write(text)
+
+
+class Member(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = self.temporary.name
+        self.scene = self.folder + "/scene.yaml"
+        write(self.scene, SCENE)
+        self.unpack()
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def unpack(self, library=SAMPLE, version="3.0", token="sound", restores="true", once="false"):
+        """The sample as an unpacked FMU beside the scene."""
+        write(self.folder + "/sample/modelDescription.xml",
+              DESCRIPTION % (version, token, restores, once))
+        binaries = self.folder + "/sample/binaries/%s-linux" % os.uname().machine
+        os.makedirs(binaries, exist_ok=True)
+        if os.path.exists(binaries + "/sample.so"):
+            os.remove(binaries + "/sample.so")
+        if library:
+            shutil.copy(library, binaries + "/sample.so")
+
+    def program(self, *words):
+        return subprocess.run([PROGRAM, *words], capture_output=True, text=True, cwd=self.folder)
+
+    def refused(self, expected, *sets, code=2, command="run"):
+        words = [word for s in sets for word in ("--set", s)]
+        told = self.program(command, "scene.yaml", *words)
+        self.assertIn(expected, told.stderr)
+        self.assertEqual(told.returncode, code)
+
+    def error(self, *sets):
+        """Of the displacement at the end, from the damped oscillation."""
+        with bough.Session(self.scene, *sets) as run:
+            rows = run.advance()
+        decay = DAMPING / MASS / 2
+        omega = math.sqrt(STIFFNESS / MASS - decay * decay)
+        exact = math.exp(-decay * 5) * math.sin(omega * 5) / omega
+        velocity, force = rows["massVel"][-1], rows["damperFz"][-1]
+        self.assertAlmostEqual(force, -STIFFNESS * exact - DAMPING * velocity, delta=2e-2)
+        return abs(rows["massPos"][-1] - exact)
+
+    def test_a_spring_of_another_program_swings_as_it_must(self):
+        steps = "simulation.macro_step=%g ms"
+        for scheme in "extrapolated", "iterated":
+            named = "simulation.coupling.scheme=" + scheme
+            errors = [self.error(named, steps % h) for h in (20, 10, 5)]
+            self.assertLess(errors[0], 2e-3)
+            for coarse, fine in zip(errors, errors[1:]):
+                self.assertGreater(coarse / fine, 3, (scheme, errors))  # order 2
+        self.assertLess(self.error("simulation.coupling.scheme=gauss-seidel", steps % 1), 5e-3)
+        finer = self.error(named, "bodies[damper].fmu.steps=20")
+        self.assertLess(finer, 0.6 * self.error(named))
+
+    def test_threads_do_not_change_the_bits(self):
+        rows = []
+        for threads in 1, 2:
+            with bough.Session(self.scene, "simulation.threads=%d" % threads) as run:
+                rows.append(bytes(run.advance()["massPos"]))
+        self.assertEqual(*rows)
+
+    def test_what_does_not_fit_is_told_with_its_place(self):
+        write(self.scene, SCENE.replace("scheme: extrapolated", "scheme: ramp"))
+        self.refused("scene.yaml:7:22: error: simulation.coupling.scheme: 'damper' is an FMU")
+        write(self.scene, SCENE.replace("  error_estimate: none\n", ""))
+        self.refused("scene.yaml:4:3: error: simulation.error_estimate: the error cannot be estimated")
+        write(self.scene, SCENE)
+        self.refused("fixed steps", "simulation.step_control.tolerance=1e-3")
+        self.refused("expected undeformed", "simulation.initial=equilibrium")
+        self.refused("communication points only", "simulation.coupling.scheme=iterated",
+                     "simulation.coupling.exchange=waveform")
+        self.refused("needs tangents", "simulation.coupling.scheme=iterated",
+                     "simulation.coupling.accelerator=interface-newton")
+        motion = "bodies[damper].fmu.motion=[%s, none, v, none, none, none, none, none, none]"
+        self.refused("no variable 'w' of type Float64", motion % "w")
+        self.refused("'f' is no input", motion % "f")
+        wrench = "bodies[damper].fmu.wrench=[none, none, %s, none, none, none]"
+        self.refused("'f_kN' is in kN; expected SI units", wrench % "f_kN")
+        self.refused("'all' is an array", wrench % "all")
+        self.refused("expected 6 names", "bodies[damper].fmu.wrench=[f]")
+        self.refused("cannot read", "bodies[damper].fmu.folder=another")
+        self.refused("unzip sample.fmu", "bodies[damper].fmu.folder=sample.fmu")
+        self.refused("has no modes", command="modes")
+        self.refused("has no equilibrium", command="static")
+
+    def test_the_folder_is_judged_before_the_run(self):
+        self.unpack(version="2.0")
+        self.refused("the FMU is of FMI 2.0; expected FMI 3.0")
+        self.unpack(restores="false")
+        self.error()
+        self.refused("'damper' cannot restore its state", "simulation.coupling.scheme=iterated")
+        self.unpack(library=None)
+        self.refused("scene.yaml:18:7: the FMU of 'damper' cannot be loaded")
+        self.unpack(library=LACKING)
+        self.refused("the FMU of 'damper' has no function fmi3DoStep")
+        write(self.folder + "/sample/modelDescription.xml", "<fmiModelDescription")
+        self.refused("sample/modelDescription.xml:1: unclosed token")
+        self.unpack(once="true")
+        write(self.scene, SCENE + SCENE[SCENE.index("  - name: damper"):].replace("name: damper", "name: b"))
+        self.refused("only one body can use this FMU, and 'damper' does")
+
+    def test_its_failure_is_told_with_body_and_time(self):
+        self.unpack(token="refuses")
+        self.refused("damper: the FMU's fmi3InstantiateCoSimulation at 0 s: error: no licence", code=3)
+        self.unpack(token="late")
+        self.refused("damper: the FMU's fmi3DoStep at 0.52 s: error: the oil is too hot", code=3)
+        self.unpack(token="infinite")
+        self.refused("damper: output 'f' of the FMU at 0.52 s: not a finite number", code=3)
+        self.unpack(token="early")
+        self.refused("damper: the FMU ended its step at 0.54 s", code=3)
+
+    def test_no_copy_of_a_state_that_is_elsewhere(self):
+        with bough.Session(self.scene) as run:
+            with self.assertRaisesRegex(Exception, "keeps a memory of its own"):
+                run.save()
+
+
+@unittest.skipUnless(EXPORTS == "1", "bough was built without the library of its FMUs")
+class Blade(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = self.temporary.name
+        write(self.folder + "/native.yaml", BLADE % ROD)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def export(self, steps):
+        """The blade as an FMU with so many communication steps in a macro step, and a scene with it."""
+        told = subprocess.run([PROGRAM, "export", "fmu", "native.yaml", "--body", "blade", "--out", "x",
+                               "--set", "simulation.macro_step=%.17g ms" % (0.5 / steps)],
+                              cwd=self.folder, check=True, capture_output=True, text=True).stdout
+        with zipfile.ZipFile(self.folder + "/x/bough.fmu") as archive:
+            shutil.rmtree(self.folder + "/blade", ignore_errors=True)
+            archive.extractall(self.folder + "/blade")
+        body = told[told.index("    fidelity: fmu"):]
+        body = body.replace("inputs: reached", "inputs: reached, steps: %d" % steps)
+        write(self.folder + "/foreign.yaml", BLADE % body)
+
+    def rows(self, name):
+        with bough.Session(self.folder + "/" + name) as run:
+            return run.advance()
+
+    def test_boughs_blade_as_an_fmu_is_its_own(self):
+        native, differences = self.rows("native.yaml"), []
+        for steps in 4, 16, 64:
+            self.export(steps)
+            foreign = self.rows("foreign.yaml")
+            differences.append(max(
+                max(abs(x - y) for x, y in zip(native[name], foreign[name])) / max(map(abs, native[name]))
+                for name in ("hubPos", "hubVel")))
+        for coarse, fine in zip(differences, differences[1:]):
+            self.assertLess(fine, coarse / 5, differences)
+        self.assertLess(differences[-1], 1e-8)
+
+    def test_what_is_not_exported(self):
+        def refused(expected, *words):
+            told = subprocess.run([PROGRAM, "export", "fmu", "native.yaml", *words], cwd=self.folder,
+                                  capture_output=True, text=True)
+            self.assertIn(expected, told.stderr)
+            self.assertEqual(told.returncode, 2)
+        refused("there is no flexible body 'hub'", "--body", "hub")
+        write(self.folder + "/native.yaml", (BLADE % ROD).replace("ramp: [0.1 s, 0.3 s]", "input: brake"))
+        refused("control, inputs or loads that jump", "--body", "blade")
+        write(self.folder + "/native.yaml", BLADE % ROD)
+        self.export(1)
+        os.rename(self.folder + "/foreign.yaml", self.folder + "/native.yaml")
+        refused("'blade' is an FMU, whose equations are not known")
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
