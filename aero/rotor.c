@@ -146,27 +146,42 @@ static void load_stations(const bough_rotor *rotor, const blade_rows *rows) {
     }
 }
 
-// How the flow along the shaft follows the wind, and the angle of attack the section's rotation, with
-// the induction in balance: 4 F (V − u) u = σ Cn' α W², W α = u − W θ. `load` is σ Cn' W/(4 F V).
+// How the flow along the shaft follows the wind and the rotor's turning, and the angle of attack the
+// section's rotation, with the induction in balance: 4 F (V − u) u = σ Cn W², W (α + θ) = u = (1 − a) V.
 typedef struct response {
-    double flow, angle;
+    double flow, across, angle;
 } response;
 
-static inline response in_balance(double axial, double load) {
-    double free = 1 - 2 * axial, sum = free + load, scale = 1 / (sum > 0.3 ? sum : 0.3);
-    return (response){lane_clamp((1 - axial) * scale, 0, 1.2), lane_clamp(free * scale, 0, 1.2)};
+// −dF/dφ of Prandtl's F = 2/π acos exp(−x), x = factor/sin φ.
+static inline double loss_decline(double factor, sine_cosine phi) {
+    double sine = fabs(phi.sine), s = sine > 1e-3 ? sine : 1e-3, x = lane_clamp(factor / s, 0, 40);
+    double e = lane_exp(-x), square = 1 - e * e;
+    return 2 / BOUGH_PI * e * x * fabs(phi.cosine) / (s * sqrt(square > 1e-6 ? square : 1e-6));
+}
+
+// `normal`, `slope`: Cn and its slope by α.
+static inline response in_balance(const bough_rotor *rotor, blade_rows r, int j, double normal, double slope) {
+    double wind = fabs(r.inflow_x[j]), v = wind > 1 ? wind : 1, w = r.speed[j] > 1 ? r.speed[j] : 1;
+    double loss = r.loss[j] > 1e-3 ? r.loss[j] : 1e-3, share = r.solidity[j] / (4 * loss * v), a = r.axial[j];
+    sine_cosine phi = lane_sine_cosine(r.phi[j]);
+    double decline = rotor->induction.tip_loss ? loss_decline(rotor->station.tip_factor[j], phi) : 0;
+    decline += rotor->induction.hub_loss ? loss_decline(rotor->station.hub_factor[j], phi) : 0;
+    double free = 1 - 2 * a + a * (1 - a) * v / (w * loss) * decline;
+    double sum = free + share * w * slope, scale = 1 / (sum > 0.3 ? sum : 0.3);
+    double across = -share * r.inflow_y[j] * (2 * normal - slope * phi.sine) * scale;
+    return (response){lane_clamp((1 - a) * scale, 0, 1.2), lane_clamp(across, -1, 1),
+                      lane_clamp(free * scale, 0, 1.2)};
 }
 
 // At the very tip and root the loss factor holds the induction, dynamic inflow holds it everywhere, and
 // without a wake there is none.
 static inline response section_response(const bough_rotor *rotor, blade_rows r, bool delayed,
-                                        double wake, int j, double lift_slope) {
-    double wind = fabs(r.inflow_x[j]), loss = r.loss[j] > 1e-3 ? r.loss[j] : 1e-3;
-    double load = r.solidity[j] * r.speed[j] * lift_slope / (4 * loss * (wind > 1 ? wind : 1));
-    response k = in_balance(r.axial[j], load);
+                                        double wake, int j, double normal, double slope) {
+    response k = in_balance(rotor, r, j, normal, slope);
     bool free = rotor->station.free[j] > 0;
     k.flow = delayed ? 1 : free ? 1 + wake * (k.flow - 1) : 1 - r.axial[j];
-    k.angle = delayed ? 1 : free ? 1 + wake * (k.angle - 1) : 0;
+    k.across = delayed || !free ? 0 : wake * k.across;
+    k.angle = delayed || !free ? 1 : 1 + wake * (k.angle - 1);
     return k;
 }
 
@@ -209,14 +224,14 @@ static void slope_stations(const bough_rotor *rotor, const blade_rows *rows,
                     q * (2 * f.chord * k.cosine - g.chord * k.sine),
                     q * (2 * f.moment * k.cosine - g.moment * k.sine)}; // and along the chord
         double still = r.static_slope[j] * k.cosine + r.drag_slope[j] * k.sine + f.chord;
-        response to = section_response(rotor, r, delayed, wake, j, still);
+        response to = section_response(rotor, r, delayed, wake, j, f.normal, still);
         bough_vec3 n = lane_load(r.normal, s, j), c = lane_load(r.chord, s, j);
         bough_vec3 x = lane_load(r.x, s, j), y = lane_load(r.y, s, j), z = lane_load(r.z, s, j);
         bough_vec3 arm = lane_load(r.arm, s, j);
-        double nx = to.flow * bough_dot(n, x), ny = bough_dot(n, y);
-        double cx = to.flow * bough_dot(c, x), cy = bough_dot(c, y);
-        bough_vec3 un = bough_axpy(nx, x, bough_scale(ny, y)); // the flow's parts by the velocity
-        bough_vec3 uc = bough_axpy(cx, x, bough_scale(cy, y));
+        double nx = bough_dot(n, x), ny = bough_dot(n, y) + to.across * nx;
+        double cx = bough_dot(c, x), cy = bough_dot(c, y) + to.across * cx;
+        bough_vec3 un = bough_axpy(to.flow * nx, x, bough_scale(ny, y)); // the flow's parts by the velocity
+        bough_vec3 uc = bough_axpy(to.flow * cx, x, bough_scale(cy, y));
         bough_vec3 way = bough_cross(z, arm); // of the centre by the rotation
         double rn = bough_dot(un, way), rc = bough_dot(uc, way), w = q * r.speed[j];
         plane by_x = {-dn.normal * un.x - dc.normal * uc.x, -dn.chord * un.x - dc.chord * uc.x,
