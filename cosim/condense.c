@@ -101,7 +101,6 @@ bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *as
     k->moved = bough_arena_doubles(arena, (size_t)assembly->n_output);
     k->right = bough_arena_doubles(arena, (size_t)k->n_leader_input);
     k->unit = bough_arena_doubles(arena, (size_t)assembly->n_input);
-    k->share = bough_arena_doubles(arena, (size_t)assembly->n_input);
     k->work = bough_arena_doubles(arena, (size_t)assembly->n_state);
     *condensed = k;
     taken = taken && !bough_arena_exhausted(arena);
@@ -250,14 +249,6 @@ bool bough_condensed_factor_leader(bough_condensed *k, int member,
     return true;
 }
 
-// Whether a leader's output p changes with none of its coordinates.
-static bool is_constant(const bough_condensed_member *w, int p, int n_output) {
-    for (int c = 0; c < w->n; c++) {
-        if (w->output_change[c * n_output + p] != 0) return false;
-    }
-    return true;
-}
-
 // The input changes of a follower along each of its directions.
 static void find_directions(bough_condensed *k, int member) {
     const bough_assembly *a = k->assembly;
@@ -269,7 +260,7 @@ static void find_directions(bough_condensed *k, int member) {
         const bough_condensed_member *from = feeder(k, input, &p);
         int n_output = a->member[a->source_member[input]]->system.n_output;
         if (w->leader < 0) {
-            w->direction[j * n_input + j] = is_constant(from, p, n_output) ? 0 : 1;
+            w->direction[j * n_input + j] = 1;
             continue;
         }
         for (int d = 0; d < w->n; d++) {
@@ -402,8 +393,8 @@ void bough_condensed_solve(bough_condensed *k, double *change) {
     }
 }
 
-void bough_condensed_add_response(const bough_condensed *k, int member, double *x) {
-    const bough_assembly *a = k->assembly;
+void bough_condensed_add_response(const bough_condensed *k, int member, const double *change,
+                                  double *x) {
     const bough_condensed_member *w = &k->part[member];
     int n = system_of(k, member)->n_state;
     if (w->by_state) {
@@ -413,11 +404,15 @@ void bough_condensed_add_response(const bough_condensed *k, int member, double *
     } else if (w->leader >= 0) {
         add_columns(n, w->n, w->state_change, 1, k->coordinate + k->part[w->leader].first, x);
     } else {
-        double *share = k->share + a->input_offset[member];
-        for (int d = 0; d < w->n; d++)
-            share[d] = k->moved[a->source[a->input_offset[member] + d]];
-        add_columns(n, w->n, w->state_change, 1, share, x);
+        add_columns(n, w->n, w->state_change, 1, change, x);
     }
+}
+
+void bough_condensed_add_output_response(const bough_condensed *k, int member, const double *change,
+                                         double *output_change) {
+    const bough_condensed_member *w = &k->part[member];
+    if (w->leader >= 0) return;
+    add_columns(system_of(k, member)->n_output, w->n, w->output_change, 1, change, output_change);
 }
 
 // -- gain of the interface ------------------------------------------------------------------------

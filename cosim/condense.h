@@ -42,7 +42,7 @@ typedef struct bough_condensed {
     double *coordinate; // (n) w
     double *moved;      // (n_output) the leaders' outputs' change with it
     double *right;      // (n_leader_input) scratch
-    double *unit, *share; // (n_input) scratch of each member
+    double *unit;         // (n_input) scratch of each member
     double *work;       // (n_state) scratch of each member
 } bough_condensed;
 
@@ -83,8 +83,15 @@ bool bough_condensed_close(bough_condensed *k);
 // they come from elsewhere than the leaders' response to their inputs; on return both are complete.
 void bough_condensed_solve(bough_condensed *k, double *change);
 
-// Adds to x (n_state of the member) its response to the coordinates.
-void bough_condensed_add_response(const bough_condensed *k, int member, double *x);
+// Adds to x (n_state of the member) its response to the coordinates; that of a follower whose directions are
+// its inputs is to their change (n_input of the member) by the leaders.
+void bough_condensed_add_response(const bough_condensed *k, int member, const double *change,
+                                  double *x);
+
+// Adds to the outputs' change of such a follower its response to a change of its inputs; a leader that
+// others follow along its states does not change their inputs by itself.
+void bough_condensed_add_output_response(const bough_condensed *k, int member, const double *change,
+                                         double *output_change);
 
 // sum (n_state of the member) += factor Σ_j weight_j column_j
 void bough_condensed_add_columns(const bough_condensed *k, int member, double factor,

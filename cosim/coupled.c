@@ -169,7 +169,6 @@ static void solve_leader(bough_coupled *coupled, int i) {
     const bough_condensed_member *w = &coupled->interface->part[i];
     double *x = coupled->x + a->state_offset[i];
     double *coordinate = coupled->interface->coordinate + w->first;
-    if (coupled->user.before) coupled->user.before(coupled->user.self, i);
     bough_condensed_solve_member(coupled->interface, i, x);
     memset(coordinate, 0, (size_t)w->n * sizeof(double));
     if (!w->by_state) {
@@ -181,28 +180,58 @@ static void solve_leader(bough_coupled *coupled, int i) {
     memset(coupled->output_change + a->output_offset[i], 0, (size_t)s->n_output * sizeof(double));
 }
 
-static void gather_changes(bough_coupled *coupled, int i) {
+// The same of a follower under the changes from outside.
+static void solve_follower(bough_coupled *coupled, int i) {
     const bough_assembly *a = coupled->assembly;
-    for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-        coupled->change[j] = coupled->output_change[a->source[j]];
-        if (coupled->outside) coupled->change[j] += coupled->outside[j];
+    const double *outside = coupled->outside ? coupled->outside + a->input_offset[i] : NULL;
+    double *x = coupled->x + a->state_offset[i];
+    if (outside) bough_condensed_add_columns(coupled->interface, i, coupled->gamma, outside, x);
+    bough_condensed_solve_member(coupled->interface, i, x);
+    find_output_change(coupled, i, x, outside);
+}
+
+static void solve_part(void *self, int k, bough_part part) {
+    bough_coupled *coupled = self;
+    int i = coupled->order[k];
+    if (part != BOUGH_SECOND_HALF && coupled->user.before) {
+        coupled->user.before(coupled->user.self, i);
+    }
+    if (part == BOUGH_FIRST_HALF) return;
+    if (k < coupled->n_follower) {
+        solve_follower(coupled, i);
+    } else {
+        solve_leader(coupled, i);
     }
 }
 
-// The same of a follower, under what the leaders do by themselves.
-static void solve_follower(bough_coupled *coupled, int i) {
+// What the outputs so far change of the inputs.
+static void gather_changes(bough_coupled *coupled, int i) {
     const bough_assembly *a = coupled->assembly;
-    double *x = coupled->x + a->state_offset[i], *change = coupled->change + a->input_offset[i];
-    if (coupled->user.before) coupled->user.before(coupled->user.self, i);
-    gather_changes(coupled, i);
-    bough_condensed_add_columns(coupled->interface, i, coupled->gamma, change, x);
-    bough_condensed_solve_member(coupled->interface, i, x);
-    find_output_change(coupled, i, x, change);
+    for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+        coupled->led[j] = coupled->output_change[a->source[j]];
+        coupled->change[j] = coupled->led[j] + (coupled->outside ? coupled->outside[j] : 0);
+    }
+}
+
+// Followers under what the leaders do by themselves, then the leaders.
+static void gather_all_changes(bough_coupled *coupled) {
+    const bough_assembly *a = coupled->assembly;
+    for (int k = 0; k < a->n_member; k++) {
+        int i = coupled->order[k];
+        gather_changes(coupled, i);
+        if (k >= coupled->n_follower) continue;
+        bough_condensed_add_output_response(coupled->interface, i, coupled->led + a->input_offset[i],
+                                            coupled->output_change + a->output_offset[i]);
+    }
 }
 
 static void finish(bough_coupled *coupled, int i) {
-    bough_condensed_add_response(coupled->interface, i,
-                               coupled->x + coupled->assembly->state_offset[i]);
+    const bough_assembly *a = coupled->assembly;
+    double *led = coupled->led + a->input_offset[i];
+    for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+        coupled->led[j] = coupled->change[j] - (coupled->outside ? coupled->outside[j] : 0);
+    }
+    bough_condensed_add_response(coupled->interface, i, led, coupled->x + a->state_offset[i]);
     if (coupled->user.after) coupled->user.after(coupled->user.self, i);
 }
 
@@ -212,14 +241,12 @@ static void solve_free(bough_coupled *coupled, double *x) {
 
 void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
                                 bough_coupled_user user) {
+    int n_follower = coupled->n_follower, n_leader = coupled->assembly->n_member - n_follower;
     coupled->x = x;
     coupled->outside = outside;
     coupled->user = user;
-    each(coupled, LEADERS, solve_leader);
-    each(coupled, FOLLOWERS, solve_follower);
-    for (int i = 0; i < coupled->assembly->n_member; i++) {
-        if (coupled->interface->part[i].is_leader) gather_changes(coupled, i);
-    }
+    bough_pool_run_turns(coupled->pool, n_follower, n_leader, solve_part, coupled);
+    gather_all_changes(coupled);
     bough_condensed_solve(coupled->interface, coupled->change);
     each(coupled, ALL, finish);
 }
@@ -280,6 +307,7 @@ static bool take_solution(bough_coupled *coupled, bough_arena *arena) {
     coupled->setup_state = bough_arena_doubles(arena, (size_t)a->n_state);
     coupled->setup_input = bough_arena_doubles(arena, (size_t)a->n_input);
     coupled->change = bough_arena_doubles(arena, (size_t)a->n_input);
+    coupled->led = bough_arena_doubles(arena, (size_t)a->n_input);
     coupled->output_change = bough_arena_doubles(arena, (size_t)a->n_output);
     return !bough_arena_exhausted(arena);
 }

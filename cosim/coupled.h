@@ -36,6 +36,7 @@ typedef struct bough_coupled {
     const double *outside;            // (n_input) of the solution in progress; NULL: 0
     bough_coupled_user user;          // of the same
     double *change;                   // (n_input) of the inputs with the last solution
+    double *led;                      // (n_input) the same without what comes from outside
     double *output_change;            // (n_output) of each member by itself
 
     // states that are held
