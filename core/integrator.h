@@ -8,6 +8,7 @@
 #include "core/arena.h"
 #include "core/snapshot.h"
 #include "core/status.h"
+#include "core/system.h"
 
 #include <stdbool.h>
 
@@ -49,6 +50,8 @@ typedef struct bough_ode {
     bool (*linearise)(void *self, double t, const double *y); // tangents of f
     bool (*factor)(void *self, double gamma);                 // I − γ ∂f/∂y of the last tangents
     void (*solve)(void *self, double *x);                     // in place
+    // x ← (I − γ ∂f/∂y)⁻¹ r, r made of f in x by `right`. NULL: by the three of them.
+    bool (*stage)(void *self, double t, const double *y, bough_right_side right, double *x);
 } bough_ode;
 
 typedef enum bough_integrator_kind {

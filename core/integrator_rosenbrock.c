@@ -54,6 +54,8 @@ typedef struct rosenbrock {
     double *error;              // (n)
     double *stage[STAGES];      // u_i (n)
     double *at;                 // argument of f, then y₁ (n)
+    int now;                    // the stage in progress
+    double now_step;            // of the step in progress [s]
     double *own_error;          // (n)
     bough_statistics sum;
 } rosenbrock;
@@ -146,23 +148,41 @@ static inline void set_argument(rosenbrock *m, int i, const double *restrict y) 
 }
 
 // u_i = γh [f + γ_i h ∂f/∂t] + Σ_j c_ij u_j, f standing in u_i
-static inline void set_right_side(rosenbrock *m, int i, double h) {
-    double *restrict u = m->stage[i];
+static inline void set_right_side(rosenbrock *m, int i, int first, int last) {
+    double *restrict u = m->stage[i], h = m->now_step;
     const double *restrict drift = m->drift;
     double f = gamma_h * h, d = gamma_h * h * slope[i] * h;
-    int n = m->ode.n;
 #pragma omp simd
-    for (int k = 0; k < n; k++) u[k] = f * u[k] + d * drift[k] + stages_before(m, i, c[i], k);
+    for (int k = first; k < last; k++) u[k] = f * u[k] + d * drift[k] + stages_before(m, i, c[i], k);
 }
 
-// Stage i after the first. Inlined with i known, it has a loop of its own.
+// Inlined with the stage known, each has a loop of its own.
+static void set_present(void *self, int first, int last) {
+    rosenbrock *m = self;
+    switch (m->now) {
+    case 1: set_right_side(m, 1, first, last); break;
+    case 2: set_right_side(m, 2, first, last); break;
+    default: set_right_side(m, 3, first, last);
+    }
+}
+
+static bool solve_stage(rosenbrock *m, double t, double *u) {
+    const bough_ode *ode = &m->ode;
+    m->sum.derivatives++;
+    if (ode->stage) return ode->stage(ode->self, t, m->at, (bough_right_side){m, set_present}, u);
+    if (!ode->derivative(ode->self, t, m->at, u)) return false;
+    set_present(m, 0, ode->n);
+    ode->solve(ode->self, u);
+    return true;
+}
+
+// Stage i after the first.
 static inline bool find_stage(rosenbrock *m, int i, double t, double h,
                               const double *y) {
     set_argument(m, i, y);
-    if (!evaluate(m, t + alpha[i] * h, m->at, m->stage[i])) return false;
-    set_right_side(m, i, h);
-    m->ode.solve(m->ode.self, m->stage[i]);
-    return true;
+    m->now = i;
+    m->now_step = h;
+    return solve_stage(m, t + alpha[i] * h, m->stage[i]);
 }
 
 static bool find_stages(rosenbrock *m, double t, double h, const double *y) {

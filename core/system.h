@@ -12,6 +12,12 @@
 
 #include <stdbool.h>
 
+// Makes the right side of a stage's equations of the rates that stand in its place, entries first … last − 1.
+typedef struct bough_right_side {
+    void *self;
+    void (*set)(void *self, int first, int last);
+} bough_right_side;
+
 typedef struct bough_system_ops {
     // f: rate (n_state). False when the value is not finite.
     bool (*derivative)(void *self, double t, const double *state, const double *input,
@@ -49,6 +55,11 @@ typedef struct bough_system_ops {
     // derivative. Between both calls only outputs may be evaluated.
     bool (*derivative_again)(void *self, double t, const double *state, const double *input,
                              double *rate);
+
+    // x ← (I − γJ)⁻¹ r, r made of f in x by `right`: derivative, right and solve for one part after the
+    // other. For systems without inputs.
+    bool (*stage)(void *self, void *factors, double t, const double *state, bough_right_side right,
+                  double *x);
 
     // ∂h/∂t: drift (n_output). NULL: 0.
     void (*output_drift)(void *self, double t, const double *state, const double *input,

@@ -20,16 +20,20 @@ static void run_member(void *data, int k) {
     w->work(w->coupled, i);
 }
 
+static bough_status first_failure(const bough_coupled *coupled) {
+    for (int i = 0; i < coupled->assembly->n_member; i++) {
+        if (!bough_is_ok(&coupled->status[i])) return coupled->status[i];
+    }
+    return bough_ok();
+}
+
 // work(coupled, member) for every one of them, in parallel; the first failure in member order.
 static bough_status each(bough_coupled *a, int whom, void (*work)(bough_coupled *a, int member)) {
     int n_member = a->assembly->n_member, n_leader = n_member - a->n_follower;
     int n = whom == ALL ? n_member : whom == LEADERS ? n_leader : a->n_follower;
     member_work w = {a, whom == LEADERS ? a->order + a->n_follower : a->order, work};
     bough_pool_run(a->pool, n, run_member, &w);
-    for (int i = 0; i < n_member; i++) {
-        if (!bough_is_ok(&a->status[i])) return a->status[i];
-    }
-    return bough_ok();
+    return first_failure(a);
 }
 
 // -- evaluation -----------------------------------------------------------------------------------
@@ -68,12 +72,16 @@ static void evaluate_again(bough_coupled *coupled, int i) {
     evaluate_by(coupled, i, ops->derivative_again ? ops->derivative_again : ops->derivative);
 }
 
-static bough_status rate_by(bough_coupled *coupled, double t, const double *state, double *rate,
-                            void (*work)(bough_coupled *a, int member)) {
+static void begin_rates(bough_coupled *coupled, double t, const double *state, double *rate) {
     bough_coupled_inputs(coupled, t, state);
     coupled->time = t;
     coupled->at = state;
     coupled->x = rate;
+}
+
+static bough_status rate_by(bough_coupled *coupled, double t, const double *state, double *rate,
+                            void (*work)(bough_coupled *a, int member)) {
+    begin_rates(coupled, t, state, rate);
     return each(coupled, ALL, work);
 }
 
@@ -249,6 +257,27 @@ void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, d
     gather_all_changes(coupled);
     bough_condensed_solve(coupled->interface, coupled->change);
     each(coupled, ALL, finish);
+}
+
+typedef struct stage_work {
+    bough_coupled *evaluation;
+    bough_right_side right;
+} stage_work;
+
+static void find_right_side(void *self, int i) {
+    const stage_work *w = self;
+    const int *offset = w->evaluation->assembly->state_offset + i;
+    w->evaluation->status[i].code = BOUGH_OK;
+    evaluate(w->evaluation, i);
+    w->right.set(w->right.self, offset[0], offset[1]);
+}
+
+bough_status bough_coupled_stage(bough_coupled *evaluation, bough_coupled *coupled, double t,
+                                 const double *state, bough_right_side right, double *x) {
+    stage_work w = {evaluation, right};
+    begin_rates(evaluation, t, state, x);
+    bough_coupled_solve_driven(coupled, NULL, x, (bough_coupled_user){&w, find_right_side, NULL});
+    return first_failure(evaluation);
 }
 
 void bough_coupled_close(bough_coupled *coupled, double *outside) {

@@ -59,6 +59,12 @@ static void solve(void *self, void *factors, double *x) {
     bough_coupled_solve(factors, x);
 }
 
+static bool stage(void *self, void *factors, double t, const double *state, bough_right_side right,
+                  double *x) {
+    bough_status status = bough_coupled_stage(self, factors, t, state, right, x);
+    return bough_is_ok(&status);
+}
+
 static bool constrain(void *self, double t, double *state) {
     const bough_assembly *a = ((const bough_coupled *)self)->assembly;
     bool far = false;
@@ -90,6 +96,7 @@ static void hold_loads(void *self, double t0, double t1) {
 static const bough_system_ops operations = {
     BOUGH_SYSTEM_REQUIRED,
     .derivative_again = derivative_again,
+    .stage = stage,
     .constrain = constrain,
     .project = project,
     .hold_loads = hold_loads,

@@ -37,6 +37,12 @@ static void solve(void *self, double *x) {
     m->system.ops->solve(m->system.self, m->factors, x);
 }
 
+static bool stage(void *self, double t, const double *y, bough_right_side right, double *x) {
+    const bough_member *m = self;
+    if (m->stop && m->stop()) return false;
+    return m->system.ops->stage(m->system.self, m->factors, t, y, right, x);
+}
+
 bough_status bough_member_create(bough_arena *arena, const bough_system *system, double start,
                                  const bough_integrator_options *options, bough_member *member) {
     bough_member *m = member;
@@ -61,7 +67,8 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
                      .derivative_again = again ? derivative_again : NULL,
                      .linearise = linearise,
                      .factor = factor,
-                     .solve = solve};
+                     .solve = solve,
+                     .stage = system->ops->stage ? stage : NULL};
     bough_status status = bough_integrator_create(arena, &ode, options, &m->integrator);
     m->own_error = m->integrator.own_error;
     return status;

@@ -42,6 +42,35 @@ static void solves_the_coupled_system(void **state) {
     bough_two_mass_destroy(&m);
 }
 
+static void halve_and_add_one(void *self, int first, int last) {
+    double *x = self;
+    for (int k = first; k < last; k++) x[k] = .5 * x[k] + 1;
+}
+
+// A stage is rate, right side and solution, to the bit.
+static void stages_are_rate_and_solution(void **state) {
+    (void)state;
+    bough_coupled *evaluation, *coupled;
+    bough_two_mass m;
+    build(&m, &coupled, 2);
+    bough_status status =
+        bough_coupled_create_evaluation(m.arena, m.master->assembly, coupled->pool, &evaluation);
+    assert_true(bough_is_ok(&status));
+    const double y[N] = {.1, -.2, .5, .3};
+    double x[N], expected[N];
+    status = bough_coupled_rate(coupled, 0, y, expected);
+    assert_true(bough_is_ok(&status));
+    status = bough_coupled_setup(coupled, 0, y, coupled->input, .1);
+    assert_true(bough_is_ok(&status));
+    halve_and_add_one(expected, 0, N);
+    bough_coupled_solve(coupled, expected);
+    status = bough_coupled_stage(evaluation, coupled, 0, y,
+                                 (bough_right_side){x, halve_and_add_one}, x);
+    assert_true(bough_is_ok(&status));
+    assert_memory_equal(x, expected, sizeof x);
+    bough_two_mass_destroy(&m);
+}
+
 // F of two masses on springs, by hand.
 static void rates_are_those_of_the_coupled_masses(void **state) {
     (void)state;
@@ -62,6 +91,7 @@ static void rates_are_those_of_the_coupled_masses(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solves_the_coupled_system),
+        cmocka_unit_test(stages_are_rate_and_solution),
         cmocka_unit_test(rates_are_those_of_the_coupled_masses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

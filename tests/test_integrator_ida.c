@@ -46,7 +46,7 @@ static void solve(void *self, double *x) {
 static const double unit[2] = {1, 1};
 
 static bough_integrator create(bough_arena *arena, oscillator *o, double rtol) {
-    bough_ode ode = {"oscillator", 2, unit, o, derivative, NULL, linearise, factor, solve};
+    bough_ode ode = {"oscillator", 2, unit, o, derivative, NULL, linearise, factor, solve, NULL};
     bough_integrator_options options = {.kind = BOUGH_IDA, .rtol = rtol};
     bough_integrator ida;
     bough_status status = bough_integrator_create(arena, &ode, &options, &ida);
@@ -176,7 +176,7 @@ static void bad_tolerance_is_refused(void **state) {
     (void)state;
     oscillator o = ordinary();
     bough_arena *arena = bough_arena_create();
-    bough_ode ode = {"oscillator", 2, unit, &o, derivative, NULL, linearise, factor, solve};
+    bough_ode ode = {"oscillator", 2, unit, &o, derivative, NULL, linearise, factor, solve, NULL};
     bough_integrator_options options = {.kind = BOUGH_IDA};
     bough_integrator ida;
     bough_status status = bough_integrator_create(arena, &ode, &options, &ida);
