@@ -130,6 +130,35 @@ static void a_lost_second_solution_is_said(void **state) {
     bough_arena_destroy(arena);
 }
 
+// The torque that a prescribed motion needs errs as the rods' wrenches do: a second solution measures that, the
+// linearised members leave it unknown, not too small.
+static void torques_of_motions_are_measured_or_unknown(void **state) {
+    (void)state;
+    const char *const by[] = {"simulation.error_estimate=second-solution",
+                              "simulation.error_estimate=linearised"};
+    for (int k = 0; k < 2; k++) {
+        const char *const sets[] = {"simulation.coupling.scheme=gauss-seidel", by[k],
+                                    "bodies[hub].joint={kind: revolute, parent: ground, axis: x, motion: {speed: 2 rad/s}}", NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, scene_path, sets);
+        bough_channels channels = bough_channels_start(arena);
+        bough_error_probe probe;
+        bough_simulation_channels(s, &channels);
+        bough_status status = bough_error_probe_create(arena, s, &channels, &probe);
+        assert_true(bough_is_ok(&status));
+        for (int i = 0; i < 100; i++) {
+            scene_step(s);
+            bough_error_probe_update(&probe);
+        }
+        int torque = bough_channels_find(&channels, "hubTrq");
+        int tip = bough_channels_find(&channels, "firstTipX");
+        assert_true(torque >= 0 && tip >= 0);
+        assert_int_equal(bough_error_probe_knows(&probe, torque), k == 0);
+        assert_true(bough_error_probe_knows(&probe, tip));
+        bough_arena_destroy(arena);
+    }
+}
+
 static void probing_changes_nothing(void **state) {
     (void)state;
     recorded *with = run("simulation.coupling.scheme=ramp", true);
@@ -144,6 +173,7 @@ int main(void) {
         cmocka_unit_test(channels_err_by_what_is_told),
         cmocka_unit_test(errors_of_sub_solvers_are_told),
         cmocka_unit_test(a_lost_second_solution_is_said),
+        cmocka_unit_test(torques_of_motions_are_measured_or_unknown),
         cmocka_unit_test(probing_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -85,6 +85,15 @@ static double unturned(const char *unit, double difference) {
     return strcmp(unit, "deg") == 0 ? remainder(difference, 360) : difference;
 }
 
+// Forces of driven joints and closures err as the rods' wrenches do, of which only a second solution tells the
+// errors.
+static bool is_told(const bough_error_probe *p, int channel) {
+    const bough_simulation *s = p->simulation;
+    if (bough_master_inputs_error(s->master)) return true;
+    return (channel < s->first_drive || channel >= s->first_drive + s->n_drive) &&
+           (channel < s->first_closure || channel >= s->first_closure + s->n_closure);
+}
+
 bool bough_error_probe_update(bough_error_probe *p) {
     const bough_master *m = p->simulation->master;
     if (bough_master_errors(m) == p->batches) return false;
@@ -94,7 +103,7 @@ bool bough_error_probe_update(bough_error_probe *p) {
     if (error) sample_corrected(p, error);
     sample(p, p->value);
     for (int i = 0; i < p->simulation->n_motion_channel; i++) {
-        double corrected = error ? p->difference[i] : (double)NAN;
+        double corrected = error && is_told(p, i) ? p->difference[i] : (double)NAN;
         const char *unit = p->channels->channel[i].unit;
         p->true_low[i] = fmin(p->true_low[i], corrected);
         p->true_high[i] = fmax(p->true_high[i], corrected);

@@ -185,10 +185,12 @@ static bough_status add_drive(const bough_scene_body *body, int k, bough_channel
 
 static bough_status add_drives(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_drives, s);
+    s->first_drive = list->count;
     for (int i = 0; i < 2 * s->scene->n_body && bough_is_ok(&status); i++) {
         const bough_scene_body *body = &s->scene->body[i / 2];
         if (is_driven(&body->joint, i % 2)) status = add_drive(body, i % 2, list);
     }
+    s->n_drive = list->count - s->first_drive;
     return status;
 }
 
@@ -244,9 +246,11 @@ static void sample_closures(void *self, double t, double *value) {
 
 static bough_status add_closures(bough_simulation *s, bough_channels *list) {
     bough_status status = bough_channels_group(list, sample_closures, s);
+    s->first_closure = list->count;
     for (int k = 0; k < s->scene->n_closure && bough_is_ok(&status); k++) {
         status = bough_channel_family_add(list, BOUGH_CHANNELS_CLOSURE, s->scene->closure[k].name, "");
     }
+    s->n_closure = list->count - s->first_closure;
     return status;
 }
 
