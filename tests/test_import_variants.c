@@ -184,6 +184,32 @@ static void polars_go_round(void **context) {
     done(&t);
 }
 
+// Nothing damps the modes of such a deck, but ElastoDyn's blade has no shear, stretch and twist to ring.
+static void undamped_blades_are_damped_where_elastodyn_is_rigid(void **context) {
+    (void)context;
+    trial t = import_with(&by_modes, &(edit){"parts/blade.dat", "1.5   BldFlDmp(1) - (%)\n   0.5", "0 BldFlDmp(1)\n 0"});
+    assert_string_equal(t.status.message, "");
+    const bough_node *s = read_file(&t, "blade-structure.yaml");
+    assert_true(number(s, "damping.0") > 0 && number(s, "damping.2") > 0 && number(s, "damping.5") > 0);
+    check_near(number(s, "damping.3"), 0, 0, 1e-15);
+    check_near(number(s, "damping.4"), 0, 0, 1e-15);
+    steps(&t);
+    done(&t);
+}
+
+// The line below the headings is that of the units, however they are written.
+static void units_may_be_written_anyhow(void **context) {
+    (void)context;
+    static const edit units[] = {{"parts/tower.dat", "  (-)     (kg/m)    (Nm^2)    (Nm^2)", "-  kg/m  Nm^2  Nm^2"},
+                                 {"parts/aero-blade.dat", "   (m)    (m)", "   [m]    [m]"},
+                                 {"parts/blade.dat", "  (-)      (-)       (deg)", "---- ---- deg"}};
+    for (int i = 0; i < 3; i++) {
+        trial t = import_with(i == 2 ? &by_modes : NULL, &units[i]);
+        assert_string_equal(t.status.message, "");
+        done(&t);
+    }
+}
+
 // -- other parts ----------------------------------------------------------------------------------
 
 static void masses_on_tips_and_yaw_bearing(void **context) {
@@ -286,6 +312,8 @@ int main(void) {
         cmocka_unit_test(blade_elements_reach_root_and_tip),
         cmocka_unit_test(structures_reach_root_and_tip),
         cmocka_unit_test(polars_go_round),
+        cmocka_unit_test(undamped_blades_are_damped_where_elastodyn_is_rigid),
+        cmocka_unit_test(units_may_be_written_anyhow),
         cmocka_unit_test(masses_on_tips_and_yaw_bearing),
         cmocka_unit_test(two_blades_teeter),
         cmocka_unit_test(induction_generators_are_lines),

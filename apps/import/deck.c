@@ -365,6 +365,12 @@ static void read_row(const bough_deck *deck, int line, const char *const *column
     }
 }
 
+static bool begins_with_number(const char *line) {
+    char word[WORD];
+    double value;
+    return next_word(&line, word) && read_number(word, &value);
+}
+
 const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column,
                                int n) {
     int place[MOST_WORDS], line = 0;
@@ -382,11 +388,27 @@ const double *bough_deck_table(const bough_deck *deck, const char *const *column
         do
             line++;
         while (line < deck->n && skipped(deck->line[line]));
+        if (i == 0 && line < deck->n && !begins_with_number(deck->line[line])) line++; // units, in any spelling
         if (line >= deck->n)
             bough_deck_fail(deck, deck->n - 1, "%s: %d rows, expected %d", column[0], i, n);
         read_row(deck, line, column, n_column, place, &table[i * n_column]);
     }
     return bough_is_ok(deck->status) ? table : NULL;
+}
+
+void bough_deck_row(const bough_deck *deck, int *line, const char *what, int count, double *to) {
+    char word[WORD];
+    int got = 0;
+    while (*line < deck->n && skipped(deck->line[*line]))
+        ++*line;
+    const char *at = *line < deck->n ? deck->line[*line] : "";
+    while (got < count && next_word(&at, word) && read_number(word, &to[got]))
+        got++;
+    if (got < count) {
+        bough_deck_fail(deck, *line < deck->n ? *line : deck->n - 1,
+                        "%s: expected %d numbers in the line, got %d", what, count, got);
+    }
+    ++*line;
 }
 
 void bough_deck_numbers(const bough_deck *deck, int *line, const char *what, int count,

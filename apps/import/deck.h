@@ -59,6 +59,10 @@ bool bough_deck_is_comment(const bough_deck *deck, int line);
 const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column,
                                int n);
 
+// Reads the first `count` numbers of one line, the first from *line on that is not empty or a comment;
+// *line moves behind it. `what` names the row in messages.
+void bough_deck_row(const bough_deck *deck, int *line, const char *what, int count, double *to);
+
 // Reads `count` numbers that stand from *line on, which moves behind the last one's; empty lines
 // and comments are skipped. `what` names them in messages.
 void bough_deck_numbers(const bough_deck *deck, int *line, const char *what, int count, double *to);

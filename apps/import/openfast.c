@@ -45,7 +45,21 @@ static void refuse_other_rotors(const bough_openfast *o) {
     }
 }
 
+// Main files of other programs of the family.
+static void refuse_other_files(const bough_openfast *o) {
+    static const char *const key[] = {"ADFile|ADAMSPrep", "Mod_AmbWind", "AnalysisType"};
+    static const char *const what[] = {"a model of FAST 7 or older: convert it to OpenFAST's files",
+                                       "a wind farm: give the main file of one of its turbines",
+                                       "the file of a driver: give the main file of a turbine"};
+    if (bough_deck_line(o->main, "CompElast") >= 0) return;
+    for (int i = 0; i < 3; i++) {
+        int line = bough_deck_line(o->main, key[i]);
+        if (line >= 0) bough_deck_fail(o->main, line, "expected a turbine's main file of OpenFAST, got %s", what[i]);
+    }
+}
+
 static void open_modules(bough_openfast *o) {
+    refuse_other_files(o);
     int elastic = bough_deck_whole(o->main, "CompElast", 1, 3);
     int air = bough_deck_whole(o->main, "CompAero", 0, 3);
     if (elastic == 3) {
@@ -63,8 +77,8 @@ static void open_modules(bough_openfast *o) {
     if (air == 2) o->aero = bough_openfast_open(o, o->main, "AeroFile");
     if (air == 1 || air == 3) {
         bough_deck_fail(o->main, bough_deck_line(o->main, "CompAero"),
-                        "CompAero: expected 0 or 2 (AeroDyn 15), got %d: AeroDyn 14, AeroDisk and "
-                        "external loads describe no blade elements", air);
+                        "CompAero: expected 0 or 2 (AeroDyn 15 and later), got %d: AeroDyn 14 (before version 4), "
+                        "AeroDisk and external loads are not supported", air);
     }
     if (bough_deck_whole_or(o->main, "CompServo", 0) == 1) {
         o->servo = bough_openfast_open(o, o->main, "ServoFile");

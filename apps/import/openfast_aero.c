@@ -38,7 +38,7 @@ static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
     double *table = bough_arena_doubles(o->draft.arena, (size_t)POLAR * (size_t)*n), row[MOST_COLUMNS];
     if (!table) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < *n && bough_is_ok(o->draft.status); i++) {
-        bough_deck_numbers(deck, &line, "a row of the polar", width, row);
+        bough_deck_row(deck, &line, "a row of the polar", width, row);
         for (int k = 0; k < POLAR; k++)
             table[POLAR * i + k] = column[k] > 0 ? row[column[k] - 1] : 0;
         double angle = table[POLAR * i];

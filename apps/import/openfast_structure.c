@@ -50,8 +50,8 @@ static double frequency(const slender *b) {
     return sqrt(stiffness / (mass + b->end_mass * end * end));
 }
 
-// The damping time of a mode: 2 ζ/ω with its ratio ζ [%] and its shape `stem`(2) to (6) [s].
-static double damping(const bough_deck *deck, slender b, const char *ratio, const char *stem) {
+// The frequency of the mode whose shape is `stem`(2) to (6) [rad/s].
+static double frequency_of(const bough_deck *deck, slender b, const char *stem) {
     double shape[COEFFICIENTS];
     for (int k = 0; k < COEFFICIENTS; k++) {
         char name[40];
@@ -59,10 +59,20 @@ static double damping(const bough_deck *deck, slender b, const char *ratio, cons
         shape[k] = bough_deck_number(deck, name);
     }
     b.shape = shape;
-    double zeta = bough_deck_number(deck, ratio) / 100;
-    if (!bough_is_ok(deck->status) || !(zeta > 0)) return 0;
-    double omega = frequency(&b);
-    return omega > 0 ? 2 * zeta / omega : 0;
+    return bough_is_ok(deck->status) ? frequency(&b) : 0;
+}
+
+// The damping time of that mode: 2 ζ/ω with its ratio ζ [%] [s].
+static double damping(const bough_deck *deck, slender b, const char *ratio, const char *stem) {
+    double omega = frequency_of(deck, b, stem), zeta = bough_deck_number(deck, ratio) / 100;
+    return bough_is_ok(deck->status) && zeta > 0 && omega > 0 ? 2 * zeta / omega : 0;
+}
+
+// Half a per cent at the first flapwise mode [s].
+static double least_damping(const bough_deck *deck, const slender *b) {
+    const double least = 0.005;
+    double omega = frequency_of(deck, *b, "BldFl1Sh");
+    return omega > 0 ? 2 * least / omega : 0;
 }
 
 static double total_mass(const slender *b) {
@@ -134,7 +144,9 @@ static void put_blade(bough_openfast *o, const bough_deck *deck, const slender *
     edgewise.bending_factor = edge;
     double edge_time = damping(deck, edgewise, "BldEdDmp(1)|BldEdDmp1", "BldEdgSh");
     if (!bough_is_ok(o->draft.status)) return;
-    const double time[] = {flap_time, edge_time, flap_time, edge_time, flap_time, flap_time};
+    // ElastoDyn has no shear, stretch and twist: undamped, they would ring on at high frequencies
+    double other = fmax(flap_time, least_damping(deck, b));
+    const double time[] = {other, fmax(edge_time, other), other, edge_time, flap_time, other};
     FILE *file = o->draft.file[BOUGH_IMPORT_BLADE];
     bough_section_head(file, b->length, time);
     for (int i = 0; i < b->n; i++) {
