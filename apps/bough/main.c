@@ -20,7 +20,7 @@ const bough_verb bough_verbs[] = {
      "shows what a scene builds; nothing is run or written",
      bough_verb_check},
     {"static",
-     {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET | BOUGH_OPTION_OUT},
+     {BOUGH_OPERAND_REQUIRED, "SCENE", BOUGH_OPTION_SET | BOUGH_OPTION_OUT | BOUGH_OPTION_PATH},
      "computes the equilibrium of rods and joints under gravity, loads and air",
      bough_verb_static},
     {"modes",

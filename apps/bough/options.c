@@ -42,6 +42,8 @@ static const option_row rows[] = {
      false},
     {"json-schema", NULL, "of scene (default) or study: the keys as JSON Schema, for editors",
      BOUGH_OPTION_JSON, false},
+    {"path", NULL, "follows the equilibria while the loads grow along their ramps, past limit points",
+     BOUGH_OPTION_PATH, false},
     {"quiet", NULL, "no progress line", BOUGH_OPTION_QUIET, false},
 };
 enum { N_ROW = sizeof rows / sizeof *rows };
@@ -130,6 +132,7 @@ static bough_status take_option(bough_option_flag flag, const char *text, bough_
     case BOUGH_OPTION_CONTROLLER: options->controller = text; break;
     case BOUGH_OPTION_CLAMP_BASE: options->clamp_base = true; break;
     case BOUGH_OPTION_BODY: options->body = text; break;
+    case BOUGH_OPTION_PATH: options->path = true; break;
     case BOUGH_OPTION_JSON: options->json = true; break;
     case BOUGH_OPTION_QUIET: options->quiet = true; break;
     }

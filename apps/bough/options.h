@@ -24,6 +24,7 @@ typedef enum bough_option_flag {
     BOUGH_OPTION_JSON = 1 << 11,
     BOUGH_OPTION_SWEEP = 1 << 12,
     BOUGH_OPTION_BODY = 1 << 13,
+    BOUGH_OPTION_PATH = 1 << 14,
 } bough_option_flag;
 
 typedef enum bough_operand {
@@ -59,6 +60,7 @@ typedef struct bough_options {
     bool resume;            // from the last one
     const char *wind, *controller; // files for an imported model; NULL: its own
     bool clamp_base;               // of an imported offshore turbine
+    bool path; // of equilibria
     bool json; // of help: a schema for editors
     bool quiet, help;
 } bough_options;

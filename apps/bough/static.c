@@ -2,6 +2,7 @@
 // under gravity and the whole of the scene's loads.
 #include "apps/analysis/steady.h"
 #include "apps/bough/open.h"
+#include "apps/bough/static_path.h"
 #include "apps/bough/verb.h"
 #include "apps/output/folder.h"
 #include "apps/simulation/equilibrium.h"
@@ -219,7 +220,7 @@ bough_status bough_verb_static(bough_arena *arena, const bough_options *options)
     }
     const char *folder = bough_out_folder(arena, options);
     bough_steady *steady = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *steady);
-    if (!steady || !folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (options->path) return bough_static_path(arena, s, folder);
     int n = bough_steady_rods(s);
     bool apart = bough_equilibrium_apart(s) && n == s->n_rod; // a modal body only with the whole
     status = apart ? find_apart(arena, s, steady) : find_whole(arena, s, steady);

@@ -196,6 +196,31 @@ static double *rod_changes(bough_arena *arena, const bough_simulation *s) {
     return bough_arena_doubles(arena, BOUGH_ROD_CHANGE * (size_t)most);
 }
 
+// The system, the states at rest at `time`, and what moves them.
+typedef struct balance_setup {
+    bough_coupled *coupled;
+    double *state; // (n_state)
+    search self;
+    bool rests; // whether states are brought to rest in between
+} balance_setup;
+
+static bough_status set_up(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly, double time,
+                           balance_setup *b) {
+    b->state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
+    int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
+    bough_status status = bough_coupled_create(arena, assembly, NULL, &b->coupled);
+    if (!bough_is_ok(&status)) return status;
+    if (s->jump != NULL) bough_jump_link_begin(s->jump, time);
+    status = bough_coupled_hold(arena, b->coupled, bough_equilibrium_held(s->tree, true, row), row);
+    if (!bough_is_ok(&status)) return status;
+    bough_assembly_states(assembly, b->state);
+    bough_tree_prescribe(s->tree, time, b->state);
+    b->self = (search){s, b->coupled, time, rod_changes(arena, s)};
+    bring_to_rest(&b->self, b->state);
+    b->rests = turns(b->coupled, s->tree, b->state) || s->tree->n_closures == 0;
+    return bough_ok();
+}
+
 typedef struct balancing {
     bough_simulation *simulation;
     const bough_assembly *assembly;
@@ -204,29 +229,18 @@ typedef struct balancing {
 } balancing;
 
 static bough_status balance_members(bough_arena *arena, void *data) {
-    const balancing *b = data;
-    bough_simulation *s = b->simulation;
-    const bough_assembly *assembly = b->assembly;
-    double time = b->time;
-    bough_coupled *coupled;
+    const balancing *x = data;
+    bough_simulation *s = x->simulation;
     bough_equilibrium_def def = bough_equilibrium_def_default();
-    double *state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
-    int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
-    bough_status status = bough_coupled_create(arena, assembly, NULL, &coupled);
+    balance_setup b;
+    bough_status status = set_up(arena, s, x->assembly, x->time, &b);
     if (!bough_is_ok(&status)) return status;
-    def.time = time;
-    if (s->jump != NULL) bough_jump_link_begin(s->jump, time);
-    status = bough_coupled_hold(arena, coupled, bough_equilibrium_held(s->tree, true, row), row);
-    if (!bough_is_ok(&status)) return status;
-    bough_assembly_states(assembly, state);
-    bough_tree_prescribe(s->tree, time, state);
-    search self = {s, coupled, time, rod_changes(arena, s)};
-    def.self = &self;
+    def.time = x->time;
+    def.self = &b.self;
     def.move = move;
-    bring_to_rest(&self, state);
-    if (turns(coupled, s->tree, state) || s->tree->n_closures == 0) def.rest = bring_to_rest;
-    return s->aero ? balance_in_air(arena, s, coupled, &def, state, b->work)
-                   : balance(arena, s, coupled, &def, state, b->work);
+    if (b.rests) def.rest = bring_to_rest;
+    return s->aero ? balance_in_air(arena, s, b.coupled, &def, b.state, x->work)
+                   : balance(arena, s, b.coupled, &def, b.state, x->work);
 }
 
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
@@ -234,4 +248,80 @@ bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assem
     balancing b = {s, assembly, time, work};
     *work = (bough_equilibrium_work){0};
     return bough_arena_use(balance_members, &b);
+}
+
+// -- paths ----------------------------------------------------------------------------------------
+
+typedef struct walk {
+    search search; // the first, for move
+    const bough_assembly *assembly;
+    bough_simulation *simulation;
+    bough_path_listener listener;
+} walk;
+
+static void rest(void *self, double *state) {
+    walk *w = self;
+    bring_to_rest(&w->search, state);
+}
+
+static bough_status tell_point(void *self, double share, const double *state, bool limit) {
+    const walk *w = self;
+    double time = fmin(fmax(share, 0), 1) * bough_equilibrium_time(w->simulation);
+    for (int i = 0; i < w->assembly->n_member; i++)
+        bough_member_set(w->assembly->member[i], time, state + w->assembly->state_offset[i]);
+    bough_simulation_update(w->simulation);
+    return w->listener.point(w->listener.self, share, limit);
+}
+
+static bough_status refuse_path(const bough_simulation *s) {
+    const char *file = s->scene->file;
+    for (int i = 0; i < s->tree->n_links; i++) {
+        const bough_link *link = &s->tree->links[i];
+        if (link->motion == NULL) continue;
+        return bough_fail(BOUGH_INVALID, "%.200s: body '%s': a path of equilibria knows no prescribed motions: give its "
+                          "joint a load", file, s->tree->bodies[link->body].name);
+    }
+    if (s->aero != NULL) return bough_fail(BOUGH_INVALID, "%.200s: a path of equilibria knows no air", file);
+    if (s->jump != NULL) return bough_fail(BOUGH_INVALID, "%.200s: loads: a path of equilibria knows no jumps", file);
+    if (bough_equilibrium_time(s) > 0) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "%.200s: loads: expected one that grows, as 'ramp: [0 s, 1 s]': its path is "
+                      "followed over the ramp", file);
+}
+
+typedef struct walking {
+    bough_simulation *simulation;
+    const bough_assembly *assembly;
+    bough_path_listener listener;
+    bough_path_report *report;
+} walking;
+
+static bough_status walk_path(bough_arena *arena, void *data) {
+    const walking *x = data;
+    bough_simulation *s = x->simulation;
+    balance_setup b;
+    bough_path_def def = bough_path_def_default();
+    bough_equilibrium_def start = bough_equilibrium_def_default();
+    bough_equilibrium_work work = {0};
+    bough_status status = set_up(arena, s, x->assembly, 0, &b);
+    if (!bough_is_ok(&status)) return status;
+    start.self = &b.self;
+    start.move = move;
+    if (b.rests) start.rest = bring_to_rest;
+    status = balance(arena, s, b.coupled, &start, b.state, &work);
+    if (!bough_is_ok(&status)) return status;
+    walk w = {b.self, x->assembly, s, x->listener};
+    def.end = bough_equilibrium_time(s);
+    def.self = &w;
+    def.move = move;
+    def.rest = rest;
+    def.point = tell_point;
+    return bough_path_follow(arena, b.coupled, &def, b.state, x->report);
+}
+
+bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
+                                   bough_path_listener listener, bough_path_report *report) {
+    walking x = {s, assembly, listener, report};
+    *report = (bough_path_report){0};
+    bough_status status = refuse_path(s);
+    return bough_is_ok(&status) ? bough_arena_use(walk_path, &x) : status;
 }

@@ -8,6 +8,7 @@
 #define BOUGH_APPS_SIMULATION_EQUILIBRIUM_H
 
 #include "apps/simulation/simulation.h"
+#include "cosim/path.h"
 
 typedef struct bough_equilibrium_work {
     int steps;   // of the solution, all samples of the air together
@@ -29,6 +30,19 @@ double bough_equilibrium_time(const bough_simulation *s);
 // their clocks stay at 0. BOUGH_FAILED names the body that finds none.
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                           bough_equilibrium_work *work);
+
+// What is told of each point of a path: the members and the simulation's view are there; `limit`: the
+// loads are at their largest or smallest there for now. A failure ends the path.
+typedef struct bough_path_listener {
+    void *self;
+    bough_status (*point)(void *self, double share, bool limit);
+} bough_path_listener;
+
+// Follows the equilibria of the assembly as the loads grow from those at time 0 to those at
+// bough_equilibrium_time, in proportion, through limit points (cosim/path.h). BOUGH_INVALID for scenes with air, prescribed motions, jumps of loads, or
+// loads that do not grow. BOUGH_FAILED when the path ends before.
+bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
+                                   bough_path_listener listener, bough_path_report *report);
 
 // Sets the states of all members (n_state); their clocks are set to 0, and `view` follows.
 void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly,

@@ -1,0 +1,43 @@
+// A path of equilibria of the coupled system, F(λ, y) = 0, as the share λ of the loads grows and, past a
+// limit point, shrinks: pseudo-arclength continuation. Loads enter F linearly, so that
+//     F(λ, y) = F(0 s, y) + λ (F(end, y) − F(0 s, y)),
+// also for negative shares. Each step predicts along the tangent and corrects by Newton's method in the plane
+// normal to it, state and share together,
+//     J δy + ∂F/∂λ δλ = −F,   ⟨δ, tangent⟩ = 0,
+// by two solutions with the coupled factors, those of the loads at λ end. E. Riks, An incremental approach to
+// the solution of snapping and buckling problems, Int. J. Solids Struct. 15 (1979).
+#ifndef BOUGH_COSIM_PATH_H
+#define BOUGH_COSIM_PATH_H
+
+#include "cosim/coupled.h"
+
+typedef struct bough_path_def {
+    double end;       // time of the whole loads; the path begins with those at time 0 [s]
+    double step;      // the first step's length
+    double tolerance; // of the last correction, in units of the members' scales
+    int steps;        // most, refused ones among them
+    void *self;
+    // As in equilibrium.h.
+    double (*move)(void *self, const double *state, const double *change, double *moved);
+    void (*rest)(void *self, double *state);
+    // A point of the path; `limit`: there the share has its largest or smallest value for now. A failure
+    // ends the path.
+    bough_status (*point)(void *self, double share, const double *state, bool limit);
+} bough_path_def;
+
+// Steps of 0.02 at first, 1e-8, 2000 steps.
+bough_path_def bough_path_def_default(void);
+
+typedef struct bough_path_report {
+    int steps, points, limits;
+    bool reversed; // the path ended at the share −1
+    double share;  // of the last point
+} bough_path_report;
+
+// Follows the path from `state` (n_state), an equilibrium under the loads at time 0, to the share 1 or −1.
+// BOUGH_FAILED: the path cannot be followed, or goes on beyond the most steps; the state is that of the
+// last point.
+bough_status bough_path_follow(bough_arena *arena, bough_coupled *coupled, const bough_path_def *def,
+                               double *state, bough_path_report *report);
+
+#endif
