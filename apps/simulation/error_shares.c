@@ -48,22 +48,25 @@ void bough_error_shares_note(bough_error_shares *shares, bough_run *run) {
     if (value) memcpy(shares->row + n * (size_t)shares->n_row++, value, n * sizeof *value);
 }
 
-// -- the second run -------------------------------------------------------------------------------
+// -- other runs -----------------------------------------------------------------------------------
 
-// A run beside which the first one's rows pass.
+// A run beside which the noted rows pass, or whose rows take their place.
 typedef struct follower {
-    const bough_error_shares *shares;
+    bough_error_shares *shares;
     bough_error_share *share;
+    bool takes;
     bough_run run;
     int row;
 } follower;
 
-static bough_status compare_row(void *self, double t) {
+static bough_status pass_row(void *self, double t) {
     follower *f = self;
     (void)t;
     const double *value = bough_run_values(&f->run);
     if (!value || f->row >= f->shares->n_row) return bough_ok();
-    const double *first = f->shares->row + (size_t)f->row++ * (size_t)f->shares->n_channel;
+    size_t n = (size_t)f->shares->n_channel;
+    double *first = f->shares->row + (size_t)f->row++ * n;
+    if (f->takes) memcpy(first, value, n * sizeof *value);
     for (int i = 0; i < f->shares->n_channel; i++) {
         double error = f->share->part * fabs(value[i] - first[i]);
         f->share->largest[i] = fmax(f->share->largest[i], error);
@@ -71,31 +74,41 @@ static bough_status compare_row(void *self, double t) {
     return bough_ok();
 }
 
-// Half the segments; the part of the error is that of the rod that loses least.
-static bool coarsen_mesh(bough_arena *arena, bough_scene *scene, bough_error_share *share) {
+// The loads on vertices stay at their places.
+static bool follow_vertices(bough_arena *arena, bough_scene *scene) {
+    size_t n = (size_t)scene->n_load;
+    bough_scene_load *load = bough_arena_take(arena, n * sizeof *load);
+    for (size_t i = 0; i < n && load; i++) {
+        load[i] = scene->load[i];
+        if (load[i].place == BOUGH_SCENE_AT_VERTEX) load[i].vertex *= 2;
+    }
+    scene->load = load;
+    return load || n == 0;
+}
+
+// Twice the segments: half of them may be too few for the order to hold.
+static bool refine_mesh(bough_arena *arena, bough_scene *scene, bough_error_share *share) {
     size_t n = (size_t)scene->n_body;
     bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
-    double least = HUGE_VAL;
-    if (!body) return false;
-    memcpy(body, scene->body, n * sizeof *body);
-    for (size_t i = 0; i < n; i++) {
-        int all = body[i].rod.n_segment, half = (all + 1) / 2;
-        if (!body[i].rod.node || body[i].fidelity == BOUGH_SCENE_RIGID) continue;
-        if (body[i].fidelity != BOUGH_SCENE_ROD || all < 4) {
-            unknown(share, body[i].fidelity == BOUGH_SCENE_ROD ? "%s has too few segments to halve them"
-                    : "%s is a modal body, whose shapes have errors of their own", body[i].name);
-            return false;
-        }
-        body[i].rod.n_segment = half;
-        least = fmin(least, (double)all / half);
-    }
-    if (least == HUGE_VAL) {
-        unknown(share, "no body has a mesh");
+    bool any = false;
+    if (!body || !follow_vertices(arena, scene)) {
+        unknown(share, "out of memory");
         return false;
     }
-    share->part = 1 / (pow(least, mesh_order) - 1);
+    memcpy(body, scene->body, n * sizeof *body);
+    for (size_t i = 0; i < n; i++) {
+        if (!body[i].rod.node || body[i].fidelity == BOUGH_SCENE_RIGID) continue;
+        if (body[i].fidelity != BOUGH_SCENE_ROD) {
+            unknown(share, "%s is a modal body, whose shapes have errors of their own", body[i].name);
+            return false;
+        }
+        body[i].rod.n_segment *= 2;
+        any = true;
+    }
+    if (!any) unknown(share, "no body has a mesh");
+    share->part = 1 / (1 - pow(2, -mesh_order));
     scene->body = body;
-    return true;
+    return any;
 }
 
 // Twice the samples: half of them may be too few to be stable. Where that takes macro steps of half the
@@ -118,16 +131,19 @@ static bool refine_air(bough_scene *scene, bough_error_share *share) {
     return true;
 }
 
-static bool change(bough_arena *arena, bough_error_share_kind kind, bough_scene *scene,
-                    bough_error_share *share) {
-    scene->simulation.error_estimate = BOUGH_ERROR_NOT_TOLD;
-    scene->simulation.error_bound = 0;
-    scene->simulation.error_shares = false;
-    if (scene->control.node && scene->control.kind == BOUGH_SCENE_BLADED) {
-        unknown(share, "the controller's library keeps a state that a second run would change");
-        return false;
-    }
-    return kind == BOUGH_SHARE_MESH ? coarsen_mesh(arena, scene, share) : refine_air(scene, share);
+static double tighter(double rtol) { return fmin(rtol, fmax(rtol / 30, 1e-8)); }
+
+// Steps whose errors are small beside those of the mesh.
+static bool refine_time(bough_arena *arena, bough_scene *scene) {
+    size_t n = (size_t)scene->n_body;
+    bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
+    if (!body) return false;
+    memcpy(body, scene->body, n * sizeof *body);
+    scene->simulation.master.rtol = tighter(scene->simulation.master.rtol);
+    scene->simulation.micro.rtol = tighter(scene->simulation.micro.rtol);
+    for (size_t i = 0; i < n; i++) body[i].micro.rtol = tighter(body[i].micro.rtol);
+    scene->body = body;
+    return true;
 }
 
 typedef struct finding {
@@ -137,31 +153,57 @@ typedef struct finding {
     bough_error_shares *shares;
 } finding;
 
-static bough_status find(bough_arena *arena, void *self) {
-    const finding *x = self;
+// Runs a scene from start to end; false with the reason in the share.
+static bool pass(bough_arena *arena, const finding *x, const bough_scene *scene, bool takes) {
     bough_error_share *share = &x->shares->share[x->kind];
-    bough_scene scene = *x->run->simulation->scene;
-    follower f = {.shares = x->shares, .share = share};
-    share->unknown[0] = '\0';
-    if (!change(arena, x->kind, &scene, share)) return bough_ok();
-    bough_status status = bough_run_create(arena, &scene, &f.run);
+    follower f = {.shares = x->shares, .share = share, .takes = takes};
+    bough_status status = bough_run_create(arena, scene, &f.run);
     if (bough_is_ok(&status)) {
         f.run.stop = x->run->stop;
-        bough_run_record_at(&f.run, (bough_run_record){x->interval, true, .sample = compare_row, .self = &f});
+        bough_run_record_at(&f.run, (bough_run_record){x->interval, true, .sample = pass_row, .self = &f});
         bough_run_all(&f.run);
         status = f.run.outcome;
-        share->cpu_s = f.run.cpu_s;
+        share->cpu_s += f.run.cpu_s;
     }
     if (!bough_is_ok(&status)) {
         unknown(share, "the run that would tell it failed: %.100s", status.message);
     } else if (f.row != x->shares->n_row) {
         unknown(share, "the run was resumed: its rows before are not in memory");
     }
+    return share->unknown[0] == '\0';
+}
+
+// The mesh's error is the difference of two runs with short steps: errors in time do not cancel.
+static bool find_mesh(bough_arena *arena, const finding *x, bough_scene *scene) {
+    bough_error_share *share = &x->shares->share[BOUGH_SHARE_MESH];
+    if (!refine_time(arena, scene)) {
+        unknown(share, "out of memory");
+        return false;
+    }
+    bough_scene same = *scene;
+    return refine_mesh(arena, scene, share) && pass(arena, x, &same, true);
+}
+
+static bough_status find(bough_arena *arena, void *self) {
+    const finding *x = self;
+    bough_error_share *share = &x->shares->share[x->kind];
+    bough_scene scene = *x->run->simulation->scene;
+    share->unknown[0] = '\0';
+    scene.simulation.error_estimate = BOUGH_ERROR_NOT_TOLD;
+    scene.simulation.error_bound = 0;
+    scene.simulation.error_shares = false;
+    if (scene.control.node && scene.control.kind == BOUGH_SCENE_BLADED) {
+        unknown(share, "the controller's library keeps a state that a second run would change");
+        return bough_ok();
+    }
+    bool ready = x->kind == BOUGH_SHARE_MESH ? find_mesh(arena, x, &scene) : refine_air(&scene, share);
+    if (ready) pass(arena, x, &scene, false);
     return bough_ok();
 }
 
+// The mesh's last: it takes the rows' place.
 void bough_error_shares_find(bough_error_shares *shares, const bough_run *run, double interval) {
-    for (int k = 0; k < BOUGH_SHARES && shares->row; k++) {
+    for (int k = BOUGH_SHARES - 1; k >= 0 && shares->row; k--) {
         finding f = {(bough_error_share_kind)k, run, interval, shares};
         bough_status status = bough_arena_use(find, &f);
         if (!bough_is_ok(&status)) unknown(&shares->share[k], "%s", status.message);

@@ -1,6 +1,7 @@
 // The shares of mesh and air in what the channels of a run err by, measured: the scene is run again
-// with half the segments in each rod, and with twice the samples of the air; the run's own error is a
-// known part of the difference, by the order at which each converges.
+// with twice the segments in each rod, and with twice the samples of the air; the run's own error is a
+// known part of the difference, by the order at which each converges. For the mesh it is the difference
+// between two runs with short steps, because errors in time do not cancel from mesh to mesh.
 #ifndef BOUGH_APPS_SIMULATION_ERROR_SHARES_H
 #define BOUGH_APPS_SIMULATION_ERROR_SHARES_H
 
