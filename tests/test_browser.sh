@@ -33,6 +33,7 @@ echo 'a table' >"$folder/study/table.txt"
 echo '<svg xmlns="http://www.w3.org/2000/svg"><rect/></svg>' >"$folder/study/plot.svg"
 opens "$folder/study"
 grep -q '<img src="data:image/svg+xml,%3Csvg' "$folder/dom"
+grep -q '#plot img { max-width: none; }' "$folder/dom" # legible on narrow screens: it scrolls
 
 mkdir "$folder/cases"
 printf 'case,quantity,result,verdict\n"a, b",tip,1.5,pass\nc,tip,nan,FAIL\n' >"$folder/cases/verify.csv"

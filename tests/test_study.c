@@ -281,6 +281,22 @@ static void failed_runs_are_told_with_their_diagnosis(void **state) {
     assert_int_equal(count_in(*state, "plot.svg", "</svg>\n"), 1);
 }
 
+// The title ends within the picture, its letters being 0.6 times as wide as high.
+static void no_title_is_clipped(void **state) {
+    static const char title[] = "Falling bar, whose study has a title that is wider than its panels side by "
+                                "side, and wider still, so that the picture must have room for it";
+    char table[4096], text[4096];
+    snprintf(text, sizeof text, "title: '%s'%s", title, strchr(good_study, '\n'));
+    bough_status status = perform(*state, text, ALL, table);
+    assert_true(bough_is_ok(&status));
+    char *picture = scratch_read(*state, "plot.svg"), *at = strstr(picture, "font-size=\"15\"");
+    assert_non_null(strstr(at, title));
+    while (strncmp(at, "x=\"", 3) != 0) at--;
+    double width = strtod(strstr(picture, "width=\"") + 7, NULL);
+    assert_true(strtod(at + 3, NULL) + 0.6 * 15 * (double)strlen(title) <= width);
+    free(picture);
+}
+
 static void failed_reference_ends_the_study(void **state) {
     char table[4096];
     bough_status status = perform(
@@ -374,6 +390,7 @@ int main(void) {
         SCRATCH(reference_differs_from_itself_by_nothing),
         SCRATCH(every_run_has_a_row),
         SCRATCH(failed_runs_are_told_with_their_diagnosis),
+        SCRATCH(no_title_is_clipped),
         SCRATCH(failed_reference_ends_the_study),
         SCRATCH(interrupted_study_goes_on),
         SCRATCH(half_a_line_is_skipped),

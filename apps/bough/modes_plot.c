@@ -1,6 +1,7 @@
 // The Campbell diagram: frequencies and damping of the modes over the operating points, with the
 // multiples of the rotor's speed.
 #include "apps/bough/modes_sweep.h"
+#include "apps/output/picture.h"
 
 #include <math.h>
 
@@ -126,10 +127,8 @@ void bough_modes_plot(const bough_sweep *s, FILE *svg) {
         least = fmin(least, 100 * s->mode[i].damping);
     }
     fprintf(svg, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %d %d\" "
-                 "font-family=\"sans-serif\" font-size=\"12\">\n<style>.grid{stroke:#ddd;fill:none}"
-                 ".axis{stroke:#000;fill:none}.times{stroke:#999;stroke-dasharray:5 4}"
-                 "text.times{stroke:none;fill:#777}</style>\n"
-                 "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
+                 "font-family=\"sans-serif\" font-size=\"12\">\n" BOUGH_PICTURE_STYLE
+                 "<style>.times{stroke:#999;stroke-dasharray:5 4}text.times{stroke:none;fill:#777}</style>\n",
             WIDTH, TOP + 2 * HEIGHT + GAP + BOTTOM);
     p.high = 1.05 * fmax(frequency, 1e-3);
     draw_panel(&p, "frequency [Hz]");

@@ -1,6 +1,7 @@
 #include "apps/study/load_set_plot.h"
 
 #include "apps/output/folder.h"
+#include "apps/output/picture.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -57,8 +58,7 @@ static bough_status open_picture(const char *folder, int n_panel, char path[BOUG
     if (bough_is_ok(&status)) status = bough_folder_open_partial(path, f);
     if (!bough_is_ok(&status)) return status;
     fprintf(*f, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
-                "font-family=\"sans-serif\" font-size=\"11\" fill=\"#333\">\n"
-                "<rect width=\"100%%\" height=\"100%%\" fill=\"#fff\"/>\n",
+                "font-family=\"sans-serif\" font-size=\"11\">\n" BOUGH_PICTURE_STYLE,
             WIDE * PER_ROW, HIGH * rows);
     return status;
 }
@@ -84,11 +84,11 @@ static void draw_ticks(const panel *p, const scale *s, bool across) {
         double at = s->from + (s->to - s->from) * (v - s->low) / (s->high - s->low);
         double shown = s->logarithmic ? pow(10, v) : fabs(v) < 1e-9 * step ? 0 : v;
         if (across) {
-            fprintf(p->svg, "<path d=\"M%.1f %.1fV%.1f\" stroke=\"#e5e5e5\"/>"
+            fprintf(p->svg, "<path d=\"M%.1f %.1fV%.1f\" class=\"grid\"/>"
                             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">%.4g</text>\n",
                     at, p->y.from, p->y.to, at, p->y.from + 14, shown);
         } else {
-            fprintf(p->svg, "<path d=\"M%.1f %.1fH%.1f\" stroke=\"#e5e5e5\"/>"
+            fprintf(p->svg, "<path d=\"M%.1f %.1fH%.1f\" class=\"grid\"/>"
                             "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">%.4g</text>\n",
                     p->x.from, at, p->x.to, p->x.from - 5, at + 4, shown);
         }

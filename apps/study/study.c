@@ -337,7 +337,7 @@ static bough_status finish(const char *path, bough_errors *errors) {
 
 // The kinds of the project's verification of itself, which no installed program runs.
 static bool is_verification(const bough_node *root, bough_errors *errors) {
-    static const char *const kinds[] = {"verify", "two-mass", "added-mass", "rivals"};
+    static const char *const kinds[] = {"verify", "two-mass", "added-mass", "blade-models"};
     const bough_node *kind = bough_node_find(root, "kind");
     for (size_t i = 0; kind && kind->kind == BOUGH_SCALAR && i < sizeof kinds / sizeof *kinds; i++) {
         if (strcmp(kind->text, kinds[i]) != 0) continue;

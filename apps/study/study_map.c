@@ -1,6 +1,7 @@
 #include "apps/study/study_map.h"
 
 #include "apps/output/folder.h"
+#include "apps/output/picture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -55,7 +56,7 @@ static void draw_cell(FILE *svg, const bough_map *m, const bough_map_cell *c, do
     fputs("\"/>", svg);
     if (PER_CHARACTER * (int)strlen(c->text) <= m->column_width + 4) {
         fprintf(svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" font-size=\"10\"%s>",
-                x + 0.5 * m->column_width, y + 14, dark ? " fill=\"#fff\"" : "");
+                x + 0.5 * m->column_width, y + 14, dark ? " fill=\"#fff\"" : " fill=\"#222\"");
         put_text(svg, c->text);
         fputs("</text>", svg);
     }
@@ -85,12 +86,11 @@ static void draw(FILE *svg, const bough_map *m) {
     int height = height_of(m), y = TOP;
     fprintf(svg,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
-            "viewBox=\"0 0 %d %d\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\">\n"
-            "<rect width=\"%d\" height=\"%d\" fill=\"white\"/>\n"
+            "viewBox=\"0 0 %d %d\" font-family=\"sans-serif\" font-size=\"12\">\n" BOUGH_PICTURE_STYLE
             "<text x=\"%d\" y=\"22\" font-size=\"15\" font-weight=\"bold\">",
-            width, height, width, height, width, height, LEFT);
+            width, height, width, height, LEFT);
     put_text(svg, m->title);
-    fprintf(svg, "</text>\n<text x=\"%d\" y=\"42\" fill=\"#555\">", LEFT);
+    fprintf(svg, "</text>\n<text x=\"%d\" y=\"42\" class=\"weak\">", LEFT);
     put_text(svg, m->legend);
     fputs("</text>\n", svg);
     draw_columns(svg, m, left);

@@ -1,8 +1,10 @@
 #include "apps/study/study_plot.h"
 
 #include "apps/output/folder.h"
+#include "apps/output/picture.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 // Of the picture [px].
@@ -15,12 +17,14 @@ enum {
     BOTTOM = 56,
     TITLE_HEIGHT = 34,
     LEGEND_LINE = 20,
+    LETTER = 7, // of the legend, rather wide; of the title a third more
     PER_ROW = 2,
 };
 
-// The palette of Okabe and Ito, told apart by colour-blind readers; yellow is too pale on white.
+// The palette of Okabe and Ito, told apart by colour-blind readers, without yellow, which is too pale on
+// white, and with grey in place of black, which is none on dark pages.
 static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                      "#E69F00", "#56B4E9", "#000000"};
+                                      "#E69F00", "#56B4E9", "#7A7A7A"};
 enum { N_COLOUR = sizeof colours / sizeof *colours, N_SHAPE = 4 };
 
 // An axis from `low` to `high`, logarithms to base 10, drawn from pixel `from` to `to`.
@@ -80,6 +84,13 @@ static double place(const scale *s, double value) {
 }
 
 // -- text -----------------------------------------------------------------------------------------
+
+// Characters of a text in UTF-8.
+static int letters(const char *text) {
+    int n = 0;
+    for (; *text; text++) n += (*text & 0xC0) != 0x80;
+    return n;
+}
 
 static void put_text(FILE *svg, const char *text) {
     for (; *text; text++) {
@@ -183,9 +194,12 @@ static void draw_points(const panel *p, int line, int first, int n) {
         const bough_study_result *r = &p->results->result[i];
         if (!has_point(r, p->measure)) continue;
         double x = place(&p->x, r->error[p->measure]), y = place(&p->y, cost(r));
+        const char *value = bough_study_value(s, &s->cell[i], s->grid.n - 1);
+        bool before = x + 7 + letters(value) * LETTER > p->x.to + RIGHT; // no room behind the point
         draw_marker(p->svg, x, y, line);
-        fprintf(p->svg, "<text class=\"point\" x=\"%.1f\" y=\"%.1f\">", x + 7, y - 5);
-        put_text(p->svg, bough_study_value(s, &s->cell[i], s->grid.n - 1));
+        fprintf(p->svg, "<text class=\"weak\" font-size=\"10\" x=\"%.1f\" y=\"%.1f\"%s>",
+                before ? x - 7 : x + 7, y - 5, before ? " text-anchor=\"end\"" : "");
+        put_text(p->svg, value);
         fputs("</text>\n", p->svg);
     }
 }
@@ -244,18 +258,36 @@ static void draw_legend(FILE *svg, const bough_study_results *results, double y)
 
 // -- picture --------------------------------------------------------------------------------------
 
+static const char *title_of(const bough_study *s) { return s->title ? s->title : s->file; }
+
 static void begin(FILE *svg, const bough_study *s, int width, int height) {
     fprintf(svg,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
-            "viewBox=\"0 0 %d %d\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\">\n"
-            "<style>.grid{stroke:#ddd}.axis{stroke:#222;fill:none}"
-            ".point{font-size:10px;fill:#555;paint-order:stroke;stroke:#fff;"
-            "stroke-width:2px}</style>\n"
-            "<rect width=\"%d\" height=\"%d\" fill=\"white\"/>\n",
-            width, height, width, height, width, height);
+            "viewBox=\"0 0 %d %d\" font-family=\"sans-serif\" font-size=\"12\">\n" BOUGH_PICTURE_STYLE,
+            width, height, width, height);
     fprintf(svg, "<text x=\"%d\" y=\"22\" font-size=\"15\" font-weight=\"bold\">", LEFT);
-    put_text(svg, s->title ? s->title : s->file);
+    put_text(svg, title_of(s));
     fputs("</text>\n", svg);
+}
+
+// That of the panels side by side, or more where the title or a line of the legend needs it.
+static int width_of(const bough_study_results *results, int n_column) {
+    const bough_study *s = results->study;
+    int title = LEFT + letters(title_of(s)) * LETTER * 4 / 3 + RIGHT;
+    int width = n_column * PANEL_WIDTH > title ? n_column * PANEL_WIDTH : title;
+    for (int i = 0; i < count_lines(s); i++) {
+        char *text = NULL;
+        size_t size = 0;
+        FILE *line = open_memstream(&text, &size);
+        if (!line) return width;
+        put_line_name(line, s, i);
+        put_missing(line, results, i);
+        fclose(line);
+        int needed = text ? LEFT + 36 + letters(text) * LETTER + RIGHT : 0;
+        free(text);
+        if (needed > width) width = needed;
+    }
+    return width;
 }
 
 static void draw(FILE *svg, const bough_study_results *results) {
@@ -264,7 +296,7 @@ static void draw(FILE *svg, const bough_study_results *results) {
     int n_row = (s->n_measure + PER_ROW - 1) / PER_ROW;
     int panels_end = TITLE_HEIGHT + n_row * PANEL_HEIGHT;
     int height = panels_end + (count_lines(s) + 1) * LEGEND_LINE;
-    begin(svg, s, n_column * PANEL_WIDTH, height);
+    begin(svg, s, width_of(results, n_column), height);
     for (int i = 0; i < s->n_measure; i++) {
         int x = i % PER_ROW * PANEL_WIDTH, y = TITLE_HEIGHT + i / PER_ROW * PANEL_HEIGHT;
         panel p = {.results = results,

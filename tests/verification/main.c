@@ -36,7 +36,7 @@ int main(int argc, char **argv) {
     if (bough_is_ok(&status) && options.help) {
         fputs("usage: bough-verify", stdout);
         bough_options_usage(&syntax, stdout);
-        fputs("\nruns a study of bough's own verification: verify, two-mass, added-mass, rivals\n",
+        fputs("\nruns a study of bough's own verification: verify, two-mass, added-mass, blade-models\n",
               stdout);
         bough_options_help(&syntax, stdout);
     } else if (bough_is_ok(&status)) {

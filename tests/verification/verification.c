@@ -2,7 +2,7 @@
 
 #include "apps/config/schema.h"
 #include "tests/verification/added_mass.h"
-#include "tests/verification/rivals.h"
+#include "tests/verification/blade_models.h"
 #include "tests/verification/two_mass_study.h"
 #include "tests/verification/verify.h"
 
@@ -12,7 +12,7 @@ static const bough_verification_kind kinds[] = {
     {"verify", bough_verify_read, bough_verify_perform},
     {"two-mass", bough_two_mass_read, bough_two_mass_perform},
     {"added-mass", bough_added_mass_read, bough_added_mass_perform},
-    {"rivals", bough_rivals_read, bough_rivals_perform},
+    {"blade-models", bough_blade_models_read, bough_blade_models_perform},
 };
 
 static const bough_verification_kind *find_kind(const bough_node *root, bough_errors *errors) {
@@ -22,7 +22,7 @@ static const bough_verification_kind *find_kind(const bough_node *root, bough_er
         if (strcmp(kind->text, kinds[i].name) == 0) return &kinds[i];
     }
     bough_errors_add(errors, kind ? kind : root, "kind",
-                     "expected verify, two-mass, added-mass or rivals, got %s",
+                     "expected verify, two-mass, added-mass or blade-models, got %s",
                      kind ? bough_node_shown(kind, shown) : "none");
     return NULL;
 }

@@ -1,28 +1,28 @@
-// The clamped blade of a study of rivals: equilibrium and frequencies of whatever models it.
+// The clamped blade of a study of blade models: equilibrium and frequencies of whatever models it.
 #include "apps/analysis/steady.h"
-#include "tests/verification/rivals_internal.h"
+#include "tests/verification/blade_models_internal.h"
 #include "tests/verification/modal_static.h"
 #include "flexbody/rod_modes.h"
 
 #include <string.h>
 
-bough_status bough_rival_scene_sets(bough_arena *arena, const char *scene,
-                                    const bough_rival_sets *given, const bough_rival *rival,
-                                    bough_rival_sets *sets) {
+bough_status bough_model_scene_sets(bough_arena *arena, const char *scene,
+                                    const bough_model_sets *given, const bough_blade_model *model,
+                                    bough_model_sets *sets) {
     bough_errors errors = {.arena = arena};
     bough_scene *read;
     bough_status status = bough_scene_read(arena, scene, given->item, given->n, &errors, &read);
     if (!bough_is_ok(&status)) return status;
-    int most = given->n + rival->set.n * read->n_body;
+    int most = given->n + model->set.n * read->n_body;
     sets->n = given->n;
     sets->item = bough_arena_take(arena, (size_t)(most + 1) * sizeof *sets->item);
     if (!sets->item) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < given->n; k++) sets->item[k] = given->item[k];
     for (int i = 0; i < read->n_body; i++) {
         bool beam = read->body[i].rod.node && read->body[i].fidelity != BOUGH_SCENE_RIGID;
-        for (int k = 0; beam && k < rival->set.n; k++) {
+        for (int k = 0; beam && k < model->set.n; k++) {
             char set[256];
-            snprintf(set, sizeof set, "bodies[%d].%.200s", i, rival->set.item[k]);
+            snprintf(set, sizeof set, "bodies[%d].%.200s", i, model->set.item[k]);
             sets->item[sets->n++] = bough_arena_string(arena, set);
         }
     }
@@ -30,7 +30,7 @@ bough_status bough_rival_scene_sets(bough_arena *arena, const char *scene,
 }
 
 // Displacements of the vertices in a rod's state.
-static void set_shape(const bough_rod_model *m, const double *y, bough_rival_blade *blade) {
+static void set_shape(const bough_rod_model *m, const double *y, bough_model_blade *blade) {
     int n = m->n;
     for (int i = 0; i <= n; i++) blade->span[i] = m->span[i];
     for (int i = 0; i < n; i++) {
@@ -44,9 +44,9 @@ static void set_shape(const bough_rod_model *m, const double *y, bough_rival_bla
 }
 
 static bough_status find_rod(bough_arena *arena, bough_simulation *s, const bough_beam *beam,
-                             double *frequency, bough_rival_blade *blade) {
+                             double *frequency, bough_model_blade *blade) {
     const bough_turning rest = {0};
-    bough_rod_mode_list list = {.wanted = BOUGH_RIVALS_FREQUENCIES};
+    bough_rod_mode_list list = {.wanted = BOUGH_BLADE_MODELS_FREQUENCIES};
     bough_steady found;
     bough_status status = bough_steady_find(arena, s, beam, &rest, &found);
     if (bough_is_ok(&status)) {
@@ -59,7 +59,7 @@ static bough_status find_rod(bough_arena *arena, bough_simulation *s, const boug
 }
 
 static bough_status find_modal(bough_arena *arena, bough_simulation *s, const bough_beam *beam,
-                               double *frequency, bough_rival_blade *blade) {
+                               double *frequency, bough_model_blade *blade) {
     const bough_modal_model *m = bough_modal_body_model(beam->modal);
     const bough_rod_loads *loads = bough_beam_loads(beam);
     bough_transform pose = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
@@ -72,7 +72,7 @@ static bough_status find_modal(bough_arena *arena, bough_simulation *s, const bo
     bough_status status = bough_modal_steady(m, loads, time, input, arena, state);
     if (bough_is_ok(&status)) {
         status = bough_modal_frequencies(arena, m, loads, time, input, state,
-                                         BOUGH_RIVALS_FREQUENCIES, frequency, &found);
+                                         BOUGH_BLADE_MODELS_FREQUENCIES, frequency, &found);
     }
     if (bough_is_ok(&status)) {
         set_shape(m->rod, bough_modal_body_vertices(beam->modal, state, input, 1), blade);
@@ -81,13 +81,13 @@ static bough_status find_modal(bough_arena *arena, bough_simulation *s, const bo
 }
 
 // Under these replacements; the first beam of the scene.
-static bough_status find(bough_arena *arena, const char *path, const bough_rival_sets *given,
-                         const bough_rival *rival, double *frequency, bough_rival_blade *blade) {
+static bough_status find(bough_arena *arena, const char *path, const bough_model_sets *given,
+                         const bough_blade_model *model, double *frequency, bough_model_blade *blade) {
     bough_errors errors = {.arena = arena};
-    bough_rival_sets sets;
+    bough_model_sets sets;
     bough_scene *scene;
     bough_simulation *s;
-    bough_status status = bough_rival_scene_sets(arena, path, given, rival, &sets);
+    bough_status status = bough_model_scene_sets(arena, path, given, model, &sets);
     if (bough_is_ok(&status)) {
         status = bough_scene_read(arena, path, sets.item, sets.n, &errors, &scene);
     }
@@ -108,10 +108,10 @@ static bough_status find(bough_arena *arena, const char *path, const bough_rival
                      : find_modal(arena, s, beam, frequency, blade);
 }
 
-bough_status bough_rival_blade_find(bough_arena *arena, const bough_rivals *rivals,
-                                    const bough_rival *rival, bough_rival_blade *blade) {
-    const bough_rival_sets none = {0, NULL};
-    bough_status status = find(arena, rivals->blade, &none, rival, blade->rest, blade);
+bough_status bough_model_blade_find(bough_arena *arena, const bough_blade_models *study,
+                                    const bough_blade_model *model, bough_model_blade *blade) {
+    const bough_model_sets none = {0, NULL};
+    bough_status status = find(arena, study->blade, &none, model, blade->rest, blade);
     if (!bough_is_ok(&status)) return status;
-    return find(arena, rivals->blade, &rivals->load, rival, blade->bent, blade);
+    return find(arena, study->blade, &study->load, model, blade->bent, blade);
 }

@@ -1,21 +1,21 @@
 // The study that compares a blade's models: what it finds of a small clamped blade and a short run.
-#include "tests/verification/rivals_internal.h"
+#include "tests/verification/blade_models_internal.h"
 #include "tests/scratch.h"
 
-static const char head[] = "title: Two models\nkind: rivals\n"
+static const char head[] = "title: Two models\nkind: blade-models\n"
                            "blade: " BOUGH_SOURCE_DIR "/apps/beams/blade.yaml\n"
                            "load: [\"loads=[{body: blade, along: [0, 61.5], force: [2 kN/m, 0, 0],"
                            " frame: body}]\"]\n"
                            "turbine: " BOUGH_SOURCE_DIR "/apps/turbine/runup.yaml\n"
                            "run: [simulation.duration=0.2 s, simulation.threads=1]\n"
                            "reference: {body: [fidelity=rod, rod.segments=24]}\nrepeat: 1\n";
-static const char rivals[] =
-    "rivals:\n"
+static const char models[] =
+    "models:\n"
     "  - {name: same, body: [fidelity=rod, rod.segments=24]}\n"
     "  - {name: coarse, body: [fidelity=rod, rod.segments=12]}\n"
     "  - {name: linear, body: [fidelity=modal, rod.segments=24, modal.modes=14]}\n";
 
-static bough_rivals *read_study(bough_arena *arena, const char *folder, const char *text,
+static bough_blade_models *read_study(bough_arena *arena, const char *folder, const char *text,
                                bough_errors *errors) {
     char path[128];
     bough_verification study;
@@ -33,12 +33,12 @@ static bough_rivals *read_study(bough_arena *arena, const char *folder, const ch
 static void blades_are_found_by_their_models(void **state) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
-    bough_rivals *study = read_study(arena, *state, rivals, &errors);
+    bough_blade_models *study = read_study(arena, *state, models, &errors);
     assert_non_null(study);
-    bough_rival_blade blade[3];
+    bough_model_blade blade[3];
     for (int k = 0; k < 3; k++) {
         bough_status status =
-            bough_rival_blade_find(arena, study, &study->rival[k], &blade[k]);
+            bough_model_blade_find(arena, study, &study->model[k], &blade[k]);
         assert_int_equal(status.code, BOUGH_OK);
     }
     assert_int_equal(blade[0].n, 24);
@@ -46,7 +46,7 @@ static void blades_are_found_by_their_models(void **state) {
     assert_int_equal(blade[2].n_state, 2 * (14 + 12));
     check_near(blade[0].flap[24], 2.022713, 3e-3, 0); // an independent beam solver
     check_near(blade[0].twist[24], 0.0291 * acos(-1) / 180, 0.1, 0);
-    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) {
+    for (int k = 0; k < BOUGH_BLADE_MODELS_FREQUENCIES; k++) {
         check_near(blade[2].rest[k], blade[0].rest[k], 1e-3, 0); // dampers couple
         assert_true(k == 0 || blade[0].rest[k] > blade[0].rest[k - 1]);
     }
@@ -54,14 +54,14 @@ static void blades_are_found_by_their_models(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void table_and_file_hold_every_rival(void **state) {
+static void table_and_file_hold_every_model(void **state) {
     char table[4096] = "";
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
-    bough_rivals *study = read_study(arena, *state, rivals, &errors);
+    bough_blade_models *study = read_study(arena, *state, models, &errors);
     FILE *stream = fmemopen(table, sizeof table, "w");
     bough_verification_options options = {.folder = *state, .quiet = true, .stream = stream};
-    bough_status status = bough_rivals_perform(arena, study, &options);
+    bough_status status = bough_blade_models_perform(arena, study, &options);
     fclose(stream);
     assert_int_equal(status.code, BOUGH_OK);
     const char *same = strstr(table, "\nsame ");
@@ -71,7 +71,7 @@ static void table_and_file_hold_every_rival(void **state) {
                            &values[1], &values[2], &values[3], &values[4], &values[5], &values[6]);
     assert_int_equal(n, 8);
     for (int k = 0; k < 7; k++) check_near(values[k], 0, 0, 0); // it is the reference
-    char *csv = scratch_read(*state, "rivals.csv");
+    char *csv = scratch_read(*state, "blade-models.csv");
     assert_non_null(csv);
     assert_non_null(strstr(csv, "\ncoarse,156,"));
     assert_non_null(strstr(csv, "\nlinear,52,"));
@@ -82,10 +82,10 @@ static void table_and_file_hold_every_rival(void **state) {
 static void meshes_must_fit_the_reference(void **state) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
-    bough_rivals *study = read_study(
-        arena, *state, "rivals: [{name: odd, body: [fidelity=rod, rod.segments=7]}]\n", &errors);
+    bough_blade_models *study = read_study(
+        arena, *state, "models: [{name: odd, body: [fidelity=rod, rod.segments=7]}]\n", &errors);
     bough_verification_options options = {.folder = *state, .quiet = true, .stream = stderr};
-    bough_status status = bough_rivals_perform(arena, study, &options);
+    bough_status status = bough_blade_models_perform(arena, study, &options);
     assert_int_equal(status.code, BOUGH_INVALID);
     assert_non_null(strstr(status.message, "24 segments are no multiple of 7 of 'odd'"));
     bough_arena_destroy(arena);
@@ -94,7 +94,7 @@ static void meshes_must_fit_the_reference(void **state) {
 static void keys_are_checked(void **state) {
     bough_arena *arena = bough_arena_create();
     bough_errors errors = {0};
-    assert_null(read_study(arena, *state, "rivals: [{name: a, bodies: [x=1]}]\n", &errors));
+    assert_null(read_study(arena, *state, "models: [{name: a, bodies: [x=1]}]\n", &errors));
     assert_int_equal(errors.n, 2); // the unknown key, the missing one
     bough_arena_destroy(arena);
 }
@@ -103,7 +103,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(blades_are_found_by_their_models, scratch_make,
                                         scratch_remove),
-        cmocka_unit_test_setup_teardown(table_and_file_hold_every_rival, scratch_make,
+        cmocka_unit_test_setup_teardown(table_and_file_hold_every_model, scratch_make,
                                         scratch_remove),
         cmocka_unit_test_setup_teardown(meshes_must_fit_the_reference, scratch_make,
                                         scratch_remove),

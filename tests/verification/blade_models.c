@@ -1,10 +1,10 @@
-#include "tests/verification/rivals.h"
+#include "tests/verification/blade_models.h"
 
 #include "apps/config/schema.h"
 #include "apps/output/folder.h"
 #include "apps/scene/scene.h"
 #include "apps/study/study.h"
-#include "tests/verification/rivals_internal.h"
+#include "tests/verification/blade_models_internal.h"
 #include "apps/study/study_store.h"
 
 #include <math.h>
@@ -16,50 +16,50 @@
 #define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
 #define CHOICES(...) (const char *const[]){__VA_ARGS__, NULL}
 
-#define AT(member) .offset = offsetof(bough_rival, member)
-static const bough_key rival_keys[] = {
+#define AT(member) .offset = offsetof(bough_blade_model, member)
+static const bough_key model_keys[] = {
     {.name = "name", .kind = BOUGH_KEY_TEXT, .fallback = "reference", AT(name),
      .help = "heads its row"},
     {.name = "body", .kind = BOUGH_KEY_TEXTS, .count = 1, .required = true, AT(set.item),
-     .count_offset = offsetof(bough_rival, set.n),
+     .count_offset = offsetof(bough_blade_model, set.n),
      .help = "replacements KEY=VALUE in every body that bends"},
 };
 #undef AT
-static const bough_schema rival_schema = {
-    .name = "a rival", .size = sizeof(bough_rival), .n_key = COUNT(rival_keys), .key = rival_keys};
+static const bough_schema model_schema = {
+    .name = "a model", .size = sizeof(bough_blade_model), .n_key = COUNT(model_keys), .key = model_keys};
 
-#define AT(member) .offset = offsetof(bough_rivals, member)
+#define AT(member) .offset = offsetof(bough_blade_models, member)
 static const bough_key study_keys[] = {
-    {.name = "title", .kind = BOUGH_KEY_TEXT, .fallback = "Rivals", AT(title),
+    {.name = "title", .kind = BOUGH_KEY_TEXT, .fallback = "Blade models", AT(title),
      .help = "one line: what is asked"},
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("rivals"), .required = true,
-     AT(kind), .help = "rivals: one blade modelled in several ways"},
+    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("blade-models"), .required = true,
+     AT(kind), .help = "blade-models: one blade modelled in several ways"},
     {.name = "blade", .kind = BOUGH_KEY_TEXT, .required = true, AT(blade),
      .help = "scene of the clamped blade, relative to the study"},
     {.name = "load", .kind = BOUGH_KEY_TEXTS, .count = 1, .required = true, AT(load.item),
-     .count_offset = offsetof(bough_rivals, load.n),
+     .count_offset = offsetof(bough_blade_models, load.n),
      .help = "replacements KEY=VALUE that bend the blade"},
     {.name = "turbine", .kind = BOUGH_KEY_TEXT, .required = true, AT(turbine),
      .help = "scene of the run, relative to the study"},
     {.name = "run", .kind = BOUGH_KEY_TEXTS, .count = 1, .required = true, AT(run.item),
-     .count_offset = offsetof(bough_rivals, run.n), .help = "replacements KEY=VALUE in that scene"},
-    {.name = "reference", .kind = BOUGH_KEY_MAPPING, .of = &rival_schema, .required = true,
+     .count_offset = offsetof(bough_blade_models, run.n), .help = "replacements KEY=VALUE in that scene"},
+    {.name = "reference", .kind = BOUGH_KEY_MAPPING, .of = &model_schema, .required = true,
      AT(reference), .help = "what all are measured against"},
     {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 99]", .fallback = "3", AT(repeat),
-     .help = "runs of each rival, one after the other in turns; the least time counts"},
-    {.name = "rivals", .kind = BOUGH_KEY_LIST, .of = &rival_schema, .count = 1, .required = true,
-     AT(rival), .count_offset = offsetof(bough_rivals, n),
+     .help = "runs of each model, one after the other in turns; the least time counts"},
+    {.name = "models", .kind = BOUGH_KEY_LIST, .of = &model_schema, .count = 1, .required = true,
+     AT(model), .count_offset = offsetof(bough_blade_models, n),
      .help = "times are relative to the first one's"},
 };
 #undef AT
 static const bough_schema study_schema = {
-    .name = "a study", .size = sizeof(bough_rivals), .n_key = COUNT(study_keys),
+    .name = "a study", .size = sizeof(bough_blade_models), .n_key = COUNT(study_keys),
     .key = study_keys};
 // clang-format on
 
-void *bough_rivals_read(bough_arena *arena, const char *path, const bough_node *root,
+void *bough_blade_models_read(bough_arena *arena, const char *path, const bough_node *root,
                         bough_errors *errors) {
-    bough_rivals *s = bough_arena_take(arena, sizeof *s);
+    bough_blade_models *s = bough_arena_take(arena, sizeof *s);
     if (!s) return NULL;
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
     bough_schema_read(&reader, &study_schema, root, s);
@@ -76,7 +76,7 @@ static const struct {
     const char *name, *unit;
     int n; // channels per vector, numbered by the blade; 0: one for all
     const char *channel[3];
-} measures[BOUGH_RIVALS_MEASURES] = {
+} measures[BOUGH_BLADE_MODELS_MEASURES] = {
     {"tip", "m", 3, {"TipDxb", "TipDyb", "TipDzb"}},
     {"twist", "deg", 1, {"TwstDefl"}},
     {"speed", "rpm", 0, {"RotSpeed"}},
@@ -101,7 +101,7 @@ static void set_measure(bough_arena *arena, int k, int n_blade, bough_study *run
 }
 
 // A study of one cell, filled as the reading of a grid would.
-static bough_status make_run(bough_arena *arena, const bough_rivals *s, bough_study *run) {
+static bough_status make_run(bough_arena *arena, const bough_blade_models *s, bough_study *run) {
     bough_errors errors = {.arena = arena};
     bough_scene *scene;
     bough_status status =
@@ -110,13 +110,13 @@ static bough_status make_run(bough_arena *arena, const bough_rivals *s, bough_st
     if (!bough_is_ok(&status)) return status;
     int n_blade = scene->turbine.n_blade;
     *run = (bough_study){.scene = s->turbine,
-                         .n_measure = BOUGH_RIVALS_MEASURES,
+                         .n_measure = BOUGH_BLADE_MODELS_MEASURES,
                          .duration = scene->simulation.duration,
                          .interval = 5 * scene->simulation.macro_step};
-    run->measure = bough_arena_take(arena, BOUGH_RIVALS_MEASURES * sizeof *run->measure);
+    run->measure = bough_arena_take(arena, BOUGH_BLADE_MODELS_MEASURES * sizeof *run->measure);
     run->channel = bough_arena_take(arena, (size_t)(4 * n_blade + 1) * sizeof *run->channel);
     if (!run->measure || !run->channel) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    for (int k = 0; k < BOUGH_RIVALS_MEASURES; k++) set_measure(arena, k, n_blade, run);
+    for (int k = 0; k < BOUGH_BLADE_MODELS_MEASURES; k++) set_measure(arena, k, n_blade, run);
     return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
                                         : status;
 }
@@ -124,7 +124,7 @@ static bough_status make_run(bough_arena *arena, const bough_rivals *s, bough_st
 // -- performing -----------------------------------------------------------------------------------
 
 typedef struct outcome {
-    bough_rival_blade blade;
+    bough_model_blade blade;
     bough_study_cell cell;
     bough_study_result result; // of the first run
     double cpu;                // least of the runs [s]
@@ -132,38 +132,38 @@ typedef struct outcome {
     double rest, bent;         // largest relative differences of frequencies
 } outcome;
 
-typedef struct contest {
-    const bough_rivals *study;
+typedef struct comparison {
+    const bough_blade_models *study;
     bough_study run;
     bough_study_drive drive;
     bough_study_series reference, series;
     outcome base;
     outcome *outcome; // (n)
-} contest;
+} comparison;
 
-static bough_status prepare(bough_arena *arena, contest *c, const bough_rival *rival,
+static bough_status prepare(bough_arena *arena, comparison *c, const bough_blade_model *model,
                             outcome *o) {
-    bough_rival_sets sets;
-    bough_status status = bough_rival_blade_find(arena, c->study, rival, &o->blade);
+    bough_model_sets sets;
+    bough_status status = bough_model_blade_find(arena, c->study, model, &o->blade);
     if (bough_is_ok(&status)) {
-        status = bough_rival_scene_sets(arena, c->study->turbine, &c->study->run, rival, &sets);
+        status = bough_model_scene_sets(arena, c->study->turbine, &c->study->run, model, &sets);
     }
     if (!bough_is_ok(&status)) return status;
-    o->cell = (bough_study_cell){.n_set = sets.n, .set = sets.item, .settings = rival->name};
+    o->cell = (bough_study_cell){.n_set = sets.n, .set = sets.item, .settings = model->name};
     o->cpu = HUGE_VAL;
     return status;
 }
 
 static double frequency_difference(const double *a, const double *b) {
     double largest = 0;
-    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) {
+    for (int k = 0; k < BOUGH_BLADE_MODELS_FREQUENCIES; k++) {
         largest = fmax(largest, fabs(a[k] / b[k] - 1));
     }
     return largest;
 }
 
-static bough_status compare_blades(const bough_rival_blade *base, outcome *o) {
-    const bough_rival_blade *blade = &o->blade;
+static bough_status compare_blades(const bough_model_blade *base, outcome *o) {
+    const bough_model_blade *blade = &o->blade;
     int step = base->n / blade->n;
     if (step * blade->n != base->n) {
         return bough_fail(BOUGH_INVALID,
@@ -179,7 +179,7 @@ static bough_status compare_blades(const bough_rival_blade *base, outcome *o) {
     return bough_ok();
 }
 
-static bough_status run_once(contest *c, outcome *o, bough_study_series *series) {
+static bough_status run_once(comparison *c, outcome *o, bough_study_series *series) {
     bough_study_result result;
     c->drive.progress.label = o->cell.settings;
     bough_status status = bough_study_run(&c->run, &o->cell, 1, &c->drive, series, &result);
@@ -193,11 +193,11 @@ static bough_status run_once(contest *c, outcome *o, bough_study_series *series)
     return status;
 }
 
-static bough_status contend(bough_arena *arena, contest *c) {
+static bough_status measure_all(bough_arena *arena, comparison *c) {
     bough_status status = prepare(arena, c, &c->study->reference, &c->base);
     if (bough_is_ok(&status)) status = run_once(c, &c->base, &c->reference);
     for (int k = 0; k < c->study->n && bough_is_ok(&status); k++) {
-        status = prepare(arena, c, &c->study->rival[k], &c->outcome[k]);
+        status = prepare(arena, c, &c->study->model[k], &c->outcome[k]);
         if (bough_is_ok(&status)) status = compare_blades(&c->base.blade, &c->outcome[k]);
     }
     for (int turn = 0; turn < c->study->repeat; turn++) {
@@ -212,12 +212,12 @@ static bough_status contend(bough_arena *arena, contest *c) {
 
 #define DEGREES(angle) ((angle) * (180 / 3.14159265358979323846))
 
-static void print_table(const contest *c, FILE *f) {
-    const bough_rival_blade *base = &c->base.blade;
+static void print_table(const comparison *c, FILE *f) {
+    const bough_model_blade *base = &c->base.blade;
     fprintf(f,
             "%s\nreference: tip %.4f m, twist %.4f deg, f1 %.5f Hz, f12 %.4f Hz; %.2f s of CPU\n",
             c->study->title, base->flap[base->n], DEGREES(base->twist[base->n]), base->rest[0],
-            base->rest[BOUGH_RIVALS_FREQUENCIES - 1], c->base.cpu);
+            base->rest[BOUGH_BLADE_MODELS_FREQUENCIES - 1], c->base.cpu);
     fprintf(f, "%-22s %6s | clamped blade: largest differences       | run: largest differences"
                "             CPU\n", "", "states");
     fprintf(f, "%-22s %6s | %8s %8s %9s %9s   | %8s %8s %8s %9s %6s\n", "", "", "tip (%)",
@@ -232,17 +232,17 @@ static void print_table(const contest *c, FILE *f) {
     }
 }
 
-static void write_frequencies(FILE *f, const char *name, const bough_rival_blade *b) {
+static void write_frequencies(FILE *f, const char *name, const bough_model_blade *b) {
     bough_csv_text(f, name);
     fprintf(f, ",%d,%.9g,%.9g", b->n_state, b->flap[b->n], DEGREES(b->twist[b->n]));
-    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) fprintf(f, ",%.9g", b->rest[k]);
-    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) fprintf(f, ",%.9g", b->bent[k]);
+    for (int k = 0; k < BOUGH_BLADE_MODELS_FREQUENCIES; k++) fprintf(f, ",%.9g", b->rest[k]);
+    for (int k = 0; k < BOUGH_BLADE_MODELS_FREQUENCIES; k++) fprintf(f, ",%.9g", b->bent[k]);
 }
 
-static void write_rows(const contest *c, FILE *f) {
-    fputs("rival,states,tip (m),twist (deg)", f);
-    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) fprintf(f, ",f%d (Hz)", k + 1);
-    for (int k = 0; k < BOUGH_RIVALS_FREQUENCIES; k++) fprintf(f, ",bent f%d (Hz)", k + 1);
+static void write_rows(const comparison *c, FILE *f) {
+    fputs("model,states,tip (m),twist (deg)", f);
+    for (int k = 0; k < BOUGH_BLADE_MODELS_FREQUENCIES; k++) fprintf(f, ",f%d (Hz)", k + 1);
+    for (int k = 0; k < BOUGH_BLADE_MODELS_FREQUENCIES; k++) fprintf(f, ",bent f%d (Hz)", k + 1);
     fputs(",largest flap difference (m),largest twist difference (deg),run tip difference (m),"
           "run twist difference (deg),run speed difference (rpm),CPU (s)\n", f);
     write_frequencies(f, "reference", &c->base.blade);
@@ -255,19 +255,19 @@ static void write_rows(const contest *c, FILE *f) {
     }
 }
 
-static bough_status write_file(const contest *c, const char *folder) {
+static bough_status write_file(const comparison *c, const char *folder) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    bough_status status = bough_folder_path(folder, "rivals.csv", path);
+    bough_status status = bough_folder_path(folder, "blade-models.csv", path);
     if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
     if (!bough_is_ok(&status)) return status;
     write_rows(c, file);
     return bough_folder_commit(path, file);
 }
 
-bough_status bough_rivals_perform(bough_arena *arena, const void *study,
+bough_status bough_blade_models_perform(bough_arena *arena, const void *study,
                                   const bough_verification_options *options) {
-    contest c = {.study = study};
+    comparison c = {.study = study};
     bough_status status = make_run(arena, c.study, &c.run);
     if (bough_is_ok(&status)) status = bough_folder_make(options->folder);
     if (!bough_is_ok(&status)) return status;
@@ -278,7 +278,7 @@ bough_status bough_rivals_perform(bough_arena *arena, const void *study,
     c.series = bough_study_series_take(arena, &c.run);
     c.outcome = bough_arena_take(arena, (size_t)c.study->n * sizeof *c.outcome);
     if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    status = contend(arena, &c);
+    status = measure_all(arena, &c);
     bough_progress_clear(&c.drive.progress);
     if (bough_is_ok(&status)) status = write_file(&c, options->folder);
     if (bough_is_ok(&status)) print_table(&c, options->stream);
