@@ -105,6 +105,9 @@ bad_scenes() {
     refused 'error: simulation: unknown key .durration' run "$bar" --set simulation.durration=1
     refused "error: .*unit" run "$bar" --set 'simulation.duration=1 kg'
     refused 'absent.yaml: error: ' run absent.yaml
+    printf 'kind: sweep\nscene: x.yaml\n' >../study.yaml
+    refused "study.yaml:1:7: error: kind: this is a study, not a scene: 'bough study ../study.yaml'" run ../study.yaml
+    refused "this is a scene, not a study: 'bough run $bar' runs it" study "$bar"
 }
 
 checks() {
@@ -323,7 +326,7 @@ EOF
     has ../stderr "simulation.output.channels: no channel matches 'Rot\*'"
     expect 0 check ../bar.yaml --set 'bodies[bar].rod.segments=4'
     has ../stdout '^body bar: .* 4 segments'
-    refused "there is no item with 'name: baz'" check ../bar.yaml --set 'bodies[baz].rod.segments=4'
+    refused "there is no item with 'name: baz' in that list (did you mean 'bar'?)" check ../bar.yaml --set 'bodies[baz].rod.segments=4'
     # the same wrench from both sides of the cut
     expect 0 run "$folder/apps/turbine/land.yaml" --set 'simulation.duration=0.1 s' --out sensed \
         --set 'sensors=[{body: blade1, at: [0]}, {body: tower, at: [0, 87.6 m]}]'
@@ -451,6 +454,7 @@ shown() {
     missing out/frames.pvd
     rm -r out
     refused 'holds no results' report .
+    refused "there is no folder 'nowhere'" report nowhere
 }
 
 # A foreign model as a scene, and what is told of a bad one.

@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <string.h>
+#include <sys/stat.h>
 
 bough_status bough_report_open(const char *folder, const char *name, FILE **file) {
     char path[BOUGH_PATH_MAX];
@@ -130,6 +131,10 @@ bough_status bough_report_write(int n, const char *const *folder) {
     FILE *out;
     bough_status status = bough_folder_path(folder[0], "report.html", path);
     if (!bough_is_ok(&status)) return status;
+    struct stat there;
+    if (stat(folder[0], &there) != 0) {
+        return bough_fail(BOUGH_INVALID, "there is no folder '%.200s'", folder[0]);
+    }
     status = bough_folder_open_partial(path, &out);
     if (!bough_is_ok(&status)) return status;
     fwrite(page, 1, (size_t)(data - page), out);

@@ -29,12 +29,21 @@ static bough_status finish(const char *path, bough_errors *errors) {
     return bough_fail(BOUGH_INVALID, "%s: %d error%s in the scene", path, n, n == 1 ? "" : "s");
 }
 
+// A study is told as such, in place of an error for each of its keys.
+static bool is_study(const char *path, const bough_node *root, bough_errors *errors) {
+    const bough_node *kind = bough_node_find(root, "kind");
+    if (kind == NULL || bough_node_find(root, "bodies") != NULL) return false;
+    bough_errors_add(errors, kind, "kind", "this is a study, not a scene: 'bough study %.200s' runs it", path);
+    return true;
+}
+
 bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets,
                               int n_set, bough_errors *errors, bough_scene **scene) {
     *scene = NULL;
     bough_scene *s = bough_arena_take(arena, sizeof *s);
     bough_node *root = bough_text_read(arena, path, errors);
     if (root == NULL) return finish(path, errors);
+    if (is_study(path, root, errors)) return finish(path, errors);
     root = replace(arena, root, sets, n_set, errors);
     bough_schema_reader reader = {
         .arena = arena, .errors = errors, .directory = directory_of(arena, path)};

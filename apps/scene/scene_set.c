@@ -1,5 +1,6 @@
 // Replacements from the command line: "bodies[2].pitch=5 deg". They change the tree of the text
 // before it is read, so that they are checked like everything else.
+#include "apps/config/schema.h"
 #include "apps/scene/scene_internal.h"
 
 #include <math.h>
@@ -83,15 +84,29 @@ static int named_item(const bough_node *node, const char *rest, char **end) {
     return -1;
 }
 
+// The name in a list that is nearest to a misspelt one; NULL when none is near.
+static const char *nearest_item(const replacement *s, const bough_node *node, const char *name) {
+    if (node == NULL || node->kind != BOUGH_SEQUENCE) return NULL;
+    const char **names = bough_arena_take(s->arena, (size_t)node->n * sizeof *names);
+    for (int i = 0; i < node->n; i++) {
+        const bough_node *given = bough_node_find(node->value[i], "name");
+        names[i] = given && given->kind == BOUGH_SCALAR ? given->text : NULL;
+    }
+    return bough_nearest(name, names, node->n);
+}
+
 // "[2]…" or "[blade1]…": an item that exists; "[2-4]…": several.
 static bough_node *put_item(const replacement *s, const bough_node *node, const char *rest,
                             int depth) {
-    char *end, text[120];
+    char *end, text[200];
     int named = named_item(node, rest, &end);
     bool is_name = rest[1] != ']' && (rest[1] < '0' || rest[1] > '9') && *end == ']';
     if (is_name && named < 0) {
-        snprintf(text, sizeof text, "there is no item with 'name: %.*s' in that list",
-                 (int)fmin(60, (double)(end - rest - 1)), rest + 1);
+        char name[61];
+        snprintf(name, sizeof name, "%.*s", (int)fmin(60, (double)(end - rest - 1)), rest + 1);
+        const char *near = nearest_item(s, node, name);
+        snprintf(text, sizeof text, "there is no item with 'name: %s' in that list%s%.40s%s", name,
+                 near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
         return refuse(s, text);
     }
     long index = named >= 0                         ? named

@@ -350,6 +350,14 @@ static bool is_verification(const bough_node *root, bough_errors *errors) {
     return false;
 }
 
+// A scene is told as such, in place of an error for each of its keys.
+static bool is_scene(const char *path, const bough_node *root, bough_errors *errors) {
+    const bough_node *bodies = bough_node_find(root, "bodies");
+    if (!bodies || bough_node_find(root, "kind")) return false;
+    bough_errors_add(errors, bodies, "bodies", "this is a scene, not a study: 'bough run %.200s' runs it", path);
+    return true;
+}
+
 static bool is_load_set(const bough_node *root) {
     const bough_node *kind = bough_node_find(root, "kind");
     return kind && kind->kind == BOUGH_SCALAR &&
@@ -373,7 +381,7 @@ bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
     if (!root) return finish(path, errors);
     s->file = bough_arena_string(arena, path);
     s->threads = threads;
-    if (is_verification(root, errors)) return finish(path, errors);
+    if (is_verification(root, errors) || is_scene(path, root, errors)) return finish(path, errors);
     if (is_load_set(root)) {
         bough_status status = read_load_set(arena, root, errors, s);
         if (bough_is_ok(&status)) status = finish(path, errors);
