@@ -255,7 +255,7 @@ static void bad_decks_are_told_where(void **context) {
          "elasto.dat:12: RotSpeed: expected a number, got '2x'"},
         {{"parts/elasto.dat", "HubRad", "HubRat"}, "no 'HubRad': expected a line 'number  HubRad'"},
         {{"main.fst", "2    CompElast", "3  NumBl\n1  ADAMSPrep"},
-         "main.fst:7: expected a turbine's main file of OpenFAST, got a model of FAST 7 or older"},
+         "main.fst:7: expected a turbine's main file of OpenFAST, got a model of FAST 8.07 or older"},
         {{"parts/foils/flat.dat", "-0.9   -10.0   0.05", "-0.9   -10.0"},
          "flat.dat:7: a row of the polar: expected 3 numbers in the line, got 2"},
         {{"parts/elasto.dat", "30    GBRatio", "-97    GBRatio"},

@@ -210,6 +210,38 @@ static void units_may_be_written_anyhow(void **context) {
     }
 }
 
+// AeroDyn 14, as of FAST 8: elements by their middles, airfoils in the old form.
+static void aerodyn_14_has_elements_too(void **context) {
+    (void)context;
+    trial t = import_main("v8/main.fst", NULL, NULL);
+    assert_string_equal(t.status.message, "");
+    const bough_node *rows = at(read_file(&t, "blade-aero.yaml"), "stations.rows");
+    const double span[] = {0, 1.5, 4.5, 7.5, 9}, chord[] = {0.8, 0.8, 1, 0.6, 0.6};
+    assert_int_equal(rows->n, 5);
+    for (int i = 0; i < 5; i++) {
+        check_near(number(rows->value[i], "0"), span[i], 1e-9, 0);
+        check_near(number(rows->value[i], "4"), chord[i], 1e-9, 0);
+    }
+    const bough_node *polar = at(read_file(&t, "airfoils.yaml"), "polars.0.table.rows");
+    assert_int_equal(polar->n, 5);
+    check_near(number(polar, "3.1"), 0.9, 1e-9, 0);
+    check_near(number(polar, "3.2"), 0.05, 1e-9, 0);
+    check_near(number(polar, "3.3"), -0.02, 1e-9, 0);
+    const bough_node *s = read_file(&t, "scene.yaml");
+    assert_string_equal(text(s, "aero.dynamic_stall"), "hgm");
+    assert_string_equal(text(s, "aero.induction.inflow"), "oye");
+    assert_string_equal(text(s, "aero.induction.hub_loss"), "false");
+    check_near(number(s, "aero.air_density"), 1.1, 1e-9, 0);
+    steps(&t);
+    done(&t);
+    t = import_main("v8/main.fst", &(edit){"v8/foil.dat", " 10.0   0.9", "-10.0   0.9"}, NULL);
+    assert_non_null(strstr(t.status.message, "foil.dat:12: expected increasing angles of attack"));
+    done(&t);
+    t = import_main("v8/main.fst", &(edit){"v8/aero.ipt", "5.5    5.0", "5.5x   5.0"}, NULL);
+    assert_non_null(strstr(t.status.message, "aero.ipt:21: RNodes: expected a number, got '5.5x'"));
+    done(&t);
+}
+
 // -- other parts ----------------------------------------------------------------------------------
 
 static void masses_on_tips_and_yaw_bearing(void **context) {
@@ -314,6 +346,7 @@ int main(void) {
         cmocka_unit_test(polars_go_round),
         cmocka_unit_test(undamped_blades_are_damped_where_elastodyn_is_rigid),
         cmocka_unit_test(units_may_be_written_anyhow),
+        cmocka_unit_test(aerodyn_14_has_elements_too),
         cmocka_unit_test(masses_on_tips_and_yaw_bearing),
         cmocka_unit_test(two_blades_teeter),
         cmocka_unit_test(induction_generators_are_lines),

@@ -396,6 +396,15 @@ const double *bough_deck_table(const bough_deck *deck, const char *const *column
     return bough_is_ok(deck->status) ? table : NULL;
 }
 
+int bough_deck_only_numbers(const bough_deck *deck, int line, int most, double *to) {
+    char word[WORD];
+    int n = 0;
+    for (const char *at = deck->line[line]; n < most && next_word(&at, word); n++) {
+        if (!read_number(word, &to[n])) return 0;
+    }
+    return n;
+}
+
 void bough_deck_row(const bough_deck *deck, int *line, const char *what, int count, double *to) {
     char word[WORD];
     int got = 0;

@@ -59,6 +59,9 @@ bool bough_deck_is_comment(const bough_deck *deck, int line);
 const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column,
                                int n);
 
+// How many numbers (at most `most`) are in a line that has nothing else; 0 where it has.
+int bough_deck_only_numbers(const bough_deck *deck, int line, int most, double *to);
+
 // Reads the first `count` numbers of one line, the first from *line on that is not empty or a comment;
 // *line moves behind it. `what` names the row in messages.
 void bough_deck_row(const bough_deck *deck, int *line, const char *what, int count, double *to);

@@ -48,7 +48,7 @@ static void refuse_other_rotors(const bough_openfast *o) {
 // Main files of other programs of the family.
 static void refuse_other_files(const bough_openfast *o) {
     static const char *const key[] = {"ADFile|ADAMSPrep", "Mod_AmbWind", "AnalysisType"};
-    static const char *const what[] = {"a model of FAST 7 or older: convert it to OpenFAST's files",
+    static const char *const what[] = {"a model of FAST 8.07 or older: convert it to OpenFAST's files",
                                        "a wind farm: give the main file of one of its turbines",
                                        "the file of a driver: give the main file of a turbine"};
     if (bough_deck_line(o->main, "CompElast") >= 0) return;
@@ -74,11 +74,12 @@ static void open_modules(bough_openfast *o) {
     if (bough_deck_whole(o->main, "CompInflow", 0, 2) == 1) {
         o->inflow = bough_openfast_open(o, o->main, "InflowFile");
     }
-    if (air == 2) o->aero = bough_openfast_open(o, o->main, "AeroFile");
-    if (air == 1 || air == 3) {
+    if (air == 2 || air == 1) o->aero = bough_openfast_open(o, o->main, "AeroFile");
+    o->old_aero = o->aero && bough_deck_line(o->aero, "StallMod") >= 0;
+    if (air == 3 || (air == 1 && o->aero && !o->old_aero)) {
         bough_deck_fail(o->main, bough_deck_line(o->main, "CompAero"),
-                        "CompAero: expected 0 or 2 (AeroDyn 15 and later), got %d: AeroDyn 14 (before version 4), "
-                        "AeroDisk and external loads are not supported", air);
+                        "CompAero: expected 0, 2 (AeroDyn 15 and later) or, before version 4, 1 (AeroDyn 14), got "
+                        "%d: AeroDisk and external loads are not supported", air);
     }
     if (bough_deck_whole_or(o->main, "CompServo", 0) == 1) {
         o->servo = bough_openfast_open(o, o->main, "ServoFile");

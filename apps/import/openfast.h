@@ -22,6 +22,7 @@ typedef struct bough_openfast {
     const bough_import_options *options;
     bough_deck *main, *elasto, *tower, *servo, *inflow, *aero; // NULL: the model has none
     int n_blade;
+    bool old_aero; // `aero` is of AeroDyn 14
     bool beamdyn; // blades by BeamDyn, else by ElastoDyn
     bool rigid_blade, rigid_tower;
     bough_generator generator;
@@ -59,6 +60,25 @@ void bough_openfast_weigh(bough_openfast *o, const double span[2], const double 
 void bough_openfast_aero_tables(bough_openfast *o);
 void bough_openfast_aero(bough_openfast *o);
 void bough_openfast_wind(bough_openfast *o);
+
+// What both AeroDyn's readers write: a polar with rows (n × BOUGH_POLAR_COLUMNS) of angle [deg], lift, drag
+// and moment, and blade elements with rows (n × BOUGH_N_ELEMENT_COLUMN); `count` is the name of their number.
+enum { BOUGH_AIRFOIL_NAME = 64, BOUGH_MOST_AIRFOILS = 200, BOUGH_POLAR_COLUMNS = 4 };
+enum { // span [m], curve, sweep [m], angle of the curve [deg], twist [deg], chord [m], airfoil from 1
+    BOUGH_ELEMENT_SPAN,
+    BOUGH_ELEMENT_TWIST = 4,
+    BOUGH_ELEMENT_CHORD,
+    BOUGH_ELEMENT_AIRFOIL,
+    BOUGH_N_ELEMENT_COLUMN
+};
+void bough_openfast_airfoil_name(const char *path, int number, char name[BOUGH_AIRFOIL_NAME]);
+void bough_openfast_put_polar(bough_openfast *o, const char *name, const double *table, int n);
+void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, const char *count, const double *row,
+                                 int n, char (*name)[BOUGH_AIRFOIL_NAME], int n_name);
+
+// The same of AeroDyn 14 (openfast_aero14.c).
+void bough_openfast_aero14_tables(bough_openfast *o);
+void bough_openfast_aero14(bough_openfast *o);
 
 // The highest speed of the rotor that the decks tell [rad/s].
 double bough_openfast_rotor_speed(const bough_openfast *o);

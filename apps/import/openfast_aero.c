@@ -4,12 +4,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_ROWS = 2000, MOST_AIRFOILS = 200, MOST_COLUMNS = 20, NAME = 64 };
+enum { MOST_ROWS = 2000, MOST_COLUMNS = 20, NAME = BOUGH_AIRFOIL_NAME };
 
 // -- airfoils -------------------------------------------------------------------------------------
 
 // The file's name without folder and ending, in letters that a scene's names have; numbered.
-static void airfoil_name(const char *path, int number, char name[NAME]) {
+void bough_openfast_airfoil_name(const char *path, int number, char name[NAME]) {
     const char *slash = strrchr(path, '/');
     int n = snprintf(name, NAME, "%d-", number);
     for (const char *p = slash ? slash + 1 : path; *p && *p != '.' && n < NAME - 1; p++)
@@ -17,7 +17,7 @@ static void airfoil_name(const char *path, int number, char name[NAME]) {
     name[n] = '\0';
 }
 
-enum { POLAR = 4 }; // angle, lift, drag, moment
+enum { POLAR = BOUGH_POLAR_COLUMNS };
 
 // The rows (n × POLAR) of a file's first table.
 static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
@@ -57,11 +57,8 @@ static void put_row(FILE *file, double angle, const double *rest) {
 }
 
 // From -180 to 180 deg, where the values are one: the mean of what the table's ends have.
-static void put_polar(bough_openfast *o, const bough_deck *deck, const char *name) {
+void bough_openfast_put_polar(bough_openfast *o, const char *name, const double *table, int n) {
     const double close = 1e-3; // [deg]
-    int n;
-    const double *table = read_polar(o, deck, &n);
-    if (!table) return;
     FILE *file = o->draft.file[BOUGH_IMPORT_POLARS];
     const double *first = table, *last = table + POLAR * (n - 1);
     double end[3], gap = 0;
@@ -83,6 +80,13 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
                          "%s: from %g to %g deg; the value at 180 deg is the mean of its ends", name, first[0],
                          last[0]);
     }
+}
+
+static void put_polar(bough_openfast *o, const bough_deck *deck, const char *name) {
+    int n;
+    const double *table = read_polar(o, deck, &n);
+    if (!table) return;
+    bough_openfast_put_polar(o, name, table, n);
     if (bough_deck_whole_or(deck, "NumTabs", 1) > 1) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
                          "%s: the first of its tables is used for all Reynolds numbers",
@@ -91,7 +95,7 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
 }
 
 static int put_polars(bough_openfast *o, char (*name)[NAME]) {
-    int n = bough_deck_whole(o->aero, "NumAFfiles", 1, MOST_AIRFOILS);
+    int n = bough_deck_whole(o->aero, "NumAFfiles", 1, BOUGH_MOST_AIRFOILS);
     int line = bough_deck_line(o->aero, "AFNames");
     if (line < 0) line = bough_deck_line(o->aero, "NumAFfiles") + 1; // the label may be missing
     fputs("polars:\n", o->draft.file[BOUGH_IMPORT_POLARS]);
@@ -101,7 +105,7 @@ static int put_polars(bough_openfast *o, char (*name)[NAME]) {
         const char *path = bough_deck_file_at(o->aero, line);
         bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
         if (!deck) return 0;
-        airfoil_name(path, i + 1, name[i]);
+        bough_openfast_airfoil_name(path, i + 1, name[i]);
         put_polar(o, deck, name[i]);
     }
     bough_draft_note(&o->draft, BOUGH_TAKEN, "%d airfoils: lift, drag, moment", n);
@@ -110,7 +114,16 @@ static int put_polars(bough_openfast *o, char (*name)[NAME]) {
 
 // -- blade elements -------------------------------------------------------------------------------
 
-enum { SPAN, CURVE, SWEEP, CURVE_ANGLE, TWIST, CHORD, AIRFOIL, N_COLUMN };
+enum {
+    SPAN = BOUGH_ELEMENT_SPAN,
+    CURVE,
+    SWEEP,
+    CURVE_ANGLE,
+    TWIST = BOUGH_ELEMENT_TWIST,
+    CHORD = BOUGH_ELEMENT_CHORD,
+    AIRFOIL = BOUGH_ELEMENT_AIRFOIL,
+    N_COLUMN = BOUGH_N_ELEMENT_COLUMN
+};
 
 static void put_element(FILE *file, const double *row, double span, const char *name) {
     fprintf(file, "    - [%.10g, %.10g, %.10g, %.10g, %.10g, %s]\n", span, row[CURVE], row[SWEEP],
@@ -153,7 +166,11 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
     const char *const column[] = {"BlSpn",   "BlCrvAC", "BlSwpAC", "?BlCrvAng",
                                   "BlTwist", "BlChord", "BlAFID"};
     int n = bough_deck_whole(deck, "NumBlNds", 1, MOST_ROWS);
-    const double *row = bough_deck_table(deck, column, N_COLUMN, n);
+    bough_openfast_put_elements(o, deck, "NumBlNds", bough_deck_table(deck, column, N_COLUMN, n), n, name, n_name);
+}
+
+void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, const char *count, const double *row,
+                                 int n, char (*name)[NAME], int n_name) {
     fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar]\n  rows:\n",
           o->draft.file[BOUGH_IMPORT_AERO]);
     double angle = 0, last = -1;
@@ -161,7 +178,7 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
         const double *r = row + N_COLUMN * i;
         int id = r[AIRFOIL] >= 1 && r[AIRFOIL] <= n_name ? (int)r[AIRFOIL] : 0, line = -1;
         if (id != r[AIRFOIL] || !(r[SPAN] > last) || !(r[CHORD] > 0)) {
-            line = bough_deck_line(deck, "NumBlNds");
+            line = bough_deck_line(deck, count);
         }
         if (id != r[AIRFOIL]) {
             bough_deck_fail(deck, line, "BlAFID: row %d: expected an airfoil from 1 to %d, got %g",
@@ -189,7 +206,11 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
 
 void bough_openfast_aero_tables(bough_openfast *o) {
     if (!o->aero || !bough_is_ok(o->draft.status)) return;
-    char(*name)[NAME] = bough_arena_take(o->draft.arena, MOST_AIRFOILS * sizeof *name);
+    if (o->old_aero) {
+        bough_openfast_aero14_tables(o);
+        return;
+    }
+    char(*name)[NAME] = bough_arena_take(o->draft.arena, BOUGH_MOST_AIRFOILS * sizeof *name);
     if (!name) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     int n = name ? put_polars(o, name) : 0;
     bough_deck *deck = bough_openfast_open(o, o->aero, "ADBlFile(1)|ADBlFile1");
@@ -354,6 +375,10 @@ void bough_openfast_aero(bough_openfast *o) {
     fprintf(file, "  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n",
             bough_import_name[BOUGH_IMPORT_AERO], bough_import_name[BOUGH_IMPORT_POLARS],
             o->hub_radius);
+    if (o->old_aero) {
+        bough_openfast_aero14(o);
+        return;
+    }
     put_induction(o);
     put_stall(o);
     put_tower(o);
