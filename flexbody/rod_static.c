@@ -18,8 +18,11 @@ bough_rod_static_options bough_rod_static_options_default(void) {
     return (bough_rod_static_options){1e-10, 1, 12, 30};
 }
 
-// What rounding of positions leaves of a step: their strain times the axial stiffness bends.
-static double rounding_of(const bough_rod_model *m) {
+// Beyond this slenderness the rounding of positions can keep Newton's method from converging.
+static const double slender = 3e9;
+
+// EA L²/EI.
+static double slenderness(const bough_rod_model *m) {
     const double *axial = m->stiffness + 11 * (size_t)m->stride;
     const double *x = m->stiffness + 15 * (size_t)m->stride;
     const double *y = m->stiffness + 18 * (size_t)m->stride;
@@ -27,7 +30,7 @@ static double rounding_of(const bough_rod_model *m) {
     for (int n = 0; n < m->n; n++) {
         largest = fmax(largest, axial[n] * length * length / fmin(x[n], y[n]));
     }
-    return DBL_EPSILON * largest;
+    return largest;
 }
 
 static bool take_ramped(bough_arena *arena, const bough_rod_model *m, bough_rod_ramped_load *load) {
@@ -45,7 +48,8 @@ bool bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
     work->rate = bough_arena_doubles(arena, states);
     work->trial = bough_arena_doubles(arena, states);
     work->step = bough_arena_doubles(arena, (size_t)W8 * m->n);
-    work->rounding = rounding_of(m);
+    // what rounding of positions leaves of a step: their strain times the axial stiffness bends
+    work->rounding = DBL_EPSILON * slenderness(m);
     work->follower = (bough_rod_ramped_load){.follower = true};
     work->dead = (bough_rod_ramped_load){.follower = false};
     ok = take_ramped(arena, m, &work->follower) && take_ramped(arena, m, &work->dead) && ok;
@@ -174,6 +178,18 @@ static void scale_input(const double *input, double share, double *scaled) {
     }
 }
 
+static bough_status not_found(const bough_rod_model *m, double reached) {
+    double ratio = slenderness(m);
+    if (ratio > slender) {
+        return bough_fail(BOUGH_FAILED, "rod %s: no static equilibrium found: EA L²/EI is %.2g, and beyond %.0e"
+                          " the rounding of positions bends the rod; with EA = %.0e EI/L² it bends the same",
+                          m->name, ratio, slender, 1e8);
+    }
+    return bough_fail(BOUGH_FAILED, "rod %s: no static equilibrium found beyond %.4g %% of"
+                      " the load; the rod may buckle there, or more segments are needed", m->name,
+                      100 * reached);
+}
+
 bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *loads,
                               const double *input, const bough_rod_static_options *options,
                               bough_rod_static *work, double *state) {
@@ -192,9 +208,7 @@ bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *l
             reached = target;
             if (work->iterations - before <= EASY) increment = fmin(2 * increment, largest);
         } else if ((increment /= 2) < least) {
-            return bough_fail(BOUGH_FAILED, "rod %s: no static equilibrium found beyond %.4g %% of"
-                              " the load; the rod may buckle there, or more segments are needed",
-                              m->name, 100 * reached);
+            return not_found(m, reached);
         }
     }
     return bough_ok();

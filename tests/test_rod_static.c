@@ -232,6 +232,30 @@ static void slender_rod_takes_few_iterations(void **context) {
     }
 }
 
+// Where rounding bends the rod the equilibrium is right or the diagnosis the same for every mesh.
+static void too_slender_a_rod_is_diagnosed(void **context) {
+    (void)context;
+    const double stiffness[6] = {5e10, 5e10, 1.6e11, 1, 1, 1};
+    char first[sizeof((bough_status *)0)->message] = "";
+    for (int n = 8; n <= 128; n *= 4) {
+        bough_arena *arena = bough_arena_create();
+        bent b = straight_rod(arena, n, 1, stiffness);
+        b.loads.value[n] = 10; // P L²/EI = 10 across the tip
+        bough_rod_static_options options = bough_rod_static_options_default();
+        bough_vec3 none = {0, 0, 0};
+        bough_status s = bough_rod_equilibrium(b.model, &b.loads, none, &options, &b.work, b.state);
+        if (bough_is_ok(&s)) {
+            check_near(vertex(&b, n).x, 0.81061, 0, 1e-3);
+        } else {
+            assert_non_null(strstr(s.message, "EA L²/EI is 1.6e+11"));
+            if (first[0]) assert_string_equal(s.message, first);
+            memcpy(first, s.message, sizeof first);
+        }
+        bough_arena_destroy(arena);
+    }
+    assert_true(first[0] != 0);
+}
+
 // What has no equilibrium ends with a diagnosis: a spring-soft rod pushed beyond its length.
 static void hopeless_load_is_diagnosed(void **context) {
     (void)context;
@@ -256,6 +280,7 @@ int main(void) {
         cmocka_unit_test(follower_force_bends_the_rod_beyond_a_half_turn),
         cmocka_unit_test(turning_bar_stretches),
         cmocka_unit_test(slender_rod_takes_few_iterations),
+        cmocka_unit_test(too_slender_a_rod_is_diagnosed),
         cmocka_unit_test(hopeless_load_is_diagnosed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,7 @@
 #!/bin/sh
-# The share of the mesh that a run tells, against the difference to a mesh of 96 segments: within 1/2 and
-# 2, of coarse blades, too. What was not asked for is not estimated. test_shares.sh BOUGH SOURCE
+# The shares of mesh and air that a run tells, within 1/2 and 2 of what is found: the difference to a mesh of
+# 96 segments, of coarse blades, too, and of two runs with short steps, the air at 50 and 400 Hz. What was not asked
+# for is not estimated. test_shares.sh BOUGH SOURCE
 set -e
 bough=$1 source=$2
 out=$(mktemp -d)
@@ -9,17 +10,12 @@ run() { # segments, folder, more settings
     n=$1 folder=$2
     shift 2
     "$bough" run "$source/apps/turbine/runup.yaml" --quiet --threads 1 --out "$out/$folder" \
-        --set "simulation.duration=4 s" --set "bodies[3].rod.segments=$n" \
-        --set "bodies[4].rod.segments=$n" --set "bodies[5].rod.segments=$n" "$@" >"$out/$folder.log"
+        --set "simulation.duration=4 s" --set "bodies[3-5].rod.segments=$n" "$@" >"$out/$folder.log"
 }
-run 96 fine
-grep -q '^mesh error: not estimated' "$out/fine.log"
-for n in 12 24; do
-    run $n coarse --set simulation.error_shares=true
-    grep -q '^OoPDefl1_air_error: ' "$out/coarse.log"
-    told=$(sed -n 's/^OoPDefl1_mesh_error: \([^ ]*\) m$/\1/p' "$out/coarse.log")
-    paste "$out/coarse/channels.out" "$out/fine/channels.out" |
-        awk -v told="$told" -v segments="$n" '
+compare() { # share, folder of the run that tells it, two folders whose difference is it
+    told=$(sed -n "s/^OoPDefl1_$1_error: \([^ ]*\) m\$/\1/p" "$out/$2.log")
+    paste "$out/$3/channels.out" "$out/$4/channels.out" |
+        awk -v told="$told" -v what="$1 of $2" '
             $1 == "Time" { for (i = 1; i <= NF; i++) if ($i == "OoPDefl1") column[++n] = i }
             $1 ~ /^[0-9]/ && n == 2 {
                 error = $column[1] - $column[2]
@@ -27,7 +23,19 @@ for n in 12 24; do
                 if (error > largest) largest = error
             }
             END {
-                print segments " segments: told " told " m, found " largest " m"
+                print what ": told " told " m, found " largest " m"
                 exit !(told > largest / 2 && told < 2 * largest)
             }'
+}
+run 96 fine
+grep -q '^mesh error: not estimated' "$out/fine.log"
+for n in 12 24; do
+    run $n $n --set simulation.error_shares=true
+    compare mesh $n $n fine
 done
+for rate in 50 400; do
+    run 24 $rate --set "aero.rate=$rate Hz" --set "simulation.macro_step=$((1000000 / rate)) us" \
+        --set 'simulation.coupling.scheme=monolithic' --set 'simulation.master.rtol=1e-6' \
+        --set 'simulation.output.interval=20 ms' --set 'simulation.error_estimate=none'
+done
+compare air 24 50 400

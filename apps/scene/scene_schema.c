@@ -152,8 +152,8 @@ static const bough_key simulation_keys[] = {
              "linearised members driven by the coupling defects; auto: linearised where that is "
              "known to be reliable"},
     {.name = "error_shares", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(error_shares),
-     .help = "also estimates the errors of mesh and air, by three more runs: two with short steps, with these and "
-             "with twice the segments of each rod, and one with twice the aerodynamic sampling rate"},
+     .help = "also estimates the errors of mesh and air, by three more runs with short steps: as it is, with "
+             "twice the segments of each rod, and with twice the aerodynamic sampling rate"},
     {.name = "threads", .kind = BOUGH_KEY_INTEGER, .range = "[0, 1024]", .fallback = "0",
      AT(threads), .example = "2",
      .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not "

@@ -111,38 +111,34 @@ static bool refine_mesh(bough_arena *arena, bough_scene *scene, bough_error_shar
     return any;
 }
 
-// Twice the samples: half of them may be too few to be stable. Where that takes macro steps of half the
-// length, part of the coupling's error is told as the air's.
+// Twice the samples: half of them may be too few to be stable.
 static bool refine_air(bough_scene *scene, bough_error_share *share) {
-    bough_scene_simulation *simulation = &scene->simulation;
-    if (!scene->aero.node) {
-        unknown(share, "the scene has no air");
-        return false;
-    }
-    long steps = lround(1 / (scene->aero.rate * simulation->macro_step));
     double finer = pow(2, scene->aero.hold == BOUGH_SCENE_CONSTANT ? held_air_order : linear_air_order);
-    if (steps % 2 != 0) {
-        simulation->macro_step /= 2;
-        simulation->micro.step = fmin(simulation->micro.step, simulation->macro_step);
-        simulation->master.step = fmin(simulation->master.step, simulation->macro_step);
-    }
+    if (!scene->aero.node) unknown(share, "the scene has no air");
     scene->aero.rate *= 2;
     share->part = finer / (finer - 1);
-    return true;
+    return scene->aero.node != NULL;
 }
 
 static double tighter(double rtol) { return fmin(rtol, fmax(rtol / 30, 1e-8)); }
 
-// Steps whose errors are small beside those of the mesh.
+// Steps with small errors, and macro steps into which twice the samples of the air fit.
 static bool refine_time(bough_arena *arena, bough_scene *scene) {
+    bough_scene_simulation *simulation = &scene->simulation;
     size_t n = (size_t)scene->n_body;
     bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
     if (!body) return false;
     memcpy(body, scene->body, n * sizeof *body);
-    scene->simulation.master.rtol = tighter(scene->simulation.master.rtol);
-    scene->simulation.micro.rtol = tighter(scene->simulation.micro.rtol);
+    simulation->master.rtol = tighter(simulation->master.rtol);
+    simulation->micro.rtol = tighter(simulation->micro.rtol);
     for (size_t i = 0; i < n; i++) body[i].micro.rtol = tighter(body[i].micro.rtol);
     scene->body = body;
+    bool air = scene->aero.node != NULL;
+    if (air && lround(1 / (scene->aero.rate * simulation->macro_step)) % 2 != 0) {
+        simulation->macro_step /= 2;
+        simulation->micro.step = fmin(simulation->micro.step, simulation->macro_step);
+        simulation->master.step = fmin(simulation->master.step, simulation->macro_step);
+    }
     return true;
 }
 
@@ -151,6 +147,8 @@ typedef struct finding {
     const bough_run *run;
     double interval;
     bough_error_shares *shares;
+    char *failed;  // (sizeof share.unknown) what ended the run with short steps; "": nothing
+    bool *started; // whether there has been one
 } finding;
 
 // Runs a scene from start to end; false with the reason in the share.
@@ -173,38 +171,46 @@ static bool pass(bough_arena *arena, const finding *x, const bough_scene *scene,
     return share->unknown[0] == '\0';
 }
 
-// The mesh's error is the difference of two runs with short steps: errors in time do not cancel.
-static bool find_mesh(bough_arena *arena, const finding *x, bough_scene *scene) {
-    bough_error_share *share = &x->shares->share[BOUGH_SHARE_MESH];
-    if (!refine_time(arena, scene)) {
-        unknown(share, "out of memory");
-        return false;
+// The run with short steps, whose rows take the place of the run's own; once for both shares.
+static bool pass_base(bough_arena *arena, const finding *x, const bough_scene *scene) {
+    bough_error_share *share = &x->shares->share[x->kind];
+    if (*x->started) {
+        unknown(share, "%s", x->failed);
+        return share->unknown[0] == '\0';
     }
-    bough_scene same = *scene;
-    return refine_mesh(arena, scene, share) && pass(arena, x, &same, true);
+    *x->started = true;
+    bool passed = pass(arena, x, scene, true);
+    memcpy(x->failed, share->unknown, sizeof share->unknown);
+    return passed;
 }
 
 static bough_status find(bough_arena *arena, void *self) {
     const finding *x = self;
     bough_error_share *share = &x->shares->share[x->kind];
-    bough_scene scene = *x->run->simulation->scene;
+    bough_scene base = *x->run->simulation->scene;
     share->unknown[0] = '\0';
-    scene.simulation.error_estimate = BOUGH_ERROR_NOT_TOLD;
-    scene.simulation.error_bound = 0;
-    scene.simulation.error_shares = false;
-    if (scene.control.node && scene.control.kind == BOUGH_SCENE_BLADED) {
+    base.simulation.error_estimate = BOUGH_ERROR_NOT_TOLD;
+    base.simulation.error_bound = 0;
+    base.simulation.error_shares = false;
+    if (base.control.node && base.control.kind == BOUGH_SCENE_BLADED) {
         unknown(share, "the controller's library keeps a state that a second run would change");
         return bough_ok();
     }
-    bool ready = x->kind == BOUGH_SHARE_MESH ? find_mesh(arena, x, &scene) : refine_air(&scene, share);
-    if (ready) pass(arena, x, &scene, false);
+    if (!refine_time(arena, &base)) {
+        unknown(share, "out of memory");
+        return bough_ok();
+    }
+    bough_scene scene = base;
+    bool ready = x->kind == BOUGH_SHARE_MESH ? refine_mesh(arena, &scene, share) : refine_air(&scene, share);
+    if (ready && pass_base(arena, x, &base)) pass(arena, x, &scene, false);
     return bough_ok();
 }
 
-// The mesh's last: it takes the rows' place.
 void bough_error_shares_find(bough_error_shares *shares, const bough_run *run, double interval) {
-    for (int k = BOUGH_SHARES - 1; k >= 0 && shares->row; k--) {
-        finding f = {(bough_error_share_kind)k, run, interval, shares};
+    char failed[sizeof shares->share[0].unknown] = "";
+    bool started = false;
+    for (int k = 0; k < BOUGH_SHARES && shares->row; k++) {
+        finding f = {(bough_error_share_kind)k, run, interval, shares, failed, &started};
         bough_status status = bough_arena_use(find, &f);
         if (!bough_is_ok(&status)) unknown(&shares->share[k], "%s", status.message);
     }

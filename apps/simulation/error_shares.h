@@ -1,7 +1,7 @@
 // The shares of mesh and air in what the channels of a run err by, measured: the scene is run again
-// with twice the segments in each rod, and with twice the samples of the air; the run's own error is a
-// known part of the difference, by the order at which each converges. For the mesh it is the difference
-// between two runs with short steps, because errors in time do not cancel from mesh to mesh.
+// with twice the segments in each rod, and with twice the samples of the air; a known part of the
+// difference is the error, by the order at which each converges. It is the difference to a run with steps as
+// short as theirs, because the errors in time of two runs do not cancel.
 #ifndef BOUGH_APPS_SIMULATION_ERROR_SHARES_H
 #define BOUGH_APPS_SIMULATION_ERROR_SHARES_H
 
@@ -16,8 +16,8 @@ typedef enum bough_error_share_kind {
 typedef struct bough_error_share {
     char unknown[160]; // why it is not estimated; "": it is
     double *largest;   // (n_channel) largest error of each channel in the run, in its unit
-    double part;       // this run's error by the difference between the two [1]
-    double cpu_s;      // of the second run [s]
+    double part;       // the error by the difference [1]
+    double cpu_s;      // of the runs made for it [s]
 } bough_error_share;
 
 typedef struct bough_error_shares {
