@@ -207,18 +207,17 @@ static void add_counts(const ida_run *ida, bough_statistics *sum) {
 }
 
 static bough_status failure(ida_run *ida, double t, int flag) {
-    const char *advice = "try a smaller macro step, another tolerance or another coupling scheme";
     if (flag == IDA_TOO_MUCH_WORK) {
         return bough_fail(BOUGH_FAILED,
                           "%s at t = %.9g s: %d steps of IDA do not reach the end of the macro step: it "
                           "follows vibrations that fast, which damping of rods or a larger rtol would "
-                          "end, or try a smaller macro step",
+                          "end",
                           ida->ode.name, t, ida->most_steps);
     }
     return bough_fail(BOUGH_FAILED,
                       "%s at t = %.9g s: IDA failed (code %d: %s; a segment may turn by more than "
-                      "120°, or a value overflow); %s",
-                      ida->ode.name, t, flag, ida->message, advice);
+                      "120°, or a value overflow)",
+                      ida->ode.name, t, flag, ida->message);
 }
 
 // With order 1 from y, whose rate is f.
@@ -226,10 +225,7 @@ static bough_status start(ida_run *ida, double t, const double *y) {
     double *rate = bough_vector_data(ida->rate);
     memcpy(bough_vector_data(ida->y), y, (size_t)ida->ode.n * sizeof *y);
     if (!ida->ode.derivative(ida->ode.self, t, y, rate) || !all_finite(rate, ida->ode.n)) {
-        return bough_fail(BOUGH_FAILED,
-                          "%s at t = %.9g s: the accelerations are not finite; try a smaller "
-                          "macro step",
-                          ida->ode.name, t);
+        return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: the accelerations are not finite", ida->ode.name, t);
     }
     add_counts(ida, &ida->before);
     ida->before.restarts++;

@@ -403,10 +403,7 @@ static void start(radau *r, double t) {
 }
 
 static bough_status failure(const radau *r, const char *what) {
-    return bough_fail(BOUGH_FAILED,
-                      "%s at t = %.9g s: Radau IIA %s; try a smaller macro step, another tolerance "
-                      "or another coupling scheme",
-                      r->ode.name, r->past->time, what);
+    return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: Radau IIA %s", r->ode.name, r->past->time, what);
 }
 
 // Integrates to exactly t1, never evaluating f beyond it.

@@ -100,6 +100,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     status = bough_monitor_create(arena, m->coupling, &m->monitor);
     if (bough_is_ok(&status)) status = bough_breakdown_create(arena, m->assembly, &m->breakdown);
     m->error = def->error;
+    m->lightly_damped = def->lightly_damped;
     bool controlled = def->control.tolerance > 0 && !scheme->one_system;
     if (bough_is_ok(&status) && controlled) {
         status = bough_error_estimate_create(arena, m->coupling, &m->estimate);

@@ -40,6 +40,7 @@ typedef struct bough_master_def {
     double macro_step; // H, the longest [s]
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
     bough_error_source error;
+    bool lightly_damped; // members vibrate too long for the linearised members to tell their errors
     double duration;   // [s]; the run starts at time 0
     int n_load;
     const bough_sampled_load *load; // (n_load), copied
@@ -61,6 +62,7 @@ typedef struct bough_master {
     bough_error_estimate *estimate; // NULL: the scheme makes no coupling error
     bough_second_solution *second;  // NULL: there is none
     bough_error_source error;       // asked for
+    bool lightly_damped;            // see bough_master_def
     bough_step_control *control;    // NULL: fixed steps
     bough_breakdown *breakdown;
     int n_load;
@@ -128,8 +130,11 @@ enum { BOUGH_MASTER_ADVICE = 120 };
 // Settings with an error that is smaller by that factor: words to follow "try".
 void bough_master_advise(const bough_master *m, double factor, char text[BOUGH_MASTER_ADVICE]);
 
-// Builds the error estimate in the arena; called at time 0.
-bough_status bough_master_watch(bough_master *m, bough_arena *arena);
+// Whether the error is to be measured by a second solution, and by which, without `beside`.
+bool bough_master_wants_second(const bough_master *m, bough_second_solution_def *def);
+
+// Builds the error estimate in the arena; called at time 0. `beside`: see bough_second_solution_def, or NULL.
+bough_status bough_master_watch(bough_master *m, bough_arena *arena, bough_master *beside);
 
 // Whether the duration is reached.
 bool bough_master_done(const bough_master *m);

@@ -27,12 +27,12 @@ static bough_second_solution_def choose(const bough_master *m) {
     const bough_integrator_options *own = &m->coupling->options.integrator;
     double most = m->macro_step, step = own->step > 0 ? fmin(own->step, most) : most;
     if (!m->coupling->scheme->one_system) {
-        return (bough_second_solution_def){BOUGH_AUTOMATIC, second_rtol, most, fine_share};
+        return (bough_second_solution_def){BOUGH_AUTOMATIC, second_rtol, most, fine_share, {0}};
     }
     if (!has_order_three(own)) {
-        return (bough_second_solution_def){BOUGH_AUTOMATIC, fmin(second_rtol, own->rtol), most, fine_share};
+        return (bough_second_solution_def){BOUGH_AUTOMATIC, fmin(second_rtol, own->rtol), most, fine_share, {0}};
     }
-    return (bough_second_solution_def){own->kind, own->rtol / 8, step / 2, halved_share};
+    return (bough_second_solution_def){own->kind, own->rtol / 8, step / 2, halved_share, {0}};
 }
 
 static bool members_tell(const bough_assembly *a) {
@@ -52,7 +52,7 @@ static bool can_linearise(const bough_master *m) {
 // Only ramp has a weight.
 static bool linearised_serves(const bough_master *m) {
     const bough_coupling *c = m->coupling;
-    return c->theta > 0 && c->theta < 0.501 && c->interface_ratio < heavy_interface &&
+    return !m->lightly_damped && c->theta > 0 && c->theta < 0.501 && c->interface_ratio < heavy_interface &&
            m->assembly->n_state >= many_states && members_tell(m->assembly);
 }
 
@@ -64,10 +64,21 @@ static bool wants_second(const bough_master *m) {
     return has_order_three(own) || own->rtol > tight;
 }
 
-bough_status bough_master_watch(bough_master *m, bough_arena *arena) {
+bool bough_master_wants_second(const bough_master *m, bough_second_solution_def *def) {
+    if (!wants_second(m)) return false;
+    *def = choose(m);
+    return true;
+}
+
+static bough_status step_second(void *self) { return bough_step(self); }
+
+static void stop_second(void *self, bool (*stop)(void)) { bough_master_stop_by(self, stop); }
+
+bough_status bough_master_watch(bough_master *m, bough_arena *arena, bough_master *beside) {
     bough_status status = bough_ok();
-    if (wants_second(m)) {
-        bough_second_solution_def chosen = choose(m);
+    bough_second_solution_def chosen;
+    if (bough_master_wants_second(m, &chosen)) {
+        if (beside) chosen.beside = (bough_second_model){beside, beside->coupling, step_second, stop_second};
         status = bough_second_solution_create(arena, m->coupling, &chosen, &m->second);
     }
     bool one_system = m->coupling->scheme->one_system;

@@ -14,7 +14,8 @@ static const double most_ratio = 4; // besides, for each step of the run
 
 struct bough_second_solution {
     const bough_assembly *assembly;
-    bough_member whole;  // all members as one system
+    bough_second_model beside; // with loads of its own; none: `whole`, under the loads of the run
+    bough_member whole;   // all members as one system
     bough_coupled *evaluation; // of it
     double share;
     double *error;                 // (n_state)
@@ -44,7 +45,9 @@ bough_status bough_second_solution_create(bough_arena *arena, const bough_coupli
     s->share = def->share;
     if (!take(s, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     s->left = fmax(most_steps, most_work / fmax(a->n_state, 1));
+    s->beside = def->beside;
     *second = s;
+    if (s->beside.coupling) return bough_ok();
     bough_system system;
     bough_status status = bough_coupled_system(arena, a, c->pool, "second solution", &system);
     if (!bough_is_ok(&status)) return status;
@@ -67,8 +70,12 @@ static double steps_of_run(const bough_coupling *c) {
     return steps;
 }
 
+static const bough_member *whole_of(const bough_second_solution *s) {
+    return s->beside.coupling ? s->beside.coupling->whole : &s->whole;
+}
+
 static bool works_too_hard(bough_second_solution *s, const bough_coupling *c) {
-    double own = steps_of(&s->whole), run = steps_of_run(c);
+    double own = steps_of(whole_of(s)), run = steps_of_run(c);
     s->left += most_ratio * (run - s->seen_run) - (own - s->seen);
     s->seen = own;
     s->seen_run = run;
@@ -77,29 +84,41 @@ static bool works_too_hard(bough_second_solution *s, const bough_coupling *c) {
 
 static void give_up(bough_second_solution *s, double t, const char *why) {
     s->lost = true;
-    snprintf(s->reason, sizeof s->reason, "from %.6g s on: %.150s", t, why);
+    snprintf(s->reason, sizeof s->reason, "from %.6g s on: %.280s", t, why);
 }
 
 static void compare(bough_second_solution *s, const bough_coupling *c) {
     const bough_assembly *a = s->assembly;
+    const double *state = whole_of(s)->state, *input;
     bough_assembly_states(a, s->error);
-    for (int k = 0; k < a->n_state; k++) s->error[k] = s->share * (s->error[k] - s->whole.state[k]);
-    bough_coupled_inputs(s->evaluation, c->t1, s->whole.state);
+    for (int k = 0; k < a->n_state; k++) s->error[k] = s->share * (s->error[k] - state[k]);
+    if (s->beside.coupling) {
+        input = s->beside.coupling->input;
+    } else {
+        bough_coupled_inputs(s->evaluation, c->t1, state);
+        input = s->evaluation->input;
+    }
     for (int j = 0; j < a->n_input; j++) {
-        s->input_error[j] = s->share * (c->input[j] - s->evaluation->input[j]);
+        s->input_error[j] = s->share * (c->input[j] - input[j]);
         s->input_worst[j] = fmax(s->input_worst[j], fabs(s->input_error[j]));
     }
 }
 
 void bough_second_solution_stop_by(bough_second_solution *s, bool (*stop)(void)) {
-    s->whole.stop = stop;
+    if (s->beside.coupling) {
+        s->beside.stop_by(s->beside.self, stop);
+    } else {
+        s->whole.stop = stop;
+    }
 }
 
 bool bough_second_solution_step(bough_second_solution *s, const bough_coupling *c) {
     if (s->lost) return true;
-    assert(s->whole.time == c->t0);
-    bough_status status = bough_member_advance(&s->whole, c->t1, NULL, c->restart);
-    if (!bough_is_ok(&status) && s->whole.stop && s->whole.stop()) return false;
+    const bough_member *whole = whole_of(s);
+    assert(whole->time == c->t0);
+    bough_status status = s->beside.coupling ? s->beside.step(s->beside.self)
+                                             : bough_member_advance(&s->whole, c->t1, NULL, c->restart);
+    if (!bough_is_ok(&status) && whole->stop && whole->stop()) return false;
     if (!bough_is_ok(&status)) {
         give_up(s, c->t0, status.message);
     } else if (works_too_hard(s, c)) {
@@ -128,7 +147,7 @@ const char *bough_second_solution_reason(const bough_second_solution *s) {
 
 void bough_second_solution_snapshot(bough_second_solution *s, bough_snapshot *snapshot) {
     const bough_assembly *a = s->assembly;
-    bough_member_snapshot(&s->whole, snapshot);
+    if (!s->beside.coupling) bough_member_snapshot(&s->whole, snapshot);
     bough_snapshot_doubles(snapshot, s->error, a->n_state);
     bough_snapshot_doubles(snapshot, s->input_error, a->n_input);
     bough_snapshot_doubles(snapshot, s->input_worst, a->n_input);

@@ -7,7 +7,9 @@
 // of order p the run then errs by 1/(2ᵖ − 1) of the difference (Richardson). The order is 3 for smooth
 // motion and 2 or less where stiff members reduce it; a third is told.
 //
-// It does not contain the reaction of outer loads, such as aerodynamic loads, to the error.
+// Under the loads of the run, the reaction of loads to the error, such as that of the air or a controller, is
+// missing. Where there are such loads, a second model of the scene with loads of its own takes the same macro
+// steps (def.beside).
 #ifndef BOUGH_COSIM_SECOND_SOLUTION_H
 #define BOUGH_COSIM_SECOND_SOLUTION_H
 
@@ -16,13 +18,22 @@
 
 typedef struct bough_second_solution bough_second_solution;
 
-enum { BOUGH_SECOND_SOLUTION_REASON = 200 };
+// A monolithic model with the same members, whose memory is its owner's.
+typedef struct bough_second_model {
+    void *self;
+    const bough_coupling *coupling; // NULL: there is none
+    bough_status (*step)(void *self); // the macro step of the run
+    void (*stop_by)(void *self, bool (*stop)(void)); // see below
+} bough_second_model;
+
+enum { BOUGH_SECOND_SOLUTION_REASON = 320 };
 
 typedef struct bough_second_solution_def {
     bough_integrator_kind kind; // method
     double rtol;  // of its steps, relative to the members' scales
     double step;  // longest [s]
     double share; // of the difference between run and second solution that the run errs by
+    bough_second_model beside; // at the same time; without, the members of the run are taken as one system
 } bough_second_solution_def;
 
 // Starts from the members' current states.

@@ -26,7 +26,7 @@ static recorded *run_with(const char *scheme, const char *micro, bool probing) {
     bough_channels channels = bough_channels_start(arena);
     bough_error_probe probe;
     bough_simulation_channels(s, &channels);
-    bough_status status = bough_error_probe_create(arena, s, &channels, &probe);
+    bough_status status = bough_error_probe_create(arena, s, NULL, &channels, &probe);
     assert_true(bough_is_ok(&status));
     assert_true(channels.count <= MOST);
     r->n = channels.count;
@@ -115,15 +115,15 @@ static void a_lost_second_solution_is_said(void **state) {
     bough_simulation *s = scene_build(arena, "apps/beams/short.yaml", sets);
     bough_channels channels = bough_channels_start(arena);
     bough_error_probe probe;
-    char text[400];
+    char text[BOUGH_ERROR_WARNING];
     bough_simulation_channels(s, &channels);
-    bough_status status = bough_error_probe_create(arena, s, &channels, &probe);
+    bough_status status = bough_error_probe_create(arena, s, NULL, &channels, &probe);
     assert_true(bough_is_ok(&status));
     for (int k = 0; k < 50; k++) {
         scene_step(s);
         bough_error_probe_update(&probe);
     }
-    bough_error_probe_warn(&probe, 0, text, sizeof text);
+    bough_error_probe_warn(&probe, 0, text);
     print_message("%s\n", text);
     assert_non_null(strstr(text, "the second solution, by which errors are measured, was given up from 0."));
     assert_non_null(strstr(text, "errors since then: linearised members"));

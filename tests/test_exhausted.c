@@ -66,7 +66,7 @@ static bough_status open_output(bough_arena *arena, const subject *x, bough_simu
     bough_channels channels = bough_channels_start(arena);
     bough_status status = bough_simulation_channels(s, &channels);
     bough_error_probe probe;
-    if (bough_is_ok(&status)) status = bough_error_probe_create(arena, s, &channels, &probe);
+    if (bough_is_ok(&status)) status = bough_error_probe_create(arena, s, NULL, &channels, &probe);
     bough_recorder *recorder;
     bough_recorder_def def = {.folder = x->folder, .title = "x", .channels = &channels};
     if (bough_is_ok(&status)) status = bough_recorder_open(arena, &def, &recorder);

@@ -147,7 +147,7 @@ static void failures_name_body_time_and_cure(void **state) {
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "oscillator at t = 0.5"));
     assert_non_null(strstr(status.message, "IDA"));
-    assert_non_null(strstr(status.message, "smaller macro step"));
+    assert_null(strstr(status.message, "try")); // the coupling says it, once
     o.break_after = 1e9; // a new start is possible after a failure
     y[0] = 1, y[1] = 0;
     advance(&ida, 0, 1, false, y);

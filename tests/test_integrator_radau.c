@@ -232,7 +232,7 @@ static void failures_name_body_time_and_cure(void **state) {
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "test at t = 0.5 s"));
     assert_non_null(strstr(status.message, "Radau"));
-    assert_non_null(strstr(status.message, "smaller macro step"));
+    assert_null(strstr(status.message, "try")); // the coupling says it, once
     bough_ode ode = {.name = "test", .n = 2, .scale = unit, .self = &p, .derivative = derivative};
     bough_integrator_options options = {.kind = BOUGH_RADAU5};
     status = bough_integrator_create(arena, &ode, &options, &radau);

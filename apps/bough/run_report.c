@@ -160,12 +160,25 @@ static void write_estimates(bough_summary *s, const bough_run *run) {
     bough_summary_end(s);
 }
 
+// The force or moment with the largest relative error, and a warning above the bound.
+static void write_force_verdict(bough_summary *s, const bough_run *run, double bound) {
+    char warning[BOUGH_ERROR_WARNING];
+    bough_error_verdict v = bough_error_probe_force_verdict(&run->probe);
+    bough_error_probe_warn_of_force(&run->probe, bound, warning);
+    bough_summary_object(s, "force");
+    bough_summary_text(s, "channel", v.channel < 0 ? NULL : run->channels.channel[v.channel].name);
+    bough_summary_number(s, "relative", v.channel < 0 ? (double)NAN : v.relative);
+    bough_summary_integer(s, "not_estimated", v.unknown);
+    bough_summary_text(s, "warning", warning[0] ? warning : NULL);
+    bough_summary_end(s);
+}
+
 // What the errors mean: the worst channel of motion, and a warning below the bound.
 static void write_verdict(bough_summary *s, const bough_run *run) {
-    char warning[320];
+    char warning[BOUGH_ERROR_WARNING];
     double bound = run->simulation->scene->simulation.error_bound;
     bough_error_verdict v = bough_error_probe_verdict(&run->probe);
-    bough_error_probe_warn(&run->probe, bound, warning, sizeof warning);
+    bough_error_probe_warn(&run->probe, bound, warning);
     bough_summary_object(s, "error");
     bough_summary_text(s, "source", bough_master_error_source(run->simulation->master));
     bough_summary_text(s, "against", "the same mesh, converged in time");
@@ -175,6 +188,7 @@ static void write_verdict(bough_summary *s, const bough_run *run) {
     bough_summary_number(s, "from", v.channel < 0 || v.time < 0 ? (double)NAN : v.time);
     bough_summary_integer(s, "not_estimated", v.unknown);
     bough_summary_text(s, "warning", warning[0] ? warning : NULL);
+    write_force_verdict(s, run, bound);
     bough_summary_end(s);
 }
 
@@ -280,8 +294,9 @@ static void tell_channels(bough_job *job, FILE *stream) {
 }
 
 static void tell_error(const bough_run *run, FILE *stream) {
-    char warning[320];
+    char warning[BOUGH_ERROR_WARNING];
     bough_error_verdict v = bough_error_probe_verdict(&run->probe);
+    double bound = run->simulation->scene->simulation.error_bound;
     const char *source = bough_master_error_source(run->simulation->master);
     if (v.channel < 0) {
         bool known = strcmp(source, "not estimated") != 0 && v.unknown == 0;
@@ -290,8 +305,9 @@ static void tell_error(const bough_run *run, FILE *stream) {
         fprintf(stream, "error: %.2g of the range of %s, by %s, same mesh\n", v.relative,
                 run->channels.channel[v.channel].name, source);
     }
-    bough_error_probe_warn(&run->probe, run->simulation->scene->simulation.error_bound, warning,
-                           sizeof warning);
+    bough_error_probe_warn(&run->probe, bound, warning);
+    if (warning[0]) fprintf(stream, "warning: %s\n", warning);
+    bough_error_probe_warn_of_force(&run->probe, bound, warning);
     if (warning[0]) fprintf(stream, "warning: %s\n", warning);
 }
 
@@ -319,6 +335,7 @@ void bough_run_report(bough_job *job, FILE *stream) {
     bough_run *run = &job->run;
     fprintf(stream, "status: %s\n", outcome_name(run));
     fprintf(stream, "time: %.9g s\n", run->simulation->master->time);
+    if (!bough_is_ok(&run->outcome)) fprintf(stream, "recorded: %ld rows\n", bough_recorder_rows(job->recorder));
     fprintf(stream, "real_time_factor: %.3g\n", real_time_factor(run));
     fprintf(stream, "wall_s: %.3g\n", run->wall_s);
     fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);

@@ -4,14 +4,15 @@
 #include <stdio.h>
 #include <string.h>
 
-// A controller moves its joints by what the run does, in both solutions alike: their errors are not known.
-static void leave_steered_joints(bough_error_probe *p) {
-    static const char *const parts[] = {"Pos", "Vel", "Trq"};
+// A controller moves its joints by what the run does. Without a model beside it their errors are not known, and
+// what the motion needs also depends on the demanded acceleration.
+static void leave_steered_joints(bough_error_probe *p, bool beside) {
+    static const char *const parts[] = {"Trq", "Pos", "Vel"};
     const bough_scene *scene = p->simulation->scene;
     if (!scene->control.node || !scene->control.pitch) return;
     for (int b = 0; b < scene->turbine.n_blade; b++) {
         const bough_scene_body *body = &scene->body[scene->turbine.blade[b]];
-        for (int k = 0; k < 3 && body->joint.motion.node; k++) {
+        for (int k = 0; k < (beside ? 1 : 3) && body->joint.motion.node; k++) {
             char name[128];
             snprintf(name, sizeof name, "%.100s%s", body->name, parts[k]);
             int channel = bough_channels_find(p->channels, name);
@@ -20,10 +21,10 @@ static void leave_steered_joints(bough_error_probe *p) {
     }
 }
 
-bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s,
+bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s, bough_simulation *second,
                                       const bough_channels *channels, bough_error_probe *probe) {
     size_t n = (size_t)channels->count;
-    *probe = (bough_error_probe){.simulation = s, .channels = channels};
+    *probe = (bough_error_probe){.simulation = s, .channels = channels, .last = {.channel = -1}};
     probe->difference = bough_arena_doubles(arena, n);
     probe->largest = bough_arena_doubles(arena, n);
     probe->low = bough_arena_doubles(arena, n);
@@ -45,8 +46,8 @@ bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s,
         probe->passed[i] = -1;
     }
     bough_error_probe_find_vectors(channels, probe->vector);
-    leave_steered_joints(probe);
-    return bough_master_watch(s->master, arena);
+    leave_steered_joints(probe, second != NULL);
+    return bough_master_watch(s->master, arena, second ? second->master : NULL);
 }
 
 static bough_member *member(bough_simulation *s, int i) {

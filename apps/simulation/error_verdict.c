@@ -85,7 +85,7 @@ static double largest_range(const bough_error_probe *p, const char *unit) {
     double largest = 0;
     for (int i = 0; i < p->simulation->n_motion_channel; i++) {
         const bough_channel *channel = &p->channels->channel[i];
-        if (!is_motion(channel) || strcmp(channel->unit, unit) != 0) continue;
+        if (strcmp(channel->unit, unit) != 0) continue;
         largest = fmax(largest, own_range(p, i));
     }
     return largest;
@@ -103,18 +103,20 @@ static double largest_value(const bough_error_probe *p) {
     return largest;
 }
 
-// What moves, or errs, by next to nothing has none: a range that is rounding is no range.
+// What moves, or errs, by next to nothing has none: a range that is rounding is no range. A force that
+// hardly changes has none either.
 static bool has_say(const bough_error_probe *p, int i) {
     const bough_channel *channel = &p->channels->channel[i];
     double moves = fmax(range_of(p, i), p->largest[i]);
-    return is_motion(channel) && in_si(channel, moves) > rounding * largest_value(p) &&
-           moves >= least_share * largest_range(p, channel->unit);
+    double size = fmax(fabs(p->high[i]), fabs(p->low[i]));
+    bool moving = is_motion(channel) ? in_si(channel, moves) > rounding * largest_value(p) : moves > least_share * size;
+    return moving && moves >= least_share * largest_range(p, channel->unit);
 }
 
-bough_error_verdict bough_error_probe_verdict(const bough_error_probe *p) {
+static bough_error_verdict verdict_of(const bough_error_probe *p, bool motion) {
     bough_error_verdict v = {.channel = -1};
     for (int i = 0; i < p->simulation->n_motion_channel; i++) {
-        if (!is_motion(&p->channels->channel[i])) continue;
+        if (is_motion(&p->channels->channel[i]) != motion) continue;
         bool known = bough_error_probe_knows(p, i);
         v.unknown += !known;
         if (!known || !has_say(p, i)) continue;
@@ -126,6 +128,10 @@ bough_error_verdict bough_error_probe_verdict(const bough_error_probe *p) {
     return v;
 }
 
+bough_error_verdict bough_error_probe_verdict(const bough_error_probe *p) { return verdict_of(p, true); }
+
+bough_error_verdict bough_error_probe_force_verdict(const bough_error_probe *p) { return verdict_of(p, false); }
+
 static const double hopeless = 3; // times the range
 enum { HOPELESS_FOR = 8 };
 
@@ -136,35 +142,48 @@ void bough_error_probe_watch(bough_error_probe *p) {
     bool lost = v.channel >= 0 && v.relative > hopeless &&
                 fabs(p->difference[v.channel]) > 0.5 * p->largest[v.channel];
     p->lost_for = lost ? p->lost_for + 1 : 0;
+    if (v.channel < 0) return;
+    p->last = v;
+    p->last_error = p->largest[v.channel];
 }
 
-static void describe(const bough_error_probe *p, const bough_error_verdict *v, char *text, size_t size) {
+static void describe(const bough_error_probe *p, const bough_error_verdict *v, double error, char *text, size_t size) {
     const bough_channel *channel = &p->channels->channel[v->channel];
     const bough_master *m = p->simulation->master;
     snprintf(text, size, "%s errs by %.2g %s, %.2g of its range, noticeably from %.6g s on; cause: %s",
-             channel->name, p->largest[v->channel], channel->unit, v->relative, v->time,
-             bough_master_error_cause(m));
+             channel->name, error, channel->unit, v->relative, v->time, bough_master_error_cause(m));
 }
 
-void bough_error_probe_warn(const bough_error_probe *p, double bound, char *text, size_t size) {
+void bough_error_probe_warn(const bough_error_probe *p, double bound, char text[BOUGH_ERROR_WARNING]) {
     bough_error_verdict v = bough_error_probe_verdict(p);
     text[0] = '\0';
     const bough_second_solution *second = p->simulation->master->second;
     const char *reason = second ? bough_second_solution_reason(second) : NULL;
     if (reason) {
-        snprintf(text, size, "the second solution, by which errors are measured, was given up %s; errors "
-                 "since then: %s", reason, bough_master_error_source(p->simulation->master));
+        int n = snprintf(text, BOUGH_ERROR_WARNING, "the second solution, by which errors are measured, was given "
+                         "up %s; errors since then: %s", reason, bough_master_error_source(p->simulation->master));
+        if (v.channel >= 0 || p->last.channel < 0) return;
+        snprintf(text + n, (size_t)(BOUGH_ERROR_WARNING - n), "; until then the largest was that of %s, %.2g of its range",
+                 p->channels->channel[p->last.channel].name, p->last.relative);
         return;
     }
     if (v.channel < 0 || v.relative <= noticeable || (bound > 0 && v.relative > bound)) return;
-    describe(p, &v, text, size);
+    describe(p, &v, p->largest[v.channel], text, BOUGH_ERROR_WARNING);
+}
+
+void bough_error_probe_warn_of_force(const bough_error_probe *p, double bound, char text[BOUGH_ERROR_WARNING]) {
+    bough_error_verdict v = bough_error_probe_force_verdict(p);
+    text[0] = '\0';
+    if (v.channel < 0 || !(bound > 0) || v.relative <= bound) return;
+    describe(p, &v, p->largest[v.channel], text, BOUGH_ERROR_WARNING);
 }
 
 bough_status bough_error_probe_judge(const bough_error_probe *p, double bound) {
     char what[200], hold[BOUGH_MASTER_ADVICE];
     bough_error_verdict v = bough_error_probe_verdict(p);
+    if (v.channel < 0 && v.unknown > 0) v = p->last;
     if (!(bound > 0) || v.channel < 0 || v.relative <= bound) return bough_ok();
-    describe(p, &v, what, sizeof what);
+    describe(p, &v, v.channel == p->last.channel ? p->last_error : p->largest[v.channel], what, sizeof what);
     bough_master_advise(p->simulation->master, v.relative / bound, hold);
     return bough_fail(BOUGH_FAILED, "the error bound %.3g is exceeded: %s; try %s", bound, what, hold);
 }

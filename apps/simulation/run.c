@@ -1,6 +1,7 @@
 #include "apps/simulation/run.h"
 
 #include "apps/simulation/build.h"
+#include "apps/simulation/second_model.h"
 #include "apps/simulation/validity.h"
 
 #include <assert.h>
@@ -24,7 +25,9 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
     bough_channels *channels = bough_arena_take(arena, sizeof *channels);
     if (!channels) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     *channels = run->channels;
-    return bough_error_probe_create(arena, run->simulation, channels, &run->probe);
+    status = bough_second_model_build(arena, run->simulation, &run->second);
+    if (!bough_is_ok(&status)) return status;
+    return bough_error_probe_create(arena, run->simulation, run->second, channels, &run->probe);
 }
 
 // -- recording ------------------------------------------------------------------------------------
@@ -180,6 +183,7 @@ static void take_probe(bough_error_probe *probe, int n, bough_snapshot *s) {
 
 void bough_run_snapshot(bough_run *run, bough_snapshot *s) {
     bough_simulation_snapshot(run->simulation, s);
+    if (run->second) bough_simulation_snapshot(run->second, s);
     take_statistics(run, s);
     take_probe(&run->probe, run->channels.count, s);
     for (int i = 0; i < run->n_record; i++) {

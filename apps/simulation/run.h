@@ -21,6 +21,7 @@ typedef struct bough_run_record {
 
 typedef struct bough_run {
     bough_simulation *simulation;
+    bough_simulation *second; // beside it, to measure its error; NULL: none
     bough_channels channels;
     double *value; // (channels.count) see bough_run_values
     bool sampled;  // `value` belongs to the present time

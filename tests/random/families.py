@@ -1,5 +1,4 @@
-"""Random but plausible scenes: families of bodies, and settings of the simulation. Everything follows from
-one random.Random; lengths, masses and stiffnesses are drawn by decades, frequencies and damping as built
+"""Random but plausible scenes: families of bodies. Everything follows from one random.Random; lengths, masses and stiffnesses are drawn by decades, frequencies and damping as built
 structures have them."""
 import math
 
@@ -432,67 +431,3 @@ def spin_up(rng, scene):
 
 FAMILIES = [rotor, arm, hung, carrying, tower, four_bar, mechanism, driven, light, loaded, drive_train, turbine, gale,
             portal, slider_crank, spin_up]
-
-
-# -- settings -------------------------------------------------------------------------------------
-
-def micro(rng):
-    solver = rng.choice(["cvode-bdf", "generalized-alpha", "arkode-esdirk", "rosenbrock"])
-    settings = {"solver": solver, "rtol": decades(rng, -7, -3)}
-    if solver in ("generalized-alpha", "rosenbrock"):
-        settings["step"] = "%.3g ms" % rng.choice([0.5, 1, 2, 5, 10, 20])
-    if solver == "generalized-alpha" and rng.random() < 0.5:
-        settings["rho"] = digits(rng.uniform(0, 1))
-    return settings
-
-
-def coupling(rng, schemes):
-    scheme = rng.choice(schemes)
-    settings = {"scheme": scheme}
-    if scheme in ("extrapolated", "iterated"):
-        settings["order"] = rng.randint(0, 2)
-    if scheme == "iterated":
-        settings["exchange"] = rng.choice(["end-values", "waveform"])
-        settings["accelerator"] = rng.choice(["none", "relaxation", "aitken", "iqn-ils", "iqn-ils", "interface-newton"])
-    return settings
-
-
-MACRO_STEPS = [1, 2, 2, 5, 5, 10, 10, 10, 20, 20, 20, 40, 80]  # [ms]
-
-
-def make(rng, family, schemes, defaults, stage_coupled):
-    """The scene's text as values and the word under which its scheme is counted."""
-    step = rng.choice(MACRO_STEPS)
-    if family in (turbine, gale):
-        step = rng.choice([5, 10, 20, 20])
-    span = {1: 0.2, 2: 0.4, 5: 0.6, 10: 0.8}.get(step, 1.2)
-    count = max(8, round(span * 1000 / step * rng.uniform(0.5, 1)))
-    draft = {"bodies": [], "loads": [], "duration": count * step / 1000}
-    if rng.random() < 0.2:
-        draft["gravity"] = [0, 0, 0]
-    family(rng, draft)
-    simulation = {"duration": "%.9g s" % draft["duration"], "macro_step": "%d ms" % step}
-    word = "default"
-    if not defaults:
-        chosen = coupling(rng, schemes)
-        word = chosen["scheme"]
-        simulation["coupling"] = chosen
-        simulation["micro"] = micro(rng)
-        simulation["master"] = {"rtol": decades(rng, -8, -4)}
-        if word == "monolithic" and stage_coupled and rng.random() < 0.6:
-            simulation["master"]["solver"] = "rosenbrock"
-            word = "stages"
-        elif word != "monolithic" and rng.random() < 0.3:
-            simulation["master"]["solver"] = "radau5"
-        if word == "ramp" and rng.random() < 0.2:
-            chosen["theta"] = digits(rng.uniform(0.5, 1))
-        if word not in ("monolithic", "stages") and rng.random() < 0.15:
-            simulation["step_control"] = {"tolerance": decades(rng, -4, -1.5)}
-    if rng.random() < 0.15 and family not in (driven, turbine, gale, spin_up):
-        simulation["initial"] = "equilibrium"
-    scene = {"title": "%s, %s" % (family.__name__, word), "simulation": simulation, "bodies": draft["bodies"]}
-    for key in ("loads", "closures", "springs", "gravity"):
-        if draft.get(key):
-            scene[key] = draft[key]
-    scene.update(draft.get("extra", {}))
-    return scene, word

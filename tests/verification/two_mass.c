@@ -83,7 +83,7 @@ bough_status bough_two_mass_build(bough_two_mass *m, bough_master_def def) {
     if (!m->arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     def.error = BOUGH_ERROR_BY_LINEARISED_MEMBERS;
     bough_status status = bough_master_build(m->arena, &def, &m->master);
-    return bough_is_ok(&status) ? bough_master_watch(m->master, m->arena) : status;
+    return bough_is_ok(&status) ? bough_master_watch(m->master, m->arena, NULL) : status;
 }
 
 void bough_two_mass_destroy(bough_two_mass *m) {

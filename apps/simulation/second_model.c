@@ -1,0 +1,36 @@
+#include "apps/simulation/second_model.h"
+
+#include "apps/simulation/build.h"
+
+#include <string.h>
+
+static bool loads_react(const bough_scene *scene) { return scene->aero.node || scene->control.node; }
+
+static bool can_follow(const bough_simulation *s) {
+    const bough_scene_control *control = &s->scene->control;
+    bool library = control->node && control->kind == BOUGH_SCENE_BLADED;
+    return !library && !s->inputs && !s->master->control && !s->master->assembly->opaque;
+}
+
+static int monolithic(void) {
+    int k = 0;
+    while (strcmp(bough_scheme_name(k), "monolithic") != 0) k++;
+    return k;
+}
+
+bough_status bough_second_model_build(bough_arena *arena, const bough_simulation *s, bough_simulation **second) {
+    bough_second_solution_def def;
+    *second = NULL;
+    if (!loads_react(s->scene) || !can_follow(s) || !bough_master_wants_second(s->master, &def)) return bough_ok();
+    bough_scene *scene = bough_arena_take(arena, sizeof *scene);
+    if (!scene) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    *scene = *s->scene;
+    bough_scene_simulation *simulation = &scene->simulation;
+    simulation->coupling.scheme = monolithic();
+    simulation->master.solver = (int)def.kind;
+    simulation->master.rtol = def.rtol;
+    simulation->master.step = def.step;
+    simulation->error_estimate = BOUGH_ERROR_NOT_TOLD;
+    simulation->threads = 1;
+    return bough_simulation_build(arena, scene, second);
+}

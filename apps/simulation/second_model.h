@@ -1,0 +1,13 @@
+// A second model of a scene whose loads react to its motion, air and controllers: it takes the same macro steps as
+// the run, as one system, and measures the run's error with all that loads make of it (second_solution.h).
+#ifndef BOUGH_APPS_SIMULATION_SECOND_MODEL_H
+#define BOUGH_APPS_SIMULATION_SECOND_MODEL_H
+
+#include "apps/simulation/simulation.h"
+
+// In the arena, at time 0. *second is NULL where the run measures no error so, where no load reacts, or where a
+// second model cannot follow: a controller in a library and an FMU keep a memory of their own, other programs set inputs
+// of the first only, and steps controlled by errors have other ends.
+bough_status bough_second_model_build(bough_arena *arena, const bough_simulation *s, bough_simulation **second);
+
+#endif
