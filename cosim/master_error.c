@@ -120,8 +120,18 @@ double bough_master_input_error(const bough_master *m, int j) {
     return m->estimate ? bough_error_estimate_input(m->estimate, j) : (double)NAN;
 }
 
+static bool samples_loads(const bough_master *m) {
+    for (int i = 0; i < m->n_load; i++) {
+        if (m->load[i].sample) return true;
+    }
+    return false;
+}
+
 const char *bough_master_error_source(const bough_master *m) {
-    if (bough_master_measures(m)) return "second solution";
+    if (bough_master_measures(m)) {
+        bool same = samples_loads(m) && !bough_second_solution_has_loads(m->second);
+        return same ? "second solution under the same air and control" : "second solution";
+    }
     return m->estimate ? "linearised members" : "not estimated";
 }
 

@@ -141,6 +141,8 @@ double bough_second_solution_input(const bough_second_solution *s, int j) {
     return s->lost ? (double)NAN : s->input_worst[j];
 }
 
+bool bough_second_solution_has_loads(const bough_second_solution *s) { return s->beside.coupling != NULL; }
+
 const char *bough_second_solution_reason(const bough_second_solution *s) {
     return s->lost ? s->reason : NULL;
 }

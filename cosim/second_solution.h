@@ -57,6 +57,9 @@ const double *bough_second_solution_input_error(const bough_second_solution *s);
 // Largest error so far of the value of input j, in the port's unit; NaN if the second solution has failed.
 double bough_second_solution_input(const bough_second_solution *s, int j);
 
+// Whether its loads are its own and react to its motion.
+bool bough_second_solution_has_loads(const bough_second_solution *s);
+
 // When and why it was given up; NULL while it follows the run.
 const char *bough_second_solution_reason(const bough_second_solution *s);
 

@@ -144,7 +144,7 @@ static void torques_of_motions_are_measured_or_unknown(void **state) {
         bough_channels channels = bough_channels_start(arena);
         bough_error_probe probe;
         bough_simulation_channels(s, &channels);
-        bough_status status = bough_error_probe_create(arena, s, &channels, &probe);
+        bough_status status = bough_error_probe_create(arena, s, NULL, &channels, &probe);
         assert_true(bough_is_ok(&status));
         for (int i = 0; i < 100; i++) {
             scene_step(s);
