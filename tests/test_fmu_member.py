@@ -147,6 +147,16 @@ class Member(unittest.TestCase):
         finer = self.error(named, "bodies[damper].fmu.steps=20")
         self.assertLess(finer, 0.6 * self.error(named))
 
+    def test_the_example_of_the_documents_runs(self):
+        with open(SOURCE + "/docs/programs.md") as file:
+            section = file.read().split("## A body that is an FMU")[1]
+        write(self.scene, section.split("```")[3])
+        os.rename(self.folder + "/sample", self.folder + "/damper")
+        with bough.Session(self.scene) as run:
+            rows = run.advance()
+        self.assertLess(max(abs(rows["massPos"][-1]), abs(rows["damperFz"][-1])), 100)
+        self.assertGreater(max(map(abs, rows["damperFz"])), 1)
+
     def test_threads_do_not_change_the_bits(self):
         rows = []
         for threads in 1, 2:

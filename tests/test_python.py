@@ -95,6 +95,14 @@ class Module(unittest.TestCase):
         del session
         self.assertEqual(len(list(values)), len(before))
 
+    def test_the_example_of_the_documents_runs(self):
+        with open(SOURCE + "/docs/programs.md") as file:
+            code = file.read().split("## Python")[1].split("```")[1]
+        shorter = code.replace('"aero.wind.input=wind"', '"aero.wind.input=wind", "simulation.duration=0.1 s"')
+        self.assertNotEqual(code, shorter)
+        ran = subprocess.run([sys.executable, "-c", shorter], check=True, cwd=SOURCE, stdout=subprocess.PIPE)
+        self.assertIn(b"{'wind': 'm/s'}", ran.stdout)
+
     def test_the_example_runs(self):
         with tempfile.TemporaryDirectory() as folder:
             ran = subprocess.run([sys.executable, SOURCE + "/apps/python/what_if.py"], check=True,

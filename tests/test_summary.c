@@ -98,10 +98,13 @@ static void progress_tells_speed_and_time_left(void **state) {
     bough_progress p = bough_progress_start(10, 40, true);
     assert_false(p.visible);
     char text[128];
-    bough_progress_text(&p, 20, 5, text, sizeof text);
+    bough_progress_text(&p, 20, 5, 72, text, sizeof text);
     assert_string_equal(text, "20.00 of 40 s, 2 times real time, 0:10 left");
-    bough_progress_text(&p, 10, 5, text, sizeof text);
+    bough_progress_text(&p, 10, 5, 72, text, sizeof text);
     assert_string_equal(text, "10.00 of 40 s");
+    p.label = "scheme=monolithic, macro_step=20 ms";
+    bough_progress_text(&p, 20, 5, 39, text, sizeof text);
+    assert_string_equal(text, "scheme=monolith    20.00 of 40 s");
 }
 
 int main(void) {

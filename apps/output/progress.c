@@ -20,16 +20,22 @@ bough_progress bough_progress_start(double t, double t_end, bool quiet) {
                             .shown = now};
 }
 
-int bough_progress_text(const bough_progress *p, double t, double wall, char *text, size_t size) {
+enum { TIMES = 24 }; // characters of the times after a label
+
+void bough_progress_text(const bough_progress *p, double t, double wall, int room, char *text,
+                         size_t size) {
+    int name = room > TIMES ? room - TIMES : 0;
     double done = t - p->start;
+    if (p->label) {
+        snprintf(text, size, "%-*.*s %8.2f of %.6g s", name, name, p->label, t, p->end);
+        return;
+    }
     int length = snprintf(text, size, "%.2f of %.6g s", t, p->end);
-    if (done <= 0 || wall <= 0 || length >= (int)size) return length;
+    if (done <= 0 || wall <= 0 || length >= (int)size) return;
     double left = (p->end - t) * wall / done;
     long seconds = left < 1e8 ? (long)(left + 0.5) : 99999999L;
-    length +=
-        snprintf(text + length, size - (size_t)length, ", %.3g times real time, %ld:%02ld left",
-                 done / wall, seconds / 60, seconds % 60);
-    return length;
+    snprintf(text + length, size - (size_t)length, ", %.3g times real time, %ld:%02ld left",
+             done / wall, seconds / 60, seconds % 60);
 }
 
 // Characters of the line: one less than the terminal has, whose last would break it.
@@ -46,12 +52,8 @@ void bough_progress_show(bough_progress *p, double t) {
     if (now - p->shown < 0.1) return;
     p->shown = now;
     char text[128];
-    if (p->label) {
-        snprintf(text, sizeof text, "%-50.50s %8.2f of %.6g s", p->label, t, p->end);
-    } else {
-        bough_progress_text(p, t, now - p->began, text, sizeof text);
-    }
     int room = width();
+    bough_progress_text(p, t, now - p->began, room, text, sizeof text);
     fprintf(stderr, "\r%-*.*s", room, room, text);
     fflush(stderr);
 }
