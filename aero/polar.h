@@ -48,12 +48,15 @@ bough_status bough_polar_blend(bough_arena *arena, const bough_polar *a, const b
 bough_status bough_polar_smoothen(bough_arena *arena, bough_polar *polar);
 
 // The last knot at or below an angle; `alpha` moves into the table's turn. No branch depends on it
-// but that into the turn, for the next is not to be foretold.
+// but that into the turn, for the next is not to be foretold. A NaN stays one and takes the first knot.
 static inline int bough_polar_knot(const bough_polar *polar, double *alpha) {
     const double turn = 2 * BOUGH_PI;
     double x = *alpha - polar->row[0];
-    if (x < 0 || x >= turn) x -= turn * floor(x / turn);
-    int j = (int)(x * polar->bin_per_rad);
+    if (x < 0 || x >= turn) {
+        x = fmod(x, turn); // exact at any size
+        x += x < 0 ? turn : 0;
+    }
+    int j = (int)((x > 0 ? x : 0) * polar->bin_per_rad);
     int knot = polar->bin[j < polar->n_bin ? j : polar->n_bin - 1];
     *alpha = x + polar->row[0];
     for (int k = 0; k < polar->most; k++)

@@ -64,6 +64,22 @@ static void turns_repeat(void **state) {
     bough_arena_destroy(arena);
 }
 
+// Of states that have run away: no place outside the table is read.
+static void any_angle_has_an_answer(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_polar polar = build(arena, nrel5mw_polars + 3);
+    for (double a = 1; a < 1e308; a *= 7) {
+        for (int sign = -1; sign <= 1; sign += 2) {
+            bough_coefficients here = bough_polar_at(&polar, sign * a);
+            assert_true(fabs(here.lift) < 3 && fabs(bough_polar_slope(&polar, sign * a).lift) < 100);
+        }
+    }
+    assert_true(isnan(bough_polar_at(&polar, (double)NAN).lift));
+    assert_true(isnan(bough_polar_at(&polar, HUGE_VAL).lift));
+    bough_arena_destroy(arena);
+}
+
 // A table of less than a turn goes on from its last row to its first.
 static void gap_is_bridged(void **state) {
     (void)state;
@@ -190,7 +206,8 @@ static void gaps_are_known(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(knots_are_reproduced),   cmocka_unit_test(interpolation_is_linear),
-        cmocka_unit_test(turns_repeat),           cmocka_unit_test(gap_is_bridged),
+        cmocka_unit_test(turns_repeat),           cmocka_unit_test(any_angle_has_an_answer),
+        cmocka_unit_test(gap_is_bridged),
         cmocka_unit_test(smooth_polars_are_monotone_and_smooth),
         cmocka_unit_test(blends_are_exact),       cmocka_unit_test(bad_tables_are_refused),
         cmocka_unit_test(gaps_are_known),
