@@ -103,6 +103,8 @@ bad_scenes() {
         nothing_written
     done
     refused 'error: simulation: unknown key .durration' run "$bar" --set simulation.durration=1
+    printf 'kind: sweep\nscene: %s\ngrid:\n  simulation.durration: [1]\n' "$bar" >../sweep.yaml
+    refused '^../sweep.yaml:4:26: error: simulation: unknown key .durration' study ../sweep.yaml
     refused "error: .*unit" run "$bar" --set 'simulation.duration=1 kg'
     refused 'absent.yaml: error: ' run absent.yaml
     printf 'kind: sweep\nscene: x.yaml\n' >../study.yaml

@@ -282,8 +282,8 @@ static void wrong_types_are_refused(void **state) {
             "f:1:7: error: kind: expected one of turning, sliding, fixed, got a list\n");
     refuses("kind: fixed\ncount: 1.5\n", "f:2:8: error: count: expected a whole number, got "
                                          "'1.5'\n");
-    refuses("kind: fixed\ncount: {}\n", "f:2:8: error: count: expected a whole number, got a "
-                                        "mapping\n");
+    refuses("kind: fixed\ncount: {}\n", "f:2:8: error: count: expected a whole number, got an "
+                                        "empty mapping\n");
     refuses("kind: fixed\ncount: 0x3\n", "f:2:8: error: count: expected a whole number, got "
                                          "'0x3'\n");
     refuses("kind: fixed\nlabel:\n", "f:2:7: error: label: expected text, got nothing\n");

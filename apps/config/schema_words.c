@@ -4,8 +4,8 @@
 #include <string.h>
 
 const char *bough_node_shown(const bough_node *node, char buffer[64]) {
-    if (node->kind == BOUGH_MAPPING) return "a mapping";
-    if (node->kind == BOUGH_SEQUENCE) return "a list";
+    if (node->kind == BOUGH_MAPPING) return node->n > 0 ? "a mapping" : "an empty mapping";
+    if (node->kind == BOUGH_SEQUENCE) return node->n > 0 ? "a list" : "an empty list";
     if (node->text[0] == '\0') return node->quoted ? "''" : "nothing";
     size_t length = strlen(node->text);
     if (length <= 48) {

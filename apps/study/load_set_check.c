@@ -4,28 +4,23 @@
 #include "apps/scene/fingerprint.h"
 #include "apps/simulation/build.h"
 #include "apps/study/load_set_internal.h"
+#include "apps/study/study_internal.h"
 
 #include <stdio.h>
 #include <string.h>
 
 // -- errors ---------------------------------------------------------------------------------------
 
-static const bough_study_setting *find_key(const bough_study_settings *settings, const char *path) {
-    for (int i = 0; i < settings->n; i++)
-        if (strcmp(settings->item[i].key, path) == 0) return &settings->item[i];
-    return NULL;
-}
-
 // Where the set says what the error is about.
 static const bough_node *origin(const bough_load_set *s, const bough_load_case *c,
                                 const bough_error *e) {
     const bough_load_group *g = &s->group[c->group];
     for (int i = 0; i < g->grid.n; i++) {
-        const bough_study_setting *value = &g->grid.axis[i].value.item[c->index[i]];
-        if (strcmp(value->key, e->path) == 0) return value->node;
+        bough_study_settings value = {.n = 1, .item = &g->grid.axis[i].value.item[c->index[i]]};
+        if (bough_study_concerned(&value, e)) return value.item->node;
     }
-    const bough_study_setting *found = find_key(&g->set, e->path);
-    if (!found) found = find_key(&s->common, e->path);
+    const bough_study_setting *found = bough_study_concerned(&g->set, e);
+    if (!found) found = bough_study_concerned(&s->common, e);
     return found ? found->node : g->node;
 }
 

@@ -59,8 +59,7 @@ static bool concerns(const bough_error *e, const bough_study_setting *setting) {
            strstr(e->text, word) != NULL;
 }
 
-static const bough_study_setting *find_concerned(const bough_study_settings *settings,
-                                                 const bough_error *e) {
+const bough_study_setting *bough_study_concerned(const bough_study_settings *settings, const bough_error *e) {
     for (int i = 0; i < settings->n; i++) {
         if (concerns(e, &settings->item[i])) return &settings->item[i];
     }
@@ -75,8 +74,8 @@ static const bough_node *origin(const bough_study *s, const bough_study_cell *ce
         if (concerns(e, value)) return value->node;
     }
     const bough_study_setting *found = NULL;
-    if (cell->index[0] < 0) found = find_concerned(&s->reference, e);
-    if (!found) found = find_concerned(&s->common, e);
+    if (cell->index[0] < 0) found = bough_study_concerned(&s->reference, e);
+    if (!found) found = bough_study_concerned(&s->common, e);
     return found ? found->node
                  : bough_node_find(s->node, cell->index[0] < 0 ? "reference" : "grid");
 }

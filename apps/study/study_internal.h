@@ -12,6 +12,9 @@ extern const bough_schema bough_sweep_schema, bough_load_set_schema;
 void bough_study_read_settings(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void *field);
 
+// Of these settings the one that an error in a scene speaks of; NULL: none.
+const bough_study_setting *bough_study_concerned(const bough_study_settings *settings, const bough_error *e);
+
 // Makes the cells of the grid and the reference cell.
 void bough_study_expand(bough_arena *arena, bough_study *study, bough_errors *errors);
 
