@@ -69,7 +69,6 @@ bough_status bough_discon_open(bough_arena *arena, const char *library, const ch
     bough_discon *d = bough_arena_take(arena, sizeof *d);
     size_t size = strlen(library) + 3;
     char *path = bough_arena_take(arena, size);
-    if (!d || !path) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the controller.");
     // A name without a slash would be looked for in the system's folders.
     snprintf(path, size, "%s%s", strchr(library, '/') ? "" : "./", library);
     if (strlen(input) >= TEXT) {

@@ -125,7 +125,6 @@ bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, b
     enum { N_BIN = 720 };
     double *row = bough_arena_doubles(arena, (size_t)(ROW * (n + 1)));
     int *bin = bough_arena_take(arena, N_BIN * sizeof *bin);
-    if (!row || !bin) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for a polar.");
     fill_rows(def, n, row);
     row[ROW * n] = INFINITY;
     *polar =
@@ -148,7 +147,6 @@ bough_status bough_polar_blend(bough_arena *arena, const bough_polar *a, const b
     int most = a->n + b->n, n = 0;
     double *angle = bough_arena_doubles(arena, (size_t)most);
     double *row = bough_arena_doubles(arena, 4 * (size_t)most);
-    if (!angle || !row) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for a polar.");
     for (int k = 0; k < most; k++)
         angle[k] = k < a->n ? a->row[ROW * k] : remainder(b->row[ROW * (k - a->n)], turn);
     qsort(angle, (size_t)most, sizeof *angle, ascending);
@@ -181,7 +179,6 @@ bough_status bough_polar_smoothen(bough_arena *arena, bough_polar *polar) {
     int last = polar->n - 1;
     double *curve = bough_arena_doubles(arena, 6 * (size_t)polar->n);
     double *slope = bough_arena_doubles(arena, 3 * (size_t)polar->n);
-    if (!curve || !slope) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for a polar.");
     for (int k = 0; k <= last; k++) {
         const double *here = polar->row + ROW * (k % last); // the turn is closed: last is first
         const double *before = polar->row + ROW * (k % last == 0 ? last - 1 : k % last - 1);

@@ -102,7 +102,7 @@ static void place_station(const bough_rotor_def *def, const bough_station_def *f
     to->free[j] = fixed ? 0 : 1;
 }
 
-static bool take_stations(bough_arena *arena, int stride, station_rows *rows) {
+static void take_stations(bough_arena *arena, int stride, station_rows *rows) {
     size_t n = (size_t)stride;
     rows->polar = bough_arena_take(arena, n * sizeof *rows->polar);
     rows->vertex = bough_arena_take(arena, n * sizeof *rows->vertex);
@@ -115,7 +115,6 @@ static bool take_stations(bough_arena *arena, int stride, station_rows *rows) {
     rows->tip_factor = bough_arena_doubles(arena, n);
     rows->hub_factor = bough_arena_doubles(arena, n);
     rows->free = bough_arena_doubles(arena, n);
-    return !bough_arena_exhausted(arena);
 }
 
 static void place_stations(const bough_rotor_def *def, const bough_polar *polar,
@@ -191,7 +190,6 @@ static bough_status build_polars(bough_arena *arena, const bough_rotor_def *def,
                                  const bough_polar **polars) {
     int most = def->n_polar + def->n_station;
     bough_polar *polar = bough_arena_take(arena, (size_t)most * sizeof *polar);
-    if (!polar) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the polars.");
     *polars = polar;
     bough_status status = bough_ok();
     for (int i = 0; i < most && bough_is_ok(&status); i++) {
@@ -213,7 +211,6 @@ static bough_status build_polars(bough_arena *arena, const bough_rotor_def *def,
 static bough_status prepare_stall(bough_arena *arena, bough_rotor *rotor) {
     size_t n = (size_t)rotor->n_station;
     bough_stall_airfoil *airfoil = bough_arena_take(arena, n * sizeof *airfoil);
-    if (!airfoil) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the dynamic stall.");
     for (size_t j = 0; j < n; j++)
         airfoil[j] = bough_stall_airfoil_of(rotor->station.polar[j]);
     rotor->airfoil = airfoil;
@@ -232,9 +229,6 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
     const mappings map = {bough_arena_doubles(arena, n_vertex * n_station),
                           bough_arena_doubles(arena, (n_vertex - 1) * n_station),
                           bough_arena_doubles(arena, (n_vertex - 1) * n_station)};
-    if (bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's aerodynamics.");
-    }
     for (size_t i = 0; i < n_vertex; i++) {
         undeformed[i] = bough_quaternion_of_matrix(def->vertex_rotation[i]);
     }
@@ -252,9 +246,7 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                            .row = row,
                            .mean = row + n_vertex,
                            .slope = row + 2 * n_vertex - 1};
-    if (!take_stations(arena, rotor->stride, &rotor->station)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's stations.");
-    }
+    take_stations(arena, rotor->stride, &rotor->station);
     const bough_polar *polar = NULL;
     status = build_polars(arena, def, &polar);
     if (bough_is_ok(&status)) status = bough_wind_build(arena, &def->wind, &rotor->wind);
@@ -274,7 +266,6 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
 static void take_inflow(bough_arena *arena, const bough_rotor *rotor, bough_rotor_memory *memory) {
     int n = rotor->n_blade * rotor->n_station;
     memory->station = bough_arena_take(arena, (size_t)n * sizeof *memory->station);
-    if (!memory->station) return;
     for (int k = 0; k < n; k++) {
         double tip_factor = rotor->station.tip_factor[k % rotor->n_station];
         double share = 1 / (1 + 2 * tip_factor / rotor->n_blade); // of B (R − r)/(2 r)
@@ -322,17 +313,12 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
     data->line = bough_arena_doubles(arena, 12 * n_blade * (size_t)(rotor->n_vertex - 1));
     struct bough_rotor_scratch *s = bough_arena_take(arena, sizeof *s);
     data->scratch = s;
-    if (s) {
-        s->blade = bough_arena_take(arena, n_blade * sizeof *s->blade);
-        s->wind = bough_arena_take(arena, n_blade * sizeof *s->wind);
-        s->thrust = bough_arena_doubles(arena, n_blade);
-        s->torque = bough_arena_doubles(arena, n_blade);
-    }
-    for (int b = 0; s && s->blade && b < rotor->n_blade; b++)
+    s->blade = bough_arena_take(arena, n_blade * sizeof *s->blade);
+    s->wind = bough_arena_take(arena, n_blade * sizeof *s->wind);
+    s->thrust = bough_arena_doubles(arena, n_blade);
+    s->torque = bough_arena_doubles(arena, n_blade);
+    for (int b = 0; b < rotor->n_blade; b++)
         take_rows(arena, rotor, s->blade + b);
     take_memory(arena, rotor, &data->memory);
-    if (bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the rotor's loads.");
-    }
     return bough_ok();
 }

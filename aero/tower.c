@@ -37,9 +37,6 @@ bough_status bough_tower_build(bough_arena *arena, const bough_tower_def *def, b
     double *height = bough_arena_doubles(arena, (size_t)def->n);
     double *radius = bough_arena_doubles(arena, (size_t)def->n);
     double *drag = bough_arena_doubles(arena, (size_t)def->n);
-    if (!height || !radius || !drag) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the tower.");
-    }
     for (int i = 0; i < def->n; i++) {
         height[i] = def->height[i];
         radius[i] = def->diameter[i] / 2;

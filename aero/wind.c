@@ -33,7 +33,6 @@ static const double *copied(bough_arena *arena, const double *from, int n) {
 
 static bough_status read_hub(bough_arena *arena, bough_wind *wind) {
     bough_wind_hub *hub = bough_arena_take(arena, sizeof *hub);
-    if (!hub) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
     hub->reference_height = wind->def.reference_height;
     hub->reference_length = wind->def.reference_length;
     if (!(hub->reference_height > 0 && hub->reference_length > 0)) {
@@ -45,7 +44,6 @@ static bough_status read_hub(bough_arena *arena, bough_wind *wind) {
 
 static bough_status read_box(bough_arena *arena, bough_wind *wind) {
     bough_wind_box *box = bough_arena_take(arena, sizeof *box);
-    if (!box) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
     wind->box = box;
     bough_status status = bough_wind_box_read(arena, wind->def.file, box);
     if (!bough_is_ok(&status) || bough_wind_box_lasts(box, wind->def.until)) return status;
@@ -61,12 +59,10 @@ static bough_status make_standard(bough_arena *arena, bough_wind *wind) {
     if (!bough_is_ok(&status)) return status;
     if (bough_wind_iec_is_turbulent(def->condition)) {
         bough_wind_box *box = bough_arena_take(arena, sizeof *box);
-        if (!box) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
         wind->box = box;
         return bough_turbulence_make(arena, def, box);
     }
     bough_wind_iec *iec = bough_arena_take(arena, sizeof *iec);
-    if (!iec) return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
     *iec = bough_wind_iec_start(def);
     wind->iec = iec;
     return status;
@@ -84,9 +80,6 @@ static bough_status build(bough_arena *arena, const bough_wind_def *def, bough_w
     if (def->n_time == 0) return bough_ok();
     wind->def.time = copied(arena, def->time, def->n_time);
     wind->def.speed_at_time = copied(arena, def->speed_at_time, def->n_time);
-    if (!wind->def.time || !wind->def.speed_at_time) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
-    }
     return bough_ok();
 }
 

@@ -83,8 +83,7 @@ bough_status bough_wind_hub_read(bough_arena *arena, const char *path, bough_win
     bough_status status = scan(stream, path, MOST_ROWS, &hub->n, NULL);
     if (bough_is_ok(&status)) {
         row = bough_arena_take(arena, (size_t)hub->n * sizeof *row);
-        status = row ? scan(stream, path, hub->n, &hub->n, row)
-                     : bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
+        status = scan(stream, path, hub->n, &hub->n, row);
     }
     fclose(stream);
     hub->row = row;

@@ -272,7 +272,7 @@ static bough_status make_in(bough_arena *scratch, maker *m) {
     m->table = bough_arena_doubles(scratch, n);
     place *places = bough_arena_take(scratch, n * sizeof *places);
     m->fourier = bough_fourier_create(m->box->n_time);
-    if (!m->fourier) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for turbulent wind");
+    if (!m->fourier) bough_arena_leave(scratch);
     set_order(m, places);
     bough_status status = bough_ok();
     for (int c = 0; c < 3 && bough_is_ok(&status); c++) status = make_component(m, c);

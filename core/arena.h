@@ -50,10 +50,4 @@ _Noreturn void bough_arena_leave(bough_arena *arena);
 // Bytes taken so far.
 size_t bough_arena_bytes(const bough_arena *arena);
 
-// false: see above.
-static inline bool bough_arena_exhausted(const bough_arena *arena) {
-    (void)arena;
-    return false;
-}
-
 #endif

@@ -7,7 +7,7 @@
 
 static const double dependent = 1e-13; // share of a vector that counts as none
 
-bool bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_arnoldi *a) {
+void bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_arnoldi *a) {
     size_t n = (size_t)length, m = (size_t)capacity;
     a->length = length;
     a->capacity = capacity;
@@ -19,8 +19,7 @@ bool bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_ar
     a->vector = bough_arena_doubles(arena, m * m);
     a->matrix = bough_arena_doubles(arena, m * m);
     a->work = bough_arena_doubles(arena, 8 * m);
-    for (int i = 0; i < length && a->weight; i++) a->weight[i] = 1;
-    return !bough_arena_exhausted(arena);
+    for (int i = 0; i < length; i++) a->weight[i] = 1;
 }
 
 static double *vector_at(const bough_arnoldi *a, int k) {

@@ -26,8 +26,8 @@ typedef struct bough_arnoldi {
     void *self;
 } bough_arnoldi;
 
-// Takes the memory for vectors of that length, the weights all 1. False without memory.
-bool bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_arnoldi *a);
+// Takes the memory for vectors of that length, the weights all 1.
+void bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_arnoldi *a);
 
 double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const double *y);
 

@@ -15,13 +15,12 @@
 
 enum { W = 8 }; // padded column
 
-bool bough_block_tridiagonal_init(bough_block_tridiagonal *m, bough_arena *arena, int n) {
+void bough_block_tridiagonal_init(bough_block_tridiagonal *m, bough_arena *arena, int n) {
     m->n = n;
     size_t count = (size_t)bough_padded(n) * BOUGH_BLOCK;
     m->lower = bough_arena_doubles(arena, count);
     m->diagonal = bough_arena_doubles(arena, count);
     m->upper = bough_arena_doubles(arena, count);
-    return m->lower != NULL && m->diagonal != NULL && m->upper != NULL;
 }
 
 // Entry i of Σ_k a_k b_k over the columns a_k, padding included.

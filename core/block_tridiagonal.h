@@ -21,8 +21,8 @@ typedef struct bough_block_tridiagonal {
     double *upper;    // (n × block) row i couples to i + 1; upper[n − 1] unused
 } bough_block_tridiagonal;
 
-// Takes the matrix' memory; false when exhausted.
-bool bough_block_tridiagonal_init(bough_block_tridiagonal *m, bough_arena *arena, int n);
+// Takes the matrix' memory.
+void bough_block_tridiagonal_init(bough_block_tridiagonal *m, bough_arena *arena, int n);
 
 // Factors in place. False when a pivot is zero or not finite.
 bool bough_block_tridiagonal_factor(bough_block_tridiagonal *m);

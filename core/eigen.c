@@ -134,12 +134,11 @@ static void fill_pair(const search *s, int k, bough_eigen_pair *pair) {
 
 // -- whole ----------------------------------------------------------------------------------------
 
-static bool take_shapes(bough_arena *arena, int n, bough_eigen_pair *pair, int count) {
+static void take_shapes(bough_arena *arena, int n, bough_eigen_pair *pair, int count) {
     for (int i = 0; i < count; i++) {
         pair[i].shape_real = bough_arena_doubles(arena, (size_t)n);
         pair[i].shape_imag = bough_arena_doubles(arena, (size_t)n);
     }
-    return !bough_arena_exhausted(arena);
 }
 
 bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator *op, int wanted,
@@ -147,9 +146,7 @@ bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator 
     int first = 4 * wanted + SPARE, capacity = first + first * LOOKS / 2 + BLOCK_SIZE;
     search s = {.op = op, .basis = {.apply = apply, .self = &s}};
     s.order = bough_arena_take(arena, (size_t)(capacity + wanted) * sizeof *s.order);
-    if (!bough_arnoldi_create(arena, op->length, capacity, &s.basis)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
+    bough_arnoldi_create(arena, op->length, capacity, &s.basis);
     memcpy(s.basis.weight, op->weight, (size_t)op->length * sizeof(double));
     int *chosen = s.order + capacity;
     start(&s);
@@ -157,9 +154,7 @@ bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator 
         return bough_fail(BOUGH_FAILED, "%s: the %d lowest eigenvalues were not found to %g; ask"
                           " for fewer", op->name, wanted, accuracy);
     }
-    if (!take_shapes(arena, op->n_shape, pair, *found)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
+    take_shapes(arena, op->n_shape, pair, *found);
     for (int i = 0; i < *found; i++) fill_pair(&s, chosen[i], &pair[i]);
     return bough_ok();
 }
@@ -196,7 +191,6 @@ bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem 
                                .balance = true,
                                .self = &self,
                                .apply = apply_inverse};
-    if (op.weight == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!bough_block_tridiagonal_factor(problem->stiffness)) {
         return bough_fail(BOUGH_FAILED, "%s: the stiffness about the equilibrium is singular: it"
                           " stands at a buckling load; change the load", problem->name);

@@ -33,9 +33,7 @@ bough_status bough_integrator_create(bough_arena *arena, const bough_ode *ode,
                           "try rosenbrock",
                           ode->name, ops->title, ops->most_states, ode->n);
     }
-    bough_status status = ops->create(arena, ode, options, &integrator->self);
-    if (bough_is_ok(&status) && ops->own_error) {
-        integrator->own_error = ops->own_error(integrator->self);
-    }
-    return status;
+    integrator->self = ops->create(arena, ode, options);
+    if (ops->own_error) integrator->own_error = ops->own_error(integrator->self);
+    return bough_ok();
 }

@@ -77,8 +77,8 @@ typedef struct bough_integrator_ops {
     const char *name;  // in scenes
     const char *title; // in messages
     int most_states;   // largest system that it suits; 0: any
-    bough_status (*create)(bough_arena *arena, const bough_ode *ode,
-                           const bough_integrator_options *options, void **self);
+    void *(*create)(bough_arena *arena, const bough_ode *ode,
+                    const bough_integrator_options *options);
     // Integrates y (n) from *t to exactly t1 and never evaluates f beyond t1. A method that can stop
     // early returns after the first step that reaches `pause`. *t is then the time of y. `restart`: y
     // was changed, or f jumps at *t.

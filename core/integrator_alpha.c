@@ -33,12 +33,10 @@ typedef struct alpha {
     bough_statistics sum;
 } alpha;
 
-static bough_status create(bough_arena *arena, const bough_ode *ode,
-                           const bough_integrator_options *options, void **self) {
+static void *create(bough_arena *arena, const bough_ode *ode,
+                    const bough_integrator_options *options) {
     alpha *m = bough_arena_take(arena, sizeof *m);
     size_t n = (size_t)ode->n;
-    if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
-    *self = m;
     m->ode = *ode;
     m->step = options->step > 0 ? options->step : (double)INFINITY;
     m->rtol = options->rtol;
@@ -53,11 +51,8 @@ static bough_status create(bough_arena *arena, const bough_ode *ode,
     m->residual = bough_arena_doubles(arena, n);
     m->own_error = bough_arena_doubles(arena, n);
     m->slope = bough_arena_doubles(arena, n);
-    if (bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
-    }
     for (size_t i = 0; i < n; i++) m->weight[i] = 1 / ode->scale[i];
-    return bough_ok();
+    return m;
 }
 
 // y₁ and ẏ₁ with ẏ unchanged over the step.

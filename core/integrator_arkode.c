@@ -74,26 +74,15 @@ static bool take_memory(arkode_run *run) {
     return flag < 0 && flag != ARK_MEM_FAIL && one.calls > 1;
 }
 
-static bough_status create(bough_arena *arena, const bough_ode *ode,
-                           const bough_integrator_options *options, void **self) {
+static void *create(bough_arena *arena, const bough_ode *ode,
+                    const bough_integrator_options *options) {
     arkode_run *m = bough_arena_take(arena, sizeof *m);
-    if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
     bough_arena_on_destroy(arena, destroy, m);
     bough_newton_handle *newton = &m->newton;
-    bool ok = !bough_arena_exhausted(arena) && bough_newton_handle_create(newton, ode, options->rtol);
-    if (ok) {
-        m->arkode =
-            ARKStepCreate(NULL, bough_newton_handle_rate, 0, newton->y, newton->context);
-    }
-    if (!ok || m->arkode == NULL) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory for ARKODE", ode->name);
-    }
-    if (!configure(m) || !take_memory(m)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for ARKODE: %s", ode->name,
-                          newton->text);
-    }
-    *self = m;
-    return bough_ok();
+    if (!bough_newton_handle_create(newton, ode, options->rtol)) bough_arena_leave(arena);
+    m->arkode = ARKStepCreate(NULL, bough_newton_handle_rate, 0, newton->y, newton->context);
+    if (m->arkode == NULL || !configure(m) || !take_memory(m)) bough_arena_leave(arena);
+    return m;
 }
 
 // -- steps ----------------------------------------------------------------------------------------

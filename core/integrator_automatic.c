@@ -18,20 +18,23 @@ typedef struct automatic {
     double beyond; // steps of the Rosenbrock method beyond the usual ones, since its last restart
 } automatic;
 
-static bough_status create(bough_arena *arena, const bough_ode *ode,
-                           const bough_integrator_options *options, void **self) {
+static bough_integrator make(const bough_integrator_ops *ops, bough_arena *arena,
+                             const bough_ode *ode, const bough_integrator_options *options) {
+    return (bough_integrator){.ops = ops, .self = ops->create(arena, ode, options)};
+}
+
+static void *create(bough_arena *arena, const bough_ode *ode,
+                    const bough_integrator_options *options) {
     automatic *m = bough_arena_take(arena, sizeof *m);
-    if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
-    *self = m;
     bough_integrator_options own = *options;
     own.kind = BOUGH_ROSENBROCK;
     own.most_steps = ROSENBROCK_STEPS;
-    bough_status status = bough_integrator_create(arena, ode, &own, &m->rosenbrock);
-    if (!bough_is_ok(&status)) return status;
+    m->rosenbrock = make(&bough_integrator_rosenbrock, arena, ode, &own);
     own.kind = BOUGH_IDA;
     own.most_steps = (int)fmax(LEAST_IDA_STEPS, fmin(IDA_STEPS, most_work / ode->n));
     own.rtol *= share;
-    return bough_integrator_create(arena, ode, &own, &m->ida);
+    m->ida = make(&bough_integrator_ida, arena, ode, &own);
+    return m;
 }
 
 static double rosenbrock_steps(const automatic *m) {

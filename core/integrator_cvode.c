@@ -50,25 +50,16 @@ static bool configure(cvode_run *run) {
     return bad == 0;
 }
 
-static bough_status create(bough_arena *arena, const bough_ode *ode,
-                           const bough_integrator_options *options, void **self) {
+static void *create(bough_arena *arena, const bough_ode *ode,
+                    const bough_integrator_options *options) {
     cvode_run *m = bough_arena_take(arena, sizeof *m);
-    if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
     bough_arena_on_destroy(arena, destroy, m);
     m->own_error = bough_arena_doubles(arena, (size_t)ode->n);
-    bool ok = !bough_arena_exhausted(arena) &&
-              bough_newton_handle_create(&m->newton, ode, options->rtol);
-    if (ok) m->cvode = CVodeCreate(CV_BDF, m->newton.context);
-    if (ok) m->step_error = bough_vector_create(ode->n, m->newton.context);
-    if (!ok || m->cvode == NULL || m->step_error == NULL) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory for CVODE", ode->name);
-    }
-    if (!configure(m)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for CVODE: %s", ode->name,
-                          m->newton.text);
-    }
-    *self = m;
-    return bough_ok();
+    if (!bough_newton_handle_create(&m->newton, ode, options->rtol)) bough_arena_leave(arena);
+    m->cvode = CVodeCreate(CV_BDF, m->newton.context);
+    m->step_error = bough_vector_create(ode->n, m->newton.context);
+    if (m->cvode == NULL || m->step_error == NULL || !configure(m)) bough_arena_leave(arena);
+    return m;
 }
 
 // -- steps ----------------------------------------------------------------------------------------

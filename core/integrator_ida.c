@@ -170,23 +170,18 @@ static bool configure(ida_run *ida) {
            IDASetMaxNumSteps(m, ida->most_steps) == IDA_SUCCESS;
 }
 
-static bough_status create(bough_arena *arena, const bough_ode *ode,
-                           const bough_integrator_options *options, void **self) {
+static void *create(bough_arena *arena, const bough_ode *ode,
+                    const bough_integrator_options *options) {
     ida_run *ida = bough_arena_take(arena, sizeof *ida);
     double *weight = bough_arena_doubles(arena, (size_t)ode->n);
-    if (ida == NULL || weight == NULL) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for IDA", ode->name);
-    }
     for (int i = 0; i < ode->n; i++)
         weight[i] = 1 / (options->rtol * ode->scale[i]);
     ida->ode = *ode;
     ida->most_steps = options->most_steps > 0 ? options->most_steps : MOST_STEPS;
     ida->weight = weight;
-    *self = ida;
-    bool created = create_objects(ida) && configure(ida);
     bough_arena_on_destroy(arena, release, ida);
-    if (created && !bough_arena_exhausted(arena)) return bough_ok();
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for IDA. %s", ode->name, ida->message);
+    if (!create_objects(ida) || !configure(ida)) bough_arena_leave(arena);
+    return ida;
 }
 
 // -- stepping --------------------------------------------------------------------------------

@@ -69,7 +69,7 @@ typedef struct radau {
 
 // -- construction ----------------------------------------------------------------------------
 
-static bool take(bough_arena *arena, radau *r) {
+static void take(bough_arena *arena, radau *r) {
     size_t n = (size_t)r->ode.n;
     size_t head = (sizeof(history) + sizeof(double) - 1) / sizeof(double);
     size_t count = head + 4 * n + n * n;
@@ -86,31 +86,26 @@ static bool take(bough_arena *arena, radau *r) {
     r->pair = bough_arena_doubles(arena, 2 * n);
     r->real_pivot = bough_arena_take(arena, n * sizeof(int));
     r->complex_pivot = bough_arena_take(arena, n * sizeof(int));
-    if (bough_arena_exhausted(arena)) return false;
     r->bytes = count * sizeof(double);
     r->past = (history *)(void *)memory;
     r->y = memory + head;
     r->z = r->y + n;
     r->matrix = r->z + STAGES * n;
-    return true;
 }
 
-static bough_status create(bough_arena *arena, const bough_ode *ode,
-                           const bough_integrator_options *options, void **self) {
+static void *create(bough_arena *arena, const bough_ode *ode,
+                    const bough_integrator_options *options) {
     double rtol = options->rtol;
     radau *r = bough_arena_take(arena, sizeof *r);
-    if (r != NULL) r->ode = *ode;
-    if (r == NULL || !take(arena, r)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: no memory for Radau", ode->name);
-    }
+    r->ode = *ode;
+    take(arena, r);
     // The error estimate is of order 3, the solution of order 5: this makes the error of the latter
     // follow rtol.
     double inner = 0.1 * pow(rtol, 2.0 / 3);
     for (int i = 0; i < ode->n; i++)
         r->weight[i] = 1 / (inner * ode->scale[i]);
     r->newton_tolerance = fmax(10 * 2.3e-16 / inner, fmin(0.03, sqrt(inner)));
-    *self = r;
-    return bough_ok();
+    return r;
 }
 
 // -- norms and vectors -----------------------------------------------------------------------

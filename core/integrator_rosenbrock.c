@@ -60,12 +60,10 @@ typedef struct rosenbrock {
     bough_statistics sum;
 } rosenbrock;
 
-static bough_status create(bough_arena *arena, const bough_ode *ode,
-                           const bough_integrator_options *options, void **self) {
+static void *create(bough_arena *arena, const bough_ode *ode,
+                    const bough_integrator_options *options) {
     rosenbrock *m = bough_arena_take(arena, sizeof *m);
     size_t n = (size_t)ode->n;
-    if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
-    *self = m;
     m->ode = *ode;
     if (m->ode.derivative_again == NULL) m->ode.derivative_again = ode->derivative;
     m->step = options->step > 0 ? options->step : (double)INFINITY;
@@ -77,11 +75,8 @@ static bough_status create(bough_arena *arena, const bough_ode *ode,
     m->at = bough_arena_doubles(arena, n);
     m->own_error = bough_arena_doubles(arena, n);
     for (int i = 0; i < STAGES; i++) m->stage[i] = bough_arena_doubles(arena, n);
-    if (bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", ode->name);
-    }
     for (size_t k = 0; k < n; k++) m->weight[k] = 1 / (options->rtol * ode->scale[k]);
-    return bough_ok();
+    return m;
 }
 
 // -- one step -------------------------------------------------------------------------------------

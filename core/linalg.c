@@ -133,18 +133,16 @@ static void leave(void *threads) {
     atomic_fetch_sub(&users, *(int *)threads);
 }
 
-bool bough_linalg_room(bough_arena *arena, int threads) {
+void bough_linalg_room(bough_arena *arena, int threads) {
     int *own = bough_arena_take(arena, sizeof *own);
-    if (!own) return false;
     *own = threads;
     int rooms = atomic_fetch_add(&users, threads) + threads;
     bough_arena_on_destroy(arena, leave, own);
     if (rooms > MOST_ROOMS) rooms = MOST_ROOMS;
-    if (rooms <= atomic_load(&rooms_taken)) return true;
-    if (!has_addresses(rooms)) return false;
+    if (rooms <= atomic_load(&rooms_taken)) return;
+    if (!has_addresses(rooms)) bough_arena_leave(arena);
     take_rooms(rooms);
     atomic_store(&rooms_taken, rooms);
-    return true;
 }
 
 // -- LU -------------------------------------------------------------------------------------------

@@ -8,9 +8,9 @@
 #include <stdbool.h>
 
 // Takes the room that the library works in, on so many threads beside those of all arenas that live:
-// when a model is built, so that no step does. False where there is none. OpenBLAS wants 128 MB of
+// when a model is built, so that no step does. OpenBLAS wants 128 MB of
 // addresses a thread and, where it does not get them, tries for ever.
-bool bough_linalg_room(bough_arena *arena, int threads);
+void bough_linalg_room(bough_arena *arena, int threads);
 
 // LU factors of a (n × n, column-major) in place, with row interchanges in pivot (n). False when a
 // is singular or not finite.

@@ -47,7 +47,7 @@ static bough_status check(const bough_tree_def *def, const bough_tree *tree,
 bough_status bough_loops_place(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     tree->closures = bough_arena_take(arena, (size_t)def->n_closures * sizeof(bough_closure));
     tree->closure_time = def->closure_time > 0 ? def->closure_time : 0.01;
-    for (int k = 0; k < def->n_closures && !bough_arena_exhausted(arena); k++) {
+    for (int k = 0; k < def->n_closures; k++) {
         const bough_closure_def *from = &def->closures[k];
         bough_closure *to = &tree->closures[k];
         bough_status status = check(def, tree, from);
@@ -59,29 +59,23 @@ bough_status bough_loops_place(bough_arena *arena, const bough_tree_def *def, bo
         tree->n_rows += bough_constraint_n_rows(&to->constraint);
         tree->n_closures++;
     }
-    if (!bough_arena_exhausted(arena)) return bough_ok();
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for %d closures", def->n_closures);
+    return bough_ok();
 }
 
-bough_status bough_loops_create(bough_arena *arena, const bough_tree *tree, bough_loops **out) {
-    *out = NULL;
-    if (tree->n_closures == 0) return bough_ok();
+bough_loops *bough_loops_create(bough_arena *arena, const bough_tree *tree) {
+    if (tree->n_closures == 0) return NULL;
     size_t m = (size_t)tree->n_rows, n = (size_t)tree->n_v;
     bough_loops *l = bough_arena_take(arena, sizeof *l);
-    if (l != NULL) {
-        l->row = bough_arena_take(arena, m * sizeof *l->row);
-        l->response = bough_arena_doubles(arena, m * n);
-        l->matrix = bough_arena_doubles(arena, m * m);
-        l->value = bough_arena_doubles(arena, m);
-        l->scale = bough_arena_doubles(arena, m);
-        l->work = bough_arena_doubles(arena, 8 * m);
-        l->multiplier = bough_arena_doubles(arena, m);
-        l->correction = bough_arena_doubles(arena, n);
-        l->speed = bough_arena_doubles(arena, n);
-    }
-    *out = l;
-    if (!bough_arena_exhausted(arena)) return bough_ok();
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for %d closures", tree->n_closures);
+    l->row = bough_arena_take(arena, m * sizeof *l->row);
+    l->response = bough_arena_doubles(arena, m * n);
+    l->matrix = bough_arena_doubles(arena, m * m);
+    l->value = bough_arena_doubles(arena, m);
+    l->scale = bough_arena_doubles(arena, m);
+    l->work = bough_arena_doubles(arena, 8 * m);
+    l->multiplier = bough_arena_doubles(arena, m);
+    l->correction = bough_arena_doubles(arena, n);
+    l->speed = bough_arena_doubles(arena, n);
+    return l;
 }
 
 // -- rows ------------------------------------------------------------------------------------

@@ -19,7 +19,7 @@
 bough_status bough_loops_place(bough_arena *arena, const bough_tree_def *def, bough_tree *tree);
 
 // Scratch of the tree's closures; NULL without closures.
-bough_status bough_loops_create(bough_arena *arena, const bough_tree *tree, bough_loops **loops);
+bough_loops *bough_loops_create(bough_arena *arena, const bough_tree *tree);
 
 // acceleration v̇ (n_v) that makes the residual zero with all closures closed; without closures
 // bough_tree_free_dynamics. False when a joint moves no inertia. Leaves the links' accelerations, the

@@ -124,7 +124,6 @@ bough_status bough_motion_create(bough_arena *arena, const bough_motion_def *def
     double *times = bough_arena_doubles(arena, room);
     double *piece = bough_arena_doubles(arena, 4 * room + 4);
     double *slope = bough_arena_doubles(arena, 2 * n);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     *m = (bough_motion){.n = def->n, .times = times, .piece = piece, .of_speed = def->speed};
     if (n == 0) {
         piece[def->speed ? 1 : 0] = def->from;

@@ -252,17 +252,14 @@ static void destroy(void *self) {
     pthread_mutex_destroy(&p->mutex);
 }
 
-bough_status bough_pool_create(bough_arena *arena, int threads, bough_pool **pool) {
-    *pool = NULL;
-    if (threads <= 1) return bough_ok();
+bough_pool *bough_pool_create(bough_arena *arena, int threads) {
+    if (threads <= 1) return NULL;
     bough_pool *p = bough_arena_take(arena, sizeof *p);
-    if (!p) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     p->n_asked = p->n_thread = threads;
     p->crowded = threads > omp_get_num_procs();
     pthread_mutex_init(&p->mutex, NULL);
     pthread_cond_init(&p->idle.woken, NULL);
     pthread_cond_init(&p->waiting.woken, NULL);
     bough_arena_on_destroy(arena, destroy, p);
-    *pool = p;
-    return bough_ok();
+    return p;
 }

@@ -28,7 +28,7 @@ int bough_pool_default(int otherwise);
 
 // A pool for regions of so many threads. For one thread it is NULL, which all functions below accept: the
 // tasks of a list are then done one after the other, without memory or cost.
-bough_status bough_pool_create(bough_arena *arena, int threads, bough_pool **pool);
+bough_pool *bough_pool_create(bough_arena *arena, int threads);
 
 // The caller included: as asked for, and after a region as many as OpenMP has given it, for instance
 // one inside a parallel region of the application.

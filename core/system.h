@@ -35,8 +35,8 @@ typedef struct bough_system_ops {
     void (*input_columns)(void *self, double t, const double *state, const double *input,
                           double *column);
 
-    // Memory for one linearisation and its factors in the arena; NULL when it is exhausted. It belongs
-    // to the caller: no other call changes it.
+    // Memory for one linearisation and its factors in the arena. It belongs to the caller: no
+    // other call changes it.
     void *(*factors)(void *self, bough_arena *arena);
 
     // Linearises f about (t, state, input). False when the tangents are not finite.

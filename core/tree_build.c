@@ -129,32 +129,29 @@ static void set_initial(bough_tree *tree, const bough_tree_def *def) {
 }
 
 // Copies a table's times and values (n each).
-static bool take_table(bough_arena *arena, int n, const double **times, const double **values) {
+static void take_table(bough_arena *arena, int n, const double **times, const double **values) {
+    if (n == 0) return;
     size_t size = (size_t)n * sizeof(double);
-    double *copy = n == 0 ? NULL : bough_arena_doubles(arena, 2 * (size_t)n);
-    if (n == 0 || copy == NULL) return n == 0;
+    double *copy = bough_arena_doubles(arena, 2 * (size_t)n);
     memcpy(copy, *times, size);
     memcpy(copy + n, *values, size);
     *times = copy;
     *values = copy + n;
-    return true;
 }
 
-static bool take_tables(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
-    bool taken = true;
+static void take_tables(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     for (int k = 0; k < def->n_loads; k++) {
         bough_joint_load_def *load = &tree->loads[k];
-        taken = take_table(arena, load->n, &load->times, &load->values) && taken;
+        take_table(arena, load->n, &load->times, &load->values);
     }
     for (int k = 0; k < def->n_applied; k++) {
         bough_applied_def *a = &tree->applied[k];
         *a = def->applied[k];
-        taken = take_table(arena, a->n, &a->times, &a->values) && taken;
+        take_table(arena, a->n, &a->times, &a->values);
     }
-    return taken;
 }
 
-static bool take_model(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+static void take_model(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     tree->gravity = def->gravity;
     tree->n_bodies = def->n_bodies;
     tree->n_markers = def->n_markers;
@@ -177,10 +174,9 @@ static bool take_model(bough_arena *arena, const bough_tree_def *def, bough_tree
     tree->applied = bough_arena_take(arena, (size_t)def->n_applied * sizeof(bough_applied_def));
     tree->initial = bough_arena_doubles(arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) *
                                                    (size_t)def->n_bodies);
-    return !bough_arena_exhausted(arena);
 }
 
-static bool take_names(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+static void take_names(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     for (int b = 0; b < def->n_bodies; b++) {
         tree->bodies[b].name = bough_arena_string(arena, def->bodies[b].name);
     }
@@ -193,16 +189,13 @@ static bool take_names(bough_arena *arena, const bough_tree_def *def, bough_tree
     for (int e = 0; e < def->n_ends; e++) {
         tree->ends[e].name = bough_arena_string(arena, def->ends[e].name);
     }
-    return !bough_arena_exhausted(arena);
 }
 
 // A joint that moves no inertia has no acceleration; loops must close.
 static bough_status check_dynamics(bough_arena *arena, const bough_tree_def *def,
                                    bough_tree *tree) {
-    bough_tree_data *data;
-    bough_status status = bough_tree_data_create(arena, tree, &data);
+    bough_tree_data *data = bough_tree_data_create(arena, tree);
     double *acceleration = bough_arena_doubles(arena, (size_t)tree->n_v);
-    if (!bough_is_ok(&status) || bough_arena_exhausted(arena)) return status;
     bough_tree_kinematics(tree, tree->initial, data);
     if (bough_tree_free_dynamics(tree, data, 0, NULL, acceleration)) {
         return bough_loops_assemble(tree, data);
@@ -219,13 +212,11 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     if (!bough_is_ok(&status)) return status;
     size_t n = (size_t)def->n_bodies;
     int *scratch = bough_arena_take(arena, (3 * n + 1) * sizeof *scratch), *order = scratch;
-    if (scratch == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory to build the tree");
     status = bough_tree_order(def, scratch + n, order);
     if (!bough_is_ok(&status)) return status;
     bough_tree *tree = bough_arena_take(arena, sizeof *tree);
-    if (tree == NULL || !take_model(arena, def, tree) || !take_names(arena, def, tree)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for a tree of %d bodies", def->n_bodies);
-    }
+    take_model(arena, def, tree);
+    take_names(arena, def, tree);
     for (int k = 0; k < def->n_bodies; k++)
         place_body(tree, &def->bodies[order[k]], order[k]);
     place_attachments(tree, def);
@@ -233,9 +224,7 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
         tree->springs[k] = def->springs[k];
     for (int k = 0; k < def->n_bushings; k++)
         tree->bushings[k] = def->bushings[k];
-    if (!take_tables(arena, def, tree)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tables of loads");
-    }
+    take_tables(arena, def, tree);
     status = create_motions(arena, def, tree);
     if (!bough_is_ok(&status)) return status;
     set_initial(tree, def);
@@ -244,29 +233,25 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     return bough_is_ok(&status) ? check_dynamics(arena, def, tree) : status;
 }
 
-bough_status bough_tree_data_create(bough_arena *arena, const bough_tree *tree,
-                                    bough_tree_data **out) {
+bough_tree_data *bough_tree_data_create(bough_arena *arena, const bough_tree *tree) {
     size_t n = (size_t)tree->n_links;
     bough_tree_data *d = bough_arena_take(arena, sizeof *d);
-    if (d != NULL) {
-        d->relative = bough_arena_take(arena, n * sizeof *d->relative);
-        d->pose = bough_arena_take(arena, n * sizeof *d->pose);
-        d->joint_twist = bough_arena_take(arena, n * sizeof *d->joint_twist);
-        d->twist = bough_arena_take(arena, n * sizeof *d->twist);
-        d->gravity = bough_arena_take(arena, n * sizeof *d->gravity);
-        d->acceleration = bough_arena_take(arena, n * sizeof *d->acceleration);
-        d->gravity_rate = bough_arena_take(arena, n * sizeof *d->gravity_rate);
-        d->wrench = bough_arena_take(arena, n * sizeof *d->wrench);
-        d->composite = bough_arena_take(arena, n * sizeof *d->composite);
-        d->articulated = bough_arena_doubles(arena, 36 * n);
-        d->joint_gain = bough_arena_doubles(arena, 36 * n);
-        d->joint_factor = bough_arena_doubles(arena, 36 * n);
-        d->force = bough_arena_doubles(arena, (size_t)tree->n_v);
-        d->drive = bough_arena_doubles(arena, (size_t)tree->n_v);
-        d->passive = bough_arena_doubles(arena, (size_t)tree->n_v);
-    }
-    *out = d;
-    if (!bough_arena_exhausted(arena)) return bough_loops_create(arena, tree, &d->loops);
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for a tree of %d bodies", tree->n_bodies);
+    d->relative = bough_arena_take(arena, n * sizeof *d->relative);
+    d->pose = bough_arena_take(arena, n * sizeof *d->pose);
+    d->joint_twist = bough_arena_take(arena, n * sizeof *d->joint_twist);
+    d->twist = bough_arena_take(arena, n * sizeof *d->twist);
+    d->gravity = bough_arena_take(arena, n * sizeof *d->gravity);
+    d->acceleration = bough_arena_take(arena, n * sizeof *d->acceleration);
+    d->gravity_rate = bough_arena_take(arena, n * sizeof *d->gravity_rate);
+    d->wrench = bough_arena_take(arena, n * sizeof *d->wrench);
+    d->composite = bough_arena_take(arena, n * sizeof *d->composite);
+    d->articulated = bough_arena_doubles(arena, 36 * n);
+    d->joint_gain = bough_arena_doubles(arena, 36 * n);
+    d->joint_factor = bough_arena_doubles(arena, 36 * n);
+    d->force = bough_arena_doubles(arena, (size_t)tree->n_v);
+    d->drive = bough_arena_doubles(arena, (size_t)tree->n_v);
+    d->passive = bough_arena_doubles(arena, (size_t)tree->n_v);
+    d->loops = bough_loops_create(arena, tree);
+    return d;
 }
 

@@ -9,7 +9,6 @@
 bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bough_tree **tree);
 
 // Data for evaluations of the tree; as many as there are threads or users.
-bough_status bough_tree_data_create(bough_arena *arena, const bough_tree *tree,
-                                    bough_tree_data **data);
+bough_tree_data *bough_tree_data_create(bough_arena *arena, const bough_tree *tree);
 
 #endif

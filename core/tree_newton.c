@@ -379,11 +379,9 @@ void bough_tree_newton_solve(bough_tree_newton *w, const double *a, double *x) {
     store_solution(w, x);
 }
 
-bough_status bough_tree_newton_create(bough_arena *arena, const bough_tree *tree,
-                                      bough_tree_newton **out) {
+bough_tree_newton *bough_tree_newton_create(bough_arena *arena, const bough_tree *tree) {
     size_t n = (size_t)(tree->n_q + tree->n_v), elements = (size_t)bough_tree_n_elements(tree);
     bough_tree_newton *w = bough_arena_take(arena, sizeof *w);
-    if (w == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's Newton matrix");
     w->tree = tree;
     w->node = bough_arena_take(arena, (size_t)tree->n_links * sizeof *w->node);
     w->state = bough_arena_doubles(arena, n);
@@ -391,12 +389,10 @@ bough_status bough_tree_newton_create(bough_arena *arena, const bough_tree *tree
     w->keep = bough_arena_doubles(arena, n);
     w->ends = bough_arena_take(arena, 2 * elements * sizeof *w->ends);
     w->block = bough_arena_doubles(arena, BOUGH_NEWTON_BLOCK * elements);
-    if (!bough_arena_exhausted(arena)) bough_newton_list_ends(w);
+    bough_newton_list_ends(w);
     size_t m = (size_t)w->n_rows;
     w->matrix = bough_arena_doubles(arena, m * m);
     w->pivot = bough_arena_take(arena, m * sizeof(int));
     w->coupling = bough_arena_doubles(arena, m);
-    *out = w;
-    if (!bough_arena_exhausted(arena)) return bough_ok();
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's Newton matrix");
+    return w;
 }

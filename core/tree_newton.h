@@ -15,8 +15,7 @@
 typedef struct bough_tree_newton bough_tree_newton;
 
 // For a tree without closures; all memory is taken here.
-bough_status bough_tree_newton_create(bough_arena *arena, const bough_tree *tree,
-                                      bough_tree_newton **newton);
+bough_tree_newton *bough_tree_newton_create(bough_arena *arena, const bough_tree *tree);
 
 // Linearises at (t, state, v̇ = acceleration, input) and factors
 //     c δq − δ(N(q) v) = r_q ,   δ(M v̇ + h − τ) with δv̇ = c δv + a = r_v ;

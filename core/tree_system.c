@@ -220,18 +220,17 @@ static void *factors(void *self, bough_arena *arena) {
     const tree_system *s = self;
     size_t n = (size_t)s->n;
     tree_factors *k = bough_arena_take(arena, sizeof *k);
-    if (k == NULL) return NULL;
     k->state = bough_arena_doubles(arena, n);
     k->input = bough_arena_doubles(arena, (size_t)bough_tree_n_inputs(s->tree));
     k->rate = bough_arena_doubles(arena, n);
     if (s->tree->n_closures == 0) {
-        bough_status status = bough_tree_newton_create(arena, s->tree, &k->newton);
-        return bough_is_ok(&status) ? k : NULL;
+        k->newton = bough_tree_newton_create(arena, s->tree);
+        return k;
     }
     k->jacobian = bough_arena_doubles(arena, n * n);
     k->matrix = bough_arena_doubles(arena, n * n);
     k->pivot = bough_arena_take(arena, n * sizeof(int));
-    return bough_arena_exhausted(arena) ? NULL : k;
+    return k;
 }
 
 static bool linearise(void *self, double t, const double *state, const double *input,
@@ -332,38 +331,32 @@ static const bough_system_ops operations = {
 
 // -- construction ----------------------------------------------------------------------------
 
-static bool take(bough_arena *arena, tree_system *s) {
+static void take(bough_arena *arena, tree_system *s) {
     size_t n = (size_t)s->n;
     double **vectors[] = {&s->initial, &s->scale, &s->placed, &s->y, &s->r, &s->plus, &s->minus};
     for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
         *vectors[i] = bough_arena_doubles(arena, n);
     }
-    return !bough_arena_exhausted(arena);
 }
 
-bough_status bough_tree_system_create(bough_arena *arena, bough_tree *tree, const char *name,
-                                      bough_system *system) {
+bough_system bough_tree_system_create(bough_arena *arena, bough_tree *tree, const char *name) {
     tree_system *s = bough_arena_take(arena, sizeof *s);
-    if (s == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's system");
     s->tree = tree;
     s->n = tree->n_q + tree->n_v;
     for (int i = 0; i < tree->n_links; i++)
         s->prescribed = s->prescribed || tree->links[i].motion != NULL;
-    bough_status status = bough_tree_data_create(arena, tree, &s->data);
-    if (!bough_is_ok(&status)) return status;
-    name = bough_arena_string(arena, name);
-    if (!take(arena, s)) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the tree's system");
+    s->data = bough_tree_data_create(arena, tree);
+    take(arena, s);
     for (int i = 0; i < s->n; i++)
         s->scale[i] = 1;
     memcpy(s->initial, tree->initial, (size_t)s->n * sizeof(double));
-    *system = (bough_system){.name = name,
-                             .kind = "tree",
-                             .n_state = s->n,
-                             .n_input = bough_tree_n_inputs(tree),
-                             .n_output = bough_tree_n_outputs(tree),
-                             .scale = s->scale,
-                             .initial = s->initial,
-                             .ops = &operations,
-                             .self = s};
-    return bough_ok();
+    return (bough_system){.name = bough_arena_string(arena, name),
+                          .kind = "tree",
+                          .n_state = s->n,
+                          .n_input = bough_tree_n_inputs(tree),
+                          .n_output = bough_tree_n_outputs(tree),
+                          .scale = s->scale,
+                          .initial = s->initial,
+                          .ops = &operations,
+                          .self = s};
 }

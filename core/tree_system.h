@@ -12,7 +12,6 @@
 
 // A system in the arena; `name` is copied. Tolerance per state: rtol × (1 rad, 1 m, 1 of a quaternion,
 // 1 rad/s, 1 m/s).
-bough_status bough_tree_system_create(bough_arena *arena, bough_tree *tree, const char *name,
-                                      bough_system *system);
+bough_system bough_tree_system_create(bough_arena *arena, bough_tree *tree, const char *name);
 
 #endif

@@ -55,7 +55,6 @@ bough_status bough_accelerator_create(bough_arena *arena, const bough_accelerato
     bough_status status = check(def);
     if (!bough_is_ok(&status)) return status;
     bough_accelerator *a = bough_arena_take(arena, sizeof *a);
-    if (!a) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     size_t n = (size_t)def->n;
     a->def = *def;
     a->residual = bough_arena_doubles(arena, n);
@@ -70,7 +69,6 @@ bough_status bough_accelerator_create(bough_arena *arena, const bough_accelerato
         a->w[k] = bough_arena_doubles(arena, n);
         a->q[k] = bough_arena_doubles(arena, n);
     }
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_accelerator_start(a);
     *accelerator = a;
     return bough_ok();

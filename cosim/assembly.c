@@ -14,7 +14,6 @@ static void take_members(bough_assembly *a, bough_arena *arena, const bough_asse
     a->output_offset = bough_arena_take(arena, (n + 1) * sizeof(int));
     a->feedthrough = bough_arena_take(arena, n * sizeof(bool));
     a->order = bough_arena_take(arena, n * sizeof(int));
-    if (bough_arena_exhausted(arena)) return;
     for (int i = 0; i < def->n_member; i++) {
         a->member[i] = def->member[i].member;
         const bough_system *s = &a->member[i]->system;
@@ -154,9 +153,7 @@ static bough_status order_outputs(bough_assembly *a, bool *resolved) {
 bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *def,
                                   bough_assembly **assembly) {
     bough_assembly *a = bough_arena_take(arena, sizeof *a);
-    if (!a) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     take_members(a, arena, def);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     size_t n_input = (size_t)a->n_input;
     a->source = bough_arena_take(arena, n_input * sizeof(int));
     a->source_member = bough_arena_take(arena, n_input * sizeof(int));
@@ -166,7 +163,6 @@ bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *
     bool *resolved = bough_arena_take(arena, (size_t)a->n_member * sizeof(bool));
     double *input = bough_arena_doubles(arena, 2 * n_input);
     double *output = bough_arena_doubles(arena, (size_t)a->n_output);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
 
     bough_status status = connect_all(a, def);
     if (!bough_is_ok(&status)) return status;

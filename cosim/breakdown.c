@@ -14,16 +14,12 @@ struct bough_breakdown {
 
 enum { ADVICE = 240 };
 
-bough_status bough_breakdown_create(bough_arena *arena, const bough_assembly *assembly,
-                                    bough_breakdown **breakdown) {
+bough_breakdown *bough_breakdown_create(bough_arena *arena, const bough_assembly *assembly) {
     bough_breakdown *b = bough_arena_take(arena, sizeof *b);
-    if (!b) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     b->assembly = assembly;
     b->state = bough_arena_doubles(arena, (size_t)assembly->n_state);
     b->input = bough_arena_doubles(arena, (size_t)assembly->n_input);
-    *breakdown = b;
-    return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
-                                        : bough_ok();
+    return b;
 }
 
 void bough_breakdown_keep(bough_breakdown *b, const bough_coupling *c) {

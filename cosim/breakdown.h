@@ -9,8 +9,7 @@
 typedef struct bough_breakdown bough_breakdown;
 
 // Takes memory for all states.
-bough_status bough_breakdown_create(bough_arena *arena, const bough_assembly *assembly,
-                                    bough_breakdown **breakdown);
+bough_breakdown *bough_breakdown_create(bough_arena *arena, const bough_assembly *assembly);
 
 // Keeps the members' states and inputs; a macro step begins.
 void bough_breakdown_keep(bough_breakdown *b, const bough_coupling *c);

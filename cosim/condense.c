@@ -60,7 +60,7 @@ static void choose_directions(bough_condensed *k, int member) {
     w->n = leader->n;
 }
 
-static bool take_part(bough_condensed *k, bough_arena *arena, int member) {
+static void take_part(bough_condensed *k, bough_arena *arena, int member) {
     const bough_system *s = system_of(k, member);
     bough_condensed_member *w = &k->part[member];
     size_t n = (size_t)w->n, n_state = (size_t)s->n_state, n_input = (size_t)s->n_input;
@@ -68,29 +68,24 @@ static bool take_part(bough_condensed *k, bough_arena *arena, int member) {
     w->output_change = bough_arena_doubles(arena, n * (size_t)s->n_output);
     if (w->by_state) w->inverse = bough_arena_doubles(arena, n_state * n_state);
     w->factors = s->ops->factors(s->self, arena);
-    if (w->is_leader) return w->factors != NULL;
+    if (w->is_leader) return;
     w->direction = bough_arena_doubles(arena, n * n_input);
     w->state_change = bough_arena_doubles(arena, n * n_state);
-    return w->factors != NULL;
 }
 
-bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *assembly,
-                                    bough_condensed **condensed) {
+bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly *assembly) {
     size_t n_member = (size_t)assembly->n_member;
     bough_condensed *k = bough_arena_take(arena, sizeof *k);
-    if (!k) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     k->assembly = assembly;
     k->part = bough_arena_take(arena, n_member * sizeof *k->part);
     k->leader_input = bough_arena_take(arena, (size_t)assembly->n_input * sizeof(int));
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     choose_leaders(k);
     for (int i = 0; i < assembly->n_member; i++)
         choose_coordinates(k, i);
     for (int i = 0; i < assembly->n_member; i++)
         choose_directions(k, i);
-    bool taken = true;
     for (int i = 0; i < assembly->n_member; i++)
-        taken = take_part(k, arena, i) && taken;
+        take_part(k, arena, i);
     size_t n = (size_t)k->n;
     k->gain = bough_arena_doubles(arena, (size_t)k->n_leader_input * n);
     k->loop = bough_arena_doubles(arena, n * n);
@@ -102,9 +97,7 @@ bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *as
     k->right = bough_arena_doubles(arena, (size_t)k->n_leader_input);
     k->unit = bough_arena_doubles(arena, (size_t)assembly->n_input);
     k->work = bough_arena_doubles(arena, (size_t)assembly->n_state);
-    *condensed = k;
-    taken = taken && !bough_arena_exhausted(arena);
-    return taken ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    return k;
 }
 
 // -- members --------------------------------------------------------------------------------------

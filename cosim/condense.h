@@ -47,8 +47,7 @@ typedef struct bough_condensed {
 } bough_condensed;
 
 // Leaders are the members of stage 0, and others that are connected with one that is not of it.
-bough_status bough_condensed_create(bough_arena *arena, const bough_assembly *assembly,
-                                    bough_condensed **condensed);
+bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly *assembly);
 
 // The point at which a member is linearised.
 typedef struct bough_operating_point {

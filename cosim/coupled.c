@@ -318,27 +318,24 @@ void bough_coupled_solve(bough_coupled *coupled, double *x) {
 
 // -- memory ---------------------------------------------------------------------------------------
 
-static bool take(bough_coupled *coupled, bough_arena *arena) {
+static void take(bough_coupled *coupled, bough_arena *arena) {
     const bough_assembly *a = coupled->assembly;
     size_t n_input = (size_t)a->n_input, n_output = (size_t)a->n_output;
     coupled->status = bough_arena_take(arena, (size_t)a->n_member * sizeof *coupled->status);
     coupled->order = bough_arena_take(arena, (size_t)a->n_member * sizeof *coupled->order);
     coupled->input = bough_arena_doubles(arena, n_input);
     coupled->output = bough_arena_doubles(arena, n_output);
-    if (bough_arena_exhausted(arena)) return false;
     for (int i = 0; i < a->n_member; i++)
         coupled->order[i] = i;
-    return true;
 }
 
-static bool take_solution(bough_coupled *coupled, bough_arena *arena) {
+static void take_solution(bough_coupled *coupled, bough_arena *arena) {
     const bough_assembly *a = coupled->assembly;
     coupled->setup_state = bough_arena_doubles(arena, (size_t)a->n_state);
     coupled->setup_input = bough_arena_doubles(arena, (size_t)a->n_input);
     coupled->change = bough_arena_doubles(arena, (size_t)a->n_input);
     coupled->led = bough_arena_doubles(arena, (size_t)a->n_input);
     coupled->output_change = bough_arena_doubles(arena, (size_t)a->n_output);
-    return !bough_arena_exhausted(arena);
 }
 
 static void order_members(bough_coupled *coupled) {
@@ -351,30 +348,25 @@ static void order_members(bough_coupled *coupled) {
     }
 }
 
-bough_status bough_coupled_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
-                                             bough_pool *pool, bough_coupled **coupled) {
+bough_coupled *bough_coupled_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
+                                             bough_pool *pool) {
     bough_coupled *a = bough_arena_take(arena, sizeof *a);
-    if (!a) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     a->assembly = assembly;
     a->pool = pool;
-    if (!take(a, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    *coupled = a;
-    return bough_ok();
+    take(a, arena);
+    return a;
 }
 
-bough_status bough_coupled_create(bough_arena *arena, const bough_assembly *assembly,
-                                  bough_pool *pool, bough_coupled **coupled) {
-    bough_status status = bough_coupled_create_evaluation(arena, assembly, pool, coupled);
-    if (!bough_is_ok(&status)) return status;
-    bough_coupled *a = *coupled;
-    if (!take_solution(a, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    status = bough_condensed_create(arena, assembly, &a->own);
-    a->interface = a->own;
-    if (bough_is_ok(&status)) order_members(a);
-    return status;
+bough_coupled *bough_coupled_create(bough_arena *arena, const bough_assembly *assembly,
+                                  bough_pool *pool) {
+    bough_coupled *a = bough_coupled_create_evaluation(arena, assembly, pool);
+    take_solution(a, arena);
+    a->interface = a->own = bough_condensed_create(arena, assembly);
+    order_members(a);
+    return a;
 }
 
-bough_status bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n,
+void bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n,
                                 const int *held) {
     size_t count = (size_t)n;
     coupled->n_held = n;
@@ -383,6 +375,4 @@ bough_status bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int 
     coupled->multiplier = bough_arena_doubles(arena, count * count);
     coupled->share = bough_arena_doubles(arena, count);
     coupled->held_pivot = bough_arena_take(arena, (count + 1) * sizeof(int));
-    return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
-                                        : bough_ok();
 }

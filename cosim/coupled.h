@@ -49,20 +49,20 @@ typedef struct bough_coupled {
 } bough_coupled;
 
 // Builds the memory in the arena; members are shared out by the pool.
-bough_status bough_coupled_create(bough_arena *arena, const bough_assembly *assembly,
-                                  bough_pool *pool, bough_coupled **coupled);
+bough_coupled *bough_coupled_create(bough_arena *arena, const bough_assembly *assembly,
+                                  bough_pool *pool);
 
 // The same without factors: for bough_coupled_inputs and the rates only.
-bough_status bough_coupled_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
-                                             bough_pool *pool, bough_coupled **coupled);
+bough_coupled *bough_coupled_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
+                                             bough_pool *pool);
 
 // The assembly as a system without ports, from the members' current states on; `name` is borrowed. Its
 // self is a bough_coupled for evaluations. All members' systems are in use while it is asked.
-bough_status bough_coupled_system(bough_arena *arena, const bough_assembly *assembly,
-                                  bough_pool *pool, const char *name, bough_system *system);
+bough_system bough_coupled_system(bough_arena *arena, const bough_assembly *assembly,
+                                  bough_pool *pool, const char *name);
 
 // Solutions keep these states from now on (n, borrowed): x is 0 there, by constraint forces.
-bough_status bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n, const int *held);
+void bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n, const int *held);
 
 // Outputs and inputs at a state (n_state) into coupled->output and coupled->input.
 void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state);

@@ -34,9 +34,7 @@ static void input_columns(void *self, double t, const double *state, const doubl
 
 static void *factors(void *self, bough_arena *arena) {
     const bough_coupled *coupled = self;
-    bough_coupled *own = NULL;
-    bough_status status = bough_coupled_create(arena, coupled->assembly, coupled->pool, &own);
-    return bough_is_ok(&status) ? own : NULL;
+    return bough_coupled_create(arena, coupled->assembly, coupled->pool);
 }
 
 static bool linearise(void *self, double t, const double *state, const double *input,
@@ -102,25 +100,21 @@ static const bough_system_ops operations = {
     .hold_loads = hold_loads,
 };
 
-bough_status bough_coupled_system(bough_arena *arena, const bough_assembly *a, bough_pool *pool,
-                                  const char *name, bough_system *system) {
-    bough_coupled *evaluation = NULL;
-    bough_status status = bough_coupled_create_evaluation(arena, a, pool, &evaluation);
+bough_system bough_coupled_system(bough_arena *arena, const bough_assembly *a, bough_pool *pool,
+                                  const char *name) {
+    bough_coupled *evaluation = bough_coupled_create_evaluation(arena, a, pool);
     double *scale = bough_arena_doubles(arena, (size_t)a->n_state);
     double *initial = bough_arena_doubles(arena, (size_t)a->n_state);
-    if (!bough_is_ok(&status)) return status;
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {
         const bough_system *s = &a->member[i]->system;
         memcpy(scale + a->state_offset[i], s->scale, (size_t)s->n_state * sizeof *scale);
     }
     bough_assembly_states(a, initial);
-    *system = (bough_system){.name = name,
-                             .kind = "coupled",
-                             .n_state = a->n_state,
-                             .scale = scale,
-                             .initial = initial,
-                             .ops = &operations,
-                             .self = evaluation};
-    return status;
+    return (bough_system){.name = name,
+                          .kind = "coupled",
+                          .n_state = a->n_state,
+                          .scale = scale,
+                          .initial = initial,
+                          .ops = &operations,
+                          .self = evaluation};
 }

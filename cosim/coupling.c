@@ -6,7 +6,7 @@
 #include <assert.h>
 #include <string.h>
 
-static bool take(bough_coupling *c, bough_arena *arena) {
+static void take(bough_coupling *c, bough_arena *arena) {
     const bough_assembly *a = c->assembly;
     size_t n_input = (size_t)a->n_input, n_output = (size_t)a->n_output;
     size_t n_member = (size_t)a->n_member;
@@ -29,28 +29,24 @@ static bool take(bough_coupling *c, bough_arena *arena) {
         c->signal[i].n = a->member[i]->system.n_input;
         c->signal[i].coefficient = bough_arena_doubles(arena, 4 * (size_t)c->signal[i].n);
     }
-    return !bough_arena_exhausted(arena);
 }
 
-bough_status bough_coupling_create(bough_arena *arena, const bough_assembly *assembly,
-                                   const bough_scheme_options *options, bough_pool *pool,
-                                   bough_coupling **coupling) {
+bough_coupling *bough_coupling_create(bough_arena *arena, const bough_assembly *assembly,
+                                   const bough_scheme_options *options, bough_pool *pool) {
     bough_coupling *c = bough_arena_take(arena, sizeof *c);
-    if (!c) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     c->assembly = assembly;
     c->options = *options;
     c->interface_ratio = (double)NAN;
     c->pool = pool;
     c->failed_member = -1;
-    if (!take(c, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    take(c, arena);
     c->t0 = c->t1 = assembly->member[0]->time;
     bough_assembly_outputs(assembly, c->t0, c->output, c->input);
     memcpy(c->applied, c->input, (size_t)assembly->n_input * sizeof(double));
     memcpy(c->past[0], c->input, (size_t)assembly->n_input * sizeof(double));
     c->past_time[0] = c->t0;
     c->n_past = 1;
-    *coupling = c;
-    return bough_ok();
+    return c;
 }
 
 static bool in_stage(const bough_coupling *c, int stage, int member) {

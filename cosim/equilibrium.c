@@ -25,14 +25,13 @@ typedef struct search {
     double gamma;
 } search;
 
-static bool take(search *s, bough_arena *arena) {
+static void take(search *s, bough_arena *arena) {
     size_t n = (size_t)s->n;
     s->scale = bough_arena_doubles(arena, n);
     s->rate = bough_arena_doubles(arena, n);
     s->first = bough_arena_doubles(arena, n);
     s->second = bough_arena_doubles(arena, n);
     s->trial = bough_arena_doubles(arena, n);
-    return !bough_arena_exhausted(arena);
 }
 
 static bool find_rate(search *s, const double *state) {
@@ -85,7 +84,7 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_coupled *coupled,
     const bough_assembly *a = coupled->assembly;
     search s = {.coupled = coupled, .def = def, .n = a->n_state, .gamma = def->step};
     *report = (bough_equilibrium_report){0};
-    if (!take(&s, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    take(&s, arena);
     for (int i = 0; i < a->n_member; i++) {
         size_t size = (size_t)a->member[i]->system.n_state * sizeof(double);
         memcpy(s.scale + a->state_offset[i], a->member[i]->system.scale, size);

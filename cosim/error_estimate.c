@@ -59,7 +59,7 @@ struct bough_error_estimate {
 
 // -- building -------------------------------------------------------------------------------------
 
-static bool take(bough_error_estimate *e, bough_arena *arena) {
+static void take(bough_error_estimate *e, bough_arena *arena) {
     const bough_assembly *a = e->assembly;
     size_t n = (size_t)a->n_state, n_input = (size_t)a->n_input;
     e->defect = bough_arena_doubles(arena, BATCH * 4 * n_input);
@@ -76,19 +76,16 @@ static bool take(bough_error_estimate *e, bough_arena *arena) {
     e->outside = bough_arena_doubles(arena, n_input);
     e->seen = bough_arena_doubles(arena, n_input);
     e->mean = bough_arena_doubles(arena, n_input);
-    return !bough_arena_exhausted(arena);
 }
 
-bough_status bough_error_estimate_create(bough_arena *arena, const bough_coupling *c,
-                                         bough_error_estimate **estimate) {
+bough_error_estimate *bough_error_estimate_create(bough_arena *arena, const bough_coupling *c) {
     bough_error_estimate *e = bough_arena_take(arena, sizeof *e);
-    if (!e) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     e->assembly = c->assembly;
-    if (!take(e, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    take(e, arena);
     e->n_point = 1;
-    *estimate = e;
     e->whole = c->whole;
-    return bough_coupled_create(arena, c->assembly, c->pool, &e->coupled);
+    e->coupled = bough_coupled_create(arena, c->assembly, c->pool);
+    return e;
 }
 
 // -- defects --------------------------------------------------------------------------------------

@@ -23,8 +23,7 @@ enum { BOUGH_ERROR_SAFETY = 2 };
 
 typedef struct bough_error_estimate bough_error_estimate;
 
-bough_status bough_error_estimate_create(bough_arena *arena, const bough_coupling *c,
-                                         bough_error_estimate **estimate);
+bough_error_estimate *bough_error_estimate_create(bough_arena *arena, const bough_coupling *c);
 
 // The worst defect of a step just exchanged but not yet taken, at its middle and its end: of a vector
 // of up to three inputs relative to its largest norm so far [1].

@@ -15,20 +15,15 @@ struct bough_interface_newton {
     int age;             // steps since
 };
 
-bough_status bough_interface_newton_create(bough_arena *arena, const bough_coupling *c, int n_span,
-                                           bough_interface_newton **newton) {
+bough_interface_newton *bough_interface_newton_create(bough_arena *arena, const bough_coupling *c, int n_span) {
     bough_interface_newton *n = bough_arena_take(arena, sizeof *n);
-    if (!n) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     n->n_span = n_span;
     n->coupled = bough_arena_take(arena, (size_t)n_span * sizeof *n->coupled);
     n->state = bough_arena_doubles(arena, (size_t)c->assembly->n_state);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    *newton = n;
-    bough_status status = bough_ok();
-    for (int k = 0; k < n_span && bough_is_ok(&status); k++) {
-        status = bough_coupled_create(arena, c->assembly, c->pool, &n->coupled[k]);
+    for (int k = 0; k < n_span; k++) {
+        n->coupled[k] = bough_coupled_create(arena, c->assembly, c->pool);
     }
-    return status;
+    return n;
 }
 
 bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coupling *c,

@@ -162,13 +162,12 @@ static const bough_integrator_ops sdirk = {
 
 static const bough_system_ops operations = {BOUGH_SYSTEM_REQUIRED};
 
-bough_status bough_linear_member_create(bough_arena *arena, const bough_member *real,
+void bough_linear_member_create(bough_arena *arena, const bough_member *real,
                                         const double *input, double sub_step,
                                         bough_member *linear) {
     const bough_system *r = &real->system;
     size_t n = (size_t)r->n_state, n_input = (size_t)r->n_input;
     linear_member *s = bough_arena_take(arena, sizeof *s);
-    if (!s) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     *s = (linear_member){
         .real = r, .member = linear, .sub_step = sub_step, .time = real->time};
     s->at = bough_arena_doubles(arena, n);
@@ -186,11 +185,7 @@ bough_status bough_linear_member_create(bough_arena *arena, const bough_member *
                              .integrator = {.ops = &sdirk, .self = s}};
     linear->system.ops = &operations;
     linear->system.self = s;
-    if (s->own == NULL || bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
     memcpy(s->at, real->state, n * sizeof(double));
     memcpy(s->input_at, input, n_input * sizeof(double));
     r->ops->input_columns(r->self, real->time, s->at, s->input_at, s->column);
-    return bough_ok();
 }

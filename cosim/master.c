@@ -22,7 +22,6 @@ static bough_status copy_loads(bough_master *m, bough_arena *arena, const bough_
     m->load = bough_arena_take(arena, (size_t)def->n_load * sizeof *m->load);
     m->load_every = bough_arena_take(arena, (size_t)def->n_load * sizeof *m->load_every);
     m->event = bough_arena_doubles(arena, (size_t)def->n_event);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     m->n_load = def->n_load;
     for (int i = 0; i < def->n_load; i++) {
         m->load[i] = def->load[i];
@@ -86,7 +85,6 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     bough_status status = check(def);
     if (!bough_is_ok(&status)) return status;
     bough_master *m = bough_arena_take(arena, sizeof *m);
-    if (!m) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     m->macro_step = def->macro_step;
     m->duration = def->duration;
     m->at_event = true;
@@ -97,18 +95,17 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     status = bough_scheme_couple(arena, m->assembly, &def->scheme, def->pool, &m->coupling);
     if (!bough_is_ok(&status)) return status;
     const bough_scheme *scheme = m->coupling->scheme;
-    status = bough_monitor_create(arena, m->coupling, &m->monitor);
-    if (bough_is_ok(&status)) status = bough_breakdown_create(arena, m->assembly, &m->breakdown);
+    m->monitor = bough_monitor_create(arena, m->coupling);
+    if (bough_is_ok(&status)) m->breakdown = bough_breakdown_create(arena, m->assembly);
     m->error = def->error;
     m->lightly_damped = def->lightly_damped;
     bool controlled = def->control.tolerance > 0 && !scheme->one_system;
     if (bough_is_ok(&status) && controlled) {
-        status = bough_error_estimate_create(arena, m->coupling, &m->estimate);
+        m->estimate = bough_error_estimate_create(arena, m->coupling);
     }
     if (bough_is_ok(&status) && controlled) {
         int order = bough_scheme_defect_order(scheme, &def->scheme);
-        status = bough_step_control_create(arena, m->coupling, &def->control, m->macro_step, order,
-                                           &m->control);
+        m->control = bough_step_control_create(arena, m->coupling, &def->control, m->macro_step, order);
     }
     if (!bough_is_ok(&status)) return status;
     begin_loads(m, 0);

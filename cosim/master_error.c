@@ -85,7 +85,7 @@ bough_status bough_master_watch(bough_master *m, bough_arena *arena, bough_maste
     bool linearised = one_system ? m->error == BOUGH_ERROR_BY_LINEARISED_MEMBERS && can_linearise(m)
                                  : m->error != BOUGH_ERROR_NOT_TOLD;
     if (bough_is_ok(&status) && linearised && !m->estimate) {
-        status = bough_error_estimate_create(arena, m->coupling, &m->estimate);
+        m->estimate = bough_error_estimate_create(arena, m->coupling);
     }
     return status;
 }

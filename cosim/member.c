@@ -53,9 +53,6 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
                         .integrated = bough_arena_doubles(arena, n),
                         .input = bough_arena_doubles(arena, (size_t)system->n_input),
                         .factors = system->ops->factors(system->self, arena)};
-    if (m->factors == NULL || bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", system->name);
-    }
     bough_member_set(m, start, system->initial);
     if (n == 0) return bough_ok();
     bool again = system->ops->derivative_again != NULL;

@@ -91,21 +91,19 @@ static void apply(void *self, const double *z, double *image) {
     m->diverged = true;
 }
 
-static bool take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
+static void take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
     const bough_assembly *a = m->coupled->assembly;
     size_t n = (size_t)a->n_state, parts = (size_t)m->def->n_part;
     m->term = bough_arena_doubles(arena, n);
     m->turned = bough_arena_doubles(arena, n);
     m->rate = bough_arena_doubles(arena, parts * parts + 1);
     op->weight = bough_arena_doubles(arena, n);
-    if (bough_arena_exhausted(arena)) return false;
     for (int i = 0; i < a->n_member; i++) {
         for (int k = 0; k < a->member[i]->system.n_state; k++) {
             double scale = a->member[i]->system.scale[k];
             op->weight[a->state_offset[i] + k] = 1 / (scale * scale);
         }
     }
-    return true;
 }
 
 bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled,
@@ -118,7 +116,7 @@ bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled,
                                .gamma = 1 / def->point,
                                .self = &m,
                                .apply = apply};
-    if (!take(arena, &m, &op)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    take(arena, &m, &op);
     if (def->spin != 0) bough_modes_rate(def, m.rate);
     bough_status status = bough_coupled_setup(coupled, def->time, def->state, def->input, op.gamma);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);

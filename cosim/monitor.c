@@ -92,20 +92,16 @@ static void make_groups(bough_monitor *m, const bough_assembly *a) {
     }
 }
 
-bough_status bough_monitor_create(bough_arena *arena, const bough_coupling *coupling,
-                                  bough_monitor **monitor) {
+bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *coupling) {
     const bough_assembly *a = coupling->assembly;
     size_t n_input = (size_t)a->n_input;
     bough_monitor *m = bough_arena_take(arena, sizeof *m);
-    if (!m) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!a->opaque) bough_scheme_advise(coupling->scheme, m->advice);
     m->group = bough_arena_take(arena, n_input * sizeof *m->group);
     m->start = bough_arena_doubles(arena, n_input);
     m->account = bough_arena_take(arena, (size_t)a->n_interface * sizeof *m->account);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     make_groups(m, a);
-    *monitor = m;
-    return bough_ok();
+    return m;
 }
 
 // -- non-finite values ----------------------------------------------------------------------------

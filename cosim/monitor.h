@@ -16,8 +16,7 @@ typedef struct bough_coupling_report {
     double energy_exchanged; // Σ over interfaces ∫ |wrench · twist| dt [J]
 } bough_coupling_report;
 
-bough_status bough_monitor_create(bough_arena *arena, const bough_coupling *coupling,
-                                  bough_monitor **monitor);
+bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *coupling);
 
 // Switches the detection of growth, which is on by default; it is off where a second solution measures the
 // error.

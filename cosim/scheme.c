@@ -47,8 +47,7 @@ bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assem
     if (!scheme) {
         return bough_fail(BOUGH_INVALID, "unknown coupling scheme \"%s\"", options->name);
     }
-    bough_status status = bough_coupling_create(arena, assembly, options, pool, coupling);
-    if (!bough_is_ok(&status)) return status;
+    *coupling = bough_coupling_create(arena, assembly, options, pool);
     (*coupling)->scheme = scheme;
     return scheme->create ? scheme->create(*coupling, arena) : bough_ok();
 }

@@ -90,7 +90,7 @@ static void find_feedback(bough_iteration *it, const bough_coupling *c) {
     }
 }
 
-static bool take(bough_iteration *it, const bough_assembly *a, bough_arena *arena) {
+static void take(bough_iteration *it, const bough_assembly *a, bough_arena *arena) {
     size_t n = (size_t)a->n_input, n_node = (size_t)it->n_node;
     it->copy = bough_arena_take(arena, (size_t)a->n_member * sizeof *it->copy);
     it->input = bough_arena_take(arena, n * sizeof *it->input);
@@ -102,12 +102,11 @@ static bool take(bough_iteration *it, const bough_assembly *a, bough_arena *aren
     it->guess = bough_arena_doubles(arena, n_node * n);
     it->image = bough_arena_doubles(arena, n_node * n);
     it->change = bough_arena_doubles(arena, n);
-    for (int i = 0; i < a->n_member && it->copy; i++) {
+    for (int i = 0; i < a->n_member; i++) {
         bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
         bough_member_snapshot(a->member[i], &measure);
         it->copy[i] = bough_arena_take(arena, measure.used);
     }
-    return !bough_arena_exhausted(arena);
 }
 
 static void solve_newton(void *self, double *x);
@@ -124,22 +123,21 @@ static bough_status create_accelerator(bough_coupling *c, bough_iteration *it, b
     for (int k = 0; k < it->n_node; k++) {
         it->span[k] = it->n_node == 1 ? share[c->options.order] : it->node[k] / 2;
     }
-    return bough_interface_newton_create(arena, c, it->n_node, &it->newton);
+    it->newton = bough_interface_newton_create(arena, c, it->n_node);
+    return bough_ok();
 }
 
 bough_status bough_iteration_create(bough_coupling *c, bough_arena *arena) {
     bough_status status = check(&c->options);
     if (!bough_is_ok(&status)) return status;
     bough_iteration *it = bough_arena_take(arena, sizeof *it);
-    if (!it) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bool waveform = c->options.exchange == BOUGH_EXCHANGE_WAVEFORM;
     it->n_input = c->assembly->n_input;
     it->n_node = waveform ? MOST_NODES : 1;
     it->node = waveform ? lobatto : end_point;
-    bool taken = take(it, c->assembly, arena);
+    take(it, c->assembly, arena);
     it->obtained = c->end_output;
     if (waveform) it->obtained = bough_arena_doubles(arena, MOST_NODES * (size_t)c->assembly->n_output);
-    if (!taken || !it->obtained) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (waveform) {
         c->n_within = it->n_node;
         c->within_time = it->node;

@@ -10,11 +10,8 @@
 
 static bough_status create(bough_coupling *c, bough_arena *arena) {
     bough_member *whole = c->whole = bough_arena_take(arena, sizeof *whole);
-    if (whole == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    bough_system system;
-    bough_status status =
-        bough_coupled_system(arena, c->assembly, c->pool, "monolithic system", &system);
-    if (!bough_is_ok(&status)) return status;
+    bough_system system =
+        bough_coupled_system(arena, c->assembly, c->pool, "monolithic system");
     return bough_member_create(arena, &system, c->t0, &c->options.integrator, whole);
 }
 

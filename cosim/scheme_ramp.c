@@ -74,19 +74,18 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     bough_status status = check_shape(c);
     if (!bough_is_ok(&status)) return status;
     ramp *r = bough_arena_take(arena, sizeof *r);
-    if (!r) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     r->increment = bough_arena_doubles(arena, (size_t)a->n_state);
     r->base = bough_arena_doubles(arena, (size_t)a->n_output);
     r->output = bough_arena_doubles(arena, (size_t)a->n_output);
     r->change = bough_arena_doubles(arena, (size_t)a->n_input);
     r->input = bough_arena_doubles(arena, (size_t)a->n_input);
     c->deficit = bough_arena_doubles(arena, (size_t)a->n_input);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     r->damped = -HUGE_VAL;
     r->chosen = c->options.theta > 0;
     r->theta = r->final = r->chosen ? c->options.theta : 0.5;
     c->scheme_data = r;
-    return bough_condensed_create(arena, a, &r->interface);
+    r->interface = bough_condensed_create(arena, a);
+    return bough_ok();
 }
 
 // -- the θ-step of every member -------------------------------------------------------------------

@@ -28,29 +28,25 @@ struct bough_second_solution {
 
 // -- building -------------------------------------------------------------------------------------
 
-static bool take(bough_second_solution *s, bough_arena *arena) {
+static void take(bough_second_solution *s, bough_arena *arena) {
     size_t n = (size_t)s->assembly->n_state, n_input = (size_t)s->assembly->n_input;
     s->error = bough_arena_doubles(arena, n);
     s->input_error = bough_arena_doubles(arena, n_input);
     s->input_worst = bough_arena_doubles(arena, n_input);
-    return !bough_arena_exhausted(arena);
 }
 
 bough_status bough_second_solution_create(bough_arena *arena, const bough_coupling *c,
                                           const bough_second_solution_def *def,
                                           bough_second_solution **second) {
     bough_second_solution *s = bough_arena_take(arena, sizeof *s);
-    if (!s) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     const bough_assembly *a = s->assembly = c->assembly;
     s->share = def->share;
-    if (!take(s, arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    take(s, arena);
     s->left = fmax(most_steps, most_work / fmax(a->n_state, 1));
     s->beside = def->beside;
     *second = s;
     if (s->beside.coupling) return bough_ok();
-    bough_system system;
-    bough_status status = bough_coupled_system(arena, a, c->pool, "second solution", &system);
-    if (!bough_is_ok(&status)) return status;
+    bough_system system = bough_coupled_system(arena, a, c->pool, "second solution");
     s->evaluation = system.self;
     bough_integrator_options options = {
         .kind = def->kind, .rtol = def->rtol, .step = def->step};

@@ -37,25 +37,21 @@ typedef struct map {
 
 // -- building -------------------------------------------------------------------------------------
 
-static bough_status build_linear_members(map *m, const bough_assembly *a, const double *input) {
+static void build_linear_members(map *m, const bough_assembly *a, const double *input) {
     m->assembly = *a;
     m->linear = bough_arena_take(m->arena, (size_t)a->n_member * sizeof *m->linear);
     m->assembly.member = bough_arena_take(m->arena, (size_t)a->n_member * sizeof(void *));
-    if (bough_arena_exhausted(m->arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {
-        bough_status status = bough_linear_member_create(
-            m->arena, a->member[i], input + a->input_offset[i], m->sub_step, &m->linear[i]);
-        if (!bough_is_ok(&status)) return status;
+        bough_linear_member_create(m->arena, a->member[i], input + a->input_offset[i], m->sub_step,
+                                   &m->linear[i]);
         m->assembly.member[i] = &m->linear[i];
     }
-    return bough_ok();
 }
 
-static bough_status take(map *m) {
+static void take(map *m) {
     m->earlier = bough_arena_doubles(m->arena, 2 * (size_t)DIMENSION);
     m->pair = bough_arena_doubles(m->arena, 2 * (size_t)m->n);
-    bool taken = bough_arnoldi_create(m->arena, m->n, DIMENSION + 1, &m->arnoldi);
-    return taken ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_arnoldi_create(m->arena, m->n, DIMENSION + 1, &m->arnoldi);
 }
 
 // The analysis uses the converged solution of the iterated scheme, because the residual of its tolerance
@@ -72,19 +68,18 @@ static bough_status build(map *m, const bough_assembly *a, const bough_scheme_op
     bough_scheme_options judged = converged(options);
     double *output = bough_arena_doubles(m->arena, (size_t)a->n_output);
     double *input = bough_arena_doubles(m->arena, (size_t)a->n_input);
-    if (bough_arena_exhausted(m->arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_assembly_outputs(a, a->member[0]->time, output, input);
-    bough_status status = build_linear_members(m, a, input);
-    if (!bough_is_ok(&status)) return status;
+    build_linear_members(m, a, input);
     bough_coupling *c = NULL;
-    status = bough_scheme_couple(m->arena, &m->assembly, &judged, NULL, &c);
+    bough_status status = bough_scheme_couple(m->arena, &m->assembly, &judged, NULL, &c);
     if (!bough_is_ok(&status) || !c) return status;
     m->coupling = c;
     m->n = bough_coupling_n_memory(c);
     m->repeat = (int)fmin(ceil(span / m->macro_step - 1e-6), MOST_REPEATED);
     c->t1 = c->t0 + m->macro_step;
     if (c->scheme->prepare) status = c->scheme->prepare(c, m->arena);
-    return bough_is_ok(&status) ? take(m) : status;
+    take(m);
+    return status;
 }
 
 // -- the map --------------------------------------------------------------------------------------

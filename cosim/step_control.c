@@ -2,11 +2,10 @@
 
 #include <math.h>
 
-bough_status bough_step_control_create(bough_arena *arena, bough_coupling *c,
+bough_step_control *bough_step_control_create(bough_arena *arena, bough_coupling *c,
                                        const bough_step_control_def *def, double macro_step,
-                                       int order, bough_step_control **control) {
+                                       int order) {
     bough_step_control *s = bough_arena_take(arena, sizeof *s);
-    if (!s) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     s->tolerance = def->tolerance;
     s->easy = 0.5 * def->tolerance * pow(0.5, order);
     s->most = def->least > 0 ? (int)floor(log2(macro_step / def->least) + 1e-6) : 0;
@@ -14,9 +13,7 @@ bough_status bough_step_control_create(bough_arena *arena, bough_coupling *c,
     bough_snapshot size = {.move = BOUGH_SNAPSHOT_MEASURE};
     bough_coupling_snapshot(c, &size);
     s->copy = bough_arena_take(arena, size.used);
-    *control = s;
-    return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
-                                        : bough_ok();
+    return s;
 }
 
 double bough_step_control_end(bough_step_control *s, double from, double to) {

@@ -31,12 +31,11 @@ static bool linearise(basis *b) {
     bough_rod_tangent tangent;
     bough_rod_loads none;
     double *state = bough_arena_doubles(b->arena, (size_t)BOUGH_ROD_STATES * rod->n);
-    bool ok = bough_rod_scratch_init(&scratch, b->arena, rod);
-    ok = bough_rod_tangent_init(&tangent, b->arena, rod) && ok;
-    ok = bough_rod_loads_init(&none, b->arena, rod) && ok;
-    ok = bough_rod_blocks_init(&b->blocks, b->arena, rod) && ok;
-    ok = bough_block_tridiagonal_init(&b->stiffness, b->arena, rod->n) && ok;
-    if (!ok || state == NULL) return false;
+    bough_rod_scratch_init(&scratch, b->arena, rod);
+    bough_rod_tangent_init(&tangent, b->arena, rod);
+    bough_rod_loads_init(&none, b->arena, rod);
+    bough_rod_blocks_init(&b->blocks, b->arena, rod);
+    bough_block_tridiagonal_init(&b->stiffness, b->arena, rod->n);
     bough_rod_rest_state(rod, still, state);
     if (!bough_rod_linearise(rod, &none, 0, state, still, &scratch, &tangent)) return false;
     bough_rod_assemble(rod, &tangent, &b->blocks);

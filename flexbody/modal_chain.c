@@ -10,9 +10,6 @@ bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, in
     bough_modal_piece *piece = bough_arena_take(arena, (size_t)pieces * sizeof *piece);
     int *offset = bough_arena_take(arena, (size_t)pieces * sizeof *offset);
     bough_rod_model *rod = NULL;
-    if (bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", def->name);
-    }
     if (pieces > def->n_segment) {
         return bough_fail(BOUGH_INVALID, "%s: %d pieces of %d segments; give it more segments",
                           def->name, pieces, def->n_segment);
@@ -31,7 +28,7 @@ bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, in
     return status;
 }
 
-bool bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena,
+void bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena,
                             const bough_modal_model *m) {
     *chain = (bough_modal_chain){0};
     chain->point = bough_arena_take(arena, (size_t)m->n_piece * sizeof *chain->point);
@@ -40,11 +37,9 @@ bool bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena,
     chain->place = bough_arena_doubles(arena, (size_t)m->n_state + BOUGH_ROD_INPUTS);
     chain->place_load = bough_arena_doubles(arena, 6 * (size_t)m->rod->stride);
     chain->change = bough_arena_take(arena, ((size_t)m->n_piece + 1) * sizeof *chain->change);
-    bool ok = !bough_arena_exhausted(arena);
-    for (int k = 0; k < m->n_piece && ok; k++) {
-        ok = bough_modal_point_init(&chain->point[k], arena, &m->piece[k]);
+    for (int k = 0; k < m->n_piece; k++) {
+        bough_modal_point_init(&chain->point[k], arena, &m->piece[k]);
     }
-    return ok;
 }
 
 // -- sweeps ---------------------------------------------------------------------------------------

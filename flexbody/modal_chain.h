@@ -37,7 +37,7 @@ typedef struct bough_modal_chain {
 bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, int pieces,
                                 bough_modal_options options, bough_modal_model **model);
 
-bool bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena,
+void bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena,
                             const bough_modal_model *m);
 
 // The undeformed body moving rigidly with its frame: state (n_state), input (9).
@@ -104,7 +104,7 @@ typedef struct bough_modal_newton {
     double gamma;
 } bough_modal_newton;
 
-bool bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena,
+void bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena,
                              const bough_modal_model *m);
 
 // Tangents there; false when they are not finite.

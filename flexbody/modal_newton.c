@@ -9,7 +9,7 @@
 
 enum { D = 12, W = 6 }; // entries of a frame's change and of a wrench
 
-static bool init_piece(bough_modal_newton_piece *p, bough_arena *arena,
+static void init_piece(bough_modal_newton_piece *p, bough_arena *arena,
                        const bough_modal_piece *of, bool first) {
     size_t m = (size_t)of->m, matrix = m * (size_t)of->stride;
     p->by_q = bough_arena_doubles(arena, matrix);
@@ -34,17 +34,14 @@ static bool init_piece(bough_modal_newton_piece *p, bough_arena *arena,
         p->tip_x = bough_arena_doubles(arena, D * 2 * m);
         p->tip_d = bough_arena_doubles(arena, (size_t)D * D);
     }
-    return !bough_arena_exhausted(arena);
 }
 
-bool bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena,
+void bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena,
                              const bough_modal_model *m) {
     newton->piece = bough_arena_take(arena, (size_t)m->n_piece * sizeof *newton->piece);
-    bool ok = newton->piece != NULL;
-    for (int k = 0; k < m->n_piece && ok; k++) {
-        ok = init_piece(&newton->piece[k], arena, &m->piece[k], k == 0);
+    for (int k = 0; k < m->n_piece; k++) {
+        init_piece(&newton->piece[k], arena, &m->piece[k], k == 0);
     }
-    return ok;
 }
 
 // c += s · a b by columns; a (rows × inner), b (inner × columns)

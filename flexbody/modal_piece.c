@@ -1,6 +1,6 @@
 #include "flexbody/modal_algebra.h"
 
-bool bough_modal_point_init(bough_modal_point *point, bough_arena *arena,
+void bough_modal_point_init(bough_modal_point *point, bough_arena *arena,
                             const bough_modal_piece *piece) {
     size_t s = (size_t)piece->stride, matrix = (size_t)piece->m * s;
     struct {
@@ -19,7 +19,6 @@ bool bough_modal_point_init(bough_modal_point *point, bough_arena *arena,
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) {
         *arrays[k].array = bough_arena_doubles(arena, arrays[k].size);
     }
-    return !bough_arena_exhausted(arena);
 }
 
 bough_twist bough_modal_vertex(const bough_modal_piece *p, int i, const double *q) {

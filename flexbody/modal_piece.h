@@ -48,7 +48,7 @@ typedef struct bough_modal_point {
     bough_vec3 moment_turn[3];         // of the loads' moment likewise
 } bough_modal_point;
 
-bool bough_modal_point_init(bough_modal_point *point, bough_arena *arena,
+void bough_modal_point_init(bough_modal_point *point, bough_arena *arena,
                             const bough_modal_piece *piece);
 
 // From the frame and the state: q̇ and the tip.

@@ -49,7 +49,8 @@ static void input_columns(void *self, double t, const double *state, const doubl
 static void *factors(void *self, bough_arena *arena) {
     const bough_modal_body *b = self;
     bough_modal_newton *newton = bough_arena_take(arena, sizeof *newton);
-    return newton != NULL && bough_modal_newton_init(newton, arena, b->model) ? newton : NULL;
+    bough_modal_newton_init(newton, arena, b->model);
+    return newton;
 }
 
 static bool linearise(void *self, double t, const double *state, const double *input,
@@ -79,16 +80,15 @@ static void hold_loads(void *self, double t0, double t1) {
 
 // -- life -----------------------------------------------------------------------------------------
 
-static bool take_memory(bough_modal_body *b, bough_arena *arena) {
+static void take_memory(bough_modal_body *b, bough_arena *arena) {
     size_t states = (size_t)b->model->n_state;
     b->initial = bough_arena_doubles(arena, states);
     b->scale = bough_arena_doubles(arena, states);
     b->work = bough_arena_doubles(arena, states);
     b->vertices = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * b->model->rod->n);
-    bool ok = bough_rod_loads_init(&b->loads, arena, b->model->rod);
-    ok = bough_modal_chain_init(&b->chain, arena, b->model) && ok;
-    ok = bough_modal_chain_init(&b->slopes, arena, b->model) && ok;
-    return ok && !bough_arena_exhausted(arena);
+    bough_rod_loads_init(&b->loads, arena, b->model->rod);
+    bough_modal_chain_init(&b->chain, arena, b->model);
+    bough_modal_chain_init(&b->slopes, arena, b->model);
 }
 
 static void set_scale(bough_modal_body *b) {
@@ -100,18 +100,14 @@ static void set_scale(bough_modal_body *b) {
     }
 }
 
-bough_status bough_modal_body_create(bough_arena *arena, const bough_modal_model *model,
-                                     const double *input, bough_modal_body **body) {
+bough_modal_body *bough_modal_body_create(bough_arena *arena, const bough_modal_model *model,
+                                     const double *input) {
     bough_modal_body *b = bough_arena_take(arena, sizeof *b);
-    if (b == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", model->name);
     b->model = model;
-    if (!take_memory(b, arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", model->name);
-    }
+    take_memory(b, arena);
     bough_modal_rest_state(model, input, b->initial);
     set_scale(b);
-    *body = b;
-    return bough_ok();
+    return b;
 }
 
 bough_system bough_modal_body_system(bough_modal_body *body) {

@@ -16,7 +16,7 @@ static void mass_matrix(const bough_vertex_inertia *v, double *upper) {
     memcpy(upper, rows, sizeof rows);
 }
 
-static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
+static void take_arrays(bough_rod_model *m, bough_arena *arena) {
     size_t s = (size_t)m->stride, vertices = (size_t)m->n_segment + 1;
     m->span = bough_arena_doubles(arena, vertices);
     m->position0 = bough_arena_take(arena, vertices * sizeof *m->position0);
@@ -34,7 +34,6 @@ static bool take_arrays(bough_rod_model *m, bough_arena *arena) {
     m->moment = bough_arena_doubles(arena, 3 * s);
     m->inertia = bough_arena_doubles(arena, 6 * s);
     m->inverse_mass = bough_arena_doubles(arena, 21 * s);
-    return !bough_arena_exhausted(arena);
 }
 
 // h²/12 times the change of curvature along a segment, F m' + F' m (rod_elastic.h): L by the strains,
@@ -122,7 +121,6 @@ static bough_status set_vertex(bough_rod_model *m, const bough_rod_def *def, int
 bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
                               bough_rod_model **model) {
     bough_rod_model *m = bough_arena_take(arena, sizeof *m);
-    if (m == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", def->name);
     m->name = bough_arena_string(arena, def->name);
     m->n_segment = def->n_segment;
     m->n = def->carries ? def->n_segment - 1 : def->n_segment;
@@ -132,9 +130,7 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
                           def->carries ? 2 : 1);
     }
     m->stride = bough_padded(m->n_segment + BOUGH_LANES); // vertices go by lanes from 1 on
-    if (!take_arrays(m, arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", def->name);
-    }
+    take_arrays(m, arena);
     size_t vertices = (size_t)m->n_segment + 1;
     memcpy(m->span, def->span, vertices * sizeof *m->span);
     memcpy(m->position0, def->position, vertices * sizeof *m->position0);
@@ -151,14 +147,14 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
 }
 
 double *bough_rod_vertex_rows(bough_arena *arena, const bough_rod_model *model, int rows) {
-    double *block = bough_arena_doubles(arena, (size_t)rows * (size_t)model->stride + BOUGH_LANES);
-    return block == NULL ? NULL : block + BOUGH_LANES - 1;
+    size_t room = (size_t)rows * (size_t)model->stride + BOUGH_LANES;
+    return bough_arena_doubles(arena, room) + BOUGH_LANES - 1;
 }
 
-bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
+void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
                             const bough_rod_model *model) {
     scratch->vertex = bough_rod_vertex_rows(arena, model, BOUGH_ROD_STATES);
-    for (int i = 0; i < model->stride && scratch->vertex != NULL; i++) {
+    for (int i = 0; i < model->stride; i++) {
         scratch->vertex[BOUGH_ROD_P * model->stride + i] = 1; // beyond the last: no rotation
     }
     scratch->segment = bough_arena_doubles(arena, 9 * (size_t)model->stride);
@@ -169,10 +165,9 @@ bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
     scratch->turning = false;
     scratch->along = bough_arena_doubles(arena, 12 * (size_t)model->stride);
     scratch->own_rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
-    return !bough_arena_exhausted(arena);
 }
 
-bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
+void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
                           const bough_rod_model *model) {
     loads->start = 0;
     loads->value = bough_rod_vertex_rows(arena, model, 6);
@@ -185,20 +180,16 @@ bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
     loads->rest_rate = bough_arena_doubles(arena, 6 * (size_t)model->stride);
     loads->moving = false;
     loads->ramped = NULL;
-    if (bough_arena_exhausted(arena)) return false;
     memcpy(loads->rest, model->strain0, 6 * (size_t)model->stride * sizeof *loads->rest);
-    return true;
 }
 
 static bough_rod_ramped_load *add_load(bough_rod_loads *loads, bough_arena *arena,
                                        const bough_rod_model *model, bool follower) {
     bough_rod_ramped_load *fresh = bough_arena_take(arena, sizeof *fresh);
-    if (fresh == NULL) return NULL;
     *fresh = (bough_rod_ramped_load){.next = loads->ramped,
                                      .follower = follower,
                                      .value = bough_rod_vertex_rows(arena, model, 6),
                                      .line = bough_arena_doubles(arena, 12 * (size_t)model->stride)};
-    if (fresh->value == NULL || fresh->line == NULL) return NULL;
     loads->ramped = fresh;
     return fresh;
 }
@@ -211,7 +202,8 @@ bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_aren
         if (same && l->follower == follower) return l;
     }
     bough_rod_ramped_load *fresh = add_load(loads, arena, model, follower);
-    if (fresh != NULL) fresh->start = ramp[0], fresh->end = ramp[1];
+    fresh->start = ramp[0];
+    fresh->end = ramp[1];
     return fresh;
 }
 
@@ -219,7 +211,9 @@ bough_rod_ramped_load *bough_rod_loads_tabled(bough_rod_loads *loads, bough_aren
                                               const bough_rod_model *model, bool follower, int n,
                                               const double *times, const double *factors) {
     bough_rod_ramped_load *fresh = add_load(loads, arena, model, follower);
-    if (fresh != NULL) fresh->n = n, fresh->times = times, fresh->factors = factors;
+    fresh->n = n;
+    fresh->times = times;
+    fresh->factors = factors;
     return fresh;
 }
 

@@ -157,21 +157,20 @@ bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
                               bough_rod_model **model);
 
 // An array over the vertices (rows × stride) in which those of vertex 1 begin vector registers: loops
-// over moving vertices load and store aligned ones. NULL when memory is exhausted.
+// over moving vertices load and store aligned ones.
 double *bough_rod_vertex_rows(bough_arena *arena, const bough_rod_model *model, int rows);
 
-bool bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
+void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
                             const bough_rod_model *model);
-bool bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
+void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
                           const bough_rod_model *model);
 
-// The ramped load of this kind and ramp, a new one of zeros if there is none yet. NULL when memory is
-// exhausted.
+// The ramped load of this kind and ramp, a new one of zeros if there is none yet.
 bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
                                               const bough_rod_model *model, bool follower,
                                               const double ramp[2]);
 
-// A new load of zeros whose factor is a table (n rows). NULL when memory is exhausted.
+// A new load of zeros whose factor is a table (n rows).
 bough_rod_ramped_load *bough_rod_loads_tabled(bough_rod_loads *loads, bough_arena *arena,
                                               const bough_rod_model *model, bool follower, int n,
                                               const double *times, const double *factors);

@@ -8,10 +8,10 @@
 
 #include <string.h>
 
-bool bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m) {
+void bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m) {
     b->mass = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * BOUGH_BLOCK);
-    bool ok = bough_block_tridiagonal_init(&b->position, arena, m->n);
-    return bough_block_tridiagonal_init(&b->velocity, arena, m->n) && ok && b->mass != NULL;
+    bough_block_tridiagonal_init(&b->position, arena, m->n);
+    bough_block_tridiagonal_init(&b->velocity, arena, m->n);
 }
 
 static void copy_blocks(const bough_block_tridiagonal *from, bough_block_tridiagonal *to) {

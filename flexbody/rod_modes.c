@@ -71,7 +71,7 @@ static void set_shape(const bough_rod_model *m, const bough_eigen_pair *pair, co
     }
 }
 
-static bool fill_mode(bough_arena *arena, const bough_rod_model *m, const bough_eigen_pair *pair,
+static void fill_mode(bough_arena *arena, const bough_rod_model *m, const bough_eigen_pair *pair,
                       const double *state, bough_rod_mode *mode) {
     double modulus = hypot(pair->real, pair->imaginary), ratio = -pair->real / modulus;
     *mode = (bough_rod_mode){.frequency = modulus / (2 * BOUGH_PI),
@@ -79,10 +79,8 @@ static bool fill_mode(bough_arena *arena, const bough_rod_model *m, const bough_
                              .damping = fabs(ratio) > rounding ? ratio : 0,
                              .real = bough_arena_doubles(arena, 6 * (size_t)m->n),
                              .imaginary = bough_arena_doubles(arena, 6 * (size_t)m->n)};
-    if (mode->real == NULL || mode->imaginary == NULL) return false;
     set_shares(m, pair, mode);
     set_shape(m, pair, state, mode);
-    return true;
 }
 
 // K into the tangent's matrix and C, from the linearisation at the equilibrium.
@@ -104,17 +102,14 @@ bough_status bough_rod_modes(bough_arena *arena, const bough_rod_model *m, bough
     size_t wanted = (size_t)list->wanted;
     bough_eigen_pair *pair = bough_arena_take(arena, wanted * sizeof *pair);
     list->mode = bough_arena_take(arena, wanted * sizeof *list->mode);
-    bool ok = bough_block_tridiagonal_init(&damping, arena, m->n);
-    if (!ok || pair == NULL || list->mode == NULL) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", m->name);
-    }
+    bough_block_tridiagonal_init(&damping, arena, m->n);
     bough_status status = linearise(m, work, input, state, &damping);
     if (!bough_is_ok(&status)) return status;
     bough_eigen_problem problem = {m->name, work->blocks.mass, &damping, &work->tangent.matrix};
     status = bough_eigen_smallest(arena, &problem, list->wanted, pair, &list->found);
     if (!bough_is_ok(&status)) return status;
     for (int k = 0; k < list->found; k++) {
-        ok = fill_mode(arena, m, &pair[k], state, &list->mode[k]) && ok;
+        fill_mode(arena, m, &pair[k], state, &list->mode[k]);
     }
-    return ok ? status : bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", m->name);
+    return status;
 }

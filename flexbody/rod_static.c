@@ -33,18 +33,17 @@ static double slenderness(const bough_rod_model *m) {
     return largest;
 }
 
-static bool take_ramped(bough_arena *arena, const bough_rod_model *m, bough_rod_ramped_load *load) {
+static void take_ramped(bough_arena *arena, const bough_rod_model *m, bough_rod_ramped_load *load) {
     load->value = bough_arena_doubles(arena, 6 * (size_t)m->stride);
     load->line = bough_arena_doubles(arena, 12 * (size_t)m->stride);
-    return load->value != NULL && load->line != NULL;
 }
 
-bool bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bough_rod_model *m) {
+void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bough_rod_model *m) {
     size_t states = (size_t)BOUGH_ROD_STATES * m->n;
-    bool ok = bough_rod_scratch_init(&work->scratch, arena, m);
-    ok = bough_rod_tangent_init(&work->tangent, arena, m) && ok;
-    ok = bough_rod_blocks_init(&work->blocks, arena, m) && ok;
-    ok = bough_rod_loads_init(&work->scaled, arena, m) && ok;
+    bough_rod_scratch_init(&work->scratch, arena, m);
+    bough_rod_tangent_init(&work->tangent, arena, m);
+    bough_rod_blocks_init(&work->blocks, arena, m);
+    bough_rod_loads_init(&work->scaled, arena, m);
     work->rate = bough_arena_doubles(arena, states);
     work->trial = bough_arena_doubles(arena, states);
     work->step = bough_arena_doubles(arena, (size_t)W8 * m->n);
@@ -52,8 +51,8 @@ bool bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
     work->rounding = DBL_EPSILON * slenderness(m);
     work->follower = (bough_rod_ramped_load){.follower = true};
     work->dead = (bough_rod_ramped_load){.follower = false};
-    ok = take_ramped(arena, m, &work->follower) && take_ramped(arena, m, &work->dead) && ok;
-    return ok && !bough_arena_exhausted(arena);
+    take_ramped(arena, m, &work->follower);
+    take_ramped(arena, m, &work->dead);
 }
 
 // Residual forces M v̇ of all vertices into step (n × 8); returns the largest component, forces and

@@ -32,7 +32,7 @@ typedef struct bough_rod_static {
     int iterations;         // of the last solution, all increments together
 } bough_rod_static;
 
-bool bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bough_rod_model *m);
+void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bough_rod_model *m);
 
 // Brings `state` (13 n), from where it is, to rest in a BRF of constant twist and gravity, `input`
 // (9, BRF axes), under loads->value (its rates are ignored) and the whole of the ramped loads. An

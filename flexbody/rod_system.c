@@ -62,7 +62,8 @@ static void input_columns(void *self, double t, const double *state, const doubl
 static void *factors(void *self, bough_arena *arena) {
     const bough_rod_body *b = self;
     bough_rod_tangent *k = bough_arena_take(arena, sizeof *k);
-    return k != NULL && bough_rod_tangent_init(k, arena, b->model) ? k : NULL;
+    bough_rod_tangent_init(k, arena, b->model);
+    return k;
 }
 
 static bool linearise(void *self, double t, const double *state, const double *input,
@@ -117,31 +118,26 @@ static void project(void *self, const double *state, double *x) {
 
 // -- life -------------------------------------------------------------------------------------------
 
-static bool take_memory(bough_rod_body *b, bough_arena *arena) {
+static void take_memory(bough_rod_body *b, bough_arena *arena) {
     size_t states = (size_t)BOUGH_ROD_STATES * b->model->n;
     b->initial = bough_arena_doubles(arena, states);
     b->scale = bough_arena_doubles(arena, states);
-    bool ok = bough_rod_loads_init(&b->loads, arena, b->model);
-    ok = bough_rod_scratch_init(&b->scratch, arena, b->model) && ok;
-    return ok && !bough_arena_exhausted(arena);
+    bough_rod_loads_init(&b->loads, arena, b->model);
+    bough_rod_scratch_init(&b->scratch, arena, b->model);
 }
 
-bough_status bough_rod_body_create(bough_arena *arena, const bough_rod_model *model,
-                                   const double *input, bough_rod_body **body) {
+bough_rod_body *bough_rod_body_create(bough_arena *arena, const bough_rod_model *model,
+                                   const double *input) {
     // error scales of x, p, u, W: a tenth of a radian weighs as a metre
     static const double scale[BOUGH_ROD_STATES] = {1, 1, 1, 0.1, 0.1, 0.1, 0.1,
                                                    1, 1, 1, 0.1, 0.1, 0.1};
     bough_rod_body *b = bough_arena_take(arena, sizeof *b);
-    if (b == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", model->name);
     b->model = model;
-    if (!take_memory(b, arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", model->name);
-    }
+    take_memory(b, arena);
     bough_rod_rest_state(model, input, b->initial);
     int n = model->n;
     for (int k = 0; k < BOUGH_ROD_STATES * n; k++) b->scale[k] = scale[k / n];
-    *body = b;
-    return bough_ok();
+    return b;
 }
 
 bough_system bough_rod_body_system(bough_rod_body *body) {

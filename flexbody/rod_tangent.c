@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m) {
+void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m) {
     size_t s = (size_t)m->stride;
     k->variation = bough_arena_doubles(arena, TANGENTS * s);
     k->local_position = bough_rod_vertex_rows(arena, m, 18);
@@ -18,9 +18,8 @@ bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const boug
     k->end = bough_arena_doubles(arena, TANGENTS);
     k->force = bough_arena_doubles(arena, FORCES * s);
     k->packed = bough_arena_doubles(arena, (size_t)bough_padded(m->n) * W8);
-    bool ok = bough_block_tridiagonal_init(&k->matrix, arena, m->n);
-    ok = bough_rod_blocks_init(&k->blocks, arena, m) && ok;
-    return ok && !bough_arena_exhausted(arena);
+    bough_block_tridiagonal_init(&k->matrix, arena, m->n);
+    bough_rod_blocks_init(&k->blocks, arena, m);
 }
 
 // -- a vertex' own terms --------------------------------------------------------------------------

@@ -40,8 +40,8 @@ typedef struct bough_rod_tangent {
     double *packed;         // (padded n × 8)
 } bough_rod_tangent;
 
-bool bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m);
-bool bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m);
+void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m);
+void bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_rod_model *m);
 
 // Tangents at a state. False when they are not finite there.
 bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads, double t,

@@ -333,11 +333,8 @@ static arrays take_arrays(bough_arena *arena, int n) {
 bough_status bough_section_discretise(bough_arena *arena, const bough_section_table *table,
                                       int n_segment, bough_rod_def *def) {
     bough_section_axis a;
-    bool ok = bough_section_axis_init(&a, arena, table);
+    bough_section_axis_init(&a, arena, table);
     arrays m = take_arrays(arena, n_segment);
-    if (!ok || bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", table->name);
-    }
     *def = (bough_rod_def){.name = table->name,
                            .n_segment = n_segment,
                            .span = m.span,
@@ -361,8 +358,6 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
                               " positive definite", table->name, m.span[k], m.span[k + 1]);
         }
     }
-    if (!bough_section_lump(arena, &a, def, m.gain, m.inertia)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", table->name);
-    }
+    bough_section_lump(arena, &a, def, m.gain, m.inertia);
     return bough_ok();
 }

@@ -17,14 +17,13 @@ static const double gauss_weight[POINTS] = {0.1012285362903763, 0.22238103445337
                                             0.3626837833783620, 0.3137066458778873,
                                             0.2223810344533745, 0.1012285362903763};
 
-bool bough_section_axis_init(bough_section_axis *a, bough_arena *arena,
+void bough_section_axis_init(bough_section_axis *a, bough_arena *arena,
                              const bough_section_table *table) {
     a->table = table;
     a->n = table->n_station;
     a->station = table->station;
     if (table->n_station == 1) { // a uniform rod is two equal stations
         bough_section_station *two = bough_arena_take(arena, 2 * sizeof *two);
-        if (two == NULL) return false;
         two[0] = two[1] = table->station[0];
         two[0].position = bough_v3(0, 0, 0);
         two[1].position = bough_v3(0, 0, table->length);
@@ -32,12 +31,10 @@ bool bough_section_axis_init(bough_section_axis *a, bough_arena *arena,
         a->n = 2;
     }
     a->arc = bough_arena_doubles(arena, (size_t)a->n);
-    if (a->arc == NULL) return false;
     for (int k = 1; k < a->n; k++) {
         bough_vec3 step = bough_sub(a->station[k].position, a->station[k - 1].position);
         a->arc[k] = a->arc[k - 1] + bough_norm(step);
     }
-    return true;
 }
 
 double bough_section_length(const bough_section_axis *a) {

@@ -13,8 +13,7 @@ typedef struct bough_section_axis {
     double *arc; // (n) [m]
 } bough_section_axis;
 
-// False when memory is exhausted.
-bool bough_section_axis_init(bough_section_axis *a, bough_arena *arena,
+void bough_section_axis_init(bough_section_axis *a, bough_arena *arena,
                              const bough_section_table *table);
 
 double bough_section_length(const bough_section_axis *a);
@@ -36,9 +35,8 @@ typedef struct bough_section_share {
 } bough_section_share;
 
 // Inertia lumped to the vertices of a def that has its mesh (section_inertia.c): vertex (N + 1). Per
-// segment (N), gain is what its left vertex takes beyond its share by hat functions. False when memory
-// is exhausted.
-bool bough_section_lump(bough_arena *arena, const bough_section_axis *a, const bough_rod_def *def,
+// segment (N), gain is what its left vertex takes beyond its share by hat functions.
+void bough_section_lump(bough_arena *arena, const bough_section_axis *a, const bough_rod_def *def,
                         const bough_section_share *gain, bough_vertex_inertia *vertex);
 
 #endif

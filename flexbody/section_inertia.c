@@ -266,11 +266,10 @@ static bool make_rigid(int i, int reach, int n, segment_inertia *segment) {
     return change;
 }
 
-bool bough_section_lump(bough_arena *arena, const bough_section_axis *a, const bough_rod_def *def,
+void bough_section_lump(bough_arena *arena, const bough_section_axis *a, const bough_rod_def *def,
                         const bough_section_share *gain, bough_vertex_inertia *vertex) {
     int n = def->n_segment;
     segment_inertia *segment = bough_arena_take(arena, (size_t)n * sizeof *segment);
-    if (segment == NULL) return false;
     for (int k = 0; k < n; k++) segment[k] = lump_segment(a, def, k, gain[k]);
     for (bool change = true; change;) {
         change = false;
@@ -281,7 +280,6 @@ bool bough_section_lump(bough_arena *arena, const bough_section_axis *a, const b
             change = make_rigid(i, 1, n, segment) || make_rigid(i, 3, n, segment) || change;
         }
     }
-    return true;
 }
 
 bough_vertex_inertia bough_section_rigid(const bough_rod_def *def) {

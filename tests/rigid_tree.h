@@ -32,10 +32,8 @@ static inline fixture build_with(const bough_tree_def *def, bough_integrator_kin
     bough_status status = bough_tree_create(f.arena, def, &f.tree);
     if (!bough_is_ok(&status)) print_error("%s\n", status.message);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_data_create(f.arena, f.tree, &f.data);
-    assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_system_create(f.arena, f.tree, "tree", &f.s);
-    assert_int_equal(status.code, BOUGH_OK);
+    f.data = bough_tree_data_create(f.arena, f.tree);
+    f.s = bough_tree_system_create(f.arena, f.tree, "tree");
     f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8, 0});
     assert_true(f.s.n_state <= MOST);
     return f;

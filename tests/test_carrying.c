@@ -216,7 +216,7 @@ static void tumbling_rod_with_an_arm_conserves_momentum_and_energy(void **contex
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "tests/scenes/tumbling.yaml", no_sets);
     bough_rod_scratch scratch;
-    assert_true(bough_rod_scratch_init(&scratch, arena, bough_rod_body_model(s->beam[0].rod)));
+    bough_rod_scratch_init(&scratch, arena, bough_rod_body_model(s->beam[0].rod));
     invariants start = measure(s, &scratch);
     double bent = 0;
     while (!bough_master_done(s->master)) {

@@ -128,7 +128,7 @@ static void check(const plan *p) {
     bough_assembly *a;
     bough_coupled *coupled = NULL;
     bough_status status = bough_assembly_build(arena, &def, &a);
-    if (bough_is_ok(&status)) status = bough_coupled_create(arena, a, NULL, &coupled);
+    if (bough_is_ok(&status)) coupled = bough_coupled_create(arena, a, NULL);
     if (!bough_is_ok(&status)) fail_msg("%s: %s", p->what, status.message);
     assert_int_equal(coupled->interface->n, p->unknowns);
 
@@ -242,7 +242,7 @@ static void radius_is_that_of_the_loop(void **state) {
     bough_condensed *k;
     bough_status status = bough_assembly_build(arena, &def, &a);
     assert_true(bough_is_ok(&status));
-    status = bough_condensed_create(arena, a, &k);
+    k = bough_condensed_create(arena, a);
     assert_true(bough_is_ok(&status));
     const double zero[MOST] = {0};
     bough_operating_point at = {.state = zero, .input = zero, .gamma = .4};

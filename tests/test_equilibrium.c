@@ -15,7 +15,7 @@ static void build(setup *s) {
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(&s->m, def);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-    status = bough_coupled_create(s->m.arena, s->m.master->assembly, NULL, &s->coupled);
+    s->coupled = bough_coupled_create(s->m.arena, s->m.master->assembly, NULL);
     assert_true(bough_is_ok(&status));
     memcpy(s->y, s->m.y0, sizeof s->y);
 }
@@ -43,8 +43,7 @@ static void held_states_stay(void **state) {
     setup s;
     build(&s);
     s.y[0] = .3;
-    bough_status status = bough_coupled_hold(s.m.arena, s.coupled, 2, held);
-    assert_true(bough_is_ok(&status));
+    bough_coupled_hold(s.m.arena, s.coupled, 2, held);
     find(&s, bough_equilibrium_def_default(), BOUGH_OK);
     check_near(s.y[0], .3, 0, 0);
     check_near(s.y[1], 0, 0, 0);

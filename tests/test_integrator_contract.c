@@ -22,22 +22,17 @@ typedef struct specimen {
 } specimen;
 
 static bough_system make_rod(bough_arena *arena, int segments) {
-    bough_rod_body *body = NULL;
-    bough_status status =
-        bough_rod_body_create(arena, sample_general(arena, segments), swaying, &body);
-    assert_true(bough_is_ok(&status));
+    bough_rod_body *body = bough_rod_body_create(arena, sample_general(arena, segments), swaying);
     return bough_rod_body_system(body);
 }
 
 static bough_system make_modal(bough_arena *arena) {
     bough_rod_def def = sample_def(SEGMENTS, sample_general_arrays(arena, SEGMENTS), false);
     bough_modal_model *model = NULL;
-    bough_modal_body *body = NULL;
     bough_modal_options options = {4, false, false};
     bough_status status = bough_modal_create(arena, &def, 1, options, &model);
-    if (bough_is_ok(&status)) status = bough_modal_body_create(arena, model, swaying, &body);
     assert_true(bough_is_ok(&status));
-    return bough_modal_body_system(body);
+    return bough_modal_body_system(bough_modal_body_create(arena, model, swaying));
 }
 
 // Two masses on springs as one system.
@@ -45,12 +40,9 @@ static bough_system make_assembly(bough_two_mass *m) {
     *m = bough_two_mass_default();
     bough_master_def def = bough_master_def_default();
     def.macro_step = def.duration = length;
-    bough_system system;
     bough_status status = bough_two_mass_build(m, def);
     assert_true(bough_is_ok(&status));
-    status = bough_coupled_system(m->arena, m->master->assembly, NULL, "assembly", &system);
-    assert_true(bough_is_ok(&status));
-    return system;
+    return bough_coupled_system(m->arena, m->master->assembly, NULL, "assembly");
 }
 
 static void run(bough_member *m, const double *input, double t1) {

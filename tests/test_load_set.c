@@ -67,7 +67,7 @@ static void sums_are_those_by_hand(void **state) {
     bough_load_group group[4];
     bough_load_set set = made(cases, group);
     bough_lifetime l;
-    assert_true(bough_lifetime_take(arena, &set, &l));
+    l = bough_lifetime_take(arena, &set);
     const double amplitude[3] = {1, 3, 5}, mean[3] = {0, 10, 0};
     for (int i = 0; i < 3; i++) {
         bough_case_result r = sine(arena, &set, mean[i], amplitude[i], 20);
@@ -104,12 +104,12 @@ static void what_is_lacking_is_told(void **state) {
     bough_load_group group[4];
     bough_load_set set = made(cases, group);
     bough_lifetime l;
-    bough_lifetime_take(arena, &set, &l);
+    l = bough_lifetime_take(arena, &set);
     bough_case_result good = sine(arena, &set, 0, 1, 5), failed = good, missing = good;
     failed.outcome = bough_fail(BOUGH_FAILED, "broke");
     missing.done = false;
     group[1] = (bough_load_group){.hours = 150, .factor = 1, .extremes = true};
-    bough_lifetime_take(arena, &set, &l);
+    l = bough_lifetime_take(arena, &set);
     bough_lifetime_add(&l, 0, &good);
     bough_lifetime_add(&l, 1, &failed);
     bough_lifetime_add(&l, 2, &missing);

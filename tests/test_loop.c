@@ -99,11 +99,9 @@ typedef struct fixture {
 static fixture build(const bough_tree_def *def, bough_integrator_kind solver, double rtol) {
     fixture f = {.arena = bough_arena_create()};
     bough_status status = bough_tree_create(f.arena, def, &f.tree);
-    if (bough_is_ok(&status)) status = bough_tree_data_create(f.arena, f.tree, &f.data);
-    if (bough_is_ok(&status)) {
-        status = bough_tree_system_create(f.arena, f.tree, "tree", &f.s);
-    }
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    f.data = bough_tree_data_create(f.arena, f.tree);
+    f.s = bough_tree_system_create(f.arena, f.tree, "tree");
     f.m = member_of(f.arena, &f.s, (bough_integrator_options){solver, rtol, 0, 0.8, 0});
     assert_true(f.s.n_state <= MOST);
     return f;

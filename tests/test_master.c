@@ -132,8 +132,8 @@ static star star_run(const char *scheme, double macro_step, int threads) {
     def.scheme.name = scheme;
     def.scheme.integrator.rtol = 1e-10;
     bough_arena *arena = bough_arena_create();
-    bough_status status = bough_pool_create(arena, threads, &def.pool);
-    if (bough_is_ok(&status)) status = star_build(&s, def);
+    def.pool = bough_pool_create(arena, threads);
+    bough_status status = star_build(&s, def);
     if (bough_is_ok(&status)) status = run(s.master);
     if (!bough_is_ok(&status)) fail_msg("%s: %s", scheme, status.message);
     bough_arena_destroy(s.arena);

@@ -26,10 +26,7 @@ static bough_modal_model *general(bough_arena *arena, int n, int pieces,
 
 static bough_modal_body *body_of(bough_arena *arena, const bough_modal_model *m,
                                  const double *input) {
-    bough_modal_body *body = NULL;
-    bough_status status = bough_modal_body_create(arena, m, input, &body);
-    assert_int_equal(status.code, BOUGH_OK);
-    return body;
+    return bough_modal_body_create(arena, m, input);
 }
 
 // -- the contract ---------------------------------------------------------------------------------
@@ -79,9 +76,9 @@ static pair make_pair(int pieces) {
     pair p = {.arena = bough_arena_create()};
     p.modal = general(p.arena, N, pieces, everything);
     p.rod = sample_general(p.arena, N);
-    assert_true(bough_modal_chain_init(&p.chain, p.arena, p.modal));
-    assert_true(bough_rod_scratch_init(&p.scratch, p.arena, p.rod));
-    assert_true(bough_rod_loads_init(&p.loads, p.arena, p.rod));
+    bough_modal_chain_init(&p.chain, p.arena, p.modal);
+    bough_rod_scratch_init(&p.scratch, p.arena, p.rod);
+    bough_rod_loads_init(&p.loads, p.arena, p.rod);
     return p;
 }
 
@@ -169,9 +166,9 @@ static bar make_bar(int pieces, bough_modal_options options) {
     if (bough_is_ok(&s)) s = bough_modal_create(b.arena, &b.def, pieces, options, &b.modal);
     if (!bough_is_ok(&s)) print_error("%s\n", s.message);
     assert_int_equal(s.code, BOUGH_OK);
-    assert_true(bough_modal_chain_init(&b.chain, b.arena, b.modal));
-    assert_true(bough_rod_static_init(&b.work, b.arena, b.rod));
-    assert_true(bough_rod_loads_init(&b.loads, b.arena, b.rod));
+    bough_modal_chain_init(&b.chain, b.arena, b.modal);
+    bough_rod_static_init(&b.work, b.arena, b.rod);
+    bough_rod_loads_init(&b.loads, b.arena, b.rod);
     b.state = bough_arena_doubles(b.arena, (size_t)b.modal->n_state);
     b.vertices = bough_arena_doubles(b.arena, (size_t)BOUGH_ROD_STATES * b.rod->n);
     return b;
@@ -312,8 +309,8 @@ static void lost(double small, double *force, double *moment) {
     assert_int_equal(status.code, BOUGH_OK);
     bough_modal_chain chain;
     bough_rod_loads none;
-    assert_true(bough_modal_chain_init(&chain, arena, m));
-    assert_true(bough_rod_loads_init(&none, arena, m->rod));
+    bough_modal_chain_init(&chain, arena, m);
+    bough_rod_loads_init(&none, arena, m->rod);
     double y[60], rate[60], moved[60], vertices[STATES], p[3][6], root[6];
     const double step = 1e-6;
     unsigned seed = 2;

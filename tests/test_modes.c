@@ -21,7 +21,7 @@ static void build(setup *s, bough_two_mass masses) {
     def.macro_step = def.duration = .1;
     bough_status status = bough_two_mass_build(&s->m, def);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
-    status = bough_coupled_create(s->m.arena, s->m.master->assembly, NULL, &s->coupled);
+    s->coupled = bough_coupled_create(s->m.arena, s->m.master->assembly, NULL);
     assert_true(bough_is_ok(&status));
     bough_coupled_inputs(s->coupled, 0, s->m.y0);
     s->def = (bough_modes_def){.state = s->m.y0, .input = s->coupled->input, .point = 1};

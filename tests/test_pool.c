@@ -17,8 +17,7 @@ typedef struct list {
 
 static bough_arena *make(int threads, list *l) {
     bough_arena *arena = bough_arena_create();
-    bough_status status = bough_pool_create(arena, threads, &l->pool);
-    if (!bough_is_ok(&status)) fail_msg("%s", status.message);
+    l->pool = bough_pool_create(arena, threads);
     assert_int_equal(bough_pool_threads(l->pool), threads);
     return arena;
 }

@@ -22,9 +22,9 @@ static int setup(void **context) {
     fixture *f = calloc(1, sizeof *f);
     f->arena = bough_arena_create();
     f->model = sample_general(f->arena, N);
-    assert_true(bough_rod_scratch_init(&f->scratch, f->arena, f->model));
-    assert_true(bough_rod_loads_init(&f->loads, f->arena, f->model));
-    assert_true(bough_rod_tangent_init(&f->tangent, f->arena, f->model));
+    bough_rod_scratch_init(&f->scratch, f->arena, f->model);
+    bough_rod_loads_init(&f->loads, f->arena, f->model);
+    bough_rod_tangent_init(&f->tangent, f->arena, f->model);
     memcpy(f->input, input, sizeof input);
     sample_state(f->model, f->input, f->state);
     sample_loads(f->model, &f->loads);
@@ -140,9 +140,9 @@ typedef struct sized {
 static sized build_sized(int n_segment, bool carries) {
     sized r = {.arena = bough_arena_create(), .input = {0.4, -0.3, 0.7, 0.5, -0.8, 0.6, 1, -2, -9}};
     r.model = sample_general_as(r.arena, n_segment, carries);
-    assert_true(bough_rod_scratch_init(&r.scratch, r.arena, r.model));
-    assert_true(bough_rod_loads_init(&r.loads, r.arena, r.model));
-    assert_true(bough_rod_tangent_init(&r.tangent, r.arena, r.model));
+    bough_rod_scratch_init(&r.scratch, r.arena, r.model);
+    bough_rod_loads_init(&r.loads, r.arena, r.model);
+    bough_rod_tangent_init(&r.tangent, r.arena, r.model);
     double **const arrays[] = {&r.state, &r.x, &r.rate, &r.moved};
     for (int k = 0; k < 4; k++) {
         *arrays[k] = bough_arena_doubles(r.arena, BOUGH_ROD_STATES * (size_t)r.model->n);

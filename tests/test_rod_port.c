@@ -17,9 +17,7 @@ typedef struct pair {
 } pair;
 
 static bough_rod_body *make(bough_arena *arena, bough_rod_model *model, const double *input) {
-    bough_rod_body *body = NULL;
-    bough_status status = bough_rod_body_create(arena, model, input, &body);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_rod_body *body = bough_rod_body_create(arena, model, input);
     bough_rod_loads *loads = bough_rod_body_loads(body);
     sample_loads(model, loads);
     for (int k = 0; k < 2; k++) {

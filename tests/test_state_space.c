@@ -79,14 +79,12 @@ static void rods_beside_exact_tangents(void **state) {
     bough_state_space x = linear(arena, s);
     const bough_assembly *a = s->master->assembly;
     assert_int_equal(x.n, a->n_state);
-    bough_coupled *coupled;
-    bough_status status = bough_coupled_create(arena, a, NULL, &coupled);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_coupled *coupled = bough_coupled_create(arena, a, NULL);
     double *y = bough_arena_doubles(arena, (size_t)x.n), *solution = bough_arena_doubles(arena, (size_t)x.n);
     bough_assembly_states(a, y);
     bough_coupled_inputs(coupled, 0, y);
     const double gamma = 0.01;
-    status = bough_coupled_setup(coupled, 0, y, coupled->input, gamma);
+    bough_status status = bough_coupled_setup(coupled, 0, y, coupled->input, gamma);
     assert_int_equal(status.code, BOUGH_OK);
     for (int trial = 0; trial < 5; trial++) {
         double *b = bough_arena_doubles(arena, (size_t)x.n), worst = 0;

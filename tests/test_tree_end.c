@@ -63,10 +63,8 @@ static fixture make(void) {
     fixture f = {.arena = bough_arena_create()};
     bough_status status = create(&f, BOUGH_JOINT_FREE);
     assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_data_create(f.arena, f.tree, &f.data);
-    assert_int_equal(status.code, BOUGH_OK);
-    status = bough_tree_system_create(f.arena, f.tree, "tree", &f.s);
-    assert_int_equal(status.code, BOUGH_OK);
+    f.data = bough_tree_data_create(f.arena, f.tree);
+    f.s = bough_tree_system_create(f.arena, f.tree, "tree");
     f.m = member_of(f.arena, &f.s, (bough_integrator_options){BOUGH_IDA, 1e-8, 0, 0, 0});
     for (int i = 0; i < f.s.n_state; i++) f.state[i] = sin(2.3 * i + 0.4);
     int p = f.tree->links[f.tree->ends[0].link].first_coordinate + 3;

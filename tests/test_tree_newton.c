@@ -24,8 +24,8 @@ static fixture build(const bough_tree_def *def) {
     bough_status status = bough_tree_create(f.arena, def, &f.tree);
     if (!bough_is_ok(&status)) print_error("%s\n", status.message);
     assert_int_equal(status.code, BOUGH_OK);
-    assert_int_equal(bough_tree_data_create(f.arena, f.tree, &f.data).code, BOUGH_OK);
-    assert_int_equal(bough_tree_newton_create(f.arena, f.tree, &f.newton).code, BOUGH_OK);
+    f.data = bough_tree_data_create(f.arena, f.tree);
+    f.newton = bough_tree_newton_create(f.arena, f.tree);
     return f;
 }
 

@@ -28,7 +28,7 @@ typedef struct work {
     double *turned_basis, *mode, *mode_image; // (n × k)
 } work;
 
-static bool take(bough_arena *arena, work *w) {
+static void take(bough_arena *arena, work *w) {
     size_t n = (size_t)w->n, k = (size_t)w->k;
     w->inverse = bough_arena_doubles(arena, n * n);
     w->turned = bough_arena_doubles(arena, n * n);
@@ -40,7 +40,6 @@ static bool take(bough_arena *arena, work *w) {
     w->turned_basis = bough_arena_doubles(arena, n * k);
     w->mode = bough_arena_doubles(arena, n * k);
     w->mode_image = bough_arena_doubles(arena, n * k);
-    return !bough_arena_exhausted(arena);
 }
 
 // -- the inverse ----------------------------------------------------------------------------------
@@ -151,7 +150,7 @@ typedef struct ritz {
     bool *good, *taken;                     // (k) converged, and in use
 } ritz;
 
-static bool take_ritz(bough_arena *arena, int k, ritz *r) {
+static void take_ritz(bough_arena *arena, int k, ritz *r) {
     size_t n = (size_t)k;
     r->matrix = bough_arena_doubles(arena, n * n);
     r->value = bough_arena_doubles(arena, 2 * n);
@@ -160,7 +159,6 @@ static bool take_ritz(bough_arena *arena, int k, ritz *r) {
     r->order = bough_arena_take(arena, n * sizeof *r->order);
     r->good = bough_arena_take(arena, n * sizeof *r->good);
     r->taken = bough_arena_take(arena, n * sizeof *r->taken);
-    return !bough_arena_exhausted(arena);
 }
 
 // Pairs stay together, as they are equal in size.
@@ -293,9 +291,9 @@ static bool set_block(work *w, int first, int size, bough_aeroelastic *to) {
 // Modes on both sides, and the motion in them.
 static bool set_motion(bough_arena *arena, work *w, bough_aeroelastic *to) {
     ritz right, left;
-    if (!take_ritz(arena, w->k, &right) || !take_ritz(arena, w->k, &left)) return false;
+    take_ritz(arena, w->k, &right);
+    take_ritz(arena, w->k, &left);
     int *size = bough_arena_take(arena, (size_t)w->k * sizeof *size);
-    if (!size) return false;
     apply(w, w->right, w->image);
     if (!find_ritz(w, w->right, &right)) return false;
     memcpy(w->turned_basis, w->left, (size_t)w->n * (size_t)w->k * sizeof(double));
@@ -318,13 +316,12 @@ static void add_block(const double *block, int rows, int columns, int first_row,
 }
 
 // The air's own rates turn with the blades.
-static bool turn_air(bough_arena *arena, const work *w, const bough_simulation *s,
+static void turn_air(bough_arena *arena, const work *w, const bough_simulation *s,
                      const bough_blade_group *group, int per_blade, bough_aeroelastic *to) {
     const bough_modes_def *def = w->def;
-    if (def->spin == 0 || per_blade == 0) return true;
+    if (def->spin == 0 || per_blade == 0) return;
     int n = def->n_part, *row = bough_arena_take(arena, (size_t)(n * per_blade) * sizeof *row);
     double *rate = bough_arena_doubles(arena, (size_t)n * (size_t)n);
-    if (!row || !rate) return false;
     bough_modes_rate(def, rate);
     bough_air_tangent_rows(s, group, per_blade, row);
     for (int k = 0; k < n; k++) {
@@ -336,16 +333,14 @@ static bool turn_air(bough_arena *arena, const work *w, const bough_simulation *
             }
         }
     }
-    return true;
 }
 
-static bool add_air(bough_arena *arena, const work *w, const bough_simulation *s,
+static void add_air(bough_arena *arena, const work *w, const bough_simulation *s,
                     const bough_blade_group *group, const bough_air_tangent *t,
                     bough_aeroelastic *to) {
     int n = w->n, k = to->n_motion, m = t->n_air;
     size_t most = (size_t)(k > m ? k : m);
     double *block = bough_arena_doubles(arena, most * most + (size_t)k * (size_t)k);
-    if (!block) return false;
     add_block(to->motion, k, k, 0, 0, to);
     bough_dense_product((bough_product){n, k, n, false, 1, 0}, t->motion, to->shape, w->image);
     bough_dense_product((bough_product){k, k, n, false, 1, 0}, to->left, w->image, block);
@@ -355,7 +350,7 @@ static bool add_air(bough_arena *arena, const work *w, const bough_simulation *s
     bough_dense_product((bough_product){m, k, n, false, 1, 0}, t->drive, to->shape, block);
     add_block(block, m, k, k, 0, to);
     add_block(t->lag, m, m, k, k, to);
-    return turn_air(arena, w, s, group, t->n_per_blade, to);
+    turn_air(arena, w, s, group, t->n_per_blade, to);
 }
 
 bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation *s,
@@ -374,9 +369,7 @@ bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation
         .left = bough_arena_doubles(arena, (size_t)n * (size_t)kept),
         .motion = bough_arena_doubles(arena, (size_t)kept * (size_t)kept),
         .rate = bough_arena_doubles(arena, all * all)};
-    if (!take(arena, &w) || bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
+    take(arena, &w);
     bough_status status =
         bough_coupled_setup(coupled, def->time, def->state, def->input, 1 / def->point);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
@@ -388,9 +381,8 @@ bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation
                           kept);
     }
     reduced->n_all = reduced->n_motion + reduced->n_air;
-    return add_air(arena, &w, s, group, tangent, reduced)
-               ? bough_ok()
-               : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    add_air(arena, &w, s, group, tangent, reduced);
+    return bough_ok();
 }
 
 // -- its modes ------------------------------------------------------------------------------------
@@ -417,16 +409,14 @@ static double motion_share(const bough_aeroelastic *r, const double *vector, con
     return all > 0 ? motion / all : 0;
 }
 
-static bool invert_vectors(bough_arena *arena, size_t m, const double *vector, double *inverse) {
+static void invert_vectors(bough_arena *arena, size_t m, const double *vector, double *inverse) {
     double *factor = bough_arena_doubles(arena, m * m);
     int *pivot = bough_arena_take(arena, (m + 1) * sizeof *pivot);
-    if (!factor || !pivot) return false;
     memcpy(factor, vector, m * m * sizeof *factor);
     for (size_t i = 0; i < m; i++) inverse[i * m + i] = 1;
     if (bough_dense_factor((int)m, factor, pivot)) {
         bough_dense_solve((int)m, (int)m, factor, pivot, inverse);
     }
-    return true;
 }
 
 bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic *reduced,
@@ -437,14 +427,11 @@ bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic
     double *value = bough_arena_doubles(arena, 2 * m), *room = bough_arena_doubles(arena, 8 * m);
     double *inverse = bough_arena_doubles(arena, m * m);
     *found = 0;
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     memcpy(a, reduced->rate, m * m * sizeof *a);
     if (!bough_dense_eigen((int)m, a, value, vector, room)) {
         return bough_fail(BOUGH_FAILED, "the eigenvalues of the motion in the air do not converge");
     }
-    if (!invert_vectors(arena, m, vector, inverse)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
+    invert_vectors(arena, m, vector, inverse);
     for (size_t j = 0; j < m; j++) {
         bool oscillates = value[m + j] > 0;
         if (!oscillates && (value[m + j] < 0 || value[j] <= 0)) continue;
@@ -452,9 +439,6 @@ bough_status bough_aeroelastic_modes(bough_arena *arena, const bough_aeroelastic
         bough_eigen_pair *p = &pair[*found];
         *p = (bough_eigen_pair){value[j], value[m + j], bough_arena_doubles(arena, n),
                                 bough_arena_doubles(arena, n)};
-        if (!p->shape_real || !p->shape_imag) {
-            return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-        }
         bough_product shape = {(int)n, 1, k, false, 1, 0};
         bough_dense_product(shape, reduced->shape, vector + j * m, p->shape_real);
         if (oscillates) {

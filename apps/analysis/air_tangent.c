@@ -25,7 +25,7 @@ typedef struct work {
     double *rate[2], *air_rate[2];   // (n), (n_air) on either side
 } work;
 
-static bool take(bough_arena *arena, work *w) {
+static void take(bough_arena *arena, work *w) {
     size_t n = (size_t)w->coupled->assembly->n_state, m = (size_t)w->n_memory + 1;
     w->row = bough_arena_take(arena, m * sizeof *w->row);
     w->memory = bough_arena_doubles(arena, m);
@@ -36,7 +36,6 @@ static bool take(bough_arena *arena, work *w) {
         w->rate[side] = bough_arena_doubles(arena, n);
         w->air_rate[side] = bough_arena_doubles(arena, m);
     }
-    return !bough_arena_exhausted(arena);
 }
 
 // Lets the air go on for `step` from the memory in `from`, which is changed, to `to`.
@@ -158,7 +157,7 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
     int n_memory = dynamic ? bough_rotor_memory_size(rotor) : 0;
     work w = {.simulation = s, .coupled = coupled, .time = time, .n_memory = n_memory,
               .dynamic = n_memory > 0};
-    if (!take(arena, &w)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    take(arena, &w);
     if (w.dynamic) w.n_air = bough_rotor_memory_states(rotor, w.row);
     size_t n = (size_t)coupled->assembly->n_state, m = (size_t)w.n_air;
     size_t n_input = inputs ? (size_t)inputs->n : 0;
@@ -171,7 +170,6 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
                              .lag = bough_arena_doubles(arena, m * m + 1),
                              .input = bough_arena_doubles(arena, n * n_input + 1),
                              .input_drive = bough_arena_doubles(arena, m * n_input + 1)};
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     settle(&w, state);
     bough_status status = follow_motion(&w, state, t);
     if (bough_is_ok(&status)) status = follow_memory(&w, state, t);
@@ -219,11 +217,10 @@ void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *
     }
 }
 
-bool bough_air_tangent_average(bough_arena *arena, const bough_simulation *s,
+void bough_air_tangent_average(bough_arena *arena, const bough_simulation *s,
                                const bough_blade_group *group, bough_air_tangent *t) {
-    if (group->n == 0) return true;
+    if (group->n == 0) return;
     int *air = bough_arena_take(arena, ((size_t)t->n_air + 1) * sizeof *air);
-    if (!air) return false;
     bough_air_tangent_rows(s, group, t->n_per_blade, air);
     int n = group->n, m = t->n_per_blade;
     average(&(blocks){n, t->n, group->n_row, group->n_row, group->row, group->row}, t->motion);
@@ -236,5 +233,4 @@ bool bough_air_tangent_average(bough_arena *arena, const bough_simulation *s,
         memset(t->motion + (size_t)azimuth * (size_t)t->n, 0, (size_t)t->n * sizeof(double));
         memset(t->drive + (size_t)azimuth * (size_t)t->n_air, 0, (size_t)t->n_air * sizeof(double));
     }
-    return true;
 }

@@ -39,7 +39,7 @@ void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *
 
 // Makes what blades do to blades that of the mean over as many azimuths as there are blades, at which gravity,
 // tilt, shear and tower differ.
-bool bough_air_tangent_average(bough_arena *arena, const bough_simulation *s,
+void bough_air_tangent_average(bough_arena *arena, const bough_simulation *s,
                                const bough_blade_group *group, bough_air_tangent *tangent);
 
 #endif

@@ -5,16 +5,15 @@
 #include <float.h>
 #include <string.h>
 
-bool bough_mode_shape_take(bough_arena *arena, bough_mode_shape *x) {
+void bough_mode_shape_take(bough_arena *arena, bough_mode_shape *x) {
     const bough_simulation *s = x->simulation;
     x->moved = bough_arena_doubles(arena, (size_t)x->assembly->n_state + 1);
     x->beam = bough_arena_take(arena, ((size_t)s->n_beam + 1) * sizeof *x->beam);
-    for (int k = 0; x->beam && k < s->n_beam; k++) {
+    for (int k = 0; k < s->n_beam; k++) {
         if (s->beam[k].modal == NULL) continue;
         size_t n = (size_t)BOUGH_ROD_STATES * bough_beam_mesh(&s->beam[k])->n;
         x->beam[k].memory = bough_arena_doubles(arena, 3 * n);
     }
-    return !bough_arena_exhausted(arena);
 }
 
 // -- beams ----------------------------------------------------------------------------------------

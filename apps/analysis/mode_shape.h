@@ -28,7 +28,7 @@ static inline const double *bough_mode_shape_part(const bough_mode_shape *x, int
 }
 
 // Takes the memory; simulation and assembly are set.
-bool bough_mode_shape_take(bough_arena *arena, bough_mode_shape *x);
+void bough_mode_shape_take(bough_arena *arena, bough_mode_shape *x);
 
 // Finds the beams' vertices for x->pair.
 void bough_mode_shape_set(const bough_mode_shape *x);

@@ -266,7 +266,7 @@ static bough_status prepare(bough_arena *arena, work *w) {
     size_t n = (size_t)a->n_state, most = (size_t)s->scene->n_input + 3;
     w->channels = bough_channels_start(arena);
     bough_status status = bough_simulation_channels(s, &w->channels);
-    if (bough_is_ok(&status)) status = bough_coupled_create_evaluation(arena, a, NULL, &w->coupled);
+    if (bough_is_ok(&status)) w->coupled = bough_coupled_create_evaluation(arena, a, NULL);
     if (!bough_is_ok(&status)) return status;
     double *about = bough_arena_doubles(arena, n + 1);
     w->state = bough_arena_doubles(arena, n + 1);
@@ -276,13 +276,12 @@ static bough_status prepare(bough_arena *arena, work *w) {
         w->rate[side] = bough_arena_doubles(arena, n + 1);
         w->value[side] = bough_arena_doubles(arena, (size_t)w->channels.count + 1);
     }
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_assembly_states(a, about);
     w->about = about;
     return bough_ok();
 }
 
-static bool take(bough_arena *arena, int n_air, const work *w, bough_state_space *to) {
+static void take(bough_arena *arena, int n_air, const work *w, bough_state_space *to) {
     to->n = w->coupled->assembly->n_state + n_air;
     to->n_input = w->n_input;
     to->n_output = w->s->n_motion_channel;
@@ -293,7 +292,6 @@ static bool take(bough_arena *arena, int n_air, const work *w, bough_state_space
     to->d = bough_arena_doubles(arena, o * u + 1);
     to->state = bough_arena_take(arena, (n + 1) * sizeof *to->state);
     to->output = bough_arena_take(arena, (o + 1) * sizeof *to->output);
-    return !bough_arena_exhausted(arena);
 }
 
 bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, double time,
@@ -304,7 +302,6 @@ bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, dou
     if (!bough_is_ok(&status)) return status;
     *space = (bough_state_space){
         .input = bough_arena_take(arena, ((size_t)s->scene->n_input + 3) * sizeof *space->input)};
-    if (!space->input) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     find_inputs(&w, space);
     if (in_air(s)) {
         bough_air_inputs inputs = {w.n_input, w.size, &w, set_input};
@@ -312,7 +309,7 @@ bough_status bough_state_space_find(bough_arena *arena, bough_simulation *s, dou
         status = bough_air_tangent_find(arena, s, w.coupled, time, w.about, dynamic, &inputs, &air);
         if (!bough_is_ok(&status)) return status;
     }
-    if (!take(arena, air.n_air, &w, space)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    take(arena, air.n_air, &w, space);
     status = by_states(&w, space);
     if (bough_is_ok(&status)) status = by_inputs(&w, space);
     if (bough_is_ok(&status)) status = evaluate(&w, w.about, 0);

@@ -96,9 +96,7 @@ bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,
     steady->beam = beam;
     steady->model = bough_rod_body_model(beam->rod);
     steady->state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * steady->model->n);
-    if (!bough_rod_static_init(&steady->work, arena, steady->model)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", steady->model->name);
-    }
+    bough_rod_static_init(&steady->work, arena, steady->model);
     set_input(s, turning, steady);
     bough_rod_rest_state(steady->model, steady->input, steady->state);
     bough_rod_static_options options = bough_rod_static_options_default();
@@ -114,9 +112,7 @@ bough_status bough_steady_equilibrium(bough_arena *arena, const bough_simulation
     const bough_rod_model *m = bough_rod_body_model(beam->rod);
     *steady = (bough_steady){.beam = beam, .model = m, .time = time};
     steady->state = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * m->n);
-    if (!bough_rod_static_init(&steady->work, arena, m)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "rod %s: out of memory", m->name);
-    }
+    bough_rod_static_init(&steady->work, arena, m);
     bough_assembly_outputs(a, time, c->output, c->input);
     memcpy(steady->input, input, (size_t)bough_rod_n_inputs(m) * sizeof *input);
     memcpy(steady->state, s->rod[beam->port].state,

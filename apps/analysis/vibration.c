@@ -61,13 +61,10 @@ static bough_status prepare(bough_arena *arena, bough_simulation *s, solution *x
     x->state = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     x->mean = bough_arena_doubles(arena, (size_t)a->n_state + 1);
     x->held = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *x->held);
-    if (!x->state || !x->mean || !x->held) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_assembly_states(a, x->state);
-    bough_status status = bough_coupled_create(arena, a, NULL, &x->coupled);
-    if (!bough_is_ok(&status)) return status;
+    x->coupled = bough_coupled_create(arena, a, NULL);
     int n_held = bough_equilibrium_held(s->tree, false, x->held);
-    status = bough_coupled_hold(arena, x->coupled, n_held, x->held);
-    if (!bough_is_ok(&status)) return status;
+    bough_coupled_hold(arena, x->coupled, n_held, x->held);
     return bough_blade_group_find(arena, s, a, &x->group);
 }
 
@@ -96,20 +93,16 @@ static bough_status describe(bough_arena *arena, const bough_simulation *s, cons
                  .group = &x->group,
                  .state = x->state};
     v->n_row = bough_mode_shape_rows(s);
-    if (!bough_mode_shape_take(arena, &one)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
+    bough_mode_shape_take(arena, &one);
     for (int k = 0; k < v->found; k++) {
         one.pair = &v->pair[k];
         bough_mode_shape_set(&one);
         bough_scene_mode *mode = &v->mode[k];
         mode->share = bough_arena_doubles(arena, (size_t)s->scene->n_body);
-        if (!mode->share) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
         set_value(&v->pair[k], mode);
         bough_mode_share_set(&one, mode);
         if (!s->scene->modes.shapes) continue;
         mode->shape = bough_arena_take(arena, (size_t)v->n_row * sizeof *mode->shape);
-        if (!mode->shape) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
         bough_mode_shape_move(&one, mode->shape);
     }
     return bough_ok();
@@ -137,7 +130,6 @@ static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s, 
                                  int count, bough_vibration *v) {
     int wanted = count + FREE_MOTIONS + 2 * s->tree->closure_rank;
     v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
-    if (!v->pair) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = bough_modes_find(arena, x->coupled, &x->def, wanted, v->pair, &v->found);
     while (status.code == BOUGH_FAILED && wanted > 1) { // the highest may be beyond rounding
         wanted /= 2;
@@ -155,14 +147,11 @@ static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const 
         bough_air_tangent_find(arena, s, x->coupled, x->def.time, x->state, dynamic, NULL, &air);
     if (!bough_is_ok(&status)) return status;
     v->reduced = bough_arena_take(arena, sizeof *v->reduced);
-    if (!v->reduced || !bough_air_tangent_average(arena, s, &x->group, &air)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
+    bough_air_tangent_average(arena, s, &x->group, &air);
     status = bough_aeroelastic_reduce(arena, s, x->coupled, &x->def, &x->group, &air,
                                       PER_MODE * (count + FREE_MOTIONS), v->reduced);
     if (!bough_is_ok(&status)) return status;
     v->pair = bough_arena_take(arena, (size_t)v->reduced->n_all * sizeof *v->pair);
-    if (!v->pair) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     return bough_aeroelastic_modes(arena, v->reduced, v->pair, &v->found);
 }
 
@@ -170,7 +159,6 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, double time, 
                           bough_vibration *v) {
     solution x = {0};
     v->mode = bough_arena_take(arena, (size_t)count * sizeof *v->mode);
-    if (!v->mode) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = prepare(arena, s, &x);
     if (!bough_is_ok(&status)) return status;
     define(time, &x);

@@ -237,7 +237,6 @@ static bough_status print_cost(const bough_simulation *s, bough_arena *arena) {
     const bough_assembly *a = s->master->assembly;
     printf("model_bytes: %zu\n", bough_arena_bytes(arena));
     double *rate = bough_arena_doubles(arena, (size_t)a->n_state + 1);
-    if (!rate) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {
         if (a->member[i]->opaque) continue;
         double time = derivative_time(s->master->coupling, i, rate);

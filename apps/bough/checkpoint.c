@@ -92,12 +92,11 @@ static void find_fingerprints(bough_job *job) {
     for (int i = 0; i < job->options->n_set; i++) bough_mix_text(&c->input, job->options->set[i]);
 }
 
-static bough_status take_memory(bough_job *job) {
+static void take_memory(bough_job *job) {
     bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
     take_job(job, &measure);
     job->checkpoint.size = measure.used;
     job->checkpoint.copy = bough_arena_take(job->arena, measure.used);
-    return job->checkpoint.copy ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
 }
 
 // -- reading --------------------------------------------------------------------------------------
@@ -165,8 +164,8 @@ bough_status bough_checkpoint_open(bough_job *job) {
     if (!o->checkpoint && !o->resume) return bough_ok();
     bough_status status = o->checkpoint ? read_interval(o->checkpoint, &c->interval) : bough_ok();
     if (bough_is_ok(&status) && o->checkpoint) status = check_interval(job, c->interval);
-    if (bough_is_ok(&status)) status = take_memory(job);
     if (!bough_is_ok(&status)) return status;
+    take_memory(job);
     find_fingerprints(job);
     return o->resume ? resume(job) : status;
 }

@@ -331,7 +331,6 @@ bough_status bough_verb_export(bough_arena *arena, const bough_options *options)
     status = place_files(&x);
     make_token(&x);
     const char *folder = bough_out_folder(arena, &named);
-    if (!folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     char path[BOUGH_PATH_MAX];
     if (bough_is_ok(&status)) status = bough_folder_make(folder);
     if (bough_is_ok(&status)) status = bough_folder_path(folder, "bough.fmu", path);

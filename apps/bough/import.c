@@ -15,7 +15,6 @@ bough_status bough_verb_import(bough_arena *arena, const bough_options *options)
     bough_options named = *options; // the folder's name comes from the model's
     named.operand = options->second;
     const char *folder = bough_out_folder(arena, &named);
-    if (!folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     const bough_import_options given = {options->wind, options->controller, options->clamp_base};
     bough_status status = windio
                               ? bough_import_windio(options->second, folder, &given, stdout)

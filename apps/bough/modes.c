@@ -150,7 +150,6 @@ bough_status bough_verb_modes(bough_arena *arena, const bough_options *options) 
     }
     const char *folder = bough_out_folder(arena, options);
     rod_modes *rods = bough_arena_take(arena, (size_t)s->n_rod * sizeof *rods);
-    if (!rods || !folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     status = solve_all(arena, s, rods);
     if (bough_is_ok(&status)) status = bough_folder_make(folder);
     for (int k = 0; k <= (s->scene->modes.shapes ? 1 : 0) && bough_is_ok(&status); k++) {

@@ -49,7 +49,6 @@ static int count_values(bough_arena *arena, const char *list) {
 static bough_status read_points(bough_arena *arena, const bough_options *options, bough_sweep *s) {
     s->n_key = options->n_sweep;
     s->key = bough_arena_take(arena, (size_t)s->n_key * sizeof *s->key);
-    if (!s->key) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < s->n_key; k++) {
         const char *text = options->sweep[k], *list = strchr(text, '=');
         int n = list ? count_values(arena, list + 1) : 0;
@@ -64,7 +63,6 @@ static bough_status read_points(bough_arena *arena, const bough_options *options
         s->n_point = n;
         if (k == 0) s->value = bough_arena_take(arena, (size_t)s->n_key * (size_t)n * sizeof *s->value);
         char *key = bough_arena_take(arena, (size_t)(list - text) + 1);
-        if (!key || !s->value) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
         snprintf(key, (size_t)(list - text) + 1, "%s", text);
         s->key[k] = key;
         list++;
@@ -72,20 +70,18 @@ static bough_status read_points(bough_arena *arena, const bough_options *options
     }
     s->x = bough_arena_doubles(arena, (size_t)s->n_point);
     s->speed = bough_arena_doubles(arena, (size_t)s->n_point);
-    return s->x && s->speed ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    return bough_ok();
 }
 
 static bough_status set_point(bough_arena *arena, const bough_options *options, const bough_sweep *s,
                               int point, bough_options *at) {
     *at = *options;
     at->set = bough_arena_take(arena, (size_t)(options->n_set + s->n_key) * sizeof *at->set);
-    if (!at->set) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < options->n_set; k++) at->set[k] = options->set[k];
     for (int k = 0; k < s->n_key; k++) {
         const char *value = s->value[k * s->n_point + point];
         size_t size = strlen(s->key[k]) + strlen(value) + 2;
         char *text = bough_arena_take(arena, size);
-        if (!text) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
         snprintf(text, size, "%s=%s", s->key[k], value);
         at->set[at->n_set++] = text;
     }
@@ -121,13 +117,12 @@ static int find_line(tracks *t, const double *shape, bough_sweep *s) {
     return t->line[best];
 }
 
-static bool take_tracks(bough_arena *arena, int count, int n_state, tracks *t) {
+static tracks take_tracks(bough_arena *arena, int count, int n_state) {
     size_t n = (size_t)count;
-    *t = (tracks){.n_state = n_state,
-                  .line = bough_arena_take(arena, n * sizeof *t->line),
-                  .taken = bough_arena_take(arena, n * sizeof *t->taken),
-                  .shape = bough_arena_doubles(arena, 2 * n * (size_t)n_state)};
-    return t->line && t->taken && t->shape;
+    return (tracks){.n_state = n_state,
+                    .line = bough_arena_take(arena, n * sizeof(int)),
+                    .taken = bough_arena_take(arena, n * sizeof(bool)),
+                    .shape = bough_arena_doubles(arena, 2 * n * (size_t)n_state)};
 }
 
 // The point's modes into the sweep, and its shapes to `now`.
@@ -173,9 +168,8 @@ static bough_status solve_point(bough_arena *keep, const bough_options *options,
         tracks *before = &track[point % 2], *now = &track[(point + 1) % 2];
         if (point == 0) {
             s->mode = bough_arena_take(keep, (size_t)(count * s->n_point) * sizeof *s->mode);
-            bool taken = take_tracks(keep, count, n_state, before) &&
-                         take_tracks(keep, count, n_state, now) && s->mode;
-            if (!taken) status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+            *before = take_tracks(keep, count, n_state);
+            *now = take_tracks(keep, count, n_state);
         } else if (n_state != before->n_state || v.found > s->n_point * count - s->n_mode) {
             status = bough_fail(BOUGH_INVALID, "--sweep cannot change the bodies, their mesh or the "
                                                "count of modes");
@@ -233,7 +227,6 @@ bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options)
     bough_sweep s = {0};
     tracks track[2] = {{0}};
     const char *folder = bough_out_folder(arena, options);
-    if (!folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = read_points(arena, options, &s);
     if (!bough_is_ok(&status)) return status;
     printf("%4s %12s %12s %11s  %-12s %-8s pattern\n", "line", "frequency", "damped", "damping",

@@ -130,7 +130,6 @@ bough_status bough_modes_whole(bough_arena *arena, const bough_options *options,
                                bough_simulation *s) {
     bough_vibration v;
     const char *folder = bough_out_folder(arena, options);
-    if (!folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (s->master->assembly->n_state == 0) {
         return bough_fail(BOUGH_INVALID, "%.200s: no body of the scene can move or bend", s->scene->file);
     }

@@ -15,7 +15,7 @@ bough_status bough_open(bough_arena *arena, const bough_options *options,
                         bough_simulation **simulation);
 
 // The folder for results: as the options say, else out/ and the operand's file name without its
-// extension. NULL when memory is exhausted.
+// extension.
 const char *bough_out_folder(bough_arena *arena, const bough_options *options);
 
 #endif

@@ -165,9 +165,6 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
     *options = (bough_options){.set = bough_arena_take(arena, (size_t)argc * sizeof(char *)),
                                .sweep = bough_arena_take(arena, (size_t)argc * sizeof(char *)),
                                .operands = bough_arena_take(arena, (size_t)argc * sizeof(char *))};
-    if (!options->set || !options->sweep || !options->operands) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the arguments");
-    }
     struct option list[N_ROW + 2] = {{0}};
     list_options(syntax, list);
     bough_status status = bough_ok();

@@ -47,7 +47,6 @@ static void record(bough_job *job) {
 
 static bough_status open_vertices(bough_job *job) {
     bough_polyline *body = bough_shape_bodies(job->arena, &job->shape);
-    if (!body) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_vertices_def def = {.folder = job->folder,
                               .n_body = job->shape.n_line,
                               .body = body,
@@ -91,7 +90,6 @@ static bough_status clean(const bough_job *job) {
 // What an earlier run has left stays until this one can replace it; of its checkpoint nothing does.
 static bough_status open_results(bough_job *job) {
     job->folder = bough_out_folder(job->arena, job->options);
-    if (!job->folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_status status = bough_checkpoint_open(job);
     if (bough_is_ok(&status)) status = bough_folder_make(job->folder);
     if (bough_is_ok(&status)) status = bough_lock_folder(job->arena, job->folder);
@@ -123,7 +121,6 @@ bough_status bough_job_build(bough_job *job) {
     record(job);
     size_t n = (size_t)job->recorded.count;
     job->statistics = bough_arena_take(job->arena, (n + 1) * sizeof *job->statistics);
-    if (!job->statistics) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     status = bough_error_shares_create(job->arena, &job->run, scene->simulation.output.interval,
                                        &job->shares);
     job->build_s = bough_wall_clock() - began;

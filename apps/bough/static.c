@@ -130,7 +130,6 @@ static bough_status write_channels(bough_arena *arena, bough_simulation *s, cons
     bough_status status = bough_simulation_channels(s, &channels);
     if (!bough_is_ok(&status)) return status;
     double *value = bough_arena_doubles(arena, (size_t)channels.count + 1);
-    if (!value) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     bough_simulation_update(s);
     bough_channels_sample(&channels, time, value);
     char path[BOUGH_PATH_MAX];

@@ -24,7 +24,6 @@ bough_status bough_verb_study(bough_arena *arena, const bough_options *options) 
                                .quiet = options->quiet,
                                .stop = bough_stop_requested,
                                .stream = stdout};
-    if (!how.folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!(options->parts > 0) && !study->load_set) { // parts and load sets share a folder
         status = bough_folder_make(how.folder);
         if (bough_is_ok(&status)) status = bough_lock_folder(arena, how.folder);

@@ -31,7 +31,6 @@ bough_status bough_verb_wind(bough_arena *arena, const bough_options *options) {
                           "ntm', etm or ewm makes it", s->scene->file);
     }
     const char *folder = bough_out_folder(arena, options);
-    if (!folder) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     const bough_wind_box *box = wind->box;
     printf("points: %d x %d, %.6g m apart, lowest at %.6g m\n", box->n_z, box->n_y, box->dz,
            box->bottom);

@@ -73,7 +73,6 @@ static bool read_column(bough_schema_reader *r, const bough_schema *row, const b
         return false;
     }
     char *text = bough_arena_string(r->arena, head->text), why[160];
-    if (text == NULL) return false;
     char *space = strchr(text, ' ');
     if (space != NULL) *space = '\0';
     *name = *head;
@@ -102,7 +101,6 @@ static bool read_columns(bough_schema_reader *r, const bough_schema *row, const 
     c->n = heads->n;
     c->key = bough_arena_take(r->arena, (size_t)c->n * sizeof *c->key);
     c->unit = bough_arena_take(r->arena, (size_t)c->n * sizeof *c->unit);
-    if (names == NULL || c->key == NULL || c->unit == NULL) return false;
     bool good = true;
     for (int i = 0; i < c->n; i++) {
         c->key[i] = &names[i];
@@ -143,7 +141,7 @@ static void read_compact_rows(bough_schema_reader *r, const bough_key *key, cons
                               const columns *c, void *item) {
     char *items = bough_schema_items(r, key, rows, key->of->size);
     bough_node *mapping = bough_arena_take(r->arena, (size_t)rows->n * sizeof *mapping);
-    if (items == NULL || mapping == NULL) return;
+    if (items == NULL) return;
     for (int i = 0; i < rows->n; i++) {
         size_t length = bough_schema_push(r, "[%d]", i);
         if (row_mapping(r, rows->value[i], c, &mapping[i])) {
@@ -186,7 +184,7 @@ const char *bough_schema_path(bough_schema_reader *r, const char *name) {
     if (name[0] == '/') return name;
     size_t size = strlen(r->directory) + strlen(name) + 1;
     char *path = bough_arena_take(r->arena, size);
-    if (path != NULL) snprintf(path, size, "%s%s", r->directory, name);
+    snprintf(path, size, "%s%s", r->directory, name);
     return path;
 }
 
@@ -194,7 +192,6 @@ const char *bough_schema_path(bough_schema_reader *r, const char *name) {
 static void *load(bough_schema_reader *r, const bough_schema *schema, const char *path) {
     struct bough_schema_file *file = bough_arena_take(r->arena, sizeof *file);
     void *item = bough_arena_take(r->arena, schema->size);
-    if (file == NULL || item == NULL) return NULL;
     *file = (struct bough_schema_file){r->files, path, schema, item};
     r->files = file;
     bough_node *root = bough_text_read(r->arena, path, r->errors);
@@ -214,7 +211,6 @@ static void read_file(bough_schema_reader *r, const bough_schema *schema, const 
         return;
     }
     const char *path = bough_schema_path(r, node->text);
-    if (path == NULL) return;
     for (struct bough_schema_file *f = r->files; f != NULL; f = f->next) {
         if (f->schema != schema || strcmp(f->path, path) != 0) continue;
         memcpy(field, f->item, schema->size);
@@ -227,8 +223,7 @@ static void read_file(bough_schema_reader *r, const bough_schema *schema, const 
         return;
     }
     fclose(stream);
-    void *item = load(r, schema, path);
-    if (item != NULL) memcpy(field, item, schema->size);
+    memcpy(field, load(r, schema, path), schema->size);
 }
 
 // -- mappings -------------------------------------------------------------------------------------
@@ -344,7 +339,7 @@ static void read_mapping(bough_schema_reader *r, const bough_schema *schema, con
             unknown_key(r, schema, node->key[i], node->key[i]->text);
         }
     }
-    bool good = errors_so_far(r) == before && !bough_arena_exhausted(r->arena);
+    bool good = errors_so_far(r) == before;
     if (schema->check != NULL && node != NULL && good) {
         schema->check(r, item);
     }

@@ -35,20 +35,20 @@ static bough_status read_bytes(bough_arena *arena, const char *path, char **text
     size_t size = 0, got = 1;
     bough_status status = bough_ok();
     FILE *out = open_memstream(&bytes, &size);
+    if (!out) bough_arena_leave(arena);
     char part[4096];
-    for (size_t sum = 0; out && got > 0 && sum <= MOST_BYTES; sum += got) {
+    for (size_t sum = 0; got > 0 && sum <= MOST_BYTES; sum += got) {
         got = fread(part, 1, sizeof part, file);
         fwrite(part, 1, got, out);
     }
     if (ferror(file)) status = bough_fail(BOUGH_INVALID, "cannot read '%.250s'", path);
     fclose(file);
-    if (!out || fclose(out) != 0) status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (fclose(out) != 0) bough_arena_leave(arena);
     if (bough_is_ok(&status) && (size > MOST_BYTES || memchr(bytes, 0, size))) {
         status = bough_fail(BOUGH_INVALID, "'%.250s' is not a text file, or is larger than 16 MB", path);
     }
     if (bough_is_ok(&status)) *text = bough_arena_string(arena, bytes);
     free(bytes);
-    if (bough_is_ok(&status) && !*text) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     return status;
 }
 
@@ -74,10 +74,6 @@ bough_deck *bough_deck_open(bough_arena *arena, const char *path, bough_status *
     bough_deck *deck = bough_arena_take(arena, sizeof *deck);
     const char **line = bough_arena_take(arena, (size_t)n * sizeof *line);
     const char *copy = bough_arena_string(arena, path);
-    if (!deck || !line || !copy) {
-        *status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-        return NULL;
-    }
     *deck = (bough_deck){.path = copy, .line = line, .n = n, .arena = arena, .status = status};
     for (int i = 0; i < n; i++) {
         line[i] = text;
@@ -383,8 +379,7 @@ const double *bough_deck_table(const bough_deck *deck, const char *const *column
         return NULL;
     }
     double *table = bough_arena_doubles(deck->arena, (size_t)n * n_column);
-    if (!table) *deck->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    for (int i = 0; table && i < n && bough_is_ok(deck->status); i++) {
+    for (int i = 0; i < n && bough_is_ok(deck->status); i++) {
         do
             line++;
         while (line < deck->n && skipped(deck->line[line]));

@@ -25,7 +25,6 @@ const bough_node *bough_entry_read(bough_draft *d, const char *path) {
     const bough_node *root = bough_text_read(d->arena, path, &errors);
     if (root) return root;
     const bough_error *e = errors.n > 0 ? errors.item : NULL;
-    if (!e) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (e && e->line == 0) *d->status = bough_fail(BOUGH_INVALID, "%.200s: %s", e->file, e->text);
     if (e && e->line > 0) {
         *d->status =
@@ -134,8 +133,7 @@ const double *bough_entry_numbers(bough_draft *d, const bough_node *from, const 
     const bough_node *node = bough_entry_need(d, from, path);
     if (!node || !is_list(d, node, path, *n)) return NULL;
     double *value = bough_arena_doubles(d->arena, (size_t)node->n);
-    if (!value) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    for (int i = 0; value && i < node->n; i++)
+    for (int i = 0; i < node->n; i++)
         value[i] = number_of(d, node->value[i], path);
     *n = node->n;
     return bough_is_ok(d->status) ? value : NULL;

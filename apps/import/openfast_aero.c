@@ -36,7 +36,6 @@ static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
     }
     if (!bough_is_ok(o->draft.status)) return NULL;
     double *table = bough_arena_doubles(o->draft.arena, (size_t)POLAR * (size_t)*n), row[MOST_COLUMNS];
-    if (!table) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < *n && bough_is_ok(o->draft.status); i++) {
         bough_deck_row(deck, &line, "a row of the polar", width, row);
         for (int k = 0; k < POLAR; k++)
@@ -211,8 +210,7 @@ void bough_openfast_aero_tables(bough_openfast *o) {
         return;
     }
     char(*name)[NAME] = bough_arena_take(o->draft.arena, BOUGH_MOST_AIRFOILS * sizeof *name);
-    if (!name) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    int n = name ? put_polars(o, name) : 0;
+    int n = put_polars(o, name);
     bough_deck *deck = bough_openfast_open(o, o->aero, "ADBlFile(1)|ADBlFile1");
     if (bough_is_ok(o->draft.status)) put_elements(o, deck, name, n);
 }
@@ -312,9 +310,8 @@ static void put_column(FILE *file, const char *key, const double *row, int colum
 // The rows above the ground; from the first below it on the ground's.
 static const double *above_ground(bough_openfast *o, const double *row, int *n) {
     double *kept = bough_arena_doubles(o->draft.arena, 3 * ((size_t)*n + 1));
-    if (!kept) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     int m = 0;
-    for (int i = 0; kept && i < *n; i++) {
+    for (int i = 0; i < *n; i++) {
         const double *r = row + 3 * i;
         if (i + 1 < *n && r[3] <= 0) continue;
         double height = fmax(r[0], 0);
@@ -326,7 +323,7 @@ static const double *above_ground(bough_openfast *o, const double *row, int *n) 
         const double own[] = {height, r[1], r[2]};
         memcpy(kept + 3 * m++, own, sizeof own);
     }
-    if (kept && m == 1) { // one for the whole height
+    if (m == 1) { // one for the whole height
         const double own[] = {fmax(o->tower_top, kept[0] + 1), kept[1], kept[2]};
         memcpy(kept + 3 * m++, own, sizeof own);
     }

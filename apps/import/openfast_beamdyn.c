@@ -140,7 +140,6 @@ static const double *modal_damping(bough_openfast *o, const bough_deck *deck, co
     int n = bough_deck_whole(deck, "n_modes", 1, MOST), line = bough_deck_line(deck, "n_modes") + 1;
     double ratio[2] = {0}, *mu = bough_arena_doubles(o->draft.arena, 6);
     bough_deck_numbers(deck, &line, "zeta", n < 2 ? 1 : 2, ratio);
-    if (!mu) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!bough_is_ok(o->draft.status)) return NULL;
     double flap = 2 * ratio[0] / bough_section_frequency(b->n, b->span, b->flap, b->mass);
     double edge = 2 * ratio[n > 1] / bough_section_frequency(b->n, b->span, b->edge, b->mass);
@@ -166,14 +165,11 @@ static void put_damping(bough_openfast *o, const bough_deck *deck, const beam *b
     fputs("  # s\n", o->draft.file[BOUGH_IMPORT_BLADE]);
 }
 
-static bool take_beam(bough_openfast *o, beam *b, int n) {
+static void take_beam(bough_openfast *o, beam *b, int n) {
     b->span = bough_arena_doubles(o->draft.arena, 4 * (size_t)n);
-    if (!b->span) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    if (!b->span) return false;
     b->flap = b->span + n;
     b->edge = b->flap + n;
     b->mass = b->edge + n;
-    return true;
 }
 
 void bough_openfast_beamdyn(bough_openfast *o) {
@@ -189,7 +185,7 @@ void bough_openfast_beamdyn(bough_openfast *o) {
     o->blade_length = p[n - 1].z;
     fprintf(o->draft.file[BOUGH_IMPORT_BLADE], "length: %.10g\n", o->blade_length);
     beam b = {0};
-    if (!take_beam(o, &b, MOST + 2)) return;
+    take_beam(o, &b, MOST + 2);
     put_stations(o, blade, p, n, &b);
     if (bough_is_ok(o->draft.status)) put_damping(o, blade, &b);
 }

@@ -97,8 +97,6 @@ static void extend(bough_openfast *o, const bough_deck *deck, slender *b, const 
     if (!b->row || b->n < 1) return;
     size_t width = (size_t)b->width;
     double *row = bough_arena_doubles(o->draft.arena, width * ((size_t)b->n + 2));
-    if (!row) *o->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    if (!row) return;
     const double *last = b->row + width * (size_t)(b->n - 1);
     double first = b->n == 1 ? 1 : b->row[0], end = b->n == 1 ? 0 : last[0];
     int before = first > close, after = end < 1 - close;
@@ -122,7 +120,7 @@ static void extend(bough_openfast *o, const bough_deck *deck, slender *b, const 
 
 static void check_rows(const bough_deck *deck, const slender *b, const char *count, int second) {
     int line = bough_deck_line(deck, count);
-    for (int i = 0; b->row && i < b->n; i++) {
+    for (int i = 0; i < b->n; i++) {
         const double *r = &b->row[i * b->width];
         bool grows = i == 0 || r[0] > r[-b->width];
         if (grows && r[b->mass] > 0 && r[b->bending] > 0 && r[second] > 0) continue;

@@ -101,8 +101,7 @@ static void put_file(bough_openfast *o, bough_wind_form form, const char *path) 
 
 static void put_hawc(bough_openfast *o, const char *path) {
     bough_wind_box *box = bough_arena_take(o->draft.arena, sizeof *box);
-    bough_status status =
-        box ? read_hawc(o, box) : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    bough_status status = read_hawc(o, box);
     if (bough_is_ok(&status) && bough_is_ok(o->draft.status)) bough_wind_made(&o->draft, box, path);
     take_status(o, status);
 }

@@ -127,19 +127,16 @@ typedef struct network {
     double *right[3];  // (n_node) a copy of the loads
 } network;
 
-static bool take(bough_arena *arena, network *n) {
+static void take(bough_arena *arena, network *n) {
     size_t m = (size_t)n->n_node;
     n->x = bough_arena_doubles(arena, m);
     n->y = bough_arena_doubles(arena, m);
     n->area = bough_arena_doubles(arena, m);
     n->matrix = bough_arena_doubles(arena, m * m);
-    bool good = n->x && n->y && n->area && n->matrix;
     for (int k = 0; k < 3; k++) {
         n->load[k] = bough_arena_doubles(arena, m);
         n->right[k] = bough_arena_doubles(arena, m);
-        good = good && n->load[k] && n->right[k];
     }
-    return good;
 }
 
 // Nodes move to the middles of their walls, in the mean of these by length.
@@ -261,7 +258,7 @@ bough_status bough_wall_section(bough_arena *arena, int n_node, const double *x,
     network n = {.n_node = n_node, .n_wall = n_wall};
     line *l = bough_arena_take(arena, (size_t)n_wall * sizeof *l);
     double *normal = bough_arena_doubles(arena, 2 * (size_t)n_node);
-    if (!l || !normal || !take(arena, &n)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    take(arena, &n);
     double axial[6] = {0}, inertia[6] = {0}, compliance[9];
     for (int w = 0; w < n_wall; w++) {
         l[w] = line_of(&wall[w], x, y);

@@ -22,11 +22,12 @@ static bough_status open_data(const char *path, FILE **file) {
 }
 
 // Values between −32767 and 32767 that a component's velocities are stored as.
-static bough_status take_values(bough_arena *arena, bough_wind_box *box, int16_t **value) {
+static int16_t *take_values(bough_arena *arena, bough_wind_box *box) {
     int64_t n = 3 * (int64_t)box->n_z * box->n_y * box->n_time;
-    *value = n <= 3 * (int64_t)MOST_POINTS ? bough_arena_take(arena, (size_t)n * sizeof **value) : NULL;
-    box->value = *value;
-    return *value ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
+    if (n > 3 * (int64_t)MOST_POINTS) bough_arena_leave(arena);
+    int16_t *value = bough_arena_take(arena, (size_t)n * sizeof *value);
+    box->value = value;
+    return value;
 }
 
 static size_t place_of(const bough_wind_box *box, int time, int z, int y, int component) {
@@ -217,9 +218,7 @@ static bough_status read_bladed(bough_arena *arena, FILE *file, const char *path
     }
     box->offset[0] = -h.mean / box->scale[0];
     finish(box, s->hub - s->offset, s->periodic);
-    int16_t *value;
-    bough_status status = take_values(arena, box, &value);
-    return bough_is_ok(&status) ? read_grid(file, path, &h, s, box, value) : status;
+    return read_grid(file, path, &h, s, box, take_values(arena, box));
 }
 
 bough_status bough_wind_bladed_read(bough_arena *arena, const char *path, bough_wind_box *box) {
@@ -255,7 +254,6 @@ static bough_status read_component(bough_arena *arena, const char *path, size_t 
     bough_status status = open_data(path, &file);
     if (!bough_is_ok(&status)) return status;
     *value = bough_arena_doubles(arena, n);
-    if (!*value) status = bough_fail(BOUGH_OUT_OF_MEMORY, "No memory for the wind.");
     uint32_t word = 0;
     for (size_t i = 0; i < n && bough_is_ok(&status); i++) {
         if (!read_words(file, &word, 1)) status = bad(path, "it ends before its last velocity");
@@ -331,8 +329,8 @@ bough_status bough_wind_hawc_read(bough_arena *arena, const bough_hawc_def *def,
                             .hub = def->height};
     finish(box, def->height, true);
     size_t n = (size_t)def->nx * (size_t)(def->ny * def->nz);
-    int16_t *value;
-    bough_status status = take_values(arena, box, &value);
+    int16_t *value = take_values(arena, box);
+    bough_status status = bough_ok();
     for (int c = 0; c < 3 && bough_is_ok(&status); c++) {
         double *from;
         status = read_component(arena, def->file[c], n, &from);

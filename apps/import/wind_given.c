@@ -36,8 +36,7 @@ bough_status bough_wind_given(bough_draft *d, bough_wind_form form, const char *
                               double diameter) {
     bough_wind_box *box = bough_arena_take(d->arena, sizeof *box);
     bough_wind_hub hub;
-    bough_status status = box ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    if (!box) return status;
+    bough_status status = bough_ok();
     switch (form) {
     case BOUGH_WIND_UNIFORM_FILE: status = bough_wind_hub_read(d->arena, path, &hub); break;
     case BOUGH_WIND_TURBSIM: status = bough_wind_box_read(d->arena, path, box); break;

@@ -27,7 +27,6 @@ static bough_curve read_coefficient(bough_windio *w, const bough_node *from, con
     bough_curve c = bough_entry_curve(&w->draft, from, names);
     double *x = bough_arena_doubles(w->draft.arena, (size_t)c.n + 2);
     double *y = bough_arena_doubles(w->draft.arena, (size_t)c.n + 2);
-    if (!x || !y) *w->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!x || !y || c.n == 0) return (bough_curve){0};
     double low = c.x[0] * w->degree, high = c.x[c.n - 1] * w->degree;
     if (low < -181 || high > 181) {
@@ -64,7 +63,6 @@ static void put_polar(bough_windio *w, const bough_curve *c, const char *name) {
     FILE *file = w->draft.file[BOUGH_IMPORT_POLARS];
     int n = 0;
     double *angle = bough_arena_doubles(w->draft.arena, (size_t)(c[0].n + c[1].n + c[2].n));
-    if (!angle) *w->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!bough_is_ok(w->draft.status)) return;
     for (int k = 0; k < 3; k++) {
         for (int i = 0; i < c[k].n; i++)

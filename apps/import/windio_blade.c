@@ -43,7 +43,6 @@ static matrices read_grid(bough_windio *w, const bough_node *from, const char *p
     if (m.node) m.grid = bough_entry_numbers(&w->draft, m.node, "grid", &m.n);
     if (!m.grid) return (matrices){0};
     m.entry = bough_arena_doubles(w->draft.arena, (size_t)ENTRIES * m.n);
-    if (!m.entry) *w->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!m.entry) return (matrices){0};
     for (int i = 0; i < ENTRIES * m.n; i++)
         m.entry[i] = 0;
@@ -138,7 +137,6 @@ static int union_of(bough_draft *d, const bough_curve *const *curve, int n_curve
     for (int c = 0; c < n_curve; c++)
         n += curve[c]->n;
     double *s = *share = bough_arena_doubles(d->arena, (size_t)n);
-    if (!s) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!s) return 0;
     s[0] = 0;
     s[1] = 1;
@@ -247,8 +245,7 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
 // The matrices of a row of stations.
 static matrices of_layup(bough_windio *w, const bough_layup *l, const double *from) {
     matrices m = {w->blade, l->n, l->share, bough_arena_doubles(w->draft.arena, ENTRIES * (size_t)l->n)};
-    if (!m.entry) *w->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    for (int k = 0; m.entry && k < l->n; k++) {
+    for (int k = 0; k < l->n; k++) {
         for (int i = 0; i < 6; i++) {
             for (int j = i; j < 6; j++)
                 m.entry[(size_t)bough_symmetric6_index(i, j) * l->n + k] = from[36 * k + 6 * i + j];

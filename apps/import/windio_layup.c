@@ -188,8 +188,7 @@ static bough_curve read_plies(parts *p, const bough_node *node, const bough_node
     bough_curve c = bough_entry_curve(d, node, "n_plies");
     double *thick = bough_arena_doubles(d->arena, (size_t)c.n + 1);
     double each = bough_entry_number(d, material, "ply_t");
-    if (!thick) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    for (int i = 0; thick && i < c.n; i++)
+    for (int i = 0; i < c.n; i++)
         thick[i] = each * c.y[i];
     return thick ? (bough_curve){c.node, c.n, c.x, thick} : (bough_curve){0};
 }
@@ -367,7 +366,6 @@ static int choose_shares(parts *p, double **share) {
     const double closest = 0.01, farthest = 1.0 / 30;
     double *all = bough_arena_doubles(p->w->draft.arena, MOST + 40);
     int n = 0, kept = 1;
-    if (!all) *p->w->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!all) return 0;
     for (int i = 0; i <= 30; i++)
         all[n++] = i * farthest;
@@ -393,7 +391,6 @@ void bough_windio_layup(bough_windio *w, bough_layup *to) {
     parts *p = bough_arena_take(d->arena, sizeof *p);
     section *s = bough_arena_take(d->arena, sizeof *s);
     *to = (bough_layup){0};
-    if (!p || !s) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!bough_is_ok(d->status)) return;
     p->w = w;
     read_parts(p);
@@ -401,7 +398,6 @@ void bough_windio_layup(bough_windio *w, bough_layup *to) {
     to->n = choose_shares(p, &to->share);
     to->stiffness = bough_arena_doubles(d->arena, 36 * (size_t)to->n);
     to->mass = bough_arena_doubles(d->arena, 36 * (size_t)to->n);
-    if (!to->stiffness || !to->mass) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < to->n && bough_is_ok(d->status); i++) {
         p->share = to->share[i];
         solve_station(p, s, to->stiffness + 36 * i, to->mass + 36 * i);

@@ -56,7 +56,6 @@ static points read_points(bough_windio *w, const bough_node *airfoil) {
     const double *y = x ? bough_entry_numbers(d, airfoil, "coordinates.y", &p.n) : NULL;
     p.x = bough_arena_doubles(d->arena, (size_t)p.n + 2);
     p.y = bough_arena_doubles(d->arena, (size_t)p.n + 2);
-    if (!p.x || !p.y) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (!y || !p.x || !p.y) return (points){0};
     memcpy(p.x, x, (size_t)p.n * sizeof(double));
     memcpy(p.y, y, (size_t)p.n * sizeof(double));
@@ -107,8 +106,7 @@ static void draw(const points *p, double *x, double *y) {
 const double *bough_windio_airfoils(bough_windio *w) {
     const bough_windio_shape *a = &w->outline;
     double *all = bough_arena_doubles(w->draft.arena, (size_t)a->n * 2 * POINTS);
-    if (!all) *w->draft.status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    for (int i = 0; all && i < a->n && bough_is_ok(w->draft.status); i++) {
+    for (int i = 0; i < a->n && bough_is_ok(w->draft.status); i++) {
         points p = read_points(w, a->place[i].airfoil);
         if (p.n > 0) draw(&p, all + (size_t)i * 2 * POINTS, all + (size_t)i * 2 * POINTS + POINTS);
     }

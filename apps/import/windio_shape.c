@@ -100,7 +100,6 @@ void bough_windio_shape_read(bough_windio *w) {
     bough_draft *d = &w->draft;
     bough_windio_shape *a = &w->outline;
     a->place = bough_arena_take(d->arena, MOST_AIRFOILS * sizeof *a->place);
-    if (!a->place) *d->status = bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     a->chord = bough_entry_curve(d, w->shape, "chord");
     a->twist = bough_entry_curve(d, w->shape, "twist");
     bool by_length = bough_entry(w->shape, "section_offset_y") || (w->second && !bough_entry(w->shape, "pitch_axis"));

@@ -15,7 +15,6 @@ static void *grown(bough_arena *arena, void *items, int count, int *capacity, si
     if (count < *capacity) return items;
     int wanted = *capacity ? 2 * *capacity : 16;
     void *larger = bough_arena_take(arena, (size_t)wanted * size);
-    if (!larger) return NULL;
     if (count) memcpy(larger, items, (size_t)count * size);
     *capacity = wanted;
     return larger;
@@ -24,7 +23,6 @@ static void *grown(bough_arena *arena, void *items, int count, int *capacity, si
 bough_status bough_channels_group(bough_channels *list, bough_channel_sample *sample, void *self) {
     bough_channel_group *group =
         grown(list->arena, list->group, list->group_count, &list->group_capacity, sizeof *group);
-    if (!group) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the output channels");
     list->group = group;
     list->group[list->group_count++] =
         (bough_channel_group){.sample = sample, .self = self, .first = list->count};
@@ -42,18 +40,16 @@ static int *slot_of(const bough_channels *list, const char *name) {
     return slot;
 }
 
-static bool make_room(bough_channels *list) {
+static void make_room(bough_channels *list) {
     int capacity = list->capacity;
     bough_channel *channel =
         grown(list->arena, list->channel, list->count, &capacity, sizeof *channel);
-    if (!channel || capacity == list->capacity) return channel != NULL;
+    if (capacity == list->capacity) return;
     int *slot = bough_arena_take(list->arena, 2 * (size_t)capacity * sizeof *slot);
-    if (!slot) return false;
     list->channel = channel;
     list->slot = slot;
     list->capacity = capacity;
     for (int i = 0; i < list->count; i++) *slot_of(list, channel[i].name) = i + 1;
-    return true;
 }
 
 static bool is_word(const char *text, size_t size) {
@@ -78,9 +74,7 @@ bough_status bough_channels_add(bough_channels *list, const char *unit, const ch
     if (bough_channels_find(list, name) >= 0) {
         return bough_fail(BOUGH_INVALID, "two output channels are named '%s': rename a body", name);
     }
-    if (!make_room(list)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the output channels");
-    }
+    make_room(list);
     bough_channel *channel = &list->channel[list->count++];
     memcpy(channel->name, name, BOUGH_CHANNEL_NAME);
     memcpy(channel->unit, unit, strlen(unit) + 1);
@@ -131,11 +125,9 @@ bough_status bough_channels_choose(const bough_channels *all, int n, const char 
     if (n == 0) return bough_ok();
     bough_arena *arena = all->arena;
     choice *x = bough_arena_take(arena, sizeof *x);
-    if (!x) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the output channels");
     x->all = all;
     x->from = bough_arena_take(arena, ((size_t)all->count + 1) * sizeof *x->from);
     x->value = bough_arena_doubles(arena, (size_t)all->count + 1);
-    if (!x->from || !x->value) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the channels");
     *chosen = bough_channels_start(arena);
     bough_status status = bough_channels_group(chosen, sample_choice, x);
     for (int k = 0; k < n && bough_is_ok(&status); k++) status = check_pattern(all, pattern[k]);

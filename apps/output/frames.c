@@ -39,13 +39,11 @@ static bough_status create(bough_frames *f) {
 bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def,
                                bough_frames **frames) {
     bough_frames *f = bough_arena_take(arena, sizeof *f);
-    if (!f) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for frames");
     f->def = *def;
     for (int k = 0; k < def->n_line; k++) f->n_point += def->line[k].n_point;
     f->point = bough_arena_doubles(arena, 9 * (size_t)f->n_point);
     f->force = f->point + 3 * f->n_point;
     f->moment = f->force + 3 * f->n_point;
-    if (!f->point) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for frames");
     char folder[BOUGH_PATH_MAX];
     bough_status status = bough_folder_path(def->folder, "frames", folder);
     if (bough_is_ok(&status)) status = bough_folder_make(folder);

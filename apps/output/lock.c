@@ -61,7 +61,6 @@ static bough_status take(lock *l, const char *folder) {
 
 bough_status bough_lock_folder(bough_arena *arena, const char *folder) {
     lock *l = bough_arena_take(arena, sizeof *l);
-    if (!l) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     l->file = -1;
     bough_arena_on_destroy(arena, release, l);
     bough_status status = bough_folder_path(folder, "running.lock", l->path);

@@ -100,13 +100,12 @@ static bough_status create(bough_recorder *r, const bough_recorder_def *def) {
     return write_head(r, def->title);
 }
 
-static bool take_memory(bough_recorder *r, bough_arena *arena) {
+static void take_memory(bough_recorder *r, bough_arena *arena) {
     size_t count = (size_t)r->channels->count;
     r->buffer = bough_arena_take(arena, BUFFER);
     r->row_length = (long)(count + 1) * COLUMN + 1;
     r->line = bough_arena_take(arena, (size_t)r->row_length + 1);
     r->value = bough_arena_doubles(arena, count + 1);
-    return r->path && r->buffer && r->line && r->value;
 }
 
 bough_status bough_recorder_open(bough_arena *arena, const bough_recorder_def *def,
@@ -115,13 +114,9 @@ bough_status bough_recorder_open(bough_arena *arena, const bough_recorder_def *d
     bough_status status = bough_folder_path(def->folder, "channels.out", path);
     if (!bough_is_ok(&status)) return status;
     bough_recorder *r = bough_arena_take(arena, sizeof *r);
-    if (!r) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the recorder");
     r->channels = def->channels;
     r->path = bough_arena_string(arena, path);
-    if (!take_memory(r, arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory to record %d channels",
-                          def->channels->count);
-    }
+    take_memory(r, arena);
     bough_arena_on_destroy(arena, release, r);
     *recorder = r;
     return def->kept.count > 0 ? reopen(r, def) : create(r, def);

@@ -142,7 +142,6 @@ bough_status bough_vertices_open(bough_arena *arena, const bough_vertices_def *d
     for (int i = 0; i < def->n_body; i++) points += (size_t)def->body[i].n_point;
     series *each = bough_arena_take(arena, 4 * bodies * sizeof *each);
     double *x = bough_arena_doubles(arena, 18 * points);
-    if (!v || !each || !x) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for vertices");
     *v = (bough_vertices){.def = *def, .file = -1, .position = each, .rotation = each + bodies,
                           .force = each + 2 * bodies, .moment = each + 3 * bodies,
                           .x = x, .r = x + 3 * points, .f = x + 12 * points, .m = x + 15 * points};

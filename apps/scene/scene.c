@@ -6,7 +6,6 @@
 // The directory of a path, with its slash; "" for the current one.
 static const char *directory_of(bough_arena *arena, const char *path) {
     char *copy = bough_arena_string(arena, path);
-    if (copy == NULL) return "";
     char *slash = strrchr(copy, '/');
     copy[slash == NULL ? 0 : slash - copy + 1] = '\0';
     return copy;

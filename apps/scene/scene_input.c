@@ -24,7 +24,6 @@ static void give_table(bough_arena *arena, bough_scene_load *load, double value)
     load->n_time = 2;
     load->times = bough_arena_doubles(arena, 2);
     load->values = bough_arena_doubles(arena, 2);
-    if (load->times == NULL || load->values == NULL) return;
     load->times[1] = 1;
     load->values[0] = load->values[1] = value;
 }

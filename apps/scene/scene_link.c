@@ -23,13 +23,11 @@ static int compare_names(const void *a, const void *b) {
     return names != 0 ? names : (x > y) - (x < y);
 }
 
-static bool sort_names(bough_schema_reader *r, bough_scene *s) {
+static void sort_names(bough_schema_reader *r, bough_scene *s) {
     s->by_name = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *s->by_name);
-    if (s->by_name == NULL) return false;
     for (int i = 0; i < s->n_body; i++)
         s->by_name[i] = &s->body[i];
     qsort(s->by_name, (size_t)s->n_body, sizeof *s->by_name, compare_names);
-    return true;
 }
 
 // The first of that name.
@@ -50,7 +48,6 @@ static const char *nearest_body(bough_schema_reader *r, const bough_scene *s, co
                                 const char *name) {
     if (r->errors->dropped > 0) return NULL; // a hostile file: spelling costs time
     const char **names = bough_arena_take(r->arena, ((size_t)s->n_body + 1) * sizeof *names);
-    if (names == NULL) return NULL;
     for (int i = 0; i < s->n_body; i++)
         names[i] = s->body[i].name;
     names[s->n_body] = "ground";
@@ -173,7 +170,6 @@ static void report_loop(bough_schema_reader *r, const bough_scene *s, int start)
 static bool order_bodies(bough_schema_reader *r, bough_scene *s) {
     s->order = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *s->order);
     bool *placed = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *placed);
-    if (s->order == NULL || placed == NULL) return false;
     int n = 0;
     for (int before = -1; n > before;) {
         before = n;
@@ -208,7 +204,6 @@ static bool has_mass(const bough_scene_body *b) {
 // Every joint that moves must carry something with mass, or no motion is defined. Needs the order.
 static void check_moving_mass(bough_schema_reader *r, const bough_scene *s) {
     bool *carries = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *carries);
-    if (carries == NULL) return;
     for (int k = s->n_body - 1; k >= 0; k--) {
         int i = s->order[k];
         const bough_scene_body *b = &s->body[i];
@@ -440,11 +435,10 @@ static void choose_coupling(bough_scene_simulation *s) {
 }
 
 void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
-    if (!sort_names(r, scene)) return;
+    sort_names(r, scene);
     choose_coupling(&scene->simulation);
     check_times(r, scene);
     link_bodies(r, scene);
-    if (bough_arena_exhausted(r->arena)) return;
     for (int i = 0; i < scene->n_load; i++) {
         bough_link_at(r, "loads[%d]", i);
         if (scene->load[i].node != NULL) link_load(r, scene, &scene->load[i]);
@@ -475,7 +469,6 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
     }
     bough_link_fmus(r, scene);
     bough_link_turbine(r, scene);
-    if (bough_arena_exhausted(r->arena)) return;
     bough_link_aero(r, scene);
     bough_link_control(r, scene);
     if (r->errors->n == 0) bough_link_inputs(r, scene);

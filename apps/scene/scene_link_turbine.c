@@ -51,7 +51,6 @@ void bough_link_turbine(bough_schema_reader *r, bough_scene *s) {
         bough_schema_error(r, rotor, "rotor", "the joint of '%s' must be revolute", t->rotor_name);
     }
     t->blade = bough_arena_take(r->arena, (size_t)t->n_blade * sizeof *t->blade);
-    if (t->blade == NULL) return;
     for (int k = 0; k < t->n_blade; k++)
         link_blade(r, s, k);
 }
@@ -94,7 +93,6 @@ static void link_polars(bough_schema_reader *r, bough_scene *s) {
     const bough_scene_polars *polars = &s->aero.polars;
     if (polars->n_polar == 0) return;
     const char **names = bough_arena_take(r->arena, (size_t)polars->n_polar * sizeof *names);
-    if (names == NULL) return;
     for (int k = 0; k < polars->n_polar; k++)
         names[k] = polars->polar[k].name;
     for (int i = 0; i < s->aero.blade.n_station; i++) {

@@ -58,5 +58,5 @@ void bough_scene_take_part(bough_schema_reader *r, const bough_node *given, cons
     if (s->n_station == 1) return; // uniform
     bough_scene_station *to =
         bough_arena_take(r->arena, ((size_t)s->n_station + 2) * sizeof *to);
-    if (to != NULL) cut(s, part, to);
+    cut(s, part, to);
 }

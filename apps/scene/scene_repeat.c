@@ -10,7 +10,6 @@ enum { MOST_BODIES = 10000, MOST_SEGMENTS = 1000000 };
 
 static const char *numbered(bough_arena *arena, const char *name, int number) {
     char text[160];
-    if (name == NULL) return NULL;
     snprintf(text, sizeof text, "%.140s%d", name, number);
     return bough_arena_string(arena, text);
 }
@@ -36,8 +35,8 @@ void bough_scene_repeat(bough_schema_reader *r, bough_scene *s) {
     bough_arena *arena = r->arena;
     int n = s->n_body, next = n;
     size_t total = count_bodies(r, s);
-    bough_scene_body *body = total ? bough_arena_take(arena, total * sizeof *body) : NULL;
-    if (body == NULL) return;
+    if (total == 0) return;
+    bough_scene_body *body = bough_arena_take(arena, total * sizeof *body);
     memcpy(body, s->body, (size_t)n * sizeof *body);
     for (int i = 0; i < n; i++) {
         if (bough_node_find(body[i].node, "repeat") == NULL) continue;

@@ -41,8 +41,7 @@ static bough_node *parse_value(replacement *s, const char *text) {
     for (int i = before; i < s->errors->n; i++) {
         bough_error *e = &s->errors->item[i];
         e->line = e->column = 0;
-        const char *path = bough_arena_string(s->arena, s->path);
-        e->path = path == NULL ? "" : path;
+        e->path = bough_arena_string(s->arena, s->path);
     }
     if (value != NULL) forget_position(value);
     return value;
@@ -53,7 +52,6 @@ static bough_node *copy_container(const replacement *s, const bough_node *node) 
     bough_node *copy = bough_arena_take(s->arena, sizeof *copy);
     size_t room = (size_t)node->n + 1;
     bough_node **slots = bough_arena_take(s->arena, 2 * room * sizeof *slots);
-    if (copy == NULL || slots == NULL) return NULL;
     *copy = *node;
     copy->value = slots;
     copy->key = node->kind == BOUGH_MAPPING ? slots + room : NULL;
@@ -66,7 +64,7 @@ static bough_node *copy_container(const replacement *s, const bough_node *node) 
 
 static bough_node *new_node(const replacement *s, bough_node_kind kind, const char *text) {
     bough_node *node = bough_arena_take(s->arena, sizeof *node);
-    if (node != NULL) *node = (bough_node){.kind = kind, .text = text, .file = origin};
+    *node = (bough_node){.kind = kind, .text = text, .file = origin};
     return node;
 }
 
@@ -127,7 +125,7 @@ static bough_node *put_item(const replacement *s, const bough_node *node, const 
         return refuse(s, text);
     }
     bough_node *copy = copy_container(s, node);
-    for (; copy != NULL && index <= last; index++) {
+    for (; index <= last; index++) {
         copy->value[index] = put(s, node->value[index], end + 1, depth + 1);
         if (copy->value[index] == NULL) return NULL;
     }
@@ -148,13 +146,12 @@ static bough_node *put_key(const replacement *s, const bough_node *node, const c
     }
     bough_node empty = {.kind = BOUGH_MAPPING, .file = origin};
     bough_node *copy = copy_container(s, node == NULL ? &empty : node);
-    if (copy == NULL) return NULL;
     int i = 0;
     while (i < copy->n && strcmp(copy->key[i]->text, name) != 0)
         i++;
     bough_node *value = put(s, i < copy->n ? copy->value[i] : NULL, rest + length, depth + 1);
     bough_node *key = new_node(s, BOUGH_SCALAR, bough_arena_string(s->arena, name));
-    if (value == NULL || key == NULL || key->text == NULL) return NULL;
+    if (value == NULL) return NULL;
     copy->key[i] = key;
     copy->value[i] = value;
     if (i == copy->n) copy->n++;

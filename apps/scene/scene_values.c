@@ -48,7 +48,6 @@ void bough_scene_read_steps(bough_schema_reader *r, const bough_node *node, void
         return;
     }
     placement->step = bough_arena_take(r->arena, (size_t)node->n * sizeof *placement->step);
-    if (placement->step == NULL) return;
     placement->n = node->n;
     for (int i = 0; i < node->n; i++) {
         size_t length = push_index(r, i);
@@ -443,7 +442,6 @@ void bough_scene_check_rod(bough_schema_reader *r, void *item) {
         rod->structure.length = rod->length;
         rod->structure.n_station = 1;
         rod->structure.station = bough_arena_take(r->arena, sizeof rod->uniform);
-        if (rod->structure.station == NULL) return;
         rod->uniform.node = rod->node;
         *rod->structure.station = rod->uniform;
     }

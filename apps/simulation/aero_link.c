@@ -40,9 +40,6 @@ static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
     l->n_blade = turbine->n_blade;
     l->beam = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->beam);
     l->signal = bough_arena_take(arena, (size_t)l->n_blade * sizeof *l->signal);
-    if (bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
-    }
     for (int b = 0; b < l->n_blade; b++) {
         l->beam[b] = bough_simulation_beam(l->simulation, turbine->blade[b]);
         bough_status status = same_mesh(l, l->beam[b]);
@@ -53,8 +50,7 @@ static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
     }
     l->n_vertex = l->beam[0]->def.n_segment + 1;
     l->motion = bough_aero_motion_build(arena, l->simulation, l->beam);
-    if (l->motion) return bough_ok();
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
+    return bough_ok();
 }
 
 // Tables of the scene in the rotor's form.
@@ -65,17 +61,15 @@ typedef struct tables {
     double *drag; // of the tower
 } tables;
 
-static bool take_tables(bough_arena *arena, const bough_aero_link *l, tables *t) {
+static void take_tables(bough_arena *arena, const bough_aero_link *l, tables *t) {
     const bough_scene_aero *aero = &l->simulation->scene->aero;
     t->polar = bough_arena_take(arena, (size_t)aero->polars.n_polar * sizeof *t->polar);
     t->station = bough_arena_take(arena, (size_t)aero->blade.n_station * sizeof *t->station);
     t->rotation = bough_arena_take(arena, (size_t)l->n_vertex * sizeof *t->rotation);
     t->drag = bough_arena_doubles(arena, (size_t)aero->tower.n_height);
-    if (bough_arena_exhausted(arena)) return false;
     for (int k = 0; k < aero->polars.n_polar; k++) {
         const bough_scene_polar *from = &aero->polars.polar[k];
         double *row = bough_arena_doubles(arena, 4 * (size_t)from->n_row);
-        if (row == NULL) return false;
         for (int i = 0; i < from->n_row; i++) {
             const bough_scene_polar_row *r = &from->row[i];
             const double values[4] = {r->alpha * (180 / BOUGH_PI), r->cl, r->cd, r->cm};
@@ -100,7 +94,6 @@ static bool take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
     for (int i = 0; i < l->n_vertex; i++) {
         t->rotation[i] = bough_rotation_matrix(l->beam[0]->def.rotation[i]);
     }
-    return true;
 }
 
 static bough_tower_def tower_def(const bough_scene_tower *tower, const double *drag) {
@@ -211,13 +204,10 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
                                    bough_aero_link **link) {
     bough_aero_link *l = bough_arena_take(arena, sizeof *l);
     tables t;
-    if (l == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
     l->simulation = simulation;
     bough_status status = take_blades(arena, l);
     if (!bough_is_ok(&status)) return status;
-    if (!take_tables(arena, l, &t)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
-    }
+    take_tables(arena, l, &t);
     bough_rotor_def def = rotor_def(l, &t);
     status = bough_rotor_build(arena, &def, &l->rotor);
     if (bough_is_ok(&status)) status = check_reach(l);

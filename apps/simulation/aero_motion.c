@@ -27,7 +27,6 @@ struct bough_aero_motion {
 bough_aero_motion *bough_aero_motion_build(bough_arena *arena, bough_simulation *simulation,
                                            const bough_beam *const *beam) {
     bough_aero_motion *m = bough_arena_take(arena, sizeof *m);
-    if (m == NULL) return NULL;
     m->simulation = simulation;
     m->beam = beam;
     m->n_blade = simulation->scene->turbine.n_blade;
@@ -37,7 +36,6 @@ bough_aero_motion *bough_aero_motion_build(bough_arena *arena, bough_simulation 
     m->moving = bough_arena_take(arena, (size_t)m->n_blade * sizeof *m->moving);
     m->expected = bough_arena_doubles(arena, n);
     for (int i = 0; i < CALLS; i++) m->state[i] = bough_arena_doubles(arena, n);
-    if (bough_arena_exhausted(arena)) return NULL;
     m->found.blade = m->moving;
     for (int b = 0; b < m->n_blade; b++) m->moving[b].vertex = m->expected + b * m->n_state;
     return m;

@@ -7,7 +7,7 @@
 
 typedef struct bough_aero_motion bough_aero_motion;
 
-// NULL when memory is exhausted. `beam` (n_blade) must stay.
+// `beam` (n_blade) must stay.
 bough_aero_motion *bough_aero_motion_build(bough_arena *arena, bough_simulation *simulation,
                                            const bough_beam *const *beam);
 

@@ -63,16 +63,12 @@ static void take(bough_arena *arena, bough_aero_signal *s) {
 bough_status bough_aero_signal_build(bough_arena *arena, bough_simulation *simulation,
                                      const bough_beam *beam, bough_aero_signal **signal) {
     bough_aero_signal *s = bough_arena_take(arena, sizeof *s);
-    if (s == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
     s->simulation = simulation;
     s->beam = beam;
     s->n_vertex = beam->def.n_segment + 1;
     s->n = beam->port < 0 ? 6 : 6 * s->n_vertex;
     if (beam->rod != NULL) s->n += 12 * (s->n_vertex - 1);
     take(arena, s);
-    if (bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "aerodynamics: out of memory");
-    }
     *signal = s;
     return bough_ok();
 }

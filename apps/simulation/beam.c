@@ -7,8 +7,8 @@ static bough_status build_rod(bough_arena *arena, bough_beam *beam, const double
     bough_rod_model *model = NULL;
     bough_status status = bough_rod_create(arena, &beam->def, &model);
     if (!bough_is_ok(&status)) return status;
-    status = bough_rod_body_create(arena, model, input, &beam->rod);
-    if (bough_is_ok(&status)) *system = bough_rod_body_system(beam->rod);
+    beam->rod = bough_rod_body_create(arena, model, input);
+    *system = bough_rod_body_system(beam->rod);
     return status;
 }
 
@@ -20,8 +20,8 @@ static bough_status build_modal(bough_arena *arena, bough_beam *beam, const doub
     bough_modal_model *model = NULL;
     bough_status status = bough_modal_create(arena, &beam->def, pieces, options, &model);
     if (!bough_is_ok(&status)) return status;
-    status = bough_modal_body_create(arena, model, input, &beam->modal);
-    if (bough_is_ok(&status)) *system = bough_modal_body_system(beam->modal);
+    beam->modal = bough_modal_body_create(arena, model, input);
+    *system = bough_modal_body_system(beam->modal);
     return status;
 }
 

@@ -65,9 +65,6 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
     group->blade = bough_arena_take(arena, (size_t)n * sizeof *group->blade);
     group->first = bough_arena_take(arena, (size_t)n * sizeof *group->first);
     group->first_input = bough_arena_take(arena, (size_t)n * sizeof *group->first_input);
-    if (!group->blade || !group->first || !group->first_input) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
     for (int k = 0; k < n; k++) insert(s, bough_simulation_beam(s, turbine->blade[k]), group);
     bool alike = n >= 3;
     for (int k = 0; k < n; k++) alike = alike && is_alike(s, group, k);
@@ -78,7 +75,6 @@ bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *
     group->azimuth = azimuth_of(s, group->blade[0]);
     group->n_row = s->rod[group->blade[0]->port].system.n_state;
     group->row = bough_arena_take(arena, (size_t)n * (size_t)group->n_row * sizeof(int));
-    if (!group->row) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < n; k++) {
         int member = group->blade[k]->port + 1, *row = group->row;
         group->first[k] = assembly->state_offset[member];

@@ -19,10 +19,6 @@
 
 #include <string.h>
 
-static bough_status out_of_memory(void) {
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory while building the scene");
-}
-
 // -- loads and times ------------------------------------------------------------------------------
 
 static void add_ramp(bough_builder *b, const double ramp[2]) {
@@ -127,9 +123,9 @@ static bough_status build_tree(bough_builder *b) {
                           .closures = b->force.closure,
                           .closure_time = scene->simulation.macro_step};
     bough_status status = bough_tree_create(b->arena, &def, &s->tree);
-    if (bough_is_ok(&status)) status = bough_tree_data_create(b->arena, s->tree, &s->view);
-    if (bough_is_ok(&status)) s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);
     if (!bough_is_ok(&status)) return status;
+    s->view = bough_tree_data_create(b->arena, s->tree);
+    s->acceleration = bough_arena_doubles(b->arena, s->tree->n_v);
     if (scene->n_bushing > 0) {
         bough_tree_kinematics(s->tree, s->tree->initial, s->view);
         bough_force_link_rest(scene, s->view, s->tree);
@@ -137,9 +133,7 @@ static bough_status build_tree(bough_builder *b) {
     bough_integrator_options master = solver_options(&scene->simulation.master);
     // the tree's own method is never asked, and the scheme's may not suit it
     if (bough_scheme_find(scheme_options(scene).name)->one_system) master.kind = BOUGH_ROSENBROCK;
-    bough_system tree;
-    status = bough_tree_system_create(b->arena, s->tree, "tree", &tree);
-    if (!bough_is_ok(&status)) return status;
+    bough_system tree = bough_tree_system_create(b->arena, s->tree, "tree");
     return bough_member_create(b->arena, &tree, 0, &master, &s->leader);
 }
 
@@ -147,7 +141,6 @@ static bough_status build_tree(bough_builder *b) {
 static bough_status build_rods(bough_builder *b) {
     bough_simulation *s = b->s;
     double *motion = bough_arena_doubles(b->arena, (size_t)bough_tree_n_outputs(s->tree) + 1);
-    if (motion == NULL) return out_of_memory();
     const bough_system *tree = &s->leader.system;
     tree->ops->output(tree->self, 0, s->leader.state, NULL, motion);
     for (int k = 0; k < s->n_beam; k++) {
@@ -275,7 +268,7 @@ static bough_status build_master(bough_builder *b) {
 
 // -- whole ----------------------------------------------------------------------------------------
 
-static bool take_arrays(bough_builder *b) {
+static void take_arrays(bough_builder *b) {
     size_t bodies = (size_t)b->scene->n_body, loads = (size_t)b->scene->n_load;
     b->s = bough_arena_take(b->arena, sizeof *b->s);
     b->body = bough_arena_take(b->arena, 2 * bodies * sizeof *b->body);
@@ -286,21 +279,20 @@ static bool take_arrays(bough_builder *b) {
     b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);
     b->connection = bough_arena_take(b->arena, 4 * bodies * sizeof *b->connection);
     b->event = bough_arena_doubles(b->arena, count_corners(b->scene));
-    if (b->s == NULL) return false;
     b->s->validity = bough_arena_take(b->arena, sizeof *b->s->validity);
     b->s->scene = b->scene;
     b->s->beam = bough_arena_take(b->arena, bodies * sizeof *b->s->beam);
     b->s->rod = bough_arena_take(b->arena, bodies * sizeof *b->s->rod);
-    return !bough_arena_exhausted(b->arena);
 }
 
 bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
                                     bough_simulation **simulation) {
     bough_builder b = {.arena = arena, .scene = scene};
     int asked = scene->simulation.threads, threads = asked > 0 ? asked : bough_pool_default(1);
-    if (!bough_linalg_room(arena, threads) || !take_arrays(&b)) return out_of_memory();
-    bough_status status = bough_pool_create(arena, threads, &b.s->pool);
-    if (bough_is_ok(&status)) status = bough_build_bodies(&b);
+    bough_linalg_room(arena, threads);
+    take_arrays(&b);
+    b.s->pool = bough_pool_create(arena, threads);
+    bough_status status = bough_build_bodies(&b);
     if (bough_is_ok(&status)) set_loads(&b);
     if (bough_is_ok(&status)) status = build_tree(&b);
     if (bough_is_ok(&status)) status = build_rods(&b);
@@ -322,7 +314,6 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
     if (bough_is_ok(&status) && b.s->control != NULL) {
         status = bough_control_link_watch(arena, b.s->control);
     }
-    if (bough_is_ok(&status) && bough_arena_exhausted(arena)) status = out_of_memory();
     if (bough_is_ok(&status)) *simulation = b.s;
     return status;
 }

@@ -115,7 +115,6 @@ static bough_status discretise(bough_builder *b, bough_beam *beam) {
     const bough_scene_structure *rod = &beam->body->rod.structure;
     size_t count = (size_t)rod->n_station;
     bough_section_station *station = bough_arena_take(b->arena, count * sizeof *station);
-    if (station == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < rod->n_station; k++) {
         const bough_scene_station *from = &rod->station[k];
         bough_section_station *to = &station[k];
@@ -160,7 +159,6 @@ static bough_status add_end(bough_builder *b, bough_beam *beam, int index) {
     int n = def->n_segment, body = b->scene->n_body + b->s->n_end;
     size_t length = strlen(beam->body->name) + sizeof " end";
     char *name = bough_arena_take(b->arena, length);
-    if (name == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     snprintf(name, length, "%s end", beam->body->name);
     bough_quaternion p = def->rotation[n];
     bough_vec3 x = def->position[n];

@@ -45,7 +45,6 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
                                       bough_control_link **link) {
     const bough_scene *scene = simulation->scene;
     bough_control_link *l = bough_arena_take(arena, sizeof *l);
-    if (l == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "control: out of memory");
     l->simulation = simulation;
     l->control = &scene->control;
     l->load = load;

@@ -32,7 +32,6 @@ bough_status bough_drag_link_build(bough_arena *arena, bough_simulation *simulat
                                    bough_drag_link **link) {
     const bough_scene_aero *aero = &simulation->scene->aero;
     bough_drag_link *l = bough_arena_take(arena, sizeof *l);
-    if (l == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "drag: out of memory");
     l->simulation = simulation;
     l->rotor = bough_aero_link_rotor(simulation->aero);
     l->hub_marker = hub_marker;
@@ -45,7 +44,6 @@ bough_status bough_drag_link_build(bough_arena *arena, bough_simulation *simulat
     l->n = l->n_tower + 6;
     l->fresh = bough_arena_doubles(arena, (size_t)l->n);
     l->memory = bough_arena_doubles(arena, 2 * (size_t)l->n + 2);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "drag: out of memory");
     *link = l;
     return bough_ok();
 }

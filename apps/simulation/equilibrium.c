@@ -102,7 +102,6 @@ static bough_status balance_in_air(bough_arena *arena, bough_simulation *s, boug
                                   bough_equilibrium_def *def, double *state,
                                   bough_equilibrium_work *work) {
     double *before = bough_arena_doubles(arena, (size_t)coupled->assembly->n_state), change = 0;
-    if (!before) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     while (work->samples < SAMPLES) {
         memcpy(before, state, (size_t)coupled->assembly->n_state * sizeof *state);
         bough_aero_link_hold(s->aero, def->time);
@@ -204,21 +203,18 @@ typedef struct balance_setup {
     bool rests; // whether states are brought to rest in between
 } balance_setup;
 
-static bough_status set_up(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly, double time,
-                           balance_setup *b) {
+static void set_up(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly,
+                   double time, balance_setup *b) {
     b->state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
     int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
-    bough_status status = bough_coupled_create(arena, assembly, NULL, &b->coupled);
-    if (!bough_is_ok(&status)) return status;
+    b->coupled = bough_coupled_create(arena, assembly, NULL);
     if (s->jump != NULL) bough_jump_link_begin(s->jump, time);
-    status = bough_coupled_hold(arena, b->coupled, bough_equilibrium_held(s->tree, true, row), row);
-    if (!bough_is_ok(&status)) return status;
+    bough_coupled_hold(arena, b->coupled, bough_equilibrium_held(s->tree, true, row), row);
     bough_assembly_states(assembly, b->state);
     bough_tree_prescribe(s->tree, time, b->state);
     b->self = (search){s, b->coupled, time, rod_changes(arena, s)};
     bring_to_rest(&b->self, b->state);
     b->rests = turns(b->coupled, s->tree, b->state) || s->tree->n_closures == 0;
-    return bough_ok();
 }
 
 typedef struct balancing {
@@ -233,8 +229,7 @@ static bough_status balance_members(bough_arena *arena, void *data) {
     bough_simulation *s = x->simulation;
     bough_equilibrium_def def = bough_equilibrium_def_default();
     balance_setup b;
-    bough_status status = set_up(arena, s, x->assembly, x->time, &b);
-    if (!bough_is_ok(&status)) return status;
+    set_up(arena, s, x->assembly, x->time, &b);
     def.time = x->time;
     def.self = &b.self;
     def.move = move;
@@ -302,12 +297,11 @@ static bough_status walk_path(bough_arena *arena, void *data) {
     bough_path_def def = bough_path_def_default();
     bough_equilibrium_def start = bough_equilibrium_def_default();
     bough_equilibrium_work work = {0};
-    bough_status status = set_up(arena, s, x->assembly, 0, &b);
-    if (!bough_is_ok(&status)) return status;
+    set_up(arena, s, x->assembly, 0, &b);
     start.self = &b.self;
     start.move = move;
     if (b.rests) start.rest = bring_to_rest;
-    status = balance(arena, s, b.coupled, &start, b.state, &work);
+    bough_status status = balance(arena, s, b.coupled, &start, b.state, &work);
     if (!bough_is_ok(&status)) return status;
     walk w = {b.self, x->assembly, s, x->listener};
     def.end = bough_equilibrium_time(s);

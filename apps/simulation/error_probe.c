@@ -37,7 +37,6 @@ bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s, b
     probe->own = bough_arena_take(arena, (size_t)s->master->assembly->n_member * sizeof *probe->own);
     probe->state = bough_arena_doubles(arena, (size_t)s->master->assembly->n_state);
     probe->input = bough_arena_doubles(arena, (size_t)s->master->assembly->n_input);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (size_t i = 0; i < n; i++) {
         probe->low[i] = HUGE_VAL;
         probe->high[i] = -HUGE_VAL;

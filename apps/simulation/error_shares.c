@@ -37,7 +37,6 @@ bough_status bough_error_shares_create(bough_arena *arena, const bough_run *run,
     shares->most = (int)rows;
     shares->row = bough_arena_doubles(arena, (size_t)shares->most * n);
     for (int k = 0; k < BOUGH_SHARES; k++) shares->share[k].largest = bough_arena_doubles(arena, n);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     return bough_ok();
 }
 
@@ -75,15 +74,14 @@ static bough_status pass_row(void *self, double t) {
 }
 
 // The loads on vertices stay at their places.
-static bool follow_vertices(bough_arena *arena, bough_scene *scene) {
+static void follow_vertices(bough_arena *arena, bough_scene *scene) {
     size_t n = (size_t)scene->n_load;
     bough_scene_load *load = bough_arena_take(arena, n * sizeof *load);
-    for (size_t i = 0; i < n && load; i++) {
+    for (size_t i = 0; i < n; i++) {
         load[i] = scene->load[i];
         if (load[i].place == BOUGH_SCENE_AT_VERTEX) load[i].vertex *= 2;
     }
     scene->load = load;
-    return load || n == 0;
 }
 
 // Twice the segments: half of them may be too few for the order to hold.
@@ -91,10 +89,7 @@ static bool refine_mesh(bough_arena *arena, bough_scene *scene, bough_error_shar
     size_t n = (size_t)scene->n_body;
     bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
     bool any = false;
-    if (!body || !follow_vertices(arena, scene)) {
-        unknown(share, "out of memory");
-        return false;
-    }
+    follow_vertices(arena, scene);
     memcpy(body, scene->body, n * sizeof *body);
     for (size_t i = 0; i < n; i++) {
         if (!body[i].rod.node || body[i].fidelity == BOUGH_SCENE_RIGID) continue;

@@ -24,7 +24,6 @@ static bough_status find_channel(bough_arena *arena, bough_events *e, int i) {
     if (!name || e->column[i] >= 0) return bough_ok();
     int n = e->channels.count;
     const char **names = bough_arena_take(arena, (size_t)(n + 1) * sizeof *names);
-    if (!names) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < n; k++) names[k] = e->channels.channel[k].name;
     const char *near = bough_nearest(name, names, n);
     return bough_fail(BOUGH_INVALID, "control.events[%d].channel: the scene has no channel '%.80s'%s%s%s",
@@ -37,7 +36,6 @@ static bough_status find_channels(bough_arena *arena, bough_events *e) {
     if (!bough_is_ok(&status)) return status;
     e->value = bough_arena_doubles(arena, (size_t)e->channels.count + 1);
     e->column = bough_arena_take(arena, (size_t)e->n * sizeof *e->column);
-    if (!e->value || !e->column) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < e->n && bough_is_ok(&status); i++) status = find_channel(arena, e, i);
     return status;
 }
@@ -47,7 +45,6 @@ bough_status bough_events_build(bough_arena *arena, bough_simulation *simulation
     const bough_scene_control *control = &simulation->scene->control;
     if (control->n_event == 0) return bough_ok();
     bough_events *e = bough_arena_take(arena, sizeof *e);
-    if (!e) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     e->simulation = simulation;
     e->n = control->n_event;
     e->event = control->event;

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-bool bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_beam,
+void bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_beam,
                            bough_force_link *link) {
     size_t springs = (size_t)scene->n_spring, bushings = (size_t)scene->n_bushing;
     size_t closures = (size_t)scene->n_closure, loads = (size_t)scene->n_load;
@@ -15,7 +15,6 @@ bool bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_b
     link->bushing = bough_arena_take(arena, bushings * sizeof *link->bushing);
     link->closure = bough_arena_take(arena, closures * sizeof *link->closure);
     link->applied = bough_arena_take(arena, loads * sizeof *link->applied);
-    return !bough_arena_exhausted(arena);
 }
 
 static bough_vec3 point(const double x[3]) { return bough_v3(x[0], x[1], x[2]); }

@@ -18,8 +18,8 @@ typedef struct bough_force_link {
     bough_applied_def *applied;
 } bough_force_link;
 
-// Takes the memory, with room for so many markers of beams. False when it is exhausted.
-bool bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_beam,
+// Takes the memory, with room for so many markers of beams.
+void bough_force_link_take(bough_arena *arena, const bough_scene *scene, int n_beam,
                            bough_force_link *link);
 
 // Fills everything, the markers from n_marker on.

@@ -48,12 +48,8 @@ bough_status bough_input_link_build(bough_arena *arena, bough_simulation *s) {
     int n = s->scene->n_input;
     if (n == 0) return bough_ok();
     bough_input_link *l = bough_arena_take(arena, sizeof *l);
-    if (l == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "inputs: out of memory");
     *l = (bough_input_link){s, n, bough_arena_take(arena, (size_t)n * sizeof *l->table),
                             bough_arena_doubles(arena, 5 * (size_t)n)};
-    if (l->table == NULL || l->memory == NULL) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "inputs: out of memory");
-    }
     for (int k = 0; k < n; k++) {
         const bough_scene_input *input = &s->scene->input[k];
         l->memory[k] = l->memory[n + k] = input->initial;

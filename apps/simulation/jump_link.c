@@ -30,9 +30,7 @@ static size_t count_loads(const bough_simulation *s) {
 
 bough_status bough_jump_link_build(bough_arena *arena, bough_simulation *s) {
     bough_jump_link *link = bough_arena_take(arena, sizeof *link);
-    if (link == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "loads: out of memory");
     *link = (bough_jump_link){0, bough_arena_take(arena, (count_loads(s) + 1) * sizeof(jump))};
-    if (link->jump == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "loads: out of memory");
     for (int k = 0; k < s->tree->n_loads; k++) {
         add(link, &s->tree->loads[k].start, &s->tree->loads[k].end);
     }

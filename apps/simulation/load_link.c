@@ -41,7 +41,6 @@ bough_status bough_load_link_build(bough_arena *arena, bough_simulation *s) {
             load->n_time > 0 ? bough_rod_loads_tabled(loads, arena, m, follower, load->n_time,
                                                       load->times, load->values)
                              : bough_rod_loads_ramped(loads, arena, m, follower, load->ramp);
-        if (to == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "loads: out of memory");
         double wrench[6], end[6];
         resolve(s, beam, load, load->force, load->moment, wrench);
         resolve(s, beam, load, load->end_force, load->end_moment, end);

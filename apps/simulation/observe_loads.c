@@ -102,12 +102,9 @@ static bough_status add_place(const bough_simulation *s, const bough_beam *beam,
 static bough_status add_sensor(bough_arena *arena, bough_simulation *s,
                                const bough_scene_sensor *from, bough_channels *list) {
     sensor *x = bough_arena_take(arena, sizeof *x);
-    if (!x) return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the sensors");
     *x = (sensor){s, bough_simulation_beam(s, from->body), from->n_at, NULL, {0}};
     x->place = bough_arena_take(arena, (size_t)x->n * sizeof *x->place);
-    if (!x->place || !bough_rod_scratch_init(&x->scratch, arena, bough_beam_mesh(x->beam))) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the sensors");
-    }
+    bough_rod_scratch_init(&x->scratch, arena, bough_beam_mesh(x->beam));
     bough_status status = bough_channels_group(list, sample_sections, x);
     for (int k = 0; k < x->n && bough_is_ok(&status); k++) {
         x->place[k] = find_place(&x->beam->def, from->at[k]);

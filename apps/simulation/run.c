@@ -20,10 +20,8 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
     size_t n = (size_t)run->simulation->master->assembly->n_member;
     run->value = bough_arena_doubles(arena, (size_t)run->channels.count + 1);
     run->earlier = bough_arena_take(arena, (n + 1) * sizeof *run->earlier);
-    if (!run->value || !run->earlier) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     // the run may be copied by its caller: the probe keeps a list of its own
     bough_channels *channels = bough_arena_take(arena, sizeof *channels);
-    if (!channels) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     *channels = run->channels;
     status = bough_second_model_build(arena, run->simulation, &run->second);
     if (!bough_is_ok(&status)) return status;

@@ -19,7 +19,7 @@ static bool has_rod(const bough_simulation *s, int body) {
 static void take_scratch(bough_arena *arena, bough_shape *shape) {
     const bough_simulation *s = shape->simulation;
     shape->scratch = bough_arena_take(arena, (size_t)shape->n_line * sizeof *shape->scratch);
-    for (int i = 0; shape->scratch && i < shape->n_line; i++) {
+    for (int i = 0; i < shape->n_line; i++) {
         if (has_rod(s, i)) {
             bough_rod_scratch_init(&shape->scratch[i], arena,
                                    bough_beam_mesh(bough_simulation_beam(s, i)));
@@ -31,7 +31,7 @@ bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_s
     size_t n = (size_t)s->scene->n_body, longest = RIGID_POINTS;
     *shape = (bough_shape){.simulation = s, .n_line = s->scene->n_body};
     shape->line = bough_arena_take(arena, n * sizeof *shape->line);
-    for (int i = 0; shape->line && i < s->scene->n_body; i++) {
+    for (int i = 0; i < s->scene->n_body; i++) {
         size_t count = (size_t)beam_points(s, i);
         shape->line[i] = (bough_polyline){s->scene->body[i].name, (int)count};
         if (count > longest) longest = count;
@@ -42,9 +42,7 @@ bough_status bough_shape_create(bough_arena *arena, bough_simulation *s, bough_s
     m->angular_velocity = bough_arena_take(arena, longest * sizeof *m->angular_velocity);
     m->rotation = bough_arena_take(arena, longest * sizeof *m->rotation);
     take_scratch(arena, shape);
-    if (!bough_arena_exhausted(arena)) return bough_ok();
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "no memory for the shape of %d bodies",
-                      s->scene->n_body);
+    return bough_ok();
 }
 
 static void rigid_line(const bough_simulation *s, int body, bough_vec3 *x) {
@@ -113,7 +111,7 @@ void bough_shape_vertex_loads(void *self, double t, double *force, double *momen
 
 bough_polyline *bough_shape_bodies(bough_arena *arena, const bough_shape *shape) {
     bough_polyline *body = bough_arena_take(arena, (size_t)shape->n_line * sizeof *body);
-    for (int i = 0; body && i < shape->n_line; i++) {
+    for (int i = 0; i < shape->n_line; i++) {
         body[i] = shape->line[i];
         if (!bough_simulation_beam(shape->simulation, i)) body[i].n_point = 1;
     }

@@ -24,7 +24,6 @@ void bough_shape_points(void *self, double *point);
 void bough_shape_loads(void *self, double t, double *force, double *moment);
 
 // Of each body, what vertices.h5 holds: the vertices of its rod, or the one of its origin (n_line).
-// NULL when memory is exhausted.
 bough_polyline *bough_shape_bodies(bough_arena *arena, const bough_shape *shape);
 
 // The section loads of these bodies' vertices, as bough_shape_loads. `self`: the shape.

@@ -50,7 +50,6 @@ static bough_status find_channels(bough_arena *arena, case_run *r) {
     const bough_load_set *s = r->set;
     r->column = bough_arena_take(arena, (size_t)s->n_channel * sizeof *r->column);
     r->chosen = bough_arena_doubles(arena, (size_t)s->n_channel);
-    if (!r->column || !r->chosen) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < s->n_channel; i++) {
         r->column[i] = bough_channels_find(&r->run.channels, s->channel[i]);
         if (r->column[i] < 0) {

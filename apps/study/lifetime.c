@@ -7,18 +7,16 @@ static double hours_of(const bough_load_set *set, int number) {
     return bough_load_set_weight(set, &set->cases[number], 3600);
 }
 
-bool bough_lifetime_take(bough_arena *arena, const bough_load_set *set, bough_lifetime *l) {
+bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_load_set *set) {
     size_t n = (size_t)set->n_channel;
-    *l = (bough_lifetime){.set = set};
-    l->channel = bough_arena_take(arena, n * sizeof *l->channel);
+    bough_lifetime l = {.set = set, .channel = bough_arena_take(arena, n * sizeof *l.channel)};
     double *rows = bough_arena_doubles(arena, 2 * n * n);
-    if (!l->channel || !rows) return false;
     for (size_t i = 0; i < n; i++) {
-        l->channel[i].least.row = rows + 2 * i * n;
-        l->channel[i].most.row = rows + (2 * i + 1) * n;
+        l.channel[i].least.row = rows + 2 * i * n;
+        l.channel[i].most.row = rows + (2 * i + 1) * n;
     }
-    for (int i = 0; i < set->n_case; i++) l->total += hours_of(set, i);
-    return true;
+    for (int i = 0; i < set->n_case; i++) l.total += hours_of(set, i);
+    return l;
 }
 
 static void take_extreme(bough_extreme *e, const bough_load_set *set, int number, double value,

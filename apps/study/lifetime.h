@@ -32,7 +32,7 @@ typedef struct bough_lifetime {
     double simulated, cpu;           // of all runs [s]
 } bough_lifetime;
 
-bool bough_lifetime_take(bough_arena *arena, const bough_load_set *set, bough_lifetime *lifetime);
+bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_load_set *set);
 
 // Adds the next case; a result that is not done is missing.
 void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *result);

@@ -130,7 +130,6 @@ const bough_schema bough_load_set_schema = {.name = "a load set", .size = sizeof
 // A sweep is one group.
 static void make_group(bough_arena *arena, bough_load_set *s) {
     s->group = bough_arena_take(arena, sizeof *s->group);
-    if (!s->group) return;
     s->n_group = 1;
     *s->group = (bough_load_group){
         .node = s->node, .name = "sweep", .grid = s->grid, .factor = 1, .extremes = true};
@@ -139,7 +138,6 @@ static void make_group(bough_arena *arena, bough_load_set *s) {
 bough_load_set *bough_load_set_parse(bough_arena *arena, const char *path, const bough_node *root,
                                      bough_errors *errors) {
     bough_load_set *s = bough_arena_take(arena, sizeof *s);
-    if (!s) return NULL;
     const bough_node *kind = bough_node_find(root, "kind");
     s->sweep = strcmp(kind->text, "sweep") == 0;
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
@@ -147,8 +145,8 @@ bough_load_set *bough_load_set_parse(bough_arena *arena, const char *path, const
     if (errors->n > 0) return NULL;
     s->file = bough_arena_string(arena, path);
     if (s->sweep) make_group(arena, s);
-    if (!bough_arena_exhausted(arena)) bough_load_set_expand(arena, s, errors);
-    return errors->n > 0 || bough_arena_exhausted(arena) ? NULL : s;
+    bough_load_set_expand(arena, s, errors);
+    return errors->n > 0 ? NULL : s;
 }
 
 bough_load_set *bough_load_set_read(bough_arena *arena, const char *path, const bough_node *root,

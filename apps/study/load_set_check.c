@@ -44,7 +44,6 @@ static void unknown_channel(const bough_load_set *s, const char *name,
                             const bough_channels *channels, bough_errors *errors) {
     const char **names = bough_arena_take(errors->arena,
                                           (size_t)(channels->count + 1) * sizeof *names);
-    if (!names) return;
     for (int i = 0; i < channels->count; i++) names[i] = channels->channel[i].name;
     const char *near = bough_nearest(name, names, channels->count);
     bough_errors_add(errors, bough_node_find(s->node, "channels"), "channels",

@@ -138,7 +138,6 @@ static void make_case(bough_arena *arena, bough_load_set *s, int group, int numb
     c->scene = bough_study_path(arena, s->file, scene_of(s, c));
     size_t most = (size_t)(s->common.n + g->set.n + g->grid.n) + 1;
     c->set = bough_arena_take(arena, most * sizeof *c->set);
-    if (!c->set || !c->scene) return;
     add_sets(c, &s->common);
     add_sets(c, &g->set);
     for (int i = 0; i < g->grid.n; i++) {

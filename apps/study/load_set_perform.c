@@ -105,7 +105,6 @@ static bool is_mine(const work *w, int number) {
 static bough_status list_cases(bough_arena *arena, work *w) {
     const char *folder = w->options->folder;
     w->to_do = bough_arena_take(arena, (size_t)w->set->n_case * sizeof *w->to_do);
-    if (!w->to_do) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < w->set->n_case; i++) {
         bough_status outcome;
         if (is_mine(w, i) && !bough_case_exists(folder, w->set, i, &outcome)) {
@@ -129,7 +128,6 @@ static bough_status remove_tables(const char *folder) {
 static bough_status check_name(bough_arena *arena, const work *w) {
     const bough_load_set *s = w->set;
     const char **names = bough_arena_take(arena, (size_t)s->n_group * sizeof *names);
-    if (!names) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < s->n_group; i++) {
         names[i] = s->group[i].name;
         if (!w->options->only || strcmp(names[i], w->options->only) == 0) return bough_ok();
@@ -154,8 +152,7 @@ static bough_status start(bough_arena *arena, work *w) {
 static bough_status run_cases(bough_arena *arena, work *w) {
     int threads = w->set->threads > 0 ? w->set->threads : bough_pool_default(0);
     if (threads > w->n_to_do) threads = w->n_to_do > 0 ? w->n_to_do : 1;
-    bough_status status = bough_pool_create(arena, threads, &w->pool);
-    if (!bough_is_ok(&status)) return status;
+    w->pool = bough_pool_create(arena, threads);
     double began = bough_wall_clock();
     w->worst = bough_ok();
     pthread_mutex_init(&w->mutex, NULL);
@@ -239,22 +236,18 @@ static bough_status judge(const work *w, const bough_lifetime *l) {
 }
 
 static bough_status conclude_in(bough_arena *arena, const work *w) {
-    bough_lifetime lifetime;
+    bough_lifetime lifetime = bough_lifetime_take(arena, w->set);
+    bough_case_plot plot = bough_case_plot_take(arena, w->set);
     bough_case_tables tables;
-    bough_case_plot plot;
     char *failures = NULL;
     size_t size = 0;
     FILE *stream = open_memstream(&failures, &size);
-    bool room = stream && bough_lifetime_take(arena, w->set, &lifetime) &&
-                bough_case_plot_take(arena, w->set, &plot);
-    bough_status status = room ? bough_case_tables_open(w->options->folder, w->set, &tables)
-                               : bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+    if (!stream) bough_arena_leave(arena);
+    bough_status status = bough_case_tables_open(w->options->folder, w->set, &tables);
     if (bough_is_ok(&status)) status = read_all(arena, w, &tables, &plot, &lifetime, stream);
-    if (room) {
-        bough_status end = bough_case_tables_close(&tables, bough_is_ok(&status));
-        if (bough_is_ok(&status)) status = end;
-    }
-    if (stream) fclose(stream);
+    bough_status end = bough_case_tables_close(&tables, bough_is_ok(&status));
+    if (bough_is_ok(&status)) status = end;
+    fclose(stream);
     if (bough_is_ok(&status)) status = write_all(w, &lifetime, &plot, failures);
     if (bough_is_ok(&status)) print_table(w, &lifetime, failures, w->options->stream);
     if (bough_is_ok(&status)) status = judge(w, &lifetime);

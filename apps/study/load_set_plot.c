@@ -114,11 +114,10 @@ static void draw_frame(panel *p, const char *title, const char *unit, const char
 
 // -- sweep ----------------------------------------------------------------------------------------
 
-bool bough_case_plot_take(bough_arena *arena, const bough_load_set *set, bough_case_plot *plot) {
+bough_case_plot bough_case_plot_take(bough_arena *arena, const bough_load_set *set) {
     int n = set->n_channel < BOUGH_CASE_PANELS ? set->n_channel : BOUGH_CASE_PANELS;
-    *plot = (bough_case_plot){.set = set, .n_panel = n};
-    plot->value = bough_arena_doubles(arena, 3 * (size_t)n * (size_t)set->n_case);
-    return plot->value != NULL;
+    size_t room = 3 * (size_t)n * (size_t)set->n_case;
+    return (bough_case_plot){set, n, bough_arena_doubles(arena, room)};
 }
 
 void bough_case_plot_add(bough_case_plot *plot, int number, const bough_case_result *r) {

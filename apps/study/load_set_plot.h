@@ -14,7 +14,7 @@ typedef struct bough_case_plot {
     double *value; // (n_case × n_panel × 3)
 } bough_case_plot;
 
-bool bough_case_plot_take(bough_arena *arena, const bough_load_set *set, bough_case_plot *plot);
+bough_case_plot bough_case_plot_take(bough_arena *arena, const bough_load_set *set);
 void bough_case_plot_add(bough_case_plot *plot, int number, const bough_case_result *result);
 
 // Either writes folder/plot.svg.

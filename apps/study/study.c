@@ -17,7 +17,6 @@
 static const char *write_set(bough_arena *arena, const char *key, const bough_node *value) {
     size_t size = strlen(key) + 2 * strlen(value->text) + 4;
     char *set = bough_arena_take(arena, size);
-    if (!set) return NULL;
     char *end = set + snprintf(set, size, "%s=%s", key, value->quoted ? "'" : "");
     for (const char *c = value->text; *c; c++) {
         if (value->quoted && *c == '\'') *end++ = '\'';
@@ -91,7 +90,6 @@ void bough_study_read_settings(bough_schema_reader *r, const bough_node *node, v
     bough_study_settings *settings = field;
     if (!is_mapping(r, node, "keys of the scene with their values")) return;
     settings->item = bough_arena_take(r->arena, (size_t)node->n * sizeof *settings->item);
-    if (!settings->item) return;
     settings->n = node->n;
     for (int i = 0; i < node->n; i++)
         read_setting(r, node->key[i]->text, node->value[i], &settings->item[i]);
@@ -122,7 +120,6 @@ static void read_axis(bough_schema_reader *r, const bough_node *key, const bough
         return;
     }
     axis->value.item = bough_arena_take(r->arena, (size_t)values->n * sizeof *axis->value.item);
-    if (!axis->value.item) return;
     axis->value.n = values->n;
     for (int i = 0; i < values->n; i++)
         read_setting(r, key->text, values->value[i], &axis->value.item[i]);
@@ -155,7 +152,6 @@ void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void 
         return;
     }
     grid->axis = bough_arena_take(r->arena, (size_t)node->n * sizeof *grid->axis);
-    if (!grid->axis) return;
     grid->n = node->n;
     for (int i = 0; i < node->n; i++)
         read_axis(r, node->key[i], node->value[i], &grid->axis[i]);
@@ -177,7 +173,6 @@ static void read_vector(bough_schema_reader *r, const bough_node *node,
         return;
     }
     vector->channel = bough_arena_take(r->arena, (size_t)node->n * sizeof *vector->channel);
-    if (!vector->channel) return;
     vector->n = node->n;
     for (int i = 0; i < node->n; i++) {
         const bough_node *name = node->value[i];
@@ -194,7 +189,6 @@ static void read_channels(bough_schema_reader *r, const bough_node *node, void *
         node->kind == BOUGH_SEQUENCE && node->n > 0 && node->value[0]->kind == BOUGH_SEQUENCE;
     int n = nested ? node->n : 1;
     vectors->item = bough_arena_take(r->arena, (size_t)n * sizeof *vectors->item);
-    if (!vectors->item) return;
     vectors->n = n;
     for (int i = 0; i < n; i++)
         read_vector(r, nested ? node->value[i] : node, &vectors->item[i]);
@@ -212,7 +206,6 @@ static void check_measure(bough_schema_reader *r, void *item) {
     if (several || !m->channel) return;
     m->channels.item = bough_arena_take(r->arena, sizeof *m->channels.item);
     const char **names = bough_arena_take(r->arena, sizeof *names);
-    if (!m->channels.item || !names) return;
     names[0] = m->channel;
     m->channels.item[0] = (bough_study_vector){1, names};
     m->channels.n = 1;

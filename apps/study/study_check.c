@@ -144,7 +144,6 @@ static void unknown_channel(const bough_study_measure *m, const char *name,
                             const bough_channels *channels, bough_arena *arena,
                             bough_errors *errors) {
     const char **names = bough_arena_take(arena, (size_t)(channels->count + 1) * sizeof *names);
-    if (!names) return;
     for (int i = 0; i < channels->count; i++)
         names[i] = channels->channel[i].name;
     const char *near = bough_nearest(name, names, channels->count);

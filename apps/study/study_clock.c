@@ -113,7 +113,6 @@ static void hold_loads(void *self, double t0, double t1) {
 // Those that the system has.
 static void show_system(clocked_member *m, bough_system *shown, bough_arena *arena) {
     bough_system_ops *ops = bough_arena_take(arena, sizeof *ops);
-    if (ops == NULL) return;
     const bough_system_ops *real = m->real.ops;
     *ops = (bough_system_ops){.derivative = derivative,
                               .output = output,
@@ -191,12 +190,10 @@ bough_status bough_clock_create(bough_arena *arena, bough_simulation *s, bough_c
     bough_master *master = s->master;
     bough_assembly *a = master->assembly;
     bough_clock *c = bough_arena_take(arena, sizeof *c);
-    if (c == NULL) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     c->assembly = a;
     c->n_load = master->n_load;
     c->member = bough_arena_take(arena, (size_t)a->n_member * sizeof *c->member);
     c->load = bough_arena_take(arena, (size_t)c->n_load * sizeof *c->load);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int i = 0; i < a->n_member; i++) {
         show_member(&c->member[i], a->member[i], arena);
     }

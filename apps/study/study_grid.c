@@ -16,11 +16,10 @@ static void add_set(bough_study_cell *cell, const bough_study_setting *setting) 
     cell->set[cell->n_set++] = setting->set;
 }
 
-static bool take_sets(bough_arena *arena, const bough_study *s, int n_own, bough_study_cell *cell) {
+static void take_sets(bough_arena *arena, const bough_study *s, int n_own, bough_study_cell *cell) {
     cell->set = bough_arena_take(arena, (size_t)(s->common.n + n_own) * sizeof *cell->set);
-    for (int i = 0; cell->set && i < s->common.n; i++)
+    for (int i = 0; i < s->common.n; i++)
         add_set(cell, &s->common.item[i]);
-    return cell->set != NULL;
 }
 
 // "scheme=ramp, macro_step=5 ms"
@@ -30,7 +29,7 @@ static const char *write_settings(bough_arena *arena, const bough_study *s,
     for (int i = 0; i < s->grid.n; i++)
         size += strlen(s->grid.axis[i].key) + strlen(bough_study_value(s, cell, i)) + 3;
     char *text = bough_arena_take(arena, size);
-    for (int i = 0; text && i < s->grid.n; i++) {
+    for (int i = 0; i < s->grid.n; i++) {
         used += (size_t)snprintf(text + used, size - used, "%s%s=%s", i ? ", " : "",
                                  s->grid.axis[i].label, bough_study_value(s, cell, i));
     }
@@ -44,7 +43,7 @@ static void make_cell(bough_arena *arena, const bough_study *s, int number,
         cell->index[i] = number % n;
         number /= n;
     }
-    if (!take_sets(arena, s, s->grid.n, cell)) return;
+    take_sets(arena, s, s->grid.n, cell);
     for (int i = 0; i < s->grid.n; i++)
         add_set(cell, &s->grid.axis[i].value.item[cell->index[i]]);
     cell->settings = write_settings(arena, s, cell);
@@ -86,7 +85,7 @@ static const char *name_reference(bough_arena *arena, const bough_study *s,
 
 static void make_reference(bough_arena *arena, const bough_study *s, int number,
                            bough_study_cell *cell) {
-    if (!take_sets(arena, s, s->reference.n + s->grid.n, cell)) return;
+    take_sets(arena, s, s->reference.n + s->grid.n, cell);
     for (int i = 0; i < BOUGH_STUDY_AXES; i++)
         cell->index[i] = -1;
     for (int i = s->grid.n - 1; i >= 0; i--) {
@@ -104,7 +103,7 @@ static void make_references(bough_arena *arena, bough_study *s) {
     s->n_reference = count_references(s);
     s->reference_cell =
         bough_arena_take(arena, (size_t)s->n_reference * sizeof *s->reference_cell);
-    for (int i = 0; i < s->n_reference && s->reference_cell; i++)
+    for (int i = 0; i < s->n_reference; i++)
         make_reference(arena, s, i, &s->reference_cell[i]);
 }
 
@@ -117,7 +116,6 @@ void bough_study_expand(bough_arena *arena, bough_study *s, bough_errors *errors
     }
     make_references(arena, s);
     s->cell = bough_arena_take(arena, (size_t)n * sizeof *s->cell);
-    if (!s->reference_cell || !s->cell) return;
     s->n_cell = n;
     for (int i = 0; i < n; i++) {
         make_cell(arena, s, i, &s->cell[i]);

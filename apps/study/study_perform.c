@@ -47,7 +47,6 @@ static bough_status start(bough_arena *arena, work *w) {
     w->results.result = bough_arena_take(arena, (size_t)s->n_cell * sizeof *w->results.result);
     w->reference = bough_study_series_take(arena, s);
     w->series = bough_study_series_take(arena, s);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     w->drive.stop = w->options->stop;
     w->drive.progress = bough_progress_start(0, s->duration, w->options->quiet);
     bough_status status = bough_folder_make(w->options->folder);

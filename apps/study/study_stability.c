@@ -103,8 +103,7 @@ static void perform_groups(void *self) {
 
 static bough_status run_groups(bough_arena *arena, stability *x) {
     int threads = x->study->threads > 0 ? x->study->threads : bough_pool_default(0);
-    bough_status status = bough_pool_create(arena, threads, &x->pool);
-    if (!bough_is_ok(&status)) return status;
+    x->pool = bough_pool_create(arena, threads);
     x->worst.code = BOUGH_OK;
     pthread_mutex_init(&x->mutex, NULL);
     bough_pool_region(x->pool, perform_groups, x);
@@ -122,7 +121,6 @@ static bough_status start(bough_arena *arena, stability *x) {
     char name[48] = "cells.csv";
     x->reference = bough_arena_take(arena, (size_t)s->n_reference * sizeof *x->reference);
     x->result = bough_arena_take(arena, (size_t)s->n_cell * sizeof *x->result);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (x->options->parts > 0) {
         snprintf(name, sizeof name, "cells-%d-of-%d.csv", x->options->part, x->options->parts);
     }
@@ -195,7 +193,6 @@ static bough_status make_map(bough_arena *arena, const stability *x, bough_map *
     map->row = bough_arena_take(arena, (size_t)map->n_row * sizeof *map->row);
     map->column = bough_arena_take(arena, (size_t)map->n_column * sizeof *map->column);
     map->cell = bough_arena_take(arena, (size_t)s->n_cell * sizeof *map->cell);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < map->n_column; k++) map->column[k] = across->value.item[k].value;
     for (int i = 0; i < map->n_row; i++) {
         name_row(s, &s->cell[i * map->n_column], row, sizeof row);

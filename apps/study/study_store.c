@@ -175,7 +175,6 @@ bough_status bough_study_store_open_part(bough_arena *arena, const char *folder,
     bough_status status = bough_folder_path(folder, name, path);
     if (!bough_is_ok(&status)) return status;
     *store = (bough_study_store){.study = study, .path = bough_arena_string(arena, path)};
-    if (!store->path) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     if (strcmp(name, all_cells) != 0) read_file(folder, all_cells, study, reference, result);
     read_parts(folder, study, reference, result);
     char why[BOUGH_INPUT_REASON];

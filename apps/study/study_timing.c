@@ -187,7 +187,6 @@ bough_status bough_timing_perform(bough_arena *arena, const bough_study *study,
     t.cell = bough_arena_take(arena, (size_t)study->n_cell * sizeof *t.cell);
     t.reference = bough_study_series_take(arena, study);
     t.series = bough_study_series_take(arena, study);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     t.drive.stop = options->stop;
     t.drive.progress = bough_progress_start(0, study->duration, options->quiet);
     bough_status status = bough_folder_make(options->folder);

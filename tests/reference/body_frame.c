@@ -21,7 +21,7 @@ bool bough_body_frame_init(bough_body_frame *b, bough_arena *arena, const bough_
     b->m_e = bough_arena_doubles(arena, 6 * n_e);
     b->factor = bough_arena_doubles(arena, 6 * n_e);
     b->h_e = bough_arena_doubles(arena, n_e);
-    return !bough_arena_exhausted(arena);
+    return true;
 }
 
 // The vertex' place in v_E, −1 for the reference vertex.

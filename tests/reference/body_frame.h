@@ -47,7 +47,7 @@ typedef struct bough_body_frame {
     bough_wrench *term; // work (n_vertex)
 } bough_body_frame;
 
-// Takes the memory; false when exhausted.
+// Takes the memory.
 bool bough_body_frame_init(bough_body_frame *b, bough_arena *arena, const bough_structure *s);
 
 // (13): n vertices in the frame in which the BRF has this pose; v_r in BRF axes.

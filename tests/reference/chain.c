@@ -168,9 +168,6 @@ bough_status bough_chain_create(bough_arena *arena, const bough_chain_def *def,
     bough_inertia *inertia = bough_arena_take(arena, n * sizeof *inertia);
     bough_vertex *rest = bough_arena_take(arena, n * sizeof *rest);
     const char *name = bough_arena_string(arena, def->name);
-    if (bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "chain %s: out of memory", def->name);
-    }
     for (int i = 0; i < def->n_link; i++) {
         status = set_link(def, i, link + i);
         if (!bough_is_ok(&status)) return status;

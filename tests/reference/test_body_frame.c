@@ -73,7 +73,7 @@ static void rod_state(const fixture *f, double *state, double *input) {
 
 // Loads of the rod on all vertices, the root included, also as wrenches of (12).
 static void load_both(const fixture *f, bough_rod_loads *loads, bough_body_frame *b) {
-    assert_true(bough_rod_loads_init(loads, f->arena, f->model));
+    bough_rod_loads_init(loads, f->arena, f->model);
     sample_loads(f->model, loads);
     memset(loads->rate, 0, 6 * (size_t)f->model->stride * sizeof(double));
     for (int i = 0; i <= N; i++) {
@@ -94,7 +94,7 @@ static void accelerations_are_those_of_the_rods_right_hand_side(void **context) 
     double state[STATES], input[BOUGH_ROD_INPUTS], rate[STATES], v_e_rate[6 * N];
     double expected[6 * N], values[6 * N];
     const double v_r_rate[2][6] = {{0}, {3, -7, 5, 2, -4, 9}};
-    assert_true(bough_rod_scratch_init(&scratch, f->arena, f->model));
+    bough_rod_scratch_init(&scratch, f->arena, f->model);
     assert_true(bough_body_frame_init(&b, f->arena, f->structure));
     structure_evaluate(&f->at, false, &b);
     load_both(f, &loads, &b);
@@ -124,7 +124,7 @@ static void reduced_force_is_the_root_wrench(void **context) {
     bough_rod_scratch scratch;
     bough_body_frame b;
     double state[STATES], input[BOUGH_ROD_INPUTS], wrench[6], inertia[36], force[6];
-    assert_true(bough_rod_scratch_init(&scratch, f->arena, f->model));
+    bough_rod_scratch_init(&scratch, f->arena, f->model);
     assert_true(bough_body_frame_init(&b, f->arena, f->structure));
     structure_evaluate(&f->at, false, &b);
     load_both(f, &loads, &b);
@@ -147,7 +147,7 @@ static void energy_is_that_of_the_rod(void **context) {
     bough_rod_scratch scratch;
     bough_vertex vertex[STRUCTURE_MAX];
     double state[STATES], input[BOUGH_ROD_INPUTS];
-    assert_true(bough_rod_scratch_init(&scratch, f->arena, f->model));
+    bough_rod_scratch_init(&scratch, f->arena, f->model);
     rod_state(f, state, input);
     bough_rod_gather(f->model, state, input, &scratch);
     structure_vertices(&f->at, vertex);

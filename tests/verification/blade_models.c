@@ -117,8 +117,7 @@ static bough_status make_run(bough_arena *arena, const bough_blade_models *s, bo
     run->channel = bough_arena_take(arena, (size_t)(4 * n_blade + 1) * sizeof *run->channel);
     if (!run->measure || !run->channel) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     for (int k = 0; k < BOUGH_BLADE_MODELS_MEASURES; k++) set_measure(arena, k, n_blade, run);
-    return bough_arena_exhausted(arena) ? bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory")
-                                        : status;
+    return status;
 }
 
 // -- performing -----------------------------------------------------------------------------------
@@ -277,7 +276,6 @@ bough_status bough_blade_models_perform(bough_arena *arena, const void *study,
     c.reference = bough_study_series_take(arena, &c.run);
     c.series = bough_study_series_take(arena, &c.run);
     c.outcome = bough_arena_take(arena, (size_t)c.study->n * sizeof *c.outcome);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     status = measure_all(arena, &c);
     bough_progress_clear(&c.drive.progress);
     if (bough_is_ok(&status)) status = write_file(&c, options->folder);

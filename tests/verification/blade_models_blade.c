@@ -103,7 +103,6 @@ static bough_status find(bough_arena *arena, const char *path, const bough_model
     blade->span = bough_arena_doubles(arena, vertices);
     blade->flap = bough_arena_doubles(arena, vertices);
     blade->twist = bough_arena_doubles(arena, vertices);
-    if (bough_arena_exhausted(arena)) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     return beam->rod ? find_rod(arena, s, beam, frequency, blade)
                      : find_modal(arena, s, beam, frequency, blade);
 }

@@ -28,10 +28,8 @@ bough_status bough_modal_steady(const bough_modal_model *m, const bough_rod_load
     bough_modal_chain chain;
     bough_modal_newton newton;
     double *step = bough_arena_doubles(arena, (size_t)m->n_state), before = HUGE_VAL;
-    if (step == NULL || !bough_modal_chain_init(&chain, arena, m) ||
-        !bough_modal_newton_init(&newton, arena, m)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    }
+    bough_modal_chain_init(&chain, arena, m);
+    bough_modal_newton_init(&newton, arena, m);
     for (int iteration = 0; iteration < ITERATIONS; iteration++) {
         bool ok = bough_modal_linearise(m, loads, t, state, input, &chain, &newton) &&
                   bough_modal_factor(m, &newton, long_time) &&
@@ -76,9 +74,7 @@ bough_status bough_modal_frequencies(bough_arena *arena, const bough_modal_model
     double *jacobian = bough_arena_doubles(arena, n * n), *unit = bough_arena_doubles(arena, n);
     double *vector = bough_arena_doubles(arena, n * n), *work = bough_arena_doubles(arena, 8 * n);
     double *value = bough_arena_doubles(arena, 2 * n);
-    if (!bough_modal_chain_init(&chain, arena, m) || bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: out of memory", m->name);
-    }
+    bough_modal_chain_init(&chain, arena, m);
     bough_modal_chain_slopes(m, loads, t, state, input, &chain);
     set_jacobian(m, &chain, unit, jacobian);
     if (!bough_dense_eigen(m->n_state, jacobian, value, vector, work)) {

@@ -35,9 +35,6 @@ bough_status bough_verification_read(bough_arena *arena, const char *path, bough
     if (verification->kind) {
         verification->study = verification->kind->read(arena, path, root, errors);
     }
-    if (bough_arena_exhausted(arena)) {
-        return bough_fail(BOUGH_OUT_OF_MEMORY, "%s: memory is exhausted", path);
-    }
     int n = errors->n + errors->dropped;
     if (n == 0) return bough_ok();
     bough_errors_sort(errors, path);

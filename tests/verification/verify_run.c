@@ -162,7 +162,7 @@ static bool gauge_init(gauge *g, bough_arena *arena, bough_simulation *s) {
             bough_rod_scratch_init(&g->scratch[k], arena, bough_rod_body_model(s->beam[k].rod));
         }
     }
-    return !bough_arena_exhausted(arena);
+    return true;
 }
 
 static void add_vertex(const bough_beam *beam, const bough_beam_motion *m, int i,
