@@ -278,6 +278,32 @@ static void two_blades_teeter(void **context) {
     done(&t);
 }
 
+// The tail hangs on an axis along y of the nacelle, so that x of its frame is y, and y is -x; the rotor's
+// part is held at 5 degrees about the vertical through (0.5, 0).
+static void tails_and_rotors_furl(void **context) {
+    (void)context;
+    const edit furling = {"parts/elasto.dat", "True          YawDOF",
+                          "True Furling\n\"../v8/furl.dat\"  FurlFile\nTrue          YawDOF"};
+    trial t = import(&furling);
+    assert_string_equal(t.status.message, "");
+    const bough_node *tail = body(&t, "tail"), *furl = body(&t, "furl");
+    assert_string_equal(text(tail, "joint.kind"), "revolute");
+    assert_string_equal(text(tail, "joint.angle"), "4 deg");
+    assert_string_equal(text(tail, "mass"), "80 kg");
+    check_near(number(tail, "centre_of_mass.0"), 1, 1e-9, 0);
+    check_near(number(tail, "centre_of_mass.1"), -1.25, 1e-9, 0);
+    check_near(number(tail, "centre_of_mass.2"), 0, 0, 1e-9);
+    check_near(number(tail, "inertia.0"), 500 - 80 * 1.25 * 1.25, 1e-9, 0);
+    assert_string_equal(text(tail, "joint.stop.0"), "3 deg");
+    check_near(number(tail, "joint.stop_stiffness"), 1.7e4, 1e-9, 0);
+    assert_string_equal(text(furl, "joint.kind"), "fixed");
+    assert_string_equal(text(body(&t, "generator"), "joint.parent"), "furl");
+    assert_string_equal(text(body(&t, "generator"), "joint.placement.0"), "rotate y 90 deg");
+    assert_string_equal(text(body(&t, "generator"), "joint.placement.5"), "move y 0.1 m");
+    steps(&t);
+    done(&t);
+}
+
 // From 600 rpm to 1.5 times 300 N m at 1.5 times 2 %; the line of a circuit beside its formula.
 static void induction_generators_are_lines(void **context) {
     (void)context;
@@ -349,6 +375,7 @@ int main(void) {
         cmocka_unit_test(aerodyn_14_has_elements_too),
         cmocka_unit_test(masses_on_tips_and_yaw_bearing),
         cmocka_unit_test(two_blades_teeter),
+        cmocka_unit_test(tails_and_rotors_furl),
         cmocka_unit_test(induction_generators_are_lines),
         cmocka_unit_test(steep_torque_lines_are_taken),
         cmocka_unit_test(steps_follow_the_rotor),

@@ -391,6 +391,18 @@ const double *bough_deck_table(const bough_deck *deck, const char *const *column
     return bough_is_ok(deck->status) ? table : NULL;
 }
 
+bool bough_deck_three(const bough_deck *deck, const char *name, double to[3]) {
+    char word[WORD];
+    for (int i = 0; i < deck->n; i++) {
+        const char *at = deck->line[i];
+        int n = 0;
+        while (n < 3 && next_word(&at, word) && read_number(word, &to[n]))
+            n++;
+        if (n == 3 && next_word(&at, word) && is_one_of(word, name)) return true;
+    }
+    return false;
+}
+
 int bough_deck_only_numbers(const bough_deck *deck, int line, int most, double *to) {
     char word[WORD];
     int n = 0;

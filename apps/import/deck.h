@@ -59,6 +59,9 @@ bool bough_deck_is_comment(const bough_deck *deck, int line);
 const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column,
                                int n);
 
+// The three numbers of a line "x, y, z  Name"; false where there is no such line.
+bool bough_deck_three(const bough_deck *deck, const char *name, double to[3]);
+
 // How many numbers (at most `most`) are in a line that has nothing else; 0 where it has.
 int bough_deck_only_numbers(const bough_deck *deck, int line, int most, double *to);
 

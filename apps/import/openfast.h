@@ -6,6 +6,7 @@
 #include "apps/import/deck.h"
 #include "apps/import/draft.h"
 #include "apps/import/import.h"
+#include "core/vec3.h"
 
 enum { BOUGH_IMPORT_BLADES = 3 };
 
@@ -22,6 +23,8 @@ typedef struct bough_openfast {
     const bough_import_options *options;
     bough_deck *main, *elasto, *tower, *servo, *inflow, *aero; // NULL: the model has none
     int n_blade;
+    bough_deck *furl;  // NULL: nothing furls
+    bool rotor_furls;  // a body "furl" carries the shaft
     bool old_aero; // `aero` is of AeroDyn 14
     bool beamdyn; // blades by BeamDyn, else by ElastoDyn
     bool rigid_blade, rigid_tower;
@@ -89,6 +92,10 @@ void bough_openfast_generator(bough_openfast *o);
 // The parts `bodies` and `turbine` of the scene; `control`.
 void bough_openfast_bodies(bough_openfast *o);
 void bough_openfast_control(bough_openfast *o);
+
+// Bodies that furl, on the nacelle; the first steps of the shaft's placement with them.
+void bough_openfast_furl(bough_openfast *o);
+void bough_openfast_put_shaft_offset(const bough_openfast *o);
 
 // The generator's inertia on the slow shaft [kg m2]; whether it turns against the hub.
 double bough_openfast_generator_inertia(const bough_openfast *o);

@@ -91,10 +91,12 @@ static void put_main_joint(bough_openfast *o) {
     double speed = bough_deck_number(e, "RotSpeed");
     double angle = bough_deck_number_or(e, "Azimuth", 0) - bough_deck_number_or(e, "AzimB1Up", 0);
     fprintf(file,
-            "    joint:\n      kind: revolute\n      parent: nacelle\n"
-            "      placement: [move z %.10g m, rotate y %.10g deg, move x %.10g m]\n"
-            "      axis: x\n",
-            bough_deck_number(e, "Twr2Shft"), -bough_deck_number(e, "ShftTilt"),
+            "    joint:\n      kind: revolute\n      parent: %s\n      placement: [",
+            o->rotor_furls ? "furl" : "nacelle");
+    bough_openfast_put_shaft_offset(o);
+    fprintf(file, "move z %.10g m, ", bough_deck_number(e, "Twr2Shft"));
+    if (o->furl) fprintf(file, "rotate z %.10g deg, ", bough_deck_number(o->furl, "ShftSkew"));
+    fprintf(file, "rotate y %.10g deg, move x %.10g m]\n      axis: x\n", -bough_deck_number(e, "ShftTilt"),
             bough_deck_number(e, "OverHang"));
     if (angle != 0) fprintf(file, "      angle: %.10g deg\n", angle);
     if (o->lacks_control) {
@@ -240,7 +242,7 @@ static void put_rotor(bough_openfast *o) {
 
 static void note_left(bough_openfast *o) {
     static const char *const freedoms[] = {"PtfmSgDOF", "PtfmSwDOF", "PtfmHvDOF", "PtfmRDOF",
-                                           "PtfmPDOF",  "PtfmYDOF",  "Furling"};
+                                           "PtfmPDOF",  "PtfmYDOF"};
     static const char *const starts[] = {"OoPDefl",   "IPDefl",    "TTDspFA",   "TTDspSS",  "PtfmSurge",
                                          "PtfmSway",  "PtfmHeave", "PtfmRoll",  "PtfmPitch", "PtfmYaw"};
     for (size_t i = 0; i < sizeof freedoms / sizeof *freedoms; i++) {
@@ -273,6 +275,8 @@ void bough_openfast_bodies(bough_openfast *o) {
     fputs("bodies:\n", o->draft.file[BOUGH_IMPORT_SCENE]);
     put_tower(o, top);
     put_nacelle(o);
+    bough_openfast_furl(o);
+    if (!bough_is_ok(o->draft.status)) return;
     put_rotor(o);
     note_left(o);
 }
