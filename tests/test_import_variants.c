@@ -337,6 +337,18 @@ static void induction_generators_are_lines(void **context) {
     done(&t);
 }
 
+// What ServoDyn also steers is on the list.
+static void structural_control_is_on_the_list(void **context) {
+    (void)context;
+    trial t = import(&(edit){"parts/servo.dat", "1   VSContrl", "2 NumTStC\nTrue CompNTMD\n1 AfCmode\n0 NumBStC\n1   VSContrl"});
+    assert_string_equal(t.status.message, "");
+    assert_true(list_says(&t, "NumTStC: structural control"));
+    assert_true(list_says(&t, "CompNTMD: structural control"));
+    assert_true(list_says(&t, "AfCmode"));
+    assert_false(list_says(&t, "NumBStC"));
+    done(&t);
+}
+
 // A line that is as good as vertical becomes the steepest that samples hold.
 static void steep_torque_lines_are_taken(void **context) {
     (void)context;
@@ -377,6 +389,7 @@ int main(void) {
         cmocka_unit_test(two_blades_teeter),
         cmocka_unit_test(tails_and_rotors_furl),
         cmocka_unit_test(induction_generators_are_lines),
+        cmocka_unit_test(structural_control_is_on_the_list),
         cmocka_unit_test(steep_torque_lines_are_taken),
         cmocka_unit_test(steps_follow_the_rotor),
     };

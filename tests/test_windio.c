@@ -258,6 +258,8 @@ static void bad_files_are_told_where(void **context) {
          "turbine-1.yaml:15:14: chord: expected a positive value"},
         {"grid: [0.0, 0.1, 0.5, 1.0]", "grid: [0.0, 0.6, 0.5, 1.0]",
          "turbine-1.yaml:15:14: grid: expected increasing numbers, but number 3 is not larger than the one before"},
+        {"values: [0.2, 0.0]", "values: [11.5, 0.0]",
+         "twist: expected angles up to 1.5708 rad, as version 1 has them, got 11.5"},
         {"values: [0.0, 10.0]", "values: [0.0, 0.0]", "reference_axis.z: expected increasing values, but"},
         {"labels: [round, flat, flat]", "labels: [round, flat, steep]",
          "turbine-1.yaml:14:31: no airfoil is named 'steep'"},

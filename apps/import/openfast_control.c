@@ -281,6 +281,23 @@ static void note_manoeuvres(bough_openfast *o) {
     }
 }
 
+// Tuned masses and dampers of blades, nacelle, tower and platform; flags before OpenFAST 2.5.
+static void note_structural_control(bough_openfast *o) {
+    static const char *const count[] = {"NumBStC", "NumNStC", "NumTStC", "NumSStC"};
+    static const char *const flag[] = {"CompNTMD", "CompTTMD"};
+    for (size_t i = 0; i < sizeof count / sizeof *count; i++) {
+        if (bough_deck_whole_or(o->servo, count[i], 0) == 0) continue;
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: structural control", count[i]);
+    }
+    for (size_t i = 0; i < sizeof flag / sizeof *flag; i++) {
+        if (!bough_deck_flag_or(o->servo, flag[i], false)) continue;
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: structural control", flag[i]);
+    }
+    if (bough_deck_whole_or(o->servo, "AfCmode", 0) != 0) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "AfCmode: flaps and other airfoil control");
+    }
+}
+
 void bough_openfast_control(bough_openfast *o) {
     if (!bough_is_ok(o->draft.status)) return;
     if (o->generator == BOUGH_GENERATOR_LIBRARY) put_library(o);
@@ -299,4 +316,5 @@ void bough_openfast_control(bough_openfast *o) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "HSSBrMode: the brake");
     }
     note_manoeuvres(o);
+    note_structural_control(o);
 }

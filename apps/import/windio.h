@@ -51,6 +51,9 @@ typedef struct bough_windio {
 double bough_windio_control(bough_windio *w, const char *first, const char *second,
                             double second_unit, double fallback);
 
+// Fails at the first angle above 90 deg: files with degrees where their version has radians.
+void bough_windio_check_angles(bough_windio *w, const bough_curve *angles, const char *name);
+
 // The blade's shape, into `outline`.
 void bough_windio_shape_read(bough_windio *w);
 

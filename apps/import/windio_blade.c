@@ -218,6 +218,7 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
     bough_curve m = {inertia->node, inertia->n, inertia->grid, NULL};
     bough_curve twist =
         bough_entry_curve(&w->draft, bough_entry(from, "twist") ? from : w->shape, "twist");
+    bough_windio_check_angles(w, &twist, "twist");
     const bough_curve *all[] = {&k, &m, &twist, &w->axis[0], &w->axis[1], &w->axis[2]};
     double *share, strange = 0;
     int n = union_of(&w->draft, all, 6, &share);

@@ -96,12 +96,22 @@ double bough_windio_line(const bough_windio_shape *a, double at) {
     return bough_curve_at(&a->pitch_axis, at) * bough_curve_at(&a->chord, at);
 }
 
+void bough_windio_check_angles(bough_windio *w, const bough_curve *angles, const char *name) {
+    const double most = 90; // [deg]
+    for (int i = 0; i < angles->n && bough_is_ok(w->draft.status); i++) {
+        if (fabs(angles->y[i] * w->degree) <= most) continue;
+        bough_entry_fail(&w->draft, angles->node, "%s: expected angles up to %g %s, as version %d has them, got %g", name,
+                         most / w->degree, w->second ? "deg" : "rad", w->second ? 2 : 1, angles->y[i]);
+    }
+}
+
 void bough_windio_shape_read(bough_windio *w) {
     bough_draft *d = &w->draft;
     bough_windio_shape *a = &w->outline;
     a->place = bough_arena_take(d->arena, MOST_AIRFOILS * sizeof *a->place);
     a->chord = bough_entry_curve(d, w->shape, "chord");
     a->twist = bough_entry_curve(d, w->shape, "twist");
+    bough_windio_check_angles(w, &a->twist, "twist");
     bool by_length = bough_entry(w->shape, "section_offset_y") || (w->second && !bough_entry(w->shape, "pitch_axis"));
     if (by_length) a->offset_y = bough_entry_curve(d, w->shape, "section_offset_y");
     if (!by_length) a->pitch_axis = bough_entry_curve(d, w->shape, "pitch_axis");
