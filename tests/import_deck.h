@@ -15,6 +15,7 @@ static const char *const decks[] = {
     "v5/main.fst",     "v5/elasto.dat",        "v5/aero-blade.dat",     "v5/aero.dat",
     "v5/servo.dat",    "v5/beam.dat",          "v5/beam-blade.dat",    "v8/main.fst",
     "v8/aero.ipt",     "v8/foil.dat",          "v8/furl.dat",
+    "v8/elasto.dat",
 };
 enum { N_DECK = sizeof decks / sizeof *decks };
 

@@ -148,8 +148,8 @@ static void again(trial *t, const char *main) {
 
 static void every_spelling_gives_the_same_scene(void **context) {
     (void)context;
-    static const char *const mains[] = {"main.fst", "v4/main.fst", "v5/main.fst"};
-    for (int m = 0; m < 3; m++) {
+    static const char *const mains[] = {"main.fst", "v4/main.fst", "v5/main.fst", "v8/main.fst"};
+    for (int m = 0; m < 4; m++) {
         trial base = import_main(mains[m], NULL, NULL);
         assert_string_equal(base.status.message, "");
         trial t = import_main(mains[m], NULL, NULL);

@@ -282,9 +282,7 @@ static void two_blades_teeter(void **context) {
 // part is held at 5 degrees about the vertical through (0.5, 0).
 static void tails_and_rotors_furl(void **context) {
     (void)context;
-    const edit furling = {"parts/elasto.dat", "True          YawDOF",
-                          "True Furling\n\"../v8/furl.dat\"  FurlFile\nTrue          YawDOF"};
-    trial t = import(&furling);
+    trial t = import_main("v8/main.fst", NULL, NULL);
     assert_string_equal(t.status.message, "");
     const bough_node *tail = body(&t, "tail"), *furl = body(&t, "furl");
     assert_string_equal(text(tail, "joint.kind"), "revolute");

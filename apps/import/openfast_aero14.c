@@ -16,6 +16,7 @@ static double *read_polar(bough_openfast *o, const bough_deck *deck, bool moment
     *n = 0;
     for (int line = 2; line < deck->n && *n < MOST_ROWS; line++) {
         int count = bough_deck_only_numbers(deck, line, MOST_WORDS, value);
+        if (bough_deck_is_comment(deck, line)) continue;
         if (count < 3 && *n > 0) break;
         if (count < 3) continue;
         double *row = table + POLAR * *n;
@@ -37,6 +38,8 @@ static int put_polars(bough_openfast *o, char (*name)[NAME]) {
     fputs("polars:\n", o->draft.file[BOUGH_IMPORT_POLARS]);
     for (int i = 0; i < n && bough_is_ok(o->draft.status); i++, line++) {
         int rows;
+        while (bough_deck_is_comment(o->aero, line))
+            line++;
         const char *path = bough_deck_file_at(o->aero, line);
         bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
         if (!deck) return 0;

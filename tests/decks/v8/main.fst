@@ -9,7 +9,7 @@ Names and layout as FAST's, values invented
           1   CompServo       - {0=None; 1=ServoDyn}
           0   CompHydro       - {0=None; 1=HydroDyn}
 ---------------------- INPUT FILES ---------------------------------------------
-"../parts/elasto.dat"   EDFile       - ElastoDyn
+"elasto.dat"            EDFile       - ElastoDyn
 "unused"                BDBldFile(1) - BeamDyn
 "../parts/wind.dat"     InflowFile   - wind
 "aero.ipt"              AeroFile     - AeroDyn
