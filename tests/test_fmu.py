@@ -122,7 +122,10 @@ class Fmu(unittest.TestCase):
         for key in "name", "valueReference":
             values = [v.get(key) for v in every]
             self.assertEqual(len(set(values)), len(values), key)
-        units = {u.get("name") for u in root.find("UnitDefinitions")}
+        units = {u.get("name"): u.find("BaseUnit").attrib for u in root.find("UnitDefinitions")}
+        self.assertEqual(units["kN"], {"kg": "1", "m": "1", "s": "-2", "factor": "1000"})
+        self.assertEqual(units["s"], {"s": "1"})
+        self.assertAlmostEqual(float(units["rpm"]["factor"]) * 30, 3.14159265358979)
         for v in every:
             self.assertIn(v.get("causality"), ("independent", "input", "output"))
             self.assertEqual(v.get("variability"), "continuous")

@@ -112,9 +112,49 @@ static void put_text(const char *text, FILE *out) {
     }
 }
 
+#define DEGREE 0.017453292519943295
+#define RPM 0.10471975511965977
+
+// Exponents of the SI's base units, and the factor to them.
+static const struct {
+    const char *name;
+    int kg, m, s, rad;
+    double factor;
+} units[] = {
+    {"s", 0, 0, 1, 0, 1},          {"Hz", 0, 0, -1, 0, 1},     {"kg", 1, 0, 0, 0, 1},
+    {"m", 0, 1, 0, 0, 1},          {"m/s", 0, 1, -1, 0, 1},    {"m/s^2", 0, 1, -2, 0, 1},
+    {"rad", 0, 0, 0, 1, 1},        {"rad/s", 0, 0, -1, 1, 1},  {"deg", 0, 0, 0, 1, DEGREE},
+    {"deg/s", 0, 0, -1, 1, DEGREE}, {"rpm", 0, 0, -1, 1, RPM}, {"N", 1, 1, -2, 0, 1},
+    {"kN", 1, 1, -2, 0, 1000},     {"N/m", 1, 0, -2, 0, 1},    {"N m", 1, 2, -2, 0, 1},
+    {"N-m", 1, 2, -2, 0, 1},       {"kN-m", 1, 2, -2, 0, 1000}, {"N m/m", 1, 1, -2, 0, 1},
+    {"W", 1, 2, -3, 0, 1},         {"kW", 1, 2, -3, 0, 1000},  {"-", 0, 0, 0, 0, 1},
+};
+
+static void put_exponent(const char *name, int exponent, FILE *out) {
+    if (exponent != 0) fprintf(out, " %s=\"%d\"", name, exponent);
+}
+
+static void put_unit(const char *unit, FILE *out) {
+    fputs("    <Unit name=\"", out);
+    put_text(unit, out);
+    fputs("\">", out);
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
+        if (strcmp(units[k].name, unit) != 0) continue;
+        fputs("<BaseUnit", out);
+        put_exponent("kg", units[k].kg, out);
+        put_exponent("m", units[k].m, out);
+        put_exponent("s", units[k].s, out);
+        put_exponent("rad", units[k].rad, out);
+        if (units[k].factor != 1) fprintf(out, " factor=\"%.17g\"", units[k].factor);
+        fputs("/>", out);
+    }
+    fputs("</Unit>\n", out);
+}
+
 // Every unit once.
 static void put_units(const export *x, FILE *out) {
-    fputs("  <UnitDefinitions>\n    <Unit name=\"s\"/>\n", out);
+    fputs("  <UnitDefinitions>\n", out);
+    put_unit("s", out);
     for (int i = 0; i < x->n_input + x->n_output; i++) {
         const char *unit = i < x->n_input ? x->input[i].unit : x->output[i - x->n_input].unit;
         bool known = unit[0] == '\0' || strcmp(unit, "s") == 0;
@@ -122,10 +162,7 @@ static void put_units(const export *x, FILE *out) {
             const variable *other = k < x->n_input ? &x->input[k] : &x->output[k - x->n_input];
             known = strcmp(unit, other->unit) == 0;
         }
-        if (known) continue;
-        fputs("    <Unit name=\"", out);
-        put_text(unit, out);
-        fputs("\"/>\n", out);
+        if (!known) put_unit(unit, out);
     }
     fputs("  </UnitDefinitions>\n", out);
 }
