@@ -7,13 +7,17 @@
 
 static const char turbine[] = "tests/scenes/example-turbine.yaml";
 
-static bough_simulation *run(bough_arena *arena, const char *const *sets, int steps) {
-    bough_simulation *s = scene_build(arena, turbine, sets);
+static bough_simulation *run_scene(bough_arena *arena, const char *scene, const char *const *sets, int steps) {
+    bough_simulation *s = scene_build(arena, scene, sets);
     for (int k = 0; k < steps; k++) {
         scene_step(s);
         bough_validity_check(s);
     }
     return s;
+}
+
+static bough_simulation *run(bough_arena *arena, const char *const *sets, int steps) {
+    return run_scene(arena, turbine, sets, steps);
 }
 
 // The limits that a run passes, a bit each.
@@ -80,12 +84,31 @@ static void a_blade_in_the_tower_is_told(void **state) {
     bough_arena_destroy(arena);
 }
 
+#define IN_PIECES(blade) "bodies[" blade "].fidelity=segmented-modal", "bodies[" blade "].rod.segments=6"
+
+// Vibrations of the pieces grow under air at 10 Hz, and not at 50 Hz.
+static void samples_too_seldom_for_a_modal_blade_are_told(void **state) {
+    (void)state;
+    for (int rate = 10; rate <= 50; rate += 40) {
+        char chosen[32];
+        snprintf(chosen, sizeof chosen, "aero.rate=%d", rate);
+        const char *const sets[] = {IN_PIECES("blade1"), IN_PIECES("blade2"), IN_PIECES("blade3"), chosen,
+                                    "aero.ramp=[0, 0]", "simulation.coupling.scheme=monolithic",
+                                    "bodies[hub].joint.speed=1.2 rad/s", NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = run_scene(arena, "apps/turbine/runup.yaml", sets, 30);
+        assert_int_equal(s->validity->limit[BOUGH_LIMIT_SAMPLES].passed, rate == 10);
+        bough_arena_destroy(arena);
+    }
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(within_the_limits_nothing_is_told),
         cmocka_unit_test(a_fast_section_is_told_once),
         cmocka_unit_test(a_blade_in_the_tower_is_told),
         cmocka_unit_test(a_turned_segment_is_told),
+        cmocka_unit_test(samples_too_seldom_for_a_modal_blade_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

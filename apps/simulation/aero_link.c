@@ -379,6 +379,10 @@ bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
 
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link) { return link->rotor; }
 
+double bough_aero_link_missed(const bough_aero_link *link, int blade) {
+    return bough_aero_signal_missed(link->signal[blade]);
+}
+
 const bough_rotor_data *bough_aero_link_data(const bough_aero_link *link, double *factor) {
     *factor = link->factor[link->shown];
     return &link->data[link->shown];

@@ -33,6 +33,9 @@ void bough_aero_link_restore(bough_aero_link *link, const double *from);
 
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link);
 
+// bough_aero_signal_missed of a blade.
+double bough_aero_link_missed(const bough_aero_link *link, int blade);
+
 // Changes the speed of a wind by a formula [m/s] from the next sample on.
 void bough_aero_link_set_wind(bough_aero_link *link, double speed);
 

@@ -21,6 +21,7 @@ struct bough_aero_signal {
     int n, n_vertex;
     double start, span;      // [s]
     double damped;           // 1: the body adds S·motion
+    double missed;           // mean square of what the loads have missed, of that of the loads
     double *sampled;         // (n) whole loads at the sample before
     double *reached;         // (n) whole loads that the signal goes to, on the expected motion
     double *value, *rate, *curve; // (n) of the signal since `start`
@@ -226,6 +227,7 @@ void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_
     memset(s->slope, 0, BOUGH_SLOPES * n * sizeof(double));
     memset(s->expected, 0, 3 * n * sizeof(double));
     s->damped = 0;
+    s->missed = 0;
     s->start = start;
     s->span = 1;
     put(s);
@@ -246,6 +248,16 @@ static void bend(bough_aero_signal *s, const double *from, const double *next, c
     }
 }
 
+// Of some ten samples, forces across the blade of a modal body alone: now against expected motion.
+static void note_missed(bough_aero_signal *s) {
+    double missed = 0, size = 0;
+    for (int k = 0; k < 2 * s->n_vertex; k++) {
+        missed += pow(s->now[k] - s->expected[k], 2);
+        size += pow(s->whole[k], 2);
+    }
+    if (size > 0) s->missed += 0.1 * (fmin(missed / size, 1) - s->missed);
+}
+
 void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh,
                               bough_aero_course course, double start, double span) {
     size_t bytes = (size_t)s->n * sizeof(double);
@@ -259,6 +271,7 @@ void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh,
     memcpy(whole, s->reached, bytes);
     add_slope(s, 1, s->now, whole);
     add_slope(s, -1, s->expected, whole);
+    if (s->beam->modal) note_missed(s);
     memcpy(last, s->sampled, bytes);
     memcpy(s->sampled, whole, bytes);
     take_slope(s, fresh, course);
@@ -277,9 +290,11 @@ void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh,
     put(s);
 }
 
+double bough_aero_signal_missed(const bough_aero_signal *s) { return sqrt(s->missed); }
+
 // -- saving ---------------------------------------------------------------------------------------
 
-enum { SCALARS = 3 };
+enum { SCALARS = 4 };
 
 int bough_aero_signal_size(const bough_aero_signal *s) { return SCALARS + stored(s); }
 
@@ -287,6 +302,7 @@ void bough_aero_signal_save(const bough_aero_signal *s, double *to) {
     *to++ = s->start;
     *to++ = s->span;
     *to++ = s->damped;
+    *to++ = s->missed;
     memcpy(to, s->row, (size_t)stored(s) * sizeof *to);
 }
 
@@ -294,6 +310,7 @@ void bough_aero_signal_restore(bough_aero_signal *s, const double *from) {
     s->start = *from++;
     s->span = *from++;
     s->damped = *from++;
+    s->missed = *from++;
     memcpy(s->row, from, (size_t)stored(s) * sizeof *from);
     if (s->span > 0) put(s);
 }

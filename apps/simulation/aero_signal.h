@@ -33,6 +33,10 @@ void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_
 void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh,
                               bough_aero_course course, double start, double span);
 
+// By how much of their size the loads have lately missed what the body's motion makes of them, 0 for a rod: its
+// loads follow its motion. About 1: the samples are too seldom for the body's vibrations, which then grow.
+double bough_aero_signal_missed(const bough_aero_signal *s);
+
 // All that the signal depends on, as a row of numbers; restoring gives it to the body.
 int bough_aero_signal_size(const bough_aero_signal *s);
 void bough_aero_signal_save(const bough_aero_signal *s, double *to);

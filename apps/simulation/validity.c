@@ -8,6 +8,8 @@
 // Incompressible polars err by a seventh in the slope of lift there.
 static const double most_mach = 0.5, speed_of_sound = 340;
 static const double most_over_rated = 2;
+// Of the loads: up to a tenth where samples serve, towards 1 where vibrations grow by their delay.
+static const double most_missed = 0.3;
 // A segment has one strain: what turns by more is a coarse picture of it, and there is none beyond 120°.
 static const double most_turn = 0.25 * BOUGH_PI;
 static const double small_turn = 0.98; // cosine of a quarter of most_turn
@@ -24,6 +26,8 @@ static const struct {
                                                 " rated speed"},
     [BOUGH_LIMIT_TOWER] = {"tower_strike", "the blade is inside the tower, %.3g of its radius"
                                         " from the axis: nothing stops it there"},
+    [BOUGH_LIMIT_SAMPLES] = {"air_samples", "the loads of the air miss its vibrations by %.2g of their size"
+                                           " between two samples: take a higher aero.rate, or fidelity rod"},
     [BOUGH_LIMIT_TURN] = {"segment_turn", "a segment turns its ends against each other by %.3g deg, more"
                                           " than 45 deg: take more segments"},
 };
@@ -52,6 +56,8 @@ static void check_air(bough_simulation *s) {
         if (x.speed > most_mach * speed_of_sound) {
             bough_validity_pass(s->validity, BOUGH_LIMIT_MACH, body, time, x.speed);
         }
+        double missed = bough_aero_link_missed(s->aero, b);
+        if (missed > most_missed) bough_validity_pass(s->validity, BOUGH_LIMIT_SAMPLES, body, time, missed);
         if (x.distance < 1) {
             bough_validity_pass(s->validity, BOUGH_LIMIT_TOWER, body, time, x.distance);
         }

@@ -9,6 +9,7 @@ typedef enum bough_limit {
     BOUGH_LIMIT_MACH,        // a section meets the air at half the speed of sound
     BOUGH_LIMIT_ROTOR_SPEED, // the rotor turns twice as fast as the control law's rated speed
     BOUGH_LIMIT_TOWER,       // a blade is inside the tower
+    BOUGH_LIMIT_SAMPLES,     // the samples of the air are too seldom for the vibrations of a modal blade
     BOUGH_LIMIT_TURN,        // a rod's segment turns its ends against each other by more than 45°
     BOUGH_LIMITS,
 } bough_limit;
