@@ -97,12 +97,12 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
     return bough_rod_carries(m) ? BOUGH_ROD_MOST_OUTPUTS : BOUGH_ROD_OUTPUTS;
 }
 
-// A load along the rod acts twice (docs/theory.md, "Bow within a segment"): lumped to the vertices
-// by hat functions, which is all that the balances see, and as the strain D q of each segment under a load per length, by which its
-// elastic law, stress = C (e − e⁰ − D q), is that of the loaded segment. q are the load's mean over
-// the segment and its slope. Linear statics is then exact at the vertices for loads that are linear
-// over each segment. Weight and slow inertia forces
-// need no such strain: the vertices' shares of mass and first moment account for them (section.c).
+// A load along the rod acts in two ways (docs/theory.md, "Bow within a segment"). It is lumped to the
+// vertices by hat functions: these forces are in the balances of the vertices. And it gives each segment
+// the strain D q, so that the elastic law, stress = C (e − e⁰ − D q), is that of the loaded segment; q are
+// the mean and the slope of the load over the segment. Linear statics is then exact at the vertices for
+// loads that are linear over each segment. Weight and slow inertia forces need no such strain: the mass and
+// first moment of the vertices account for them (section.c).
 
 // Loads that change over time: value × factor, the factor that of a table or of a ramp as in
 // core/force.h. Dead ones are resolved in BRF axes, followers in the section axes of each

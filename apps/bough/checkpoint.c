@@ -179,8 +179,7 @@ static bough_status write_copy(const bough_job *job) {
     head h = {.program = c->program, .input = c->input, .interval = c->interval, .size = c->size};
     memcpy(h.magic, magic, sizeof magic);
     h.sum = sum_of(&h, c->copy);
-    bough_status status = bough_folder_path(job->folder, name, path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    bough_status status = bough_folder_open(job->folder, name, path, &file);
     if (!bough_is_ok(&status)) return status;
     errno = 0;
     bool good = fwrite(&h, sizeof h, 1, file) == 1 &&

@@ -105,8 +105,7 @@ static const table tables[] = {
 static bough_status write_table(const table *t, const char *folder, const rod_modes *rods, int n) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    bough_status status = bough_folder_path(folder, t->name, path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    bough_status status = bough_folder_open(folder, t->name, path, &file);
     if (!bough_is_ok(&status)) return status;
     fputs(t->header, file);
     for (int k = 0; k < n; k++) t->write(file, &rods[k]);

@@ -31,8 +31,7 @@ static void write_list(FILE *file, const content *x) {
 static bough_status write_content(const char *folder, const content *x) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    bough_status status = bough_folder_path(folder, x->name, path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    bough_status status = bough_folder_open(folder, x->name, path, &file);
     if (!bough_is_ok(&status)) return status;
     if (x->matrix) {
         write_matrix(file, x);

@@ -119,8 +119,7 @@ static bough_status write_file(const char *folder, const char *name, const bough
                                              const bough_vibration *)) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    bough_status status = bough_folder_path(folder, name, path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    bough_status status = bough_folder_open(folder, name, path, &file);
     if (!bough_is_ok(&status)) return status;
     write(file, s, v);
     return bough_folder_commit(path, file);

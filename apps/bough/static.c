@@ -134,8 +134,7 @@ static bough_status write_channels(bough_arena *arena, bough_simulation *s, cons
     bough_channels_sample(&channels, time, value);
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    status = bough_folder_path(folder, "static-channels.csv", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    status = bough_folder_open(folder, "static-channels.csv", path, &file);
     if (!bough_is_ok(&status)) return status;
     fputs("channel,unit,value\n", file);
     for (int i = 0; i < channels.count; i++) {
@@ -150,8 +149,7 @@ static bough_status write_file(const char *folder, const bough_steady *steady, i
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
     bough_status status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_path(folder, "static.csv", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    if (bough_is_ok(&status)) status = bough_folder_open(folder, "static.csv", path, &file);
     if (!bough_is_ok(&status)) return status;
     fputs(header, file);
     for (int k = 0; k < n; k++) write_rod(file, &steady[k]);

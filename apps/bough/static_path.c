@@ -44,8 +44,7 @@ bough_status bough_static_path(bough_arena *arena, bough_simulation *s, const ch
     table t = {.channels = &channels};
     t.value = bough_arena_doubles(arena, (size_t)channels.count + 1);
     status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_path(folder, "static-path.csv", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &t.file);
+    if (bough_is_ok(&status)) status = bough_folder_open(folder, "static-path.csv", path, &t.file);
     if (!bough_is_ok(&status)) return status;
     write_head(&t);
     bough_status followed = bough_simulation_path(s, s->master->assembly, (bough_path_listener){&t, write_point}, &report);

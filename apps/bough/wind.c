@@ -8,8 +8,7 @@ static bough_status write_box(const bough_wind_box *box, const char *title, cons
     char path[BOUGH_PATH_MAX];
     FILE *file;
     bough_status status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_path(folder, "wind.bts", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    if (bough_is_ok(&status)) status = bough_folder_open(folder, "wind.bts", path, &file);
     if (!bough_is_ok(&status)) return status;
     if (!bough_wind_box_write(box, title, file)) {
         bough_folder_discard(path, file);

@@ -96,8 +96,7 @@ static bough_status open_texts(bough_draft *d) {
 static bough_status write_file(const char *folder, int kind, const char *text) {
     char path[BOUGH_PATH_MAX];
     FILE *file;
-    bough_status status = bough_folder_path(folder, bough_import_name[kind], path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    bough_status status = bough_folder_open(folder, bough_import_name[kind], path, &file);
     if (!bough_is_ok(&status)) return status;
     fputs(text, file);
     return bough_folder_commit(path, file);
@@ -106,8 +105,7 @@ static bough_status write_file(const char *folder, int kind, const char *text) {
 static bough_status write_box(const char *folder, const bough_wind_box *box) {
     char path[BOUGH_PATH_MAX];
     FILE *file;
-    bough_status status = bough_folder_path(folder, BOUGH_IMPORT_BOX, path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    bough_status status = bough_folder_open(folder, BOUGH_IMPORT_BOX, path, &file);
     if (!bough_is_ok(&status)) return status;
     if (bough_wind_box_write(box, "imported", file)) return bough_folder_commit(path, file);
     bough_folder_discard(path, file);

@@ -177,8 +177,7 @@ static bough_status put_rows(packer *p, FILE *out) {
 static bough_status write_file(packer *p) {
     char path[BOUGH_PATH_MAX];
     FILE *out;
-    bough_status status = bough_folder_path(p->def->folder, "channels.outb", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &out);
+    bough_status status = bough_folder_open(p->def->folder, "channels.outb", path, &out);
     if (!bough_is_ok(&status)) return status;
     put_head(p, out);
     status = put_rows(p, out);

@@ -8,7 +8,9 @@
 #include <stdio.h>
 #include <string.h>
 
-bough_channels bough_channels_start(bough_arena *arena) { return (bough_channels){.arena = arena}; }
+bough_channels bough_channels_start(bough_arena *arena) {
+    return (bough_channels){.arena = arena, .status = bough_ok()};
+}
 
 // Room for one item more. The arena keeps the outgrown blocks: at most as much again.
 static void *grown(bough_arena *arena, void *items, int count, int *capacity, size_t size) {
@@ -20,13 +22,12 @@ static void *grown(bough_arena *arena, void *items, int count, int *capacity, si
     return larger;
 }
 
-bough_status bough_channels_group(bough_channels *list, bough_channel_sample *sample, void *self) {
+void bough_channels_group(bough_channels *list, bough_channel_sample *sample, void *self) {
     bough_channel_group *group =
         grown(list->arena, list->group, list->group_count, &list->group_capacity, sizeof *group);
     list->group = group;
     list->group[list->group_count++] =
         (bough_channel_group){.sample = sample, .self = self, .first = list->count};
-    return bough_ok();
 }
 
 // Where the channel of that name stands, or would.
@@ -57,22 +58,26 @@ static bool is_word(const char *text, size_t size) {
     return length > 0 && length < size && !strpbrk(text, " \t\r\n");
 }
 
-bough_status bough_channels_add(bough_channels *list, const char *unit, const char *format, ...) {
+void bough_channels_add(bough_channels *list, const char *unit, const char *format, ...) {
     assert(list->group_count > 0);
+    if (!bough_is_ok(&list->status)) return;
     char name[2 * BOUGH_CHANNEL_NAME];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(name, sizeof name, format, arguments);
     va_end(arguments);
     if (!is_word(name, BOUGH_CHANNEL_NAME) || strcmp(name, "Time") == 0) {
-        return bough_fail(BOUGH_INVALID,
-                          "'%s' cannot name an output channel: use 1 to %d "
-                          "characters without blanks, other than 'Time'",
-                          name, BOUGH_CHANNEL_NAME - 1);
+        list->status = bough_fail(BOUGH_INVALID,
+                                  "'%s' cannot name an output channel: use 1 to %d "
+                                  "characters without blanks, other than 'Time'",
+                                  name, BOUGH_CHANNEL_NAME - 1);
+        return;
     }
     assert(is_word(unit, BOUGH_CHANNEL_UNIT));
     if (bough_channels_find(list, name) >= 0) {
-        return bough_fail(BOUGH_INVALID, "two output channels are named '%s': rename a body", name);
+        list->status =
+            bough_fail(BOUGH_INVALID, "two output channels are named '%s': rename a body", name);
+        return;
     }
     make_room(list);
     bough_channel *channel = &list->channel[list->count++];
@@ -80,7 +85,6 @@ bough_status bough_channels_add(bough_channels *list, const char *unit, const ch
     memcpy(channel->unit, unit, strlen(unit) + 1);
     *slot_of(list, name) = list->count;
     list->group[list->group_count - 1].count++;
-    return bough_ok();
 }
 
 int bough_channels_find(const bough_channels *list, const char *name) {
@@ -129,12 +133,13 @@ bough_status bough_channels_choose(const bough_channels *all, int n, const char 
     x->from = bough_arena_take(arena, ((size_t)all->count + 1) * sizeof *x->from);
     x->value = bough_arena_doubles(arena, (size_t)all->count + 1);
     *chosen = bough_channels_start(arena);
-    bough_status status = bough_channels_group(chosen, sample_choice, x);
+    bough_status status = bough_ok();
+    bough_channels_group(chosen, sample_choice, x);
     for (int k = 0; k < n && bough_is_ok(&status); k++) status = check_pattern(all, pattern[k]);
     for (int i = 0; i < all->count && bough_is_ok(&status); i++) {
         if (!matches(all->channel[i].name, n, pattern)) continue;
         x->from[x->n++] = i;
-        status = bough_channels_add(chosen, all->channel[i].unit, "%s", all->channel[i].name);
+        bough_channels_add(chosen, all->channel[i].unit, "%s", all->channel[i].name);
     }
     return status;
 }

@@ -29,17 +29,19 @@ typedef struct bough_channels {
     int count, capacity;
     int *slot; // (2 capacity) channels by the hash of their names: index + 1, 0 where there is none
     int group_count, group_capacity;
+    bough_status status; // BOUGH_INVALID where a name is not possible
 } bough_channels;
 
 // An empty list whose memory is the arena's.
 bough_channels bough_channels_start(bough_arena *arena);
 
 // Begins a group: the channels added next are written by `sample`.
-bough_status bough_channels_group(bough_channels *list, bough_channel_sample *sample, void *self);
+void bough_channels_group(bough_channels *list, bough_channel_sample *sample, void *self);
 
 // Adds a channel with a printf-style name. Names are unique, neither empty nor "Time" nor with
-// blanks, since readers split the name row there.
-bough_status bough_channels_add(bough_channels *list, const char *unit, const char *format, ...)
+// blanks, since readers split the name row there; the first that is not is in the list's status, and no
+// channel is added after it.
+void bough_channels_add(bough_channels *list, const char *unit, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
 // The index of the channel with this name, −1 if there is none.

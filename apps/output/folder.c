@@ -66,6 +66,11 @@ bough_status bough_folder_open_partial(const char *path, FILE **file) {
     return status;
 }
 
+bough_status bough_folder_open(const char *folder, const char *name, char *path, FILE **file) {
+    bough_status status = bough_folder_path(folder, name, path);
+    return bough_is_ok(&status) ? bough_folder_open_partial(path, file) : status;
+}
+
 bough_status bough_folder_keep(const char *path, FILE *file, long *bytes) {
     errno = 0;
     bool good = !ferror(file) && fflush(file) == 0 && fsync(fileno(file)) == 0;

@@ -19,6 +19,9 @@ bough_status bough_folder_path(const char *folder, const char *name, char *path)
 // Opens path.partial for writing.
 bough_status bough_folder_open_partial(const char *path, FILE **file);
 
+// The same for a file of the folder; its path goes to `path` (BOUGH_PATH_MAX).
+bough_status bough_folder_open(const char *folder, const char *name, char *path, FILE **file);
+
 // What of a file is on the disk for good.
 typedef struct bough_kept {
     long count; // rows or frames

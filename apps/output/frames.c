@@ -99,8 +99,7 @@ bough_status bough_frames_sample(bough_frames *f, double t) {
     char path[BOUGH_PATH_MAX], name[32];
     FILE *file;
     snprintf(name, sizeof name, "frames/%06d.vtp", f->n_frame);
-    bough_status status = bough_folder_path(f->def.folder, name, path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    bough_status status = bough_folder_open(f->def.folder, name, path, &file);
     if (!bough_is_ok(&status)) return status;
     f->def.points(f->def.self, f->point);
     f->def.loads(f->def.self, t, f->force, f->moment);

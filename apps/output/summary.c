@@ -67,9 +67,7 @@ static void open_bracket(bough_summary *s, char opening, char closing) {
 
 bough_status bough_summary_open(bough_summary *s, const char *folder, const char *name) {
     *s = (bough_summary){.file = NULL};
-    bough_status status = bough_folder_path(folder, name, s->path);
-    if (!bough_is_ok(&status)) return status;
-    status = bough_folder_open_partial(s->path, &s->file);
+    bough_status status = bough_folder_open(folder, name, s->path, &s->file);
     if (!bough_is_ok(&status)) return status;
     open_bracket(s, '{', '}');
     return status;

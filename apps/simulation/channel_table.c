@@ -260,32 +260,28 @@ const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS] = {
 };
 // clang-format on
 
-// text = the template with its parts put in; false where it does not fit.
-static bool fill(const char *form, const char *a, const char *b, char *text, size_t size) {
+// text = the template with its parts put in, cut off where it does not fit: no channel has such a long name.
+static void fill(const char *form, const char *a, const char *b, char *text, size_t size) {
     size_t used = 0;
     for (const char *c = form; *c;) {
         const char *part = strncmp(c, "{a}", 3) == 0 ? a : strncmp(c, "{b}", 3) == 0 ? b : NULL;
         size_t length = part ? strlen(part) : 1;
-        if (used + length + 1 > size) return false;
+        if (used + length + 1 > size) break;
         memcpy(text + used, part ? part : c, length);
         used += length;
         c += part ? 3 : 1;
     }
     text[used] = '\0';
-    return true;
 }
 
-bough_status bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a,
-                                      const char *b) {
+void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a,
+                              const char *b) {
     const bough_channel_family *family = &bough_channel_families[part];
-    bough_status status = bough_ok();
-    for (int k = 0; k < family->n && bough_is_ok(&status); k++) {
+    for (int k = 0; k < family->n; k++) {
         char name[2 * BOUGH_CHANNEL_NAME];
-        if (!fill(family->row[k].name, a, b, name, sizeof name))
-            return bough_fail(BOUGH_INVALID, "the name '%.60s' is too long for a channel", a);
-        status = bough_channels_add(list, family->row[k].unit, "%s", name);
+        fill(family->row[k].name, a, b, name, sizeof name);
+        bough_channels_add(list, family->row[k].unit, "%s", name);
     }
-    return status;
 }
 
 // -- help -----------------------------------------------------------------------------------------

@@ -60,8 +60,8 @@ typedef enum bough_channel_part {
 extern const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS];
 
 // Adds the channels of a part to the list's last group.
-bough_status bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a,
-                                      const char *b);
+void bough_channel_family_add(bough_channels *list, bough_channel_part part, const char *a,
+                              const char *b);
 
 // Writes all of them as Markdown.
 void bough_channel_table_help(FILE *stream);

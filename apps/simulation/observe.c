@@ -86,14 +86,13 @@ static void sample_joints(void *self, double t, double *value) {
     }
 }
 
-static bough_status add_joints(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_joints, s);
-    for (int i = 0; i < s->scene->n_body && bough_is_ok(&status); i++) {
+static void add_joints(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_joints, s);
+    for (int i = 0; i < s->scene->n_body; i++) {
         const bough_scene_body *body = &s->scene->body[i];
         if (n_recorded(s->scene, i) == 0) continue;
-        status = bough_channel_family_add(list, joint_channels[body->joint.kind].part, body->name, "");
+        bough_channel_family_add(list, joint_channels[body->joint.kind].part, body->name, "");
     }
-    return status;
 }
 
 static bool is_free(const bough_scene_body *body) { return body->joint.kind == BOUGH_JOINT_FREE; }
@@ -127,26 +126,20 @@ static void sample_free_bodies(void *self, double t, double *value) {
     }
 }
 
-static bough_status add_free_bodies(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_free_bodies, s);
-    for (int i = 0; i < s->scene->n_body && bough_is_ok(&status); i++) {
+static void add_free_bodies(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_free_bodies, s);
+    for (int i = 0; i < s->scene->n_body; i++) {
         const bough_scene_body *body = &s->scene->body[i];
-        if (is_free(body)) {
-            status = bough_channel_family_add(list, BOUGH_CHANNELS_FREE, body->name, "");
-        }
-        if (bough_is_ok(&status) && turns_freely(body)) {
-            status = bough_channel_family_add(list, BOUGH_CHANNELS_TURNING, body->name, "");
+        if (is_free(body)) bough_channel_family_add(list, BOUGH_CHANNELS_FREE, body->name, "");
+        if (turns_freely(body)) {
+            bough_channel_family_add(list, BOUGH_CHANNELS_TURNING, body->name, "");
         }
     }
-    return status;
 }
 
-static bough_status add_rotor(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_rotor, s);
-    if (bough_is_ok(&status)) {
-        status = bough_channel_family_add(list, BOUGH_CHANNELS_ROTOR, "", "");
-    }
-    return status;
+static void add_rotor(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_rotor, s);
+    bough_channel_family_add(list, BOUGH_CHANNELS_ROTOR, "", "");
 }
 
 // Whether coordinate k of a joint is prescribed
@@ -167,31 +160,23 @@ static void sample_drives(void *self, double t, double *value) {
     }
 }
 
-static bool has_motion(const bough_scene *scene) {
-    for (int i = 0; i < scene->n_body; i++) {
-        if (is_driven(&scene->body[i].joint, 0) || is_driven(&scene->body[i].joint, 1)) return true;
-    }
-    return false;
-}
-
-static bough_status add_drive(const bough_scene_body *body, int k, bough_channels *list) {
+static void add_drive(const bough_scene_body *body, int k, bough_channels *list) {
     int kind = body->joint.kind;
     bool force = kind == BOUGH_JOINT_PRISMATIC || (kind == BOUGH_JOINT_CYLINDRICAL && k == 0);
     bough_channel_part part = kind == BOUGH_JOINT_UNIVERSAL ? BOUGH_CHANNELS_DRIVE_UNIVERSAL
                               : force                       ? BOUGH_CHANNELS_DRIVE_FORCE
                                                             : BOUGH_CHANNELS_DRIVE_TORQUE;
-    return bough_channel_family_add(list, part, body->name, k == 0 ? "1" : "2");
+    bough_channel_family_add(list, part, body->name, k == 0 ? "1" : "2");
 }
 
-static bough_status add_drives(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_drives, s);
+static void add_drives(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_drives, s);
     s->first_drive = list->count;
-    for (int i = 0; i < 2 * s->scene->n_body && bough_is_ok(&status); i++) {
+    for (int i = 0; i < 2 * s->scene->n_body; i++) {
         const bough_scene_body *body = &s->scene->body[i / 2];
-        if (is_driven(&body->joint, i % 2)) status = add_drive(body, i % 2, list);
+        if (is_driven(&body->joint, i % 2)) add_drive(body, i % 2, list);
     }
     s->n_drive = list->count - s->first_drive;
-    return status;
 }
 
 static void sample_springs(void *self, double t, double *value) {
@@ -202,12 +187,10 @@ static void sample_springs(void *self, double t, double *value) {
         value[0] = bough_tree_spring(s->tree, s->view, k, &value[1], &direction);
 }
 
-static bough_status add_springs(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_springs, s);
-    for (int k = 0; k < s->scene->n_spring && bough_is_ok(&status); k++) {
-        status = bough_channel_family_add(list, BOUGH_CHANNELS_SPRING, s->scene->spring[k].name, "");
-    }
-    return status;
+static void add_springs(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_springs, s);
+    for (int k = 0; k < s->scene->n_spring; k++)
+        bough_channel_family_add(list, BOUGH_CHANNELS_SPRING, s->scene->spring[k].name, "");
 }
 
 static void sample_bushings(void *self, double t, double *value) {
@@ -228,12 +211,10 @@ static void sample_bushings(void *self, double t, double *value) {
     }
 }
 
-static bough_status add_bushings(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_bushings, s);
-    for (int k = 0; k < s->scene->n_bushing && bough_is_ok(&status); k++) {
-        status = bough_channel_family_add(list, BOUGH_CHANNELS_BUSHING, s->scene->bushing[k].name, "");
-    }
-    return status;
+static void add_bushings(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_bushings, s);
+    for (int k = 0; k < s->scene->n_bushing; k++)
+        bough_channel_family_add(list, BOUGH_CHANNELS_BUSHING, s->scene->bushing[k].name, "");
 }
 
 // What closures carry, under the rods' present forces.
@@ -244,14 +225,12 @@ static void sample_closures(void *self, double t, double *value) {
         bough_wrench_store(bough_loops_wrench(s->tree, s->view, k), value);
 }
 
-static bough_status add_closures(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_closures, s);
+static void add_closures(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_closures, s);
     s->first_closure = list->count;
-    for (int k = 0; k < s->scene->n_closure && bough_is_ok(&status); k++) {
-        status = bough_channel_family_add(list, BOUGH_CHANNELS_CLOSURE, s->scene->closure[k].name, "");
-    }
+    for (int k = 0; k < s->scene->n_closure; k++)
+        bough_channel_family_add(list, BOUGH_CHANNELS_CLOSURE, s->scene->closure[k].name, "");
     s->n_closure = list->count - s->first_closure;
-    return status;
 }
 
 static void sample_markers(void *self, double t, double *value) {
@@ -264,12 +243,10 @@ static void sample_markers(void *self, double t, double *value) {
     }
 }
 
-static bough_status add_markers(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_markers, s);
-    for (int k = 0; k < s->scene->n_marker && bough_is_ok(&status); k++) {
-        status = bough_channel_family_add(list, BOUGH_CHANNELS_MARKER, s->scene->marker[k].name, "");
-    }
-    return status;
+static void add_markers(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_markers, s);
+    for (int k = 0; k < s->scene->n_marker; k++)
+        bough_channel_family_add(list, BOUGH_CHANNELS_MARKER, s->scene->marker[k].name, "");
 }
 
 // -- beams ----------------------------------------------------------------------------------------
@@ -286,10 +263,10 @@ static void tip(const bough_simulation *s, const bough_beam *beam, bough_vec3 *d
 }
 
 // The channels of a part with a number in place of {a}.
-static bough_status add_numbered(bough_channels *list, bough_channel_part part, int number) {
+static void add_numbered(bough_channels *list, bough_channel_part part, int number) {
     char text[12];
     snprintf(text, sizeof text, "%d", number);
-    return bough_channel_family_add(list, part, text, "");
+    bough_channel_family_add(list, part, text, "");
 }
 
 enum { BLADE_CHANNELS = 12 };
@@ -313,11 +290,10 @@ static void sample_blades(void *self, double t, double *value) {
     }
 }
 
-static bough_status add_blades(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_blades, s);
-    for (int b = 0; b < s->scene->turbine.n_blade && bough_is_ok(&status); b++)
-        status = add_numbered(list, BOUGH_CHANNELS_BLADE, b + 1);
-    return status;
+static void add_blades(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_blades, s);
+    for (int b = 0; b < s->scene->turbine.n_blade; b++)
+        add_numbered(list, BOUGH_CHANNELS_BLADE, b + 1);
 }
 
 // The rod nearest to the rotor that carries it, and the last of the rods that carry that one.
@@ -362,18 +338,15 @@ static void sample_tower(void *self, double t, double *value) {
     for (int k = 0; k < 6; k++) value[6 + k] = root[k] / 1e3;
 }
 
-static bough_status add_tower(bough_simulation *s, bough_channels *list) {
+static void add_tower(bough_simulation *s, bough_channels *list) {
     const bough_rod_def *top = &s->tower_top->def;
     int n = top->n_segment;
     bough_tree_kinematics(s->tree, s->tree->initial, s->view); // where no rod is bent
     s->tower_rest = top_at_foot(
         s, (bough_transform){top->position[n], bough_rotation_matrix(top->rotation[n])});
     bough_simulation_update(s);
-    bough_status status = bough_channels_group(list, sample_tower, s);
-    if (bough_is_ok(&status)) {
-        status = bough_channel_family_add(list, BOUGH_CHANNELS_TOWER, "", "");
-    }
-    return status;
+    bough_channels_group(list, sample_tower, s);
+    bough_channel_family_add(list, BOUGH_CHANNELS_TOWER, "", "");
 }
 
 static bool is_blade(const bough_scene *scene, const bough_scene_body *body) {
@@ -403,16 +376,14 @@ static void sample_tips(void *self, double t, double *value) {
     }
 }
 
-static bough_status add_tips(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_tips, s);
+static void add_tips(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_tips, s);
     for (int k = 0; k < s->n_beam; k++) {
-        const bough_beam *beam = &s->beam[k];
-        if (is_blade(s->scene, beam->body)) continue;
-        if (bough_is_ok(&status)) {
-            status = bough_channel_family_add(list, BOUGH_CHANNELS_TIP, beam->body->name, "");
+        const bough_scene_body *body = s->beam[k].body;
+        if (!is_blade(s->scene, body)) {
+            bough_channel_family_add(list, BOUGH_CHANNELS_TIP, body->name, "");
         }
     }
-    return status;
 }
 
 // -- aerodynamics ---------------------------------------------------------------------------------
@@ -446,10 +417,9 @@ static void sample_wind(void *self, double t, double *value) {
     memcpy(value, values, sizeof values);
 }
 
-static bough_status add_wind(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_wind, s);
-    if (bough_is_ok(&status)) status = bough_channel_family_add(list, BOUGH_CHANNELS_WIND, "", "");
-    return status;
+static void add_wind(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_wind, s);
+    bough_channel_family_add(list, BOUGH_CHANNELS_WIND, "", "");
 }
 
 enum { NODE_CHANNELS = 10 };
@@ -471,26 +441,22 @@ static void sample_nodes(void *self, double t, double *value) {
     }
 }
 
-static bough_status add_nodes(bough_simulation *s, bough_channels *list) {
+static void add_nodes(bough_simulation *s, bough_channels *list) {
     const bough_scene_aero *aero = &s->scene->aero;
-    bough_status status = bough_channels_group(list, sample_nodes, s);
+    bough_channels_group(list, sample_nodes, s);
     for (int k = 0; k < s->scene->turbine.n_blade * aero->n_node; k++) {
         char blade[12], node[12];
         snprintf(blade, sizeof blade, "%d", k / aero->n_node + 1);
         snprintf(node, sizeof node, "%03d", (int)aero->nodes[k % aero->n_node]);
-        if (bough_is_ok(&status)) {
-            status = bough_channel_family_add(list, BOUGH_CHANNELS_ELEMENT, blade, node);
-        }
+        bough_channel_family_add(list, BOUGH_CHANNELS_ELEMENT, blade, node);
     }
-    return status;
 }
 
-static bough_status add_aero(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_aero, s);
-    if (bough_is_ok(&status)) status = bough_channel_family_add(list, BOUGH_CHANNELS_AIR, "", "");
-    if (bough_is_ok(&status)) status = add_wind(s, list);
-    if (bough_is_ok(&status) && s->scene->aero.n_node > 0) status = add_nodes(s, list);
-    return status;
+static void add_aero(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_aero, s);
+    bough_channel_family_add(list, BOUGH_CHANNELS_AIR, "", "");
+    add_wind(s, list);
+    add_nodes(s, list);
 }
 
 // -- FMUs -----------------------------------------------------------------------------------------
@@ -503,13 +469,11 @@ static void sample_fmus(void *self, double t, double *value) {
     }
 }
 
-static bough_status add_fmus(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_fmus, s);
-    for (int k = 0; k < s->n_fmu && bough_is_ok(&status); k++) {
-        const char *name = s->rod[s->n_rod + k].system.name;
-        status = bough_channel_family_add(list, BOUGH_CHANNELS_FMU, name, "");
+static void add_fmus(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_fmus, s);
+    for (int k = 0; k < s->n_fmu; k++) {
+        bough_channel_family_add(list, BOUGH_CHANNELS_FMU, s->rod[s->n_rod + k].system.name, "");
     }
-    return status;
 }
 
 // -- control --------------------------------------------------------------------------------------
@@ -528,14 +492,11 @@ static void sample_control(void *self, double t, double *value) {
     }
 }
 
-static bough_status add_control(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_control, s);
-    if (bough_is_ok(&status)) {
-        status = bough_channel_family_add(list, BOUGH_CHANNELS_CONTROL, "", "");
-    }
-    for (int b = 0; b < s->scene->turbine.n_blade && bough_is_ok(&status); b++)
-        status = add_numbered(list, BOUGH_CHANNELS_PITCH, b + 1);
-    return status;
+static void add_control(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_control, s);
+    bough_channel_family_add(list, BOUGH_CHANNELS_CONTROL, "", "");
+    for (int b = 0; b < s->scene->turbine.n_blade; b++)
+        add_numbered(list, BOUGH_CHANNELS_PITCH, b + 1);
 }
 
 // What a control law outside is told.
@@ -551,42 +512,35 @@ static void sample_law(void *self, double t, double *value) {
     }
 }
 
-static bough_status add_law(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_law, s);
-    if (bough_is_ok(&status)) status = bough_channel_family_add(list, BOUGH_CHANNELS_LAW, "", "");
-    for (int b = 0; b < s->scene->turbine.n_blade && bough_is_ok(&status); b++)
-        status = add_numbered(list, BOUGH_CHANNELS_LAW_PITCH, b + 1);
-    return status;
+static void add_law(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_law, s);
+    bough_channel_family_add(list, BOUGH_CHANNELS_LAW, "", "");
+    for (int b = 0; b < s->scene->turbine.n_blade; b++)
+        add_numbered(list, BOUGH_CHANNELS_LAW_PITCH, b + 1);
 }
 
 bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels) {
-    bough_status status = bough_ok();
-    if (s->scene->turbine.node != NULL) status = add_rotor(s, channels);
-    if (bough_is_ok(&status)) status = add_joints(s, channels);
-    if (bough_is_ok(&status)) status = add_free_bodies(s, channels);
-    if (bough_is_ok(&status) && has_motion(s->scene)) status = add_drives(s, channels);
-    if (bough_is_ok(&status) && s->scene->n_spring > 0) status = add_springs(s, channels);
-    if (bough_is_ok(&status) && s->scene->n_bushing > 0) status = add_bushings(s, channels);
-    if (bough_is_ok(&status) && s->scene->n_closure > 0) status = add_closures(s, channels);
-    if (bough_is_ok(&status) && s->scene->n_marker > 0) status = add_markers(s, channels);
-    if (bough_is_ok(&status) && s->scene->turbine.node != NULL) status = add_blades(s, channels);
+    bool turbine = s->scene->turbine.node != NULL;
+    const bough_scene_control *control = &s->scene->control;
+    if (turbine) add_rotor(s, channels);
+    add_joints(s, channels);
+    add_free_bodies(s, channels);
+    add_drives(s, channels);
+    add_springs(s, channels);
+    add_bushings(s, channels);
+    add_closures(s, channels);
+    add_markers(s, channels);
+    if (turbine) add_blades(s, channels);
     find_tower(s);
-    if (bough_is_ok(&status) && s->tower_top != NULL) status = add_tower(s, channels);
-    if (bough_is_ok(&status)) status = add_tips(s, channels);
-    if (bough_is_ok(&status)) status = bough_observe_sections(channels->arena, s, channels);
-    if (bough_is_ok(&status) && s->tower_top != NULL) {
-        status = bough_observe_yaw_bearing(s, channels);
-    }
+    if (s->tower_top != NULL) add_tower(s, channels);
+    add_tips(s, channels);
+    bough_observe_sections(s, channels);
+    if (s->tower_top != NULL) bough_observe_yaw_bearing(s, channels);
     s->n_motion_channel = channels->count;
-    if (bough_is_ok(&status) && s->n_fmu > 0) status = add_fmus(s, channels);
-    if (bough_is_ok(&status) && s->scene->turbine.node != NULL) {
-        status = bough_observe_shaft(s, channels);
-    }
-    if (bough_is_ok(&status) && s->aero != NULL) status = add_aero(s, channels);
-    if (bough_is_ok(&status) && s->control != NULL) status = add_control(s, channels);
-    if (bough_is_ok(&status) && s->scene->control.node != NULL &&
-        s->scene->control.kind == BOUGH_SCENE_EXTERNAL) {
-        status = add_law(s, channels);
-    }
-    return status;
+    add_fmus(s, channels);
+    if (turbine) bough_observe_shaft(s, channels);
+    if (s->aero != NULL) add_aero(s, channels);
+    if (s->control != NULL) add_control(s, channels);
+    if (control->node != NULL && control->kind == BOUGH_SCENE_EXTERNAL) add_law(s, channels);
+    return channels->status;
 }

@@ -5,10 +5,10 @@
 #include "apps/simulation/simulation.h"
 
 // Motion and section loads of rods at the places of the scene's sensors.
-bough_status bough_observe_sections(bough_arena *arena, bough_simulation *s, bough_channels *list);
+void bough_observe_sections(bough_simulation *s, bough_channels *list);
 
 // What the rotor does to its shaft; what the tower carries, to the tower's top.
-bough_status bough_observe_shaft(bough_simulation *s, bough_channels *list);
-bough_status bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list);
+void bough_observe_shaft(bough_simulation *s, bough_channels *list);
+void bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list);
 
 #endif

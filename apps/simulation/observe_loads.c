@@ -82,7 +82,7 @@ static place find_place(const bough_rod_def *def, double span) {
 }
 
 // Blades and a tower of one rod have OpenFAST's names.
-static bough_status add_place(const bough_simulation *s, const bough_beam *beam, int number,
+static void add_place(const bough_simulation *s, const bough_beam *beam, int number,
                               bough_channels *list) {
     const bough_scene_turbine *turbine = &s->scene->turbine;
     int body = (int)(beam->body - s->scene->body);
@@ -91,33 +91,31 @@ static bough_status add_place(const bough_simulation *s, const bough_beam *beam,
     for (int k = 0; turbine->node != NULL && k < turbine->n_blade; k++) {
         if (turbine->blade[k] != body) continue;
         snprintf(a, sizeof a, "%d", k + 1);
-        return bough_channel_family_add(list, BOUGH_CHANNELS_BLADE_SECTION, a, b);
+        bough_channel_family_add(list, BOUGH_CHANNELS_BLADE_SECTION, a, b);
+        return;
     }
-    if (beam == s->tower_top && beam == s->tower_foot) {
-        return bough_channel_family_add(list, BOUGH_CHANNELS_TOWER_SECTION, "", b);
-    }
-    return bough_channel_family_add(list, BOUGH_CHANNELS_SECTION, beam->body->name, b);
+    bool tower = beam == s->tower_top && beam == s->tower_foot;
+    bough_channel_family_add(list, tower ? BOUGH_CHANNELS_TOWER_SECTION : BOUGH_CHANNELS_SECTION,
+                             tower ? "" : beam->body->name, b);
 }
 
-static bough_status add_sensor(bough_arena *arena, bough_simulation *s,
-                               const bough_scene_sensor *from, bough_channels *list) {
+static void add_sensor(bough_simulation *s, const bough_scene_sensor *from,
+                       bough_channels *list) {
+    bough_arena *arena = list->arena;
     sensor *x = bough_arena_take(arena, sizeof *x);
     *x = (sensor){s, bough_simulation_beam(s, from->body), from->n_at, NULL, {0}};
     x->place = bough_arena_take(arena, (size_t)x->n * sizeof *x->place);
     bough_rod_scratch_init(&x->scratch, arena, bough_beam_mesh(x->beam));
-    bough_status status = bough_channels_group(list, sample_sections, x);
-    for (int k = 0; k < x->n && bough_is_ok(&status); k++) {
+    bough_channels_group(list, sample_sections, x);
+    for (int k = 0; k < x->n; k++) {
         x->place[k] = find_place(&x->beam->def, from->at[k]);
-        status = add_place(s, x->beam, k + 1, list);
+        add_place(s, x->beam, k + 1, list);
     }
-    return status;
 }
 
-bough_status bough_observe_sections(bough_arena *arena, bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_ok();
-    for (int k = 0; k < s->scene->n_sensor && bough_is_ok(&status); k++)
-        status = add_sensor(arena, s, &s->scene->sensor[k], list);
-    return status;
+void bough_observe_sections(bough_simulation *s, bough_channels *list) {
+    for (int k = 0; k < s->scene->n_sensor; k++)
+        add_sensor(s, &s->scene->sensor[k], list);
 }
 
 // -- shaft ----------------------------------------------------------------------------------------
@@ -141,10 +139,9 @@ static void sample_shaft(void *self, double t, double *value) {
     value[1] = -torque * s->leader.state[v] / 1e3;
 }
 
-bough_status bough_observe_shaft(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_shaft, s);
-    if (!bough_is_ok(&status)) return status;
-    return bough_channel_family_add(list, BOUGH_CHANNELS_SHAFT, "", "");
+void bough_observe_shaft(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_shaft, s);
+    bough_channel_family_add(list, BOUGH_CHANNELS_SHAFT, "", "");
 }
 
 // -- yaw bearing ----------------------------------------------------------------------------------
@@ -168,8 +165,7 @@ static void sample_yaw_bearing(void *self, double t, double *value) {
     for (int k = 0; k < 6; k++) value[k] = values[k] / 1e3;
 }
 
-bough_status bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list) {
-    bough_status status = bough_channels_group(list, sample_yaw_bearing, s);
-    if (!bough_is_ok(&status)) return status;
-    return bough_channel_family_add(list, BOUGH_CHANNELS_YAW_BEARING, "", "");
+void bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list) {
+    bough_channels_group(list, sample_yaw_bearing, s);
+    bough_channel_family_add(list, BOUGH_CHANNELS_YAW_BEARING, "", "");
 }

@@ -1,5 +1,5 @@
 // The result of one case as a file of the study's folder, cases/NUMBER.case: text, complete or absent.
-// Every number is written so that it is read as the same one.
+// Numbers keep all their digits.
 #ifndef BOUGH_APPS_STUDY_CASE_FILE_H
 #define BOUGH_APPS_STUDY_CASE_FILE_H
 
@@ -8,8 +8,8 @@
 bough_status bough_case_write(const char *folder, const bough_load_set *set, int number,
                               const bough_case_result *result);
 
-// Reads a result into memory of bough_case_take. result->done is false when there is none, or one of
-// other input; BOUGH_IO when it is damaged.
+// Reads a result into memory of bough_case_take. result->done is false when there is no
+// result or it belongs to other input; BOUGH_IO when the file is damaged.
 bough_status bough_case_read(const char *folder, const bough_load_set *set, int number,
                              bough_case_result *result);
 

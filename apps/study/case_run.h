@@ -1,4 +1,4 @@
-// One case of a load set: its run, and what its channels come to.
+// One case of a load set: its run and the counts of its channels.
 #ifndef BOUGH_APPS_STUDY_CASE_RUN_H
 #define BOUGH_APPS_STUDY_CASE_RUN_H
 
@@ -16,8 +16,9 @@ typedef struct bough_case_result {
 // An empty result whose memory is the arena's.
 bough_case_result bough_case_take(bough_arena *arena, const bough_load_set *set);
 
-// Runs the case on one thread. What the run itself comes to is in the result; the status tells what
-// ends the study: BOUGH_INTERRUPTED, no memory, a file. `folder` receives its series where asked for.
+// Runs the case on one thread. The outcome of the run is in the result; the status is not BOUGH_OK when
+// the whole study must end: BOUGH_INTERRUPTED, BOUGH_OUT_OF_MEMORY, BOUGH_IO. The series, if the set asks for
+// them, are written to `folder`.
 bough_status bough_case_run(const bough_load_set *set, const bough_load_case *c, const char *folder,
                             bool (*stop)(void), bough_case_result *result);
 

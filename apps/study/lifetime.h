@@ -1,11 +1,11 @@
-// What the cases of a load set come to over the turbine's life. Sums run in the order of the cases,
-// so that results of cases that several processes have run give the same bits.
+// Loads of all cases of a load set over the turbine's lifetime. The cases are summed in their order, so
+// that the result is the same to the bit, whichever process has run which case.
 #ifndef BOUGH_APPS_STUDY_LIFETIME_H
 #define BOUGH_APPS_STUDY_LIFETIME_H
 
 #include "apps/study/case_run.h"
 
-// An extreme of a channel, its partial safety factor in it.
+// An extreme value of a channel, multiplied by its partial safety factor.
 typedef struct bough_extreme {
     bool found;
     double value;  // in the channel's unit
@@ -34,7 +34,7 @@ typedef struct bough_lifetime {
 
 bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_load_set *set);
 
-// Adds the next case; a result that is not done is missing.
+// Adds the next case. A result that is not done counts as missing.
 void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *result);
 
 // Damage-equivalent load of a channel over the life, for the k-th slope.

@@ -1,6 +1,6 @@
-// Studies of kind sweep and load-set: many cases, each a run of a scene with its own settings, of
-// whose channels statistics are kept, and of a load set also cycles, levels and extremes, weighted by
-// how often a case occurs in the turbine's life.
+// Studies of kind sweep and load-set: many cases, each a run of a scene with its own settings. A study
+// keeps the statistics of the channels of each case. A load set also keeps load cycles, load levels and
+// extremes, weighted by the number of times that a case occurs in the turbine's lifetime.
 //
 // All memory belongs to the arena given to bough_load_set_read. Every struct that is read begins with
 // its place in the text.
@@ -72,8 +72,8 @@ typedef struct bough_load_set {
     const char **channel, **unit; // (n_channel)
 } bough_load_set;
 
-// Reads a study of either kind from its text and checks it with every scene that its cases see. Every
-// error found is added to `errors`, the set is then NULL.
+// Reads a study of either kind from its text and checks it with the scene of every case. Errors are added
+// to `errors`; the set is NULL when there are any.
 bough_load_set *bough_load_set_read(bough_arena *arena, const char *path, const bough_node *root,
                                     int threads, bough_errors *errors, bough_status *status);
 

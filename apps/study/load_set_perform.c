@@ -205,8 +205,7 @@ static void print_table(const work *w, const bough_lifetime *l, const char *fail
 static bough_status write_table(const work *w, const bough_lifetime *l, const char *failures) {
     char path[BOUGH_PATH_MAX];
     FILE *file;
-    bough_status status = bough_folder_path(w->options->folder, "table.txt", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    bough_status status = bough_folder_open(w->options->folder, "table.txt", path, &file);
     if (!bough_is_ok(&status)) return status;
     print_table(w, l, failures, file);
     return bough_folder_commit(path, file);

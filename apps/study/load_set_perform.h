@@ -4,8 +4,8 @@
 
 #include "apps/study/study_options.h"
 
-// Runs the cases that the folder does not hold and nobody else runs, one a thread, and when all are
-// there writes the tables. BOUGH_FAILED when cases failed; the others are run.
+// Runs the cases that have no result in the folder and that no other process runs, each on one thread.
+// Writes the tables when all results are there. BOUGH_FAILED when cases have failed; the others are run.
 bough_status bough_load_set_perform(bough_arena *arena, const bough_study *study,
                                     const bough_study_options *options);
 

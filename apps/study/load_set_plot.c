@@ -54,8 +54,7 @@ static void escape(FILE *f, const char *text) {
 static bough_status open_picture(const char *folder, int n_panel, char path[BOUGH_PATH_MAX],
                                  FILE **f) {
     int rows = (n_panel + PER_ROW - 1) / PER_ROW;
-    bough_status status = bough_folder_path(folder, "plot.svg", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, f);
+    bough_status status = bough_folder_open(folder, "plot.svg", path, f);
     if (!bough_is_ok(&status)) return status;
     fprintf(*f, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
                 "font-family=\"sans-serif\" font-size=\"11\">\n" BOUGH_PICTURE_STYLE,

@@ -7,12 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-static bough_status open_table(const char *folder, const char *name, char path[BOUGH_PATH_MAX],
-                               FILE **file) {
-    bough_status status = bough_folder_path(folder, name, path);
-    return bough_is_ok(&status) ? bough_folder_open_partial(path, file) : status;
-}
-
 // -- cases ----------------------------------------------------------------------------------------
 
 static void head_cases(const bough_load_set *s, FILE *f) {
@@ -54,8 +48,8 @@ static void put_channel(const bough_load_set *s, const bough_case_result *r, int
 bough_status bough_case_tables_open(const char *folder, const bough_load_set *set,
                                     bough_case_tables *t) {
     *t = (bough_case_tables){.set = set};
-    bough_status status = open_table(folder, "cases.csv", t->cases_path, &t->cases);
-    if (bough_is_ok(&status)) status = open_table(folder, "costs.csv", t->costs_path, &t->costs);
+    bough_status status = bough_folder_open(folder, "cases.csv", t->cases_path, &t->cases);
+    if (bough_is_ok(&status)) status = bough_folder_open(folder, "costs.csv", t->costs_path, &t->costs);
     if (!bough_is_ok(&status)) return status;
     head_cases(set, t->cases);
     fputs("case,simulated [s],cpu [s],wall [s]\n", t->costs);
@@ -181,7 +175,7 @@ bough_status bough_lifetime_write(const bough_lifetime *l, const char *folder) {
     for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
         char path[BOUGH_PATH_MAX];
         FILE *file;
-        bough_status status = open_table(folder, tables[i].name, path, &file);
+        bough_status status = bough_folder_open(folder, tables[i].name, path, &file);
         if (!bough_is_ok(&status)) return status;
         tables[i].put(l, file);
         status = bough_folder_commit(path, file);

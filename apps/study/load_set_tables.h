@@ -21,7 +21,7 @@ bough_status bough_case_tables_close(bough_case_tables *t, bool keep);
 // equivalent.csv, extremes.csv, ranges.csv and levels.csv of a load set.
 bough_status bough_lifetime_write(const bough_lifetime *l, const char *folder);
 
-// For people: the same figures in short.
+// Prints the most important of these figures.
 void bough_lifetime_print(const bough_lifetime *l, FILE *f);
 
 #endif

@@ -1,4 +1,4 @@
-// Where a run's time goes: the members and sampled loads of a built simulation behind a clock.
+// Measures the time that the parts of a simulation take: its members and its sampled loads.
 #ifndef BOUGH_APPS_STUDY_STUDY_CLOCK_H
 #define BOUGH_APPS_STUDY_STUDY_CLOCK_H
 
@@ -14,12 +14,13 @@ typedef enum bough_clock_part {
     BOUGH_CLOCK_PARTS,
 } bough_clock_part;
 
-// What a part is called in a table.
+// Name of a part in a table.
 const char *bough_clock_name(bough_clock_part part);
 
 typedef struct bough_clock bough_clock;
 
-// Puts the clock before every member and load of the simulation: each call costs two readings more.
+// Measures every call of a member or load of the simulation from now on; a call then takes two readings of
+// the clock more.
 bough_status bough_clock_create(bough_arena *arena, bough_simulation *s, bough_clock **clock);
 
 // Time spent so far, summed over the threads: seconds (BOUGH_CLOCK_PARTS); recording stays 0.

@@ -109,8 +109,7 @@ static void draw(FILE *svg, const bough_map *m) {
 bough_status bough_map_write(const bough_map *map, const char *folder, const char *name) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    bough_status status = bough_folder_path(folder, name, path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    bough_status status = bough_folder_open(folder, name, path, &file);
     if (!bough_is_ok(&status)) return status;
     draw(file, map);
     return bough_folder_commit(path, file);

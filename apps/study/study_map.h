@@ -1,5 +1,5 @@
-// A picture of a table whose cells hold or fail: coloured squares in SVG, blue the better the darker,
-// red where the run was stopped, each with its text when pointed at.
+// A map of runs as an SVG picture of coloured cells: blue for a run that held, darker for a smaller error;
+// red for a run that was stopped. The text of a cell is shown when the pointer is on it.
 #ifndef BOUGH_APPS_STUDY_STUDY_MAP_H
 #define BOUGH_APPS_STUDY_STUDY_MAP_H
 

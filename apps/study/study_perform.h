@@ -4,8 +4,9 @@
 
 #include "apps/study/study_options.h"
 
-// Runs what the folder does not hold yet and writes the results there. Runs that fail are results.
-// BOUGH_FAILED when the reference fails, BOUGH_INTERRUPTED when stopped: then a repetition goes on.
+// Runs the cells that have no result in the folder yet, and writes the results there. A run that fails is
+// a result too. BOUGH_FAILED when the reference fails; BOUGH_INTERRUPTED when the study is stopped: the next
+// call continues it.
 bough_status bough_study_perform(bough_arena *arena, const bough_study *study,
                                  const bough_study_options *options);
 

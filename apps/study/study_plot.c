@@ -313,8 +313,7 @@ static void draw(FILE *svg, const bough_study_results *results) {
 bough_status bough_study_plot(const bough_study_results *results, const char *folder) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    bough_status status = bough_folder_path(folder, "plot.svg", path);
-    if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &file);
+    bough_status status = bough_folder_open(folder, "plot.svg", path, &file);
     if (!bough_is_ok(&status)) return status;
     draw(file, results);
     return bough_folder_commit(path, file);

@@ -31,14 +31,14 @@ typedef struct bough_study_drive {
     bough_progress progress; // of the terminal's line, labelled by what runs
 } bough_study_drive;
 
-// What a cell tells of its error stands beside the true error, against the reference: the estimate by the
-// linearised members will do where the scene does not ask for another, and none beside one system.
+// Chooses the cheapest error estimate for the cells, whose true error against the reference is known: by
+// linearised members where the scene names no other, and none where all bodies are one system.
 void bough_study_estimate_cheaply(bough_scene *scene);
 
 bough_study_series bough_study_series_take(bough_arena *arena, const bough_study *study);
 
-// Runs a cell `repeat` times. What the run itself comes to is in the result; the status tells what
-// ends the study: BOUGH_INTERRUPTED, no memory. The errors are not computed.
+// Runs a cell `repeat` times. The outcome of the run is in the result; the status is not BOUGH_OK
+// when the whole study must end: BOUGH_INTERRUPTED, BOUGH_OUT_OF_MEMORY. The errors are not computed.
 bough_status bough_study_run(const bough_study *study, const bough_study_cell *cell, int repeat,
                              bough_study_drive *drive, bough_study_series *series,
                              bough_study_result *result);

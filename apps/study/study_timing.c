@@ -167,8 +167,7 @@ static bough_status write_tables(const timing *t) {
     for (int i = 0; i < 2 && bough_is_ok(&status); i++) {
         char path[BOUGH_PATH_MAX];
         FILE *f = NULL;
-        status = bough_folder_path(t->options->folder, names[i], path);
-        if (bough_is_ok(&status)) status = bough_folder_open_partial(path, &f);
+        status = bough_folder_open(t->options->folder, names[i], path, &f);
         if (!bough_is_ok(&status)) break;
         if (i == 0) {
             write_csv(t, f);

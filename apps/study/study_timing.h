@@ -1,5 +1,5 @@
-// Studies of kind timing: the cells of a grid run in turns, again and again, so that what else the
-// machine does falls on all alike. Ratios are formed within a turn.
+// Studies of kind timing: the cells of a grid are run in turns many times, so that other load of the
+// machine affects all cells alike. Ratios of times are computed within a turn.
 #ifndef BOUGH_APPS_STUDY_STUDY_TIMING_H
 #define BOUGH_APPS_STUDY_STUDY_TIMING_H
 
