@@ -114,10 +114,8 @@ static void load_that_falls_along_the_rod_bends_it_as_beam_theory_says(void **co
     }
 }
 
-// A cantilever under a force askew to its two ways of bending twists, to second order in the force, by
-// Px Py (1/EIx − 1/EIy) L⁴/(12 GJ): what bends one way is the arm of the moment by the other force. Also of a
-// pretwisted strip, against many segments.
-static double askew_twist(int n, double pretwist) {
+// A strip of 1.5 m, bending stiffness 2 and 36, torsional 3, its ends turned by `pretwist`.
+static bent strip_of(bough_arena *arena, int n, double pretwist) {
     const bough_section_station station[2] = {
         {.stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3}, .mass = 1,
          .inertia = {0.01, 0.01, 0, 0.02}},
@@ -125,7 +123,6 @@ static double askew_twist(int n, double pretwist) {
          .stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3}, .mass = 1,
          .inertia = {0.01, 0.01, 0, 0.02}}};
     const bough_section_table table = {.name = "strip", .n_station = 2, .station = station};
-    bough_arena *arena = bough_arena_create();
     bough_rod_def def;
     bent b;
     bough_status s = bough_section_discretise(arena, &table, n, &def);
@@ -137,6 +134,54 @@ static double askew_twist(int n, double pretwist) {
     bough_rod_loads_init(&b.loads, arena, b.model);
     bough_rod_static_init(&b.work, arena, b.model);
     bough_rod_rest_state(b.model, at_rest, b.state);
+    return b;
+}
+
+// A cantilever under (s/L)⁵ per length. Each segment has the line with its resultant and moment, as loads from other
+// meshes come to it; beam theory with shear, to the fourth order of the segments' length at every vertex.
+static double polynomial_error(int n) {
+    static const double place[3] = {-0.7745966692414834, 0, 0.7745966692414834}, weight[3] = {5. / 18, 4. / 9, 5. / 18};
+    const double length = 1.5, scale = 1e-4, always[2] = {0, 0};
+    bough_arena *arena = bough_arena_create();
+    bent b = strip_of(arena, n, 0);
+    bough_rod_ramped_load *load = bough_rod_loads_ramped(&b.loads, arena, b.model, false, always);
+    for (int k = 0; k < n; k++) {
+        double h = length / n, mean = 0, slope = 0;
+        for (int i = 0; i < 3; i++) {
+            double q = scale * pow((k + 0.5 + place[i] / 2) / n, 5);
+            mean += weight[i] * q;
+            slope += weight[i] * q * 6 * place[i] / h;
+        }
+        const double start[6] = {mean - slope * h / 2}, end[6] = {mean + slope * h / 2};
+        bough_rod_lump(b.model, (bough_rod_reach){k * h, (k + 1) * h}, start, end, load);
+    }
+    solve(&b, bough_rod_static_options_default());
+    double worst = 0, tip = scale * pow(length, 4) / 36 * (3. / 8 - 1. / 9) / 6;
+    for (int i = 1; i <= n; i++) {
+        double x = 1. * i / n, bending = pow(x, 9) / 3024 - x * x * x / 36 + x * x / 14;
+        double sheared = x / 6 - pow(x, 7) / 42;
+        double exact = scale * (bending * pow(length, 4) / 36 + sheared * length * length / 1e8);
+        worst = fmax(worst, fabs(vertex(&b, i).x - exact) / tip);
+    }
+    bough_arena_destroy(arena);
+    return worst;
+}
+
+static void polynomial_line_loads_converge_at_fourth_order(void **context) {
+    (void)context;
+    double error[3];
+    for (int k = 0; k < 3; k++) error[k] = polynomial_error(4 << k);
+    print_message("4, 8, 16 segments: %.2g, %.2g, %.2g of the tip's way\n", error[0], error[1], error[2]);
+    assert_true(error[0] / error[1] > 14 && error[1] / error[2] > 14);
+    assert_true(error[2] < 1e-5);
+}
+
+// A cantilever under a force askew to its two ways of bending twists, to second order in the force, by
+// Px Py (1/EIx − 1/EIy) L⁴/(12 GJ): what bends one way is the arm of the moment by the other force. Also of a
+// pretwisted strip, against many segments.
+static double askew_twist(int n, double pretwist) {
+    bough_arena *arena = bough_arena_create();
+    bent b = strip_of(arena, n, pretwist);
     double before = b.state[(BOUGH_ROD_P + 3) * n + n - 1];
     b.loads.value[n] = 0.02;
     b.loads.value[b.model->stride + n] = 0.01;
@@ -276,6 +321,7 @@ int main(void) {
         cmocka_unit_test(end_moment_bends_rod_to_circle),
         cmocka_unit_test(dead_tip_force_gives_the_elastica),
         cmocka_unit_test(load_that_falls_along_the_rod_bends_it_as_beam_theory_says),
+        cmocka_unit_test(polynomial_line_loads_converge_at_fourth_order),
         cmocka_unit_test(bending_two_ways_twists),
         cmocka_unit_test(follower_force_bends_the_rod_beyond_a_half_turn),
         cmocka_unit_test(turning_bar_stretches),
