@@ -1,21 +1,18 @@
 // What a scene gets that names no method: the Rosenbrock method, and IDA for macro steps that it would
-// cut into more than some hundreds, or where it cuts many of them into more than a hundred. Its steps are
-// long where motion is slow or stiff and damped. Where stiff members vibrate without damping every method
-// must follow them, and IDA then takes an evaluation a step and order 5: a tenth of the cost at a tenth
-// of the tolerance.
+// cut into more than some hundreds. Its steps are long where motion is slow or stiff and damped. Where
+// stiff members vibrate without damping every method must follow them, and IDA then takes an
+// evaluation a step and order 5: a tenth of the cost at a tenth of the tolerance.
 #include "core/integrator.h"
 
 #include <math.h>
 
 enum { ROSENBROCK_STEPS = 1000, IDA_STEPS = 60000, LEAST_IDA_STEPS = 5000 }; // most in a macro step
-enum { USUAL_STEPS = 100 }; // in a macro step; of what goes beyond, no more than ROSENBROCK_STEPS in all
 static const double most_work = 2e7; // of IDA in a macro step: steps times states
 static const double share = 0.1; // of the tolerance, for IDA: its errors add up over many short steps
 
 typedef struct automatic {
     bough_integrator rosenbrock, ida;
     bool fast; // IDA is at work, and its history goes on
-    double beyond; // steps of the Rosenbrock method beyond the usual ones, since its last restart
 } automatic;
 
 static bough_integrator make(const bough_integrator_ops *ops, bough_arena *arena,
@@ -37,32 +34,18 @@ static void *create(bough_arena *arena, const bough_ode *ode,
     return m;
 }
 
-static double rosenbrock_steps(const automatic *m) {
-    bough_statistics sum = {0};
-    m->rosenbrock.ops->statistics(m->rosenbrock.self, &sum);
-    return (double)(sum.steps + sum.failed_steps);
-}
-
-static bough_status advance_rosenbrock(automatic *m, double *t, double t1, bool restart, double *y) {
-    double before = rosenbrock_steps(m);
-    bough_status status = m->rosenbrock.ops->advance(m->rosenbrock.self, t, t1, t1, restart, y);
-    if (restart) m->beyond = 0;
-    m->beyond = fmax(m->beyond + rosenbrock_steps(m) - before - USUAL_STEPS, 0);
-    return status;
-}
-
 // What stops the Rosenbrock method is left to IDA, from the last good step on.
 static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
                             double *y) {
     (void)pause;
     automatic *m = self;
     bough_status stopped = bough_ok();
-    if (restart || (!m->fast && m->beyond < ROSENBROCK_STEPS)) {
-        stopped = advance_rosenbrock(m, t, t1, restart, y);
+    if (!m->fast || restart) {
+        stopped = m->rosenbrock.ops->advance(m->rosenbrock.self, t, t1, t1, restart || m->fast, y);
         m->fast = !bough_is_ok(&stopped);
         if (!m->fast) return stopped;
+        restart = true;
     }
-    restart = restart || !m->fast || !bough_is_ok(&stopped);
     double begun = *t;
     bough_status status = m->ida.ops->advance(m->ida.self, t, t1, t1, restart, y);
     m->fast = bough_is_ok(&status);

@@ -85,13 +85,14 @@ static double unturned(const char *unit, double difference) {
     return strcmp(unit, "deg") == 0 ? remainder(difference, 360) : difference;
 }
 
-// Forces of driven joints and closures err as the rods' wrenches do, of which only a second solution tells the
+// Forces of driven joints, closures and the nacelle err as the rods' wrenches do, of which only a second solution tells the
 // errors.
 static bool is_told(const bough_error_probe *p, int channel) {
     const bough_simulation *s = p->simulation;
     if (bough_master_inputs_error(s->master)) return true;
     return (channel < s->first_drive || channel >= s->first_drive + s->n_drive) &&
-           (channel < s->first_closure || channel >= s->first_closure + s->n_closure);
+           (channel < s->first_closure || channel >= s->first_closure + s->n_closure) &&
+           (channel < s->first_bearing || channel >= s->first_bearing + s->n_bearing);
 }
 
 bool bough_error_probe_update(bough_error_probe *p) {

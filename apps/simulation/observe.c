@@ -535,7 +535,9 @@ bough_status bough_simulation_channels(bough_simulation *s, bough_channels *chan
     if (s->tower_top != NULL) add_tower(s, channels);
     add_tips(s, channels);
     bough_observe_sections(s, channels);
+    s->first_bearing = channels->count;
     if (s->tower_top != NULL) bough_observe_yaw_bearing(s, channels);
+    s->n_bearing = channels->count - s->first_bearing;
     s->n_motion_channel = channels->count;
     add_fmus(s, channels);
     if (turbine) bough_observe_shaft(s, channels);
