@@ -159,6 +159,30 @@ static void torques_of_motions_are_measured_or_unknown(void **state) {
     }
 }
 
+// The values without the error are known at few times only. Their range must not be too small because of that, and not
+// too large where the recorded motion has run away.
+static void a_range_seen_at_few_times_is_not_too_small(void **state) {
+    (void)state;
+    static const struct {
+        double high, true_low, true_high, largest, range;
+    } cases[] = {
+        {7e-3, 3e-3, 3.9e-3, 1e-4, 6.8e-3}, // the values turn back between two of these times
+        {10, 0.1, 1.1, 9.5, 1},             // an error of nine times the motion
+        {2, 0, 1.9, 0.2, 1.9},              // all of the motion was seen
+        {2, 0, 2.5, 0.6, 2},                // the error hides some of it
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        bough_channels channels = {.count = 1};
+        int vector = 0;
+        double low = 0, high = cases[k].high, true_low = cases[k].true_low, true_high = cases[k].true_high;
+        double largest = cases[k].largest;
+        bough_error_probe probe = {.channels = &channels, .vector = &vector, .batches = 2, .low = &low,
+                                   .high = &high, .true_low = &true_low, .true_high = &true_high,
+                                   .largest = &largest};
+        check_near(bough_error_probe_relative(&probe, 0), largest / cases[k].range, 0, 1e-12);
+    }
+}
+
 static void probing_changes_nothing(void **state) {
     (void)state;
     recorded *with = run("simulation.coupling.scheme=ramp", true);
@@ -174,6 +198,7 @@ int main(void) {
         cmocka_unit_test(errors_of_sub_solvers_are_told),
         cmocka_unit_test(a_lost_second_solution_is_said),
         cmocka_unit_test(torques_of_motions_are_measured_or_unknown),
+        cmocka_unit_test(a_range_seen_at_few_times_is_not_too_small),
         cmocka_unit_test(probing_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -34,10 +34,12 @@ void bough_error_probe_find_vectors(const bough_channels *channels, int *vector)
 }
 
 // Of what is recorded or, when that is less, of what it would be without the error: where one of the
-// two has run away, the other still has a size.
+// two has run away, the other still has a size. Few values are known without the error; the range of all of them is
+// at least the recorded one less twice the error.
 static double own_range(const bough_error_probe *p, int i) {
     double range = p->high[i] - p->low[i], corrected = p->true_high[i] - p->true_low[i];
-    return fmax(p->batches > 1 && corrected < range ? corrected : range, 0);
+    if (p->batches <= 1 || !(corrected < range)) return fmax(range, 0);
+    return fmax(fmax(corrected, range - 2 * p->largest[i]), 0);
 }
 
 // Of the vector that the channel is one of.
