@@ -9,7 +9,7 @@ enum { MOST_ROWS = 2000, MOST_COLUMNS = 20, NAME = BOUGH_AIRFOIL_NAME };
 // -- airfoils -------------------------------------------------------------------------------------
 
 // The file's name without folder and ending, in letters that a scene's names have; numbered.
-void bough_openfast_airfoil_name(const char *path, int number, char name[NAME]) {
+static void airfoil_name(const char *path, int number, char name[NAME]) {
     const char *slash = strrchr(path, '/');
     int n = snprintf(name, NAME, "%d-", number);
     for (const char *p = slash ? slash + 1 : path; *p && *p != '.' && n < NAME - 1; p++)
@@ -93,18 +93,23 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
     }
 }
 
+bough_deck *bough_openfast_open_airfoil(bough_openfast *o, int *line, int number, char name[NAME]) {
+    while (bough_deck_is_comment(o->aero, *line))
+        ++*line;
+    const char *path = bough_deck_file_at(o->aero, (*line)++);
+    bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
+    if (deck) airfoil_name(path, number, name);
+    return deck;
+}
+
 static int put_polars(bough_openfast *o, char (*name)[NAME]) {
     int n = bough_deck_whole(o->aero, "NumAFfiles", 1, BOUGH_MOST_AIRFOILS);
     int line = bough_deck_line(o->aero, "AFNames");
     if (line < 0) line = bough_deck_line(o->aero, "NumAFfiles") + 1; // the label may be missing
     fputs("polars:\n", o->draft.file[BOUGH_IMPORT_POLARS]);
-    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++, line++) {
-        while (bough_deck_is_comment(o->aero, line))
-            line++;
-        const char *path = bough_deck_file_at(o->aero, line);
-        bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
+    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
+        bough_deck *deck = bough_openfast_open_airfoil(o, &line, i + 1, name[i]);
         if (!deck) return 0;
-        bough_openfast_airfoil_name(path, i + 1, name[i]);
         put_polar(o, deck, name[i]);
     }
     bough_draft_note(&o->draft, BOUGH_TAKEN, "%d airfoils: lift, drag, moment", n);

@@ -36,14 +36,10 @@ static int put_polars(bough_openfast *o, char (*name)[NAME]) {
     int line = bough_deck_line(o->aero, "NumFoil") + 1;
     bool moments = strncasecmp(bough_deck_text(o->aero, "UseCm"), "USE", 3) == 0;
     fputs("polars:\n", o->draft.file[BOUGH_IMPORT_POLARS]);
-    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++, line++) {
+    for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
         int rows;
-        while (bough_deck_is_comment(o->aero, line))
-            line++;
-        const char *path = bough_deck_file_at(o->aero, line);
-        bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
+        bough_deck *deck = bough_openfast_open_airfoil(o, &line, i + 1, name[i]);
         if (!deck) return 0;
-        bough_openfast_airfoil_name(path, i + 1, name[i]);
         const double *table = read_polar(o, deck, moments, &rows);
         if (table) bough_openfast_put_polar(o, name[i], table, rows);
     }
