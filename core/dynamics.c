@@ -451,9 +451,7 @@ void bough_tree_tangent(const bough_tree *tree, const double *state, const doubl
         d->acceleration[i] =
             bough_twist_add(from_parent(d, tree->links, i, d->acceleration, no_twist),
                             bough_twist_add(bough_twist_cross(carried, moved), own));
-        // δg_i = Eᵀ δg_λ − S_ω δη × g_i
-        bough_vec3 above = link->parent < 0 ? no_twist.linear : d->gravity_rate[link->parent];
-        d->gravity_rate[i] = bough_add(bough_mat3_tmul(d->relative[i].rotation, above),
-                                       bough_cross(d->gravity[i], moved.angular));
+        bough_vec3 above = link->parent < 0 ? no_twist.linear : d->turn[link->parent];
+        d->turn[i] = bough_add(bough_mat3_tmul(d->relative[i].rotation, above), moved.angular);
     }
 }

@@ -42,8 +42,8 @@ void bough_tree_mass_matrix(const bough_tree *tree, bough_tree_data *data, doubl
 // q̇ = N(q) v for the whole state: rate (n_q)
 void bough_tree_coordinate_rate(const bough_tree *tree, const double *state, double *rate);
 
-// The tangents of the links' twists and of gravity along a change (n_q + n_v) of the state, into
-// data->acceleration and data->gravity_rate. Along the motion's own rate they are the exact rates.
+// The tangents of the links' twists and rotations along a change (n_q + n_v) of the state, into
+// data->acceleration and data->turn. Along the motion's own rate they are the exact rates.
 void bough_tree_tangent(const bough_tree *tree, const double *state, const double *change,
                         bough_tree_data *data);
 

@@ -19,6 +19,7 @@ enum {
     BOUGH_PORT_OUTPUTS = 9,
     BOUGH_END_INPUTS = 6,
     BOUGH_END_OUTPUTS = 13,
+    BOUGH_AXES_OUTPUTS = 9,
 };
 
 // -- def -------------------------------------------------------------------------------------
@@ -59,6 +60,7 @@ typedef struct bough_port_def {
     int marker;         // index
     bough_inertia root; // of the flexible body's root vertex, in the marker frame: the tree
                         // carries its inertia and weight, so the wrench must not contain them
+    bool axes; // 9 more outputs, after those of all ends: the ground's x, y and z axis in marker axes
 } bough_port_def;
 
 // The other end of a flexible body that carries bodies: a body on a free joint, whose joint frame
@@ -193,6 +195,8 @@ typedef struct bough_tree {
     bough_applied_def *applied;  // (n_applied), as in the def
     int n_ends;
     bough_frame *ends;           // (n_ends), as in the def, the body's frame
+    int n_axes;
+    int *axes;                   // (n_axes) the ports that have these outputs
     bough_external *external;    // (n_markers), changed by bough_tree_set_wrench only
     double *initial;             // initial state (n_q + n_v)
 } bough_tree;
@@ -203,7 +207,8 @@ static inline int bough_tree_n_inputs(const bough_tree *tree) {
 }
 
 static inline int bough_tree_n_outputs(const bough_tree *tree) {
-    return BOUGH_PORT_OUTPUTS * tree->n_ports + BOUGH_END_OUTPUTS * tree->n_ends;
+    return BOUGH_PORT_OUTPUTS * tree->n_ports + BOUGH_END_OUTPUTS * tree->n_ends +
+           BOUGH_AXES_OUTPUTS * tree->n_axes;
 }
 
 // Index of a body or marker by name; -1 when there is none.
@@ -257,7 +262,7 @@ typedef struct bough_tree_data {
     double elastic;            // energy in them [J]
     // computed by the recursions of dynamics.h
     bough_twist *acceleration; // rate of the twist's components, or a tangent
-    bough_vec3 *gravity_rate;  // tangent of gravity
+    bough_vec3 *turn;          // tangent of the link's rotation: axes in the ground change by × turn
     bough_wrench *wrench;      // accumulated
     double *articulated;       // articulated inertia (n_links × 6 × 6, row-major)
     double *joint_gain;        // U = Iᴬ S (n_links × 6 speeds × 6)

@@ -84,6 +84,7 @@ static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
         tree->ports[p].link = tree->markers[def->ports[p].marker].link;
         tree->ports[p].placement = tree->markers[def->ports[p].marker].placement;
         add_inertia(tree, &tree->ports[p], def->ports[p].root);
+        if (def->ports[p].axes) tree->axes[tree->n_axes++] = p;
     }
     for (int e = 0; e < def->n_ends; e++) {
         tree->ends[e].link = tree->bodies[def->ends[e].body].link;
@@ -162,6 +163,7 @@ static void take_model(bough_arena *arena, const bough_tree_def *def, bough_tree
     tree->bodies = bough_arena_take(arena, (size_t)def->n_bodies * sizeof(bough_frame));
     tree->markers = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_frame));
     tree->ports = bough_arena_take(arena, (size_t)def->n_ports * sizeof(bough_frame));
+    tree->axes = bough_arena_take(arena, (size_t)def->n_ports * sizeof(int));
     tree->loads = bough_arena_take(arena, (size_t)def->n_loads * sizeof(bough_joint_load_def));
     tree->external = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_external));
     tree->n_ends = def->n_ends;
@@ -242,7 +244,7 @@ bough_tree_data *bough_tree_data_create(bough_arena *arena, const bough_tree *tr
     d->twist = bough_arena_take(arena, n * sizeof *d->twist);
     d->gravity = bough_arena_take(arena, n * sizeof *d->gravity);
     d->acceleration = bough_arena_take(arena, n * sizeof *d->acceleration);
-    d->gravity_rate = bough_arena_take(arena, n * sizeof *d->gravity_rate);
+    d->turn = bough_arena_take(arena, n * sizeof *d->turn);
     d->wrench = bough_arena_take(arena, n * sizeof *d->wrench);
     d->composite = bough_arena_take(arena, n * sizeof *d->composite);
     d->articulated = bough_arena_doubles(arena, 36 * n);

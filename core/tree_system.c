@@ -100,6 +100,33 @@ static void end_tangents(const tree_system *s, const double *state, const double
     }
 }
 
+// The ground's axes in those of a port.
+static bough_mat3 axes_at(const tree_system *s, int a) {
+    const bough_frame *port = &s->tree->ports[s->tree->axes[a]];
+    return bough_mat3_transpose(bough_tree_frame_pose(s->data, port).rotation);
+}
+
+static void axes_outputs(const tree_system *s, double *out) {
+    for (int a = 0; a < s->tree->n_axes; a++, out += BOUGH_AXES_OUTPUTS) {
+        bough_mat3 e = axes_at(s, a);
+        store3(e.c1, out);
+        store3(e.c2, out + 3);
+        store3(e.c3, out + 6);
+    }
+}
+
+static void axes_tangents(const tree_system *s, double *out) {
+    for (int a = 0; a < s->tree->n_axes; a++, out += BOUGH_AXES_OUTPUTS) {
+        const bough_frame *port = &s->tree->ports[s->tree->axes[a]];
+        if (port->link < 0) continue;
+        bough_mat3 e = axes_at(s, a);
+        bough_vec3 turn = bough_mat3_tmul(port->placement.rotation, s->data->turn[port->link]);
+        store3(bough_cross(e.c1, turn), out);
+        store3(bough_cross(e.c2, turn), out + 3);
+        store3(bough_cross(e.c3, turn), out + 6);
+    }
+}
+
 static void output(void *self, double t, const double *state, const double *input, double *out) {
     (void)input;
     tree_system *s = self;
@@ -112,6 +139,7 @@ static void output(void *self, double t, const double *state, const double *inpu
         store3(bough_mat3_tmul(port->placement.rotation, g), out + 6);
     }
     end_outputs(s, state, out);
+    axes_outputs(s, out + BOUGH_END_OUTPUTS * s->tree->n_ends);
 }
 
 // Of the outputs with a change of the state: out (n_output).
@@ -125,10 +153,11 @@ static void outputs_change(tree_system *s, const double *state, const double *ch
         if (port->link < 0) continue;
         bough_twist_store(bough_twist_to_child(&port->placement, s->data->acceleration[port->link]),
                           out);
-        store3(bough_mat3_tmul(port->placement.rotation, s->data->gravity_rate[port->link]),
-               out + 6);
+        bough_vec3 g = bough_cross(s->data->gravity[port->link], s->data->turn[port->link]);
+        store3(bough_mat3_tmul(port->placement.rotation, g), out + 6);
     }
     end_tangents(s, state, change, out);
+    axes_tangents(s, out + BOUGH_END_OUTPUTS * s->tree->n_ends);
 }
 
 // x with the entries of prescribed joints made 0, or, `given`, with all others.

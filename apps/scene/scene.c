@@ -59,3 +59,12 @@ const bough_scene_solver *bough_scene_micro(const bough_scene *scene,
                                             const bough_scene_body *body) {
     return body->micro.node != NULL ? &body->micro : &scene->simulation.micro;
 }
+
+bool bough_scene_moves(const bough_scene *scene, int body) {
+    for (int steps = 0; body >= 0 && steps <= scene->n_body; steps++) {
+        if (scene->body[body].joint.kind > BOUGH_JOINT_FIXED) return true;
+        body = scene->body[body].joint.parent;
+        if (body >= 0 && scene->body[body].fidelity == BOUGH_SCENE_ROD) return true;
+    }
+    return false;
+}

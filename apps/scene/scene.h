@@ -207,7 +207,7 @@ typedef struct bough_scene_body {
 } bough_scene_body;
 
 typedef enum bough_scene_load_frame {
-    BOUGH_SCENE_LOAD_GROUND,   // ground axes; the rod's root must be at rest
+    BOUGH_SCENE_LOAD_GROUND,   // ground axes
     BOUGH_SCENE_LOAD_BODY,     // axes of the body's frame
     BOUGH_SCENE_LOAD_FOLLOWER, // section axes, with which the load turns
 } bough_scene_load_frame;
@@ -564,6 +564,9 @@ void bough_scene_warn(const bough_scene *scene, FILE *stream);
 
 // The sub-solver of a flexible body: its own or the simulation's.
 const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const bough_scene_body *body);
+
+// Whether a body's frame moves: on its joint, or with a body or a rod that carries it.
+bool bough_scene_moves(const bough_scene *scene, int body);
 
 // Writes every key of a scene and of its data files with unit, range, default and meaning.
 void bough_scene_help(FILE *stream);

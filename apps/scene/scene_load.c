@@ -246,21 +246,6 @@ static void check_place(bough_schema_reader *r, const bough_scene_load *load,
     }
 }
 
-// The name of what moves a body, itself or one below it, and how: by its joint, or as a rod that
-// bends; NULL when there is none.
-static const char *mover(const bough_scene *scene, int body, const char **how) {
-    *how = "joint of";
-    for (int steps = 0; body >= 0 && steps <= scene->n_body; steps++) {
-        if (scene->body[body].joint.kind > BOUGH_JOINT_FIXED) return scene->body[body].name;
-        body = scene->body[body].joint.parent;
-        if (body >= 0 && scene->body[body].fidelity == BOUGH_SCENE_ROD) {
-            *how = "rod";
-            return scene->body[body].name;
-        }
-    }
-    return NULL;
-}
-
 static void check_rigid_load(bough_schema_reader *r, const bough_scene_load *load) {
     static const char *const of_rods[] = {"at", "along"};
     for (int k = 0; k < 2; k++) {
@@ -298,10 +283,4 @@ void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scen
                            " it a rod or give 'frame: body'", load->body_name);
     }
     if (body->rod.structure.n_station > 0) check_place(r, load, &body->rod);
-    const char *how, *by = mover(scene, load->body, &how);
-    if (load->frame != BOUGH_SCENE_LOAD_GROUND || by == NULL) return;
-    const bough_node *frame = bough_node_find(load->node, "frame");
-    bough_schema_error(r, frame == NULL ? name : frame, "frame",
-                       "'%s' moves with the %s '%s'; loads in ground axes are built for rods at rest:"
-                       " give 'frame: body' or 'frame: follower'", load->body_name, how, by);
 }

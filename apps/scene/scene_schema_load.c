@@ -44,8 +44,8 @@ static const bough_key load_keys[] = {
              "outside; replaces 'ramp'"},
     {.name = "frame", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("ground", "body", "follower"),
      .fallback = "ground", AT(frame),
-     .help = "axes of the load on a body: ground (not for rods whose root moves), body, or "
-             "follower: the section axes of a rod, so that the load rotates with the section"},
+     .help = "axes of the load on a body: ground, body, or follower: the section axes of a rod, so "
+             "that the load rotates with the section"},
     RAMP(bough_scene_load),
     {.name = "input", .kind = BOUGH_KEY_TEXT, AT(input), .example = "brake",
      .help = "name of an input, by which another program sets the load between steps: torque or "

@@ -31,7 +31,13 @@ bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integr
     bough_system system = {0};
     bough_status status =
         rod ? build_rod(arena, beam, input, &system) : build_modal(arena, beam, input, &system);
-    return bough_is_ok(&status) ? bough_member_create(arena, &system, 0, &micro, member) : status;
+    if (!bough_is_ok(&status)) return status;
+    if (beam->in_ground) {
+        beam->ground = bough_ground_body_create(arena, &system, bough_beam_mesh(beam),
+                                                bough_beam_loads(beam));
+        system = bough_ground_body_system(beam->ground);
+    }
+    return bough_member_create(arena, &system, 0, &micro, member);
 }
 
 const bough_rod_model *bough_beam_mesh(const bough_beam *beam) {

@@ -39,6 +39,10 @@ static bough_status find(const bough_simulation *s, const char *name, const boug
         return bough_fail(BOUGH_INVALID, "'%.48s' carries bodies: only a body at the end of a chain can "
                                          "be stepped by itself", name);
     }
+    if ((*beam)->in_ground) {
+        return bough_fail(BOUGH_INVALID, "'%.48s' cannot be stepped by itself: it moves under loads in "
+                                         "ground axes", name);
+    }
     if (s->master->n_load > 0) {
         return bough_fail(BOUGH_INVALID, "'%.48s' cannot be stepped by itself in a scene with air, "
                                          "control, inputs or loads that jump", name);

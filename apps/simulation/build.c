@@ -185,6 +185,18 @@ static void connect_end(bough_builder *b, const bough_beam *beam) {
     add_port(b, beam->port, &motion, &wrench);
 }
 
+// The n-th port with axes.
+static void connect_axes(bough_builder *b, const bough_beam *beam, int n) {
+    const bough_tree *tree = b->s->tree;
+    b->connection[b->n_connection++] = (bough_connection){
+        .from_offset = BOUGH_PORT_OUTPUTS * tree->n_ports + BOUGH_END_OUTPUTS * tree->n_ends +
+                       BOUGH_GROUND_AXES * n,
+        .to = beam->port + 1,
+        .to_offset = b->s->rod[beam->port].system.n_input - BOUGH_GROUND_AXES,
+        .count = BOUGH_GROUND_AXES,
+        .kinematic = true};
+}
+
 // Port k, of a rod or an FMU.
 static void connect_root(bough_builder *b, int k) {
     b->member[k + 1] = (bough_assembly_member){&b->s->rod[k], 1};
@@ -196,10 +208,11 @@ static void connect_root(bough_builder *b, int k) {
 static void connect(bough_builder *b) {
     bough_simulation *s = b->s;
     b->member[0] = (bough_assembly_member){&s->leader, 0};
-    for (int i = 0; i < s->n_beam; i++) {
+    for (int i = 0, axes = 0; i < s->n_beam; i++) {
         const bough_beam *beam = &s->beam[i];
         if (beam->port >= 0) connect_root(b, beam->port);
         if (beam->end >= 0) connect_end(b, beam);
+        if (beam->in_ground) connect_axes(b, beam, axes++);
     }
     for (int k = s->n_rod; k < s->n_rod + s->n_fmu; k++) connect_root(b, k);
 }
@@ -277,7 +290,7 @@ static void take_arrays(bough_builder *b) {
     b->port = bough_arena_take(b->arena, bodies * sizeof *b->port);
     b->load = bough_arena_take(b->arena, (loads + 2) * sizeof *b->load);
     b->member = bough_arena_take(b->arena, (bodies + 1) * sizeof *b->member);
-    b->connection = bough_arena_take(b->arena, 4 * bodies * sizeof *b->connection);
+    b->connection = bough_arena_take(b->arena, 5 * bodies * sizeof *b->connection);
     b->event = bough_arena_doubles(b->arena, count_corners(b->scene));
     b->s->validity = bough_arena_take(b->arena, sizeof *b->s->validity);
     b->s->scene = b->scene;

@@ -175,6 +175,15 @@ static bough_status add_end(bough_builder *b, bough_beam *beam, int index) {
     return bough_ok();
 }
 
+static bool moves_under_ground_loads(const bough_scene *scene, int body) {
+    for (int k = 0; k < scene->n_load; k++) {
+        const bough_scene_load *load = &scene->load[k];
+        if (load->body_name == NULL || load->body != body) continue;
+        if (load->frame == BOUGH_SCENE_LOAD_GROUND) return bough_scene_moves(scene, body);
+    }
+    return false;
+}
+
 static bough_status add_beam(bough_builder *b, int index) {
     bough_simulation *s = b->s;
     bough_beam *beam = &s->beam[s->n_beam];
@@ -187,8 +196,9 @@ static bough_status add_beam(bough_builder *b, int index) {
         (bough_marker_def){beam->body->name, index, bough_transform_identity()};
     if (beam->body->fidelity == BOUGH_SCENE_RIGID) return bough_ok();
     beam->port = s->n_rod;
+    beam->in_ground = moves_under_ground_loads(b->scene, index);
     b->port[s->n_rod++] = (bough_port_def){beam->body->name, beam->marker,
-                                           bough_beam_root(&beam->def)};
+                                           bough_beam_root(&beam->def), beam->in_ground};
     return carries_bodies(b->scene, index) ? add_end(b, beam, index) : bough_ok();
 }
 

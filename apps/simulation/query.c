@@ -8,6 +8,14 @@
 
 void bough_simulation_update(bough_simulation *s) {
     bough_tree_kinematics(s->tree, s->leader.state, s->view);
+    for (int k = 0; k < s->n_beam; k++) {
+        if (s->beam[k].ground == NULL) continue;
+        const bough_frame *frame = &s->tree->markers[s->beam[k].marker];
+        bough_mat3 e = bough_mat3_transpose(bough_tree_frame_pose(s->view, frame).rotation);
+        const double axes[BOUGH_GROUND_AXES] = {e.c1.x, e.c1.y, e.c1.z, e.c2.x, e.c2.y,
+                                                e.c2.z, e.c3.x, e.c3.y, e.c3.z};
+        bough_ground_body_turn(s->beam[k].ground, axes);
+    }
 }
 
 int bough_simulation_n_joints(const bough_simulation *s) {

@@ -7,6 +7,7 @@
 #include "apps/scene/scene.h"
 #include "core/tree.h"
 #include "cosim/master.h"
+#include "flexbody/ground_load.h"
 #include "flexbody/modal_system.h"
 #include "flexbody/rod_system.h"
 
@@ -23,9 +24,11 @@ typedef struct bough_beam {
     bough_rod_def def;    // the undeformed mesh in the body's frame
     int marker;           // of the tree, the body's frame
     int port;             // of the tree; −1 when rigid
+    bool in_ground;       // it moves under loads in ground axes
     int end;              // of the tree, where bodies hang on the rod; −1 when it carries none
     bough_rod_body *rod;     // NULL unless a rod
     bough_modal_body *modal; // NULL unless modal
+    bough_ground_body *ground; // around either, NULL unless in_ground
 } bough_beam;
 
 typedef struct bough_simulation {
