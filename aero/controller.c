@@ -4,26 +4,6 @@
 
 #include <math.h>
 
-bough_controller_def bough_controller_def_default(void) {
-    return (bough_controller_def){.corner = 1.570796,
-                                  .cut_in = 70.16224,
-                                  .optimal_from = 91.21091,
-                                  .optimal_gain = 2.332287,
-                                  .rated_speed = 121.6805,
-                                  .rated_power = 5296610,
-                                  .slip = 0.1,
-                                  .most_torque = 47402.91,
-                                  .torque_rate = 15000,
-                                  .power_pitch = 0.01745329,
-                                  .reference_speed = 122.9096,
-                                  .proportional = 0.01882681,
-                                  .integral = 0.008068634,
-                                  .halving_pitch = 0.1099965,
-                                  .least_pitch = 0,
-                                  .most_pitch = BOUGH_PI / 2,
-                                  .pitch_rate = 0.1396263};
-}
-
 static double synchronous(const bough_controller_def *d) { return d->rated_speed / (1 + d->slip); }
 
 // Of the line through no torque at the synchronous speed and rated torque.

@@ -31,9 +31,6 @@ typedef struct bough_controller_def {
     double pitch_rate;         // the most [rad/s]
 } bough_controller_def;
 
-// Those of the report.
-bough_controller_def bough_controller_def_default(void);
-
 // BOUGH_INVALID says which value makes no sense.
 bough_status bough_controller_check(const bough_controller_def *def);
 

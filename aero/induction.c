@@ -114,7 +114,3 @@ bough_induction bough_induction_solve(const bough_induction_options *options,
     i.evaluations = q.evaluations;
     return i;
 }
-
-double bough_induction_angle(const bough_element *element, double axial, double tangential) {
-    return atan2(element->inflow_x * (1 - axial), element->inflow_y * (1 + tangential));
-}

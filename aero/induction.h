@@ -86,8 +86,4 @@ void bough_induction_solve_all(const bough_induction_options *options,
                                const bough_elements *elements, double *axial, double *tangential,
                                double *loss);
 
-// The inflow angle in (−π, π] with that induction [rad]. The angle of attack is that in the
-// section's own plane: twist and, of a section askew, a second-order part less.
-double bough_induction_angle(const bough_element *element, double axial, double tangential);
-
 #endif

@@ -391,41 +391,6 @@ void bough_tree_free_response(const bough_tree *tree, bough_tree_data *d,
     }
 }
 
-// -- joint-space inertia by composite rigid bodies -----------------------------------------------
-
-// Column `row` of M: the wrench of a unit speed of link i, felt by its own joint and its
-// ancestors'.
-static void mass_column(const bough_tree *tree, const bough_tree_data *d, int i, int k,
-                        double *mass) {
-    const bough_link *link = &tree->links[i];
-    int n = tree->n_v, row = link->first_speed + k;
-    bough_wrench f = bough_inertia_mul(&d->composite[i], subspace(&link->joint, k));
-    for (int j = i; j >= 0; j = tree->links[j].parent) {
-        const bough_link *at = &tree->links[j];
-        double felt[N];
-        bough_joint_force(&at->joint, f, felt);
-        for (int c = 0; c < at->n_speeds; c++) {
-            mass[n * row + at->first_speed + c] = felt[c];
-            mass[n * (at->first_speed + c) + row] = felt[c];
-        }
-        f = bough_wrench_to_parent(&d->relative[j], f);
-    }
-}
-
-void bough_tree_mass_matrix(const bough_tree *tree, bough_tree_data *d, double *mass) {
-    memset(mass, 0, (size_t)tree->n_v * (size_t)tree->n_v * sizeof(double));
-    for (int i = 0; i < tree->n_links; i++)
-        d->composite[i] = tree->links[i].inertia;
-    for (int i = tree->n_links - 1; i >= 0; i--) {
-        const bough_link *link = &tree->links[i];
-        for (int k = 0; k < link->n_speeds; k++)
-            mass_column(tree, d, i, k, mass);
-        if (link->parent < 0) continue;
-        bough_inertia *up = &d->composite[link->parent];
-        *up = bough_inertia_add(*up, bough_inertia_to_parent(&d->relative[i], d->composite[i]));
-    }
-}
-
 // -- rates and tangents ----------------------------------------------------------------------
 
 void bough_tree_coordinate_rate(const bough_tree *tree, const double *state, double *rate) {

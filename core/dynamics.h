@@ -36,9 +36,6 @@ bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data
 void bough_tree_free_response(const bough_tree *tree, bough_tree_data *data,
                               const bough_frame *frame, bough_wrench wrench, double *change);
 
-// M(q) (n_v × n_v), symmetric, by composite rigid bodies.
-void bough_tree_mass_matrix(const bough_tree *tree, bough_tree_data *data, double *mass);
-
 // q̇ = N(q) v for the whole state: rate (n_q)
 void bough_tree_coordinate_rate(const bough_tree *tree, const double *state, double *rate);
 

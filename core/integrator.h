@@ -108,11 +108,6 @@ bough_status bough_integrator_create(bough_arena *arena, const bough_ode *ode,
                                      const bough_integrator_options *options,
                                      bough_integrator *integrator);
 
-static inline bough_status bough_integrator_advance(const bough_integrator *i, double t, double t1,
-                                                    bool restart, double *y) {
-    return i->ops->advance(i->self, &t, t1, t1, restart, y);
-}
-
 extern const bough_integrator_ops bough_integrator_ida, bough_integrator_cvode,
     bough_integrator_arkode, bough_integrator_radau, bough_integrator_alpha,
     bough_integrator_rosenbrock, bough_integrator_automatic;

@@ -269,14 +269,3 @@ bough_wrench bough_loops_wrench(const bough_tree *tree, const bough_tree_data *d
     }
     return sum;
 }
-
-void bough_loops_residual(const bough_tree *tree, bough_tree_data *d, int closure, double *value,
-                          double *rate) {
-    const bough_closure *c = &tree->closures[closure];
-    bough_loops_rows(tree, d);
-    *value = *rate = 0;
-    for (int k = c->first_row; k < c->first_row + bough_constraint_n_rows(&c->constraint); k++) {
-        *value = fmax(*value, fabs(d->loops->row[k].value));
-        *rate = fmax(*rate, fabs(d->loops->row[k].rate));
-    }
-}

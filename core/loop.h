@@ -40,11 +40,6 @@ void bough_loops_correct(const bough_tree *tree, const bough_tree_data *data, co
 // bough_tree_forward_dynamics.
 bough_wrench bough_loops_wrench(const bough_tree *tree, const bough_tree_data *data, int closure);
 
-// How far a closure is from being satisfied, after bough_tree_kinematics: the largest of its
-// equations [m, –] and of their rates [m/s, 1/s].
-void bough_loops_residual(const bough_tree *tree, bough_tree_data *data, int closure, double *value,
-                          double *rate);
-
 // Makes the tree's initial state satisfy its closures: coordinates by Newton's method from near,
 // and speeds, of which those that are zero follow the others. BOUGH_INVALID, naming the closure and
 // what remains, where that is impossible. Sets closure_rank and closure_moved of the tree.

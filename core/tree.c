@@ -1,30 +1,13 @@
-// The tree's def by default; queries of names, poses, twists and sums.
+// The tree's def by default; queries of poses and twists.
 #include "core/tree.h"
 
 #include "core/base.h"
-
-#include <string.h>
 
 bough_body_def bough_body_def_default(void) {
     bough_body_def def = {.name = "", .parent = BOUGH_GROUND, .axis = {0, 0, 1},
                           .second_axis = {1, 0, 0}};
     def.joint = bough_transform_identity();
     return def;
-}
-
-static int find(const bough_frame *frames, int n, const char *name) {
-    for (int i = 0; i < n; i++) {
-        if (frames[i].name != NULL && strcmp(frames[i].name, name) == 0) return i;
-    }
-    return -1;
-}
-
-int bough_tree_find_body(const bough_tree *tree, const char *name) {
-    return find(tree->bodies, tree->n_bodies, name);
-}
-
-int bough_tree_find_marker(const bough_tree *tree, const char *name) {
-    return find(tree->markers, tree->n_markers, name);
 }
 
 void bough_tree_prescribe(const bough_tree *tree, double t, double *state) {
@@ -71,25 +54,6 @@ bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_f
     bough_mat3 r = bough_tree_frame_pose(data, frame).rotation;
     bough_twist own = bough_tree_frame_twist(data, frame);
     return (bough_twist){bough_mat3_mul(r, own.linear), bough_mat3_mul(r, own.angular)};
-}
-
-bough_tree_sums bough_tree_sum(const bough_tree *tree, const bough_tree_data *data) {
-    bough_tree_sums s = {0};
-    bough_vec3 first = {0, 0, 0};
-    for (int i = 0; i < tree->n_links; i++) {
-        const bough_inertia *inertia = &tree->links[i].inertia;
-        bough_wrench momentum = bough_inertia_mul(inertia, data->twist[i]);
-        bough_wrench ground = bough_wrench_to_parent(&data->pose[i], momentum);
-        s.mass += inertia->mass;
-        s.kinetic += 0.5 * bough_power(data->twist[i], momentum);
-        s.linear_momentum = bough_add(s.linear_momentum, ground.force);
-        s.angular_momentum = bough_add(s.angular_momentum, ground.moment);
-        first = bough_add(first, bough_inertia_to_parent(&data->pose[i], *inertia).first);
-    }
-    s.elastic = data->elastic;
-    s.potential = -bough_dot(tree->gravity, first);
-    if (s.mass > 0) s.mass_centre = bough_scale(1 / s.mass, first);
-    return s;
 }
 
 void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_motion_point from,

@@ -211,10 +211,6 @@ static inline int bough_tree_n_outputs(const bough_tree *tree) {
            BOUGH_AXES_OUTPUTS * tree->n_axes;
 }
 
-// Index of a body or marker by name; -1 when there is none.
-int bough_tree_find_body(const bough_tree *tree, const char *name);
-int bough_tree_find_marker(const bough_tree *tree, const char *name);
-
 // The rows of the state that hold the first coordinate and the first speed of a body's own joint;
 // the same row of the state's rate is its acceleration. False when the joint is fixed.
 bool bough_tree_joint_rows(const bough_tree *tree, int body, int *coordinate, int *speed);
@@ -267,7 +263,6 @@ typedef struct bough_tree_data {
     double *articulated;       // articulated inertia (n_links × 6 × 6, row-major)
     double *joint_gain;        // U = Iᴬ S (n_links × 6 speeds × 6)
     double *joint_factor;      // Cholesky factor of SᵀU (n_links × 6 × 6, row-major)
-    bough_inertia *composite;  // composite rigid bodies (n_links)
     double *force;             // generalised forces (n_v)
     double *drive;             // forces that drive prescribed joints, else 0 (n_v) [N m, N]
     int singular;              // the link whose joint moves no inertia, else -1
@@ -282,18 +277,5 @@ bough_transform bough_tree_frame_pose(const bough_tree_data *data, const bough_f
 // The twist of a frame in its own axes, and of its origin in ground axes.
 bough_twist bough_tree_frame_twist(const bough_tree_data *data, const bough_frame *frame);
 bough_twist bough_tree_frame_velocity(const bough_tree_data *data, const bough_frame *frame);
-
-// Sums over the moving links. Potential energy is zero with all mass centres in the ground's origin
-// plane normal to gravity; angular momentum is about the ground's origin, in ground axes.
-typedef struct bough_tree_sums {
-    double mass;                 // [kg]
-    double kinetic, potential;   // [J]
-    double elastic;              // of springs and bushings [J]
-    bough_vec3 linear_momentum;  // [kg m/s]
-    bough_vec3 angular_momentum; // [kg m²/s]
-    bough_vec3 mass_centre;      // in the ground [m]
-} bough_tree_sums;
-
-bough_tree_sums bough_tree_sum(const bough_tree *tree, const bough_tree_data *data);
 
 #endif

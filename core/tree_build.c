@@ -246,7 +246,6 @@ bough_tree_data *bough_tree_data_create(bough_arena *arena, const bough_tree *tr
     d->acceleration = bough_arena_take(arena, n * sizeof *d->acceleration);
     d->turn = bough_arena_take(arena, n * sizeof *d->turn);
     d->wrench = bough_arena_take(arena, n * sizeof *d->wrench);
-    d->composite = bough_arena_take(arena, n * sizeof *d->composite);
     d->articulated = bough_arena_doubles(arena, 36 * n);
     d->joint_gain = bough_arena_doubles(arena, 36 * n);
     d->joint_factor = bough_arena_doubles(arena, 36 * n);

@@ -138,10 +138,6 @@ const bough_modal_model *bough_modal_body_model(const bough_modal_body *body) {
     return body->model;
 }
 
-const bough_rod_model *bough_modal_body_rod(const bough_modal_body *body) {
-    return body->model->rod;
-}
-
 const double *bough_modal_body_vertices(bough_modal_body *body, const double *state,
                                         const double *input, int first) {
     bough_modal_expand(body->model, state, input, first, &body->chain, body->vertices);

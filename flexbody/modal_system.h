@@ -24,9 +24,6 @@ void bough_modal_body_ride(bough_modal_body *body, const double *input, double *
 
 const bough_modal_model *bough_modal_body_model(const bough_modal_body *body);
 
-// The rod it stands for.
-const bough_rod_model *bough_modal_body_rod(const bough_modal_body *body);
-
 // The state of vertices from `first` on, in a state of the body, as rod.h lays out that of a rod
 // (13 n); valid until the next call.
 const double *bough_modal_body_vertices(bough_modal_body *body, const double *state,

@@ -212,10 +212,3 @@ bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *l
     }
     return bough_ok();
 }
-
-bough_status bough_rod_equilibrium(const bough_rod_model *m, const bough_rod_loads *loads,
-                                   bough_vec3 gravity, const bough_rod_static_options *options,
-                                   bough_rod_static *work, double *state) {
-    const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, gravity.x, gravity.y, gravity.z};
-    return bough_rod_steady(m, loads, input, options, work, state);
-}

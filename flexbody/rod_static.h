@@ -42,9 +42,4 @@ bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *l
                               const double *input, const bough_rod_static_options *options,
                               bough_rod_static *work, double *state);
 
-// The same in a BRF at rest.
-bough_status bough_rod_equilibrium(const bough_rod_model *m, const bough_rod_loads *loads,
-                                   bough_vec3 gravity, const bough_rod_static_options *options,
-                                   bough_rod_static *work, double *state);
-
 #endif

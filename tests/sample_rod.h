@@ -2,7 +2,7 @@
 #ifndef BOUGH_TESTS_SAMPLE_ROD_H
 #define BOUGH_TESTS_SAMPLE_ROD_H
 
-#include "flexbody/rod.h"
+#include "flexbody/rod_static.h"
 
 #include <string.h>
 
@@ -144,6 +144,15 @@ static inline void sample_loads(const bough_rod_model *m, bough_rod_loads *loads
         loads->rate[k] = sample_random(&seed);
     }
     loads->start = 0.25;
+}
+
+// Equilibrium of a rod whose frame is at rest.
+static inline bough_status rod_equilibrium(const bough_rod_model *m, const bough_rod_loads *loads,
+                                           bough_vec3 gravity,
+                                           const bough_rod_static_options *options,
+                                           bough_rod_static *work, double *state) {
+    const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, gravity.x, gravity.y, gravity.z};
+    return bough_rod_steady(m, loads, input, options, work, state);
 }
 
 #endif

@@ -3,6 +3,7 @@
 #define BOUGH_TESTS_STIFF_MODES_H
 
 #include "tests/check.h"
+#include "tests/integrator.h"
 
 #include "core/linalg.h"
 #include "core/integrator.h"
@@ -116,7 +117,7 @@ static void destroy(problem *p) {
 }
 
 static bough_status try_advance(problem *p, double t, double t1, bool restart, double *y) {
-    return bough_integrator_advance(&p->micro, t, t1, restart, y);
+    return integrator_advance(&p->micro, t, t1, restart, y);
 }
 
 static void advance(problem *p, double t, double t1, bool restart, double *y) {

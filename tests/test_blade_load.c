@@ -1,6 +1,7 @@
 // The clamped NREL 5 MW blade under loads along it, in linear statics: against the integral of its
 // sections' strains.
 #include "tests/check.h"
+#include "tests/sample_rod.h"
 
 #include "apps/simulation/build.h"
 #include "core/symmetric6.h"
@@ -109,7 +110,7 @@ static void solve(const blade *b, line_load load, double scale, double *found) {
         bough_rod_lump(m, (bough_rod_reach){m->span[k], m->span[k + 1]}, q, NULL, to);
     }
     bough_rod_rest_state(m, at_rest, state);
-    bough_status s = bough_rod_equilibrium(m, &loads, bough_v3(0, 0, 0), &options, &work, state);
+    bough_status s = rod_equilibrium(m, &loads, bough_v3(0, 0, 0), &options, &work, state);
     assert_int_equal(s.code, BOUGH_OK);
     for (int i = 1; i <= n; i++) {
         const double *y = state + i - 1;

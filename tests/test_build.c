@@ -1,5 +1,6 @@
 // What is built of a scene: everything it names, in the right place, and nothing else.
 #include "tests/built_scene.h"
+#include "tests/tree_measure.h"
 
 #include "apps/simulation/aero_link.h"
 #include "flexbody/section.h"
@@ -134,7 +135,7 @@ static void modal_blades_move_as_rods(void **context) {
 // -- placement and initial motion -----------------------------------------------------------------
 
 static bough_transform pose_of(const bough_simulation *s, const char *body) {
-    return bough_tree_frame_pose(s->view, &s->tree->bodies[bough_tree_find_body(s->tree, body)]);
+    return bough_tree_frame_pose(s->view, &s->tree->bodies[tree_find_body(s->tree, body)]);
 }
 
 static const char carrying[] = "tests/scenes/carrying.yaml";
@@ -183,7 +184,7 @@ static void end_of_a_rod_is_connected_to_its_body(void **context) {
 
 static bough_twist velocity_of(const bough_simulation *s, const char *body) {
     return bough_tree_frame_velocity(s->view,
-                                     &s->tree->bodies[bough_tree_find_body(s->tree, body)]);
+                                     &s->tree->bodies[tree_find_body(s->tree, body)]);
 }
 
 // The hub stands at 90°: what points along z at 0 points along −y.

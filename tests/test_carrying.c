@@ -4,6 +4,7 @@
 #include "core/base.h"
 #include "core/force.h"
 #include "tests/built_scene.h"
+#include "tests/tree_measure.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -190,7 +191,7 @@ static invariants measure(const bough_simulation *s, bough_rod_scratch *scratch)
     bough_vec3 x[16], u[16], omega[16];
     bough_mat3 r[16];
     bough_simulation_beam_motion(s, beam, (bough_beam_motion){x, u, omega, r});
-    bough_tree_sums tree = bough_tree_sum(s->tree, s->view);
+    tree_sums tree = tree_sum(s->tree, s->view);
     invariants sum = {tree.kinetic + tree.elastic, tree.linear_momentum, tree.angular_momentum};
     for (int i = 1; i <= m->n; i++) {
         const bough_vertex_inertia *v = &m->vertex[i];

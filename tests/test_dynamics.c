@@ -1,5 +1,6 @@
 // The recursions of the tree against each other, and its tangents.
 #include "tests/rigid_tree.h"
+#include "tests/tree_measure.h"
 
 // -- recursions against each other -----------------------------------------------------------
 
@@ -14,7 +15,7 @@ static void inverse_dynamics_inverts_forward_dynamics(void **state) {
     assert_true(bough_tree_forward_dynamics(f.tree, f.data, t, some_input, acceleration));
     bough_tree_inverse_dynamics(f.tree, f.data, t, some_input, acceleration, residual);
     bough_tree_inverse_dynamics(f.tree, f.data, t, some_input, zero, bias);
-    bough_tree_mass_matrix(f.tree, f.data, mass);
+    tree_mass_matrix(f.tree, f.data, mass);
     for (int i = 0; i < n; i++) {
         check_near(residual[i], 0, 0, 1e-11);
         double sum = bias[i]; // M v̇ + h − τ with M by composite bodies
@@ -33,12 +34,12 @@ static void kinetic_energy_is_the_mass_matrix_form(void **state) {
     int n = f.tree->n_v;
     const double *v = f.m->state + f.tree->n_q;
     bough_tree_kinematics(f.tree, f.m->state, f.data);
-    bough_tree_mass_matrix(f.tree, f.data, mass);
+    tree_mass_matrix(f.tree, f.data, mass);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++)
             energy += 0.5 * v[i] * mass[n * i + j] * v[j];
     }
-    check_near(bough_tree_sum(f.tree, f.data).kinetic, energy, 1e-12, 0);
+    check_near(tree_sum(f.tree, f.data).kinetic, energy, 1e-12, 0);
     bough_arena_destroy(f.arena);
 }
 
@@ -52,11 +53,11 @@ static void energy_follows_the_power_of_the_loads(void **state) {
         f.tree->links[i].spring.damping = 0;
     f.tree->springs[0].damping = 0;
     bough_tree_kinematics(f.tree, f.m->state, f.data);
-    bough_tree_sums before = bough_tree_sum(f.tree, f.data);
+    tree_sums before = tree_sum(f.tree, f.data);
     for (int k = 1; k <= 10; k++)
         advance(&f, 0.1 * k, k == 1);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
-    bough_tree_sums after = bough_tree_sum(f.tree, f.data);
+    tree_sums after = tree_sum(f.tree, f.data);
     assert_true(fabs(after.kinetic - before.kinetic) > 1);
     assert_true(after.elastic > 0 && after.elastic != before.elastic);
     check_near(after.kinetic + after.potential + after.elastic,

@@ -3,6 +3,7 @@
 #include "tests/built_scene.h"
 #include "tests/contract.h"
 #include "tests/rigid_tree.h"
+#include "tests/tree_measure.h"
 
 #include "core/force.h"
 
@@ -82,11 +83,11 @@ static void elements_conserve(void **state) {
     (void)state;
     fixture f = mounted(1e-10, false);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
-    bough_tree_sums before = bough_tree_sum(f.tree, f.data);
+    tree_sums before = tree_sum(f.tree, f.data);
     double largest = 0;
     for (int k = 1; k <= 20; k++) {
         go_to(&f, 0.1 * k);
-        bough_tree_sums now = bough_tree_sum(f.tree, f.data);
+        tree_sums now = tree_sum(f.tree, f.data);
         check_near(now.kinetic + now.potential + now.elastic,
                    before.kinetic + before.potential + before.elastic, 1e-7, 1e-7);
         largest = fmax(largest, fabs(now.elastic - before.elastic));

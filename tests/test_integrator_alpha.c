@@ -1,5 +1,6 @@
 // Generalised-α on a damped oscillator beside a stiff mode, forced, with a known solution.
 #include "tests/check.h"
+#include "tests/integrator.h"
 
 #include "core/integrator.h"
 
@@ -75,7 +76,7 @@ static double error_with(double step, double rho) {
     bough_arena *arena = build(&p, step, rho);
     start(y);
     for (int k = 0; k < 10; k++) {
-        bough_status status = bough_integrator_advance(&p.micro, 0.2 * k, 0.2 * (k + 1), false, y);
+        bough_status status = integrator_advance(&p.micro, 0.2 * k, 0.2 * (k + 1), false, y);
         assert_int_equal(status.code, BOUGH_OK);
     }
     assert_true(fabs(y[2] - cos(2.0)) < 1e-3); // the stiff mode neither rings nor lags
@@ -117,7 +118,7 @@ static void its_own_error_is_told(void **context) {
         bough_integrator_options options = {BOUGH_GENERALIZED_ALPHA, 1e-10, h, rho, 0};
         bough_status status = bough_integrator_create(arena, &ode, &options, &p.micro);
         assert_true(bough_is_ok(&status));
-        status = bough_integrator_advance(&p.micro, 0, end, true, y);
+        status = integrator_advance(&p.micro, 0, end, true, y);
         assert_true(bough_is_ok(&status));
         double told = p.micro.own_error[0] / (1 - exp(-end));
         check_near(told, (y[0] - exp(-end)) / (end * exp(-end)), 0.2, 0);
@@ -133,7 +134,7 @@ static void highest_frequencies_are_damped_as_asked(void **context) {
     bough_arena *arena = build(&p, 0.01, 0.5);
     start(y);
     y[2] = 2; // off the solution by one
-    bough_integrator_advance(&p.micro, 0, 0.2, false, y);
+    integrator_advance(&p.micro, 0, 0.2, false, y);
     double left = fabs(y[2] - cos(0.2));
     assert_true(left < pow(0.55, 19) * 30 + 1e-4);
     assert_true(isfinite(left));
@@ -146,9 +147,9 @@ static void what_has_no_value_ends_with_a_diagnosis(void **context) {
     double y[3];
     bough_arena *arena = build(&p, 0.01, 0.8);
     start(y);
-    bough_integrator_advance(&p.micro, 0, 0.1, false, y);
+    integrator_advance(&p.micro, 0, 0.1, false, y);
     p.broken = true;
-    bough_status status = bough_integrator_advance(&p.micro, 0.1, 0.2, false, y);
+    bough_status status = integrator_advance(&p.micro, 0.1, 0.2, false, y);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "sample"));
     assert_non_null(strstr(status.message, "0.1 s"));
@@ -162,8 +163,8 @@ static void counts_its_work(void **context) {
     bough_statistics sum = {0};
     bough_arena *arena = build(&p, 0.01, 0.8);
     start(y);
-    bough_integrator_advance(&p.micro, 0, 0.1, false, y);
-    bough_integrator_advance(&p.micro, 0.1, 0.2, true, y);
+    integrator_advance(&p.micro, 0, 0.1, false, y);
+    integrator_advance(&p.micro, 0.1, 0.2, true, y);
     p.micro.ops->statistics(p.micro.self, &sum);
     assert_int_equal(sum.steps, 20);
     assert_int_equal(sum.restarts, 1);

@@ -1,6 +1,7 @@
 // The method of scenes that name none, on oscillators with known motion: a slow one stays with the
 // Rosenbrock method, an undamped fast one is left to IDA, one that is too fast ends with its reason.
 #include "tests/check.h"
+#include "tests/integrator.h"
 
 #include "core/integrator.h"
 
@@ -56,7 +57,7 @@ static outcome run(bough_integrator_kind kind, double omega, int count) {
     assert_int_equal(r.status.code, BOUGH_OK);
     double y[N] = {0, 1};
     for (int k = 0; k < count && bough_is_ok(&r.status); k++) {
-        r.status = bough_integrator_advance(&method, k * macro, (k + 1) * macro, k == 0, y);
+        r.status = integrator_advance(&method, k * macro, (k + 1) * macro, k == 0, y);
     }
     r.error = hypot(y[0] - sin(omega * count * macro), y[1] - cos(omega * count * macro));
     method.ops->statistics(method.self, &r.work);

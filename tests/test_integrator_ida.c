@@ -1,5 +1,6 @@
 // The IDA master on equations with exact solutions.
 #include "tests/check.h"
+#include "tests/integrator.h"
 
 #include "core/integrator.h"
 
@@ -55,7 +56,7 @@ static bough_integrator create(bough_arena *arena, oscillator *o, double rtol) {
 }
 
 static void advance(const bough_integrator *ida, double t, double t1, bool restart, double *y) {
-    bough_status status = bough_integrator_advance(ida, t, t1, restart, y);
+    bough_status status = integrator_advance(ida, t, t1, restart, y);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
 }
 
@@ -143,7 +144,7 @@ static void failures_name_body_time_and_cure(void **state) {
     bough_arena *arena = bough_arena_create();
     bough_integrator ida = create(arena, &o, 1e-6);
     double y[2] = {1, 0};
-    bough_status status = bough_integrator_advance(&ida, 0, 1, true, y);
+    bough_status status = integrator_advance(&ida, 0, 1, true, y);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "oscillator at t = 0.5"));
     assert_non_null(strstr(status.message, "IDA"));

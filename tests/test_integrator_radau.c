@@ -1,5 +1,6 @@
 // The Radau master on equations with exact solutions and known orders.
 #include "tests/check.h"
+#include "tests/integrator.h"
 
 #include "core/integrator.h"
 
@@ -65,7 +66,7 @@ static bough_integrator create(bough_arena *arena, problem *p, double rtol) {
 }
 
 static void advance(const bough_integrator *radau, double from, double to, double *y) {
-    bough_status status = bough_integrator_advance(radau, from, to, false, y);
+    bough_status status = integrator_advance(radau, from, to, false, y);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
 }
 
@@ -210,7 +211,7 @@ static void jumps_are_passed(void **state) {
     double y[MOST] = {0, 0}, force[3] = {100, 0, 50}, q = 0, v = 0;
     for (int k = 0; k < 3; k++) {
         p.stiffness = force[k];
-        bough_status status = bough_integrator_advance(&radau, 0.5 * k, 0.5 * (k + 1), true, y);
+        bough_status status = integrator_advance(&radau, 0.5 * k, 0.5 * (k + 1), true, y);
         assert_int_equal(status.code, BOUGH_OK);
         double rest = force[k] / 100, c = cos(5), s = sin(5), old = q - rest;
         q = rest + c * old + s * v / 10;
@@ -228,7 +229,7 @@ static void failures_name_body_time_and_cure(void **state) {
     bough_arena *arena = bough_arena_create();
     bough_integrator radau = create(arena, &p, 1e-6);
     double y[MOST] = {2, 0};
-    bough_status status = bough_integrator_advance(&radau, 0, 1, false, y);
+    bough_status status = integrator_advance(&radau, 0, 1, false, y);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "test at t = 0.5 s"));
     assert_non_null(strstr(status.message, "Radau"));

@@ -1,6 +1,7 @@
 // The Rosenbrock method on a damped oscillator beside a stiff mode and a nonlinear equation, forced,
 // with a known solution.
 #include "tests/check.h"
+#include "tests/integrator.h"
 
 #include "core/integrator.h"
 
@@ -88,7 +89,7 @@ static double error_with(double step, double rtol, double skew, long *steps) {
     exact(0, y);
     for (int k = 0; k < 10; k++) {
         bough_status status =
-            bough_integrator_advance(&p.micro, 0.2 * k, 0.2 * (k + 1), false, y);
+            integrator_advance(&p.micro, 0.2 * k, 0.2 * (k + 1), false, y);
         assert_int_equal(status.code, BOUGH_OK);
     }
     bough_statistics sum = {0};
@@ -128,7 +129,7 @@ static double told_with(double step, double *error) {
     bough_arena *arena = build(&p, step, 1);
     exact(0, y);
     const double *told = p.micro.own_error;
-    bough_integrator_advance(&p.micro, 0, 0.5, false, y);
+    integrator_advance(&p.micro, 0, 0.5, false, y);
     exact(0.5, end);
     double sum = fabs(told[3]);
     *error = fabs(y[3] - end[3]);
@@ -151,7 +152,7 @@ static void stiff_mode_is_forgotten(void **context) {
     bough_arena *arena = build(&p, 0.01, 1e3);
     exact(0, y);
     y[2] += 1;
-    bough_integrator_advance(&p.micro, 0, 0.1, false, y);
+    integrator_advance(&p.micro, 0, 0.1, false, y);
     assert_true(distance(y, 0.1) < 1e-4);
     bough_arena_destroy(arena);
 }
@@ -162,9 +163,9 @@ static void a_restart_gives_the_same_bits(void **context) {
     double once[N], twice[N];
     bough_arena *arena = build(&p, 0.05, 1e-5);
     exact(0, once);
-    bough_integrator_advance(&p.micro, 0, 0.7, true, once);
+    integrator_advance(&p.micro, 0, 0.7, true, once);
     exact(0, twice);
-    bough_integrator_advance(&p.micro, 0, 0.7, true, twice);
+    integrator_advance(&p.micro, 0, 0.7, true, twice);
     assert_memory_equal(once, twice, sizeof once);
     bough_arena_destroy(arena);
 }
@@ -175,11 +176,11 @@ static void a_pause_changes_no_bit(void **context) {
     double once[N], twice[N], t = 0;
     bough_arena *arena = build(&p, 0.05, 1e-5);
     exact(0, once);
-    bough_integrator_advance(&p.micro, 0, 0.7, true, once);
+    integrator_advance(&p.micro, 0, 0.7, true, once);
     exact(0, twice);
     p.micro.ops->advance(p.micro.self, &t, 0.33, 0.7, true, twice);
     assert_true(t >= 0.33 && t < 0.4);
-    bough_integrator_advance(&p.micro, t, 0.7, false, twice);
+    integrator_advance(&p.micro, t, 0.7, false, twice);
     assert_memory_equal(once, twice, sizeof once);
     bough_arena_destroy(arena);
 }
@@ -190,9 +191,9 @@ static void what_has_no_value_ends_with_a_diagnosis(void **context) {
     double y[N];
     bough_arena *arena = build(&p, 0.01, 1e-3);
     exact(0, y);
-    bough_integrator_advance(&p.micro, 0, 0.1, false, y);
+    integrator_advance(&p.micro, 0, 0.1, false, y);
     p.wall = 0.125;
-    bough_status status = bough_integrator_advance(&p.micro, 0.1, 0.2, false, y);
+    bough_status status = integrator_advance(&p.micro, 0.1, 0.2, false, y);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "sample"));
     if (strstr(status.message, "0.125 s") == NULL) fail_msg("%s", status.message);

@@ -2,6 +2,7 @@
 // plane four-bars, which are redundant in space, against their one equation of motion, assembly.
 #include "tests/check.h"
 #include "tests/contract.h"
+#include "tests/tree_measure.h"
 
 #include "core/base.h"
 #include "core/dynamics.h"
@@ -116,7 +117,7 @@ static void advance(fixture *f, double t1, bool restart) {
 static void check_closed(fixture *f, double allowed) {
     for (int c = 0; c < f->tree->n_closures; c++) {
         double value, rate;
-        bough_loops_residual(f->tree, f->data, c, &value, &rate);
+        tree_closure_error(f->tree, f->data, c, &value, &rate);
         check_near(value, 0, 0, allowed);
         check_near(rate, 0, 0, 10 * allowed);
     }
@@ -310,13 +311,13 @@ static void windows_follow_their_one_equation(void **state) {
             assert_int_equal(f.tree->n_rows, 5 * n);
             assert_int_equal(f.tree->closure_rank, 2 * n);
             bough_tree_kinematics(f.tree, f.m->state, f.data);
-            bough_tree_sums start = bough_tree_sum(f.tree, f.data);
+            tree_sums start = tree_sum(f.tree, f.data);
             for (int k = 1; k <= 40; k++) {
                 advance(&f, 0.01 * k, k == 1);
                 check_closed(&f, 1e-7);
             }
             check_near(f.m->state[0], angle_at(n, 0.4), 0, 5e-7);
-            bough_tree_sums end = bough_tree_sum(f.tree, f.data);
+            tree_sums end = tree_sum(f.tree, f.data);
             check_near(end.kinetic + end.potential, start.kinetic + start.potential, 1e-7, 0);
             bough_arena_destroy(f.arena);
         }
@@ -412,10 +413,10 @@ static void violations_decay(void **state) {
     bough_member_set(f.m, 0, y);
     double before, after, rate;
     bough_tree_kinematics(f.tree, f.m->state, f.data);
-    bough_loops_residual(f.tree, f.data, 0, &before, &rate);
+    tree_closure_error(f.tree, f.data, 0, &before, &rate);
     check_near(before, 0.01, 0.1, 0);
     advance(&f, 0.05, true); // five of them
-    bough_loops_residual(f.tree, f.data, 0, &after, &rate);
+    tree_closure_error(f.tree, f.data, 0, &after, &rate);
     check_near(after / before, exp(-5), 0.5, 0);
     bough_arena_destroy(f.arena);
 }
@@ -470,11 +471,11 @@ static void arches_are_assembled(void **state) {
     bough_tree_kinematics(f.tree, f.m->state, f.data);
     check_closed(&f, 1e-9);
     assert_int_equal(f.tree->closure_rank, 2);
-    bough_tree_sums start = bough_tree_sum(f.tree, f.data);
+    tree_sums start = tree_sum(f.tree, f.data);
     for (int k = 1; k <= 20; k++)
         advance(&f, 0.01 * k, k == 1);
     check_closed(&f, 1e-6);
-    bough_tree_sums end = bough_tree_sum(f.tree, f.data);
+    tree_sums end = tree_sum(f.tree, f.data);
     check_near(end.kinetic + end.potential, start.kinetic + start.potential, 0, 1e-5);
     bough_arena_destroy(f.arena);
 }

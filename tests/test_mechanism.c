@@ -3,6 +3,7 @@
 #include "core/loop.h"
 #include "cosim/stability.h"
 #include "tests/built_scene.h"
+#include "tests/tree_measure.h"
 
 #include <string.h>
 
@@ -52,7 +53,7 @@ static void joints_of_several_axes_start_and_are_recorded(void **context) {
     check_near(channel(&f, "puck1Vel"), 3, 1e-14, 0);
     check_near(channel(&f, "puck2Vel"), 4, 1e-14, 0);
     // the turn about x takes the fork's y to the ground's z
-    const bough_frame *piston = &f.s->tree->bodies[bough_tree_find_body(f.s->tree, "piston")];
+    const bough_frame *piston = &f.s->tree->bodies[tree_find_body(f.s->tree, "piston")];
     bough_vec3 x = bough_tree_frame_pose(f.s->view, piston).position;
     check_near(x.x, -sin(30 * degree), 1e-14, 0);
     check_near(x.y, cos(30 * degree), 1e-14, 0);
@@ -114,7 +115,7 @@ static void elastic_pendulum_passes_the_reference(void **context) {
 // A point of a body in the ground.
 static bough_vec3 point_of(fixture *f, const char *body, bough_vec3 x) {
     bough_simulation_update(f->s);
-    const bough_frame *frame = &f->s->tree->bodies[bough_tree_find_body(f->s->tree, body)];
+    const bough_frame *frame = &f->s->tree->bodies[tree_find_body(f->s->tree, body)];
     bough_transform pose = bough_tree_frame_pose(f->s->view, frame);
     return bough_add(pose.position, bough_mat3_mul(pose.rotation, x));
 }
@@ -190,7 +191,7 @@ static void squeezer_passes_the_reference(void **context) {
 static void check_closed(fixture *f, double allowed) {
     double value, rate;
     bough_simulation_update(f->s);
-    bough_loops_residual(f->s->tree, f->s->view, 0, &value, &rate);
+    tree_closure_error(f->s->tree, f->s->view, 0, &value, &rate);
     check_near(value, 0, 0, allowed);
     check_near(rate, 0, 0, 10 * allowed);
 }

@@ -2,6 +2,7 @@
 #include "tests/built_scene.h"
 #include "tests/contract.h"
 #include "tests/rigid_tree.h"
+#include "tests/tree_measure.h"
 
 #include <string.h>
 
@@ -114,10 +115,10 @@ static void driven_joints_keep_the_momenta(void **state) {
     (void)state;
     fixture f = satellite(BOUGH_JOINT_FREE, 1e-10);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
-    bough_tree_sums before = bough_tree_sum(f.tree, f.data);
+    tree_sums before = tree_sum(f.tree, f.data);
     for (int k = 1; k <= 15; k++) advance(&f, 0.1 * k, false);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
-    bough_tree_sums after = bough_tree_sum(f.tree, f.data);
+    tree_sums after = tree_sum(f.tree, f.data);
     bough_vec3 l = bough_sub(after.angular_momentum, before.angular_momentum);
     bough_vec3 p = bough_sub(after.linear_momentum, before.linear_momentum);
     check_near(bough_norm(l), 0, 0, 1e-7);
@@ -134,13 +135,13 @@ static void energy_is_what_the_drives_put_in(void **state) {
     (void)state;
     fixture f = satellite(BOUGH_JOINT_FIXED, 1e-10);
     double work = 0, power = 0, h = 0.01, acceleration[8];
-    bough_tree_sums first = {0}, last = {0};
+    tree_sums first = {0}, last = {0};
     for (int k = 0; k <= 100; k++) {
         if (k > 0) advance(&f, h * k, false);
         bough_tree_kinematics(f.tree, f.m->state, f.data);
         assert_true(
             bough_tree_forward_dynamics(f.tree, f.data, h * k, NULL, acceleration));
-        last = bough_tree_sum(f.tree, f.data);
+        last = tree_sum(f.tree, f.data);
         if (k == 0) first = last;
         const double *v = f.m->state + f.tree->n_q;
         power = f.data->drive[0] * v[0] + f.data->drive[1] * v[1];

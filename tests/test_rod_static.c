@@ -28,7 +28,7 @@ static bent straight_rod(bough_arena *arena, int n, double length, const double 
 
 static void solve(bent *b, bough_rod_static_options options) {
     bough_vec3 none = {0, 0, 0};
-    bough_status s = bough_rod_equilibrium(b->model, &b->loads, none, &options, &b->work, b->state);
+    bough_status s = rod_equilibrium(b->model, &b->loads, none, &options, &b->work, b->state);
     if (!bough_is_ok(&s)) print_error("%s\n", s.message);
     assert_int_equal(s.code, BOUGH_OK);
 }
@@ -265,7 +265,7 @@ static void slender_rod_takes_few_iterations(void **context) {
         bough_rod_static_options options = bough_rod_static_options_default();
         bough_vec3 weight = {100, 0, 0}; // of 1 kg/m
         bough_status s =
-            bough_rod_equilibrium(b.model, &b.loads, weight, &options, &b.work, b.state);
+            rod_equilibrium(b.model, &b.loads, weight, &options, &b.work, b.state);
         if (!bough_is_ok(&s)) print_error("%s\n", s.message);
         assert_int_equal(s.code, BOUGH_OK);
         // segments that are 4e14 times stiffer along than across: rounding decides whether the first steps
@@ -288,7 +288,7 @@ static void too_slender_a_rod_is_diagnosed(void **context) {
         b.loads.value[n] = 10; // P L²/EI = 10 across the tip
         bough_rod_static_options options = bough_rod_static_options_default();
         bough_vec3 none = {0, 0, 0};
-        bough_status s = bough_rod_equilibrium(b.model, &b.loads, none, &options, &b.work, b.state);
+        bough_status s = rod_equilibrium(b.model, &b.loads, none, &options, &b.work, b.state);
         if (bough_is_ok(&s)) {
             check_near(vertex(&b, n).x, 0.81061, 0, 1e-3);
         } else {
@@ -310,7 +310,7 @@ static void hopeless_load_is_diagnosed(void **context) {
     b.loads.value[3 * b.model->stride + 4] = 1e3; // 120° per segment is exceeded
     bough_rod_static_options options = bough_rod_static_options_default();
     bough_vec3 none = {0, 0, 0};
-    bough_status s = bough_rod_equilibrium(b.model, &b.loads, none, &options, &b.work, b.state);
+    bough_status s = rod_equilibrium(b.model, &b.loads, none, &options, &b.work, b.state);
     assert_int_equal(s.code, BOUGH_FAILED);
     assert_non_null(strstr(s.message, "sample"));
     bough_arena_destroy(arena);

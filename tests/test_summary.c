@@ -10,7 +10,6 @@ static void fields_arrays_and_objects_are_nested(void **state) {
     bough_summary_text(&s, "scheme", "ramp");
     bough_summary_number(&s, "macro_step_s", 0.1);
     bough_summary_integer(&s, "states", 1234567890123);
-    bough_summary_bool(&s, "complete", true);
     bough_summary_array(&s, "bodies");
     bough_summary_object(&s, NULL);
     bough_summary_text(&s, "name", "blade1");
@@ -26,7 +25,6 @@ static void fields_arrays_and_objects_are_nested(void **state) {
                               "  \"scheme\": \"ramp\",\n"
                               "  \"macro_step_s\": 0.1,\n"
                               "  \"states\": 1234567890123,\n"
-                              "  \"complete\": true,\n"
                               "  \"bodies\": [\n"
                               "    {\n"
                               "      \"name\": \"blade1\"\n"

@@ -1,5 +1,6 @@
 // The rigid tree: analytic motions, and how bodies hang together.
 #include "tests/rigid_tree.h"
+#include "tests/tree_measure.h"
 
 // -- analytic motions ------------------------------------------------------------------------
 
@@ -19,7 +20,7 @@ static void pendulum_follows_the_elliptic_solution(void **state) {
         if (t > 2.367841947577) advance(&f, t, false);
     }
     bough_tree_kinematics(f.tree, f.m->state, f.data);
-    bough_vec3 at = bough_tree_sum(f.tree, f.data).mass_centre;
+    bough_vec3 at = tree_sum(f.tree, f.data).mass_centre;
     check_near(at.x, -.2750874625761, 0, 1e-6);
     check_near(at.z, -.9614192050991, 0, 1e-6);
     bough_arena_destroy(f.arena);
@@ -77,7 +78,7 @@ static void free_asymmetric_body_conserves(void **state) {
     memcpy(b.speeds, v, sizeof v);
     fixture f = build(&def, 1e-10);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
-    bough_tree_sums before = bough_tree_sum(f.tree, f.data);
+    tree_sums before = tree_sum(f.tree, f.data);
     double turned_most = 3;
     for (int k = 1; k <= 400; k++) {
         advance(&f, 0.05 * k, k == 1);
@@ -85,7 +86,7 @@ static void free_asymmetric_body_conserves(void **state) {
     }
     assert_true(turned_most < -2.9); // the intermediate axis did tip over
     bough_tree_kinematics(f.tree, f.m->state, f.data);
-    bough_tree_sums after = bough_tree_sum(f.tree, f.data);
+    tree_sums after = tree_sum(f.tree, f.data);
     check_near(after.kinetic, before.kinetic, 1e-6, 0);
     bough_vec3 l = bough_sub(after.angular_momentum, before.angular_momentum);
     bough_vec3 p = bough_sub(after.linear_momentum, before.linear_momentum);
@@ -157,7 +158,7 @@ static void stops_throw_back_without_loss(void **state) {
         advance(&f, 0.001 * i, i == 1);
         deepest = fmax(deepest, fabs(f.m->state[0]) - 0.5);
         bough_tree_kinematics(f.tree, f.m->state, f.data);
-        bough_tree_sums sum = bough_tree_sum(f.tree, f.data);
+        tree_sums sum = tree_sum(f.tree, f.data);
         check_near(sum.kinetic + sum.elastic, e, 1e-6, 0);
         if (fabs(f.m->state[0]) < 0.5) check_near(fabs(f.m->state[1]), 3, 1e-6, 0);
     }
@@ -239,15 +240,15 @@ static void universal_joint_swings_as_a_spherical_pendulum(void **state) {
     bough_tree_def ball = {.gravity = down_z, .n_bodies = 1, .bodies = &c};
     fixture f = build(&universal, 1e-10), g = build(&ball, 1e-10);
     assert_int_equal(f.s.n_state, 4);
-    bough_tree_sums before, after, other;
+    tree_sums before, after, other;
     bough_tree_kinematics(f.tree, f.m->state, f.data);
-    before = bough_tree_sum(f.tree, f.data);
+    before = tree_sum(f.tree, f.data);
     advance(&f, 2, true);
     advance(&g, 2, true);
     bough_tree_kinematics(f.tree, f.m->state, f.data);
     bough_tree_kinematics(g.tree, g.m->state, g.data);
-    after = bough_tree_sum(f.tree, f.data);
-    other = bough_tree_sum(g.tree, g.data);
+    after = tree_sum(f.tree, f.data);
+    other = tree_sum(g.tree, g.data);
     check_near(after.kinetic + after.potential, before.kinetic + before.potential, 1e-7, 0);
     // the ball may spin, which a small inertia of the bob feels by its square
     check_near(bough_norm(bough_sub(after.mass_centre, other.mass_centre)), 0, 0, 1e-5);

@@ -1,6 +1,7 @@
 // The port of the tree at which a flexible body that carries bodies ends.
 #include "tests/check.h"
 #include "tests/contract.h"
+#include "tests/tree_measure.h"
 
 #include "core/base.h"
 #include "core/dynamics.h"
@@ -123,7 +124,7 @@ static void wrench_and_twist_are_conjugate(void **context) {
     f.s.ops->output(f.s.self, 0, f.state, f.input, out);
     int n = f.tree->n_v, q = f.tree->n_q;
     bough_tree_kinematics(f.tree, f.state, f.data);
-    bough_tree_mass_matrix(f.tree, f.data, mass);
+    tree_mass_matrix(f.tree, f.data, mass);
     for (int i = 0; i < n; i++) {
         for (int j = 0; j < n; j++) {
             power += f.state[q + i] * mass[n * i + j] * (with[q + j] - without[q + j]);

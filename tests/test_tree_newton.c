@@ -1,5 +1,6 @@
 // Newton's systems of the tree in O(n), against differences of the residual.
 #include "tests/check.h"
+#include "tests/tree_measure.h"
 
 #include "core/base.h"
 #include "core/dynamics.h"
@@ -155,7 +156,7 @@ static void known_accelerations_are_forces(void **state) {
     assert_true(
         bough_tree_newton_setup(f.newton, f.data, 0.3, input, f.tree->initial, rate, 20));
     bough_tree_kinematics(f.tree, f.tree->initial, f.data);
-    bough_tree_mass_matrix(f.tree, f.data, mass);
+    tree_mass_matrix(f.tree, f.data, mass);
     for (int i = 0; i < n_v; i++) {
         for (int j = 0; j < n_v; j++) y[n_q + i] -= mass[n_v * i + j] * a[j];
     }

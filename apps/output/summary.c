@@ -92,11 +92,6 @@ void bough_summary_integer(bough_summary *s, const char *key, long long value) {
     fprintf(s->file, "%lld", value);
 }
 
-void bough_summary_bool(bough_summary *s, const char *key, bool value) {
-    begin(s, key);
-    fputs(value ? "true" : "false", s->file);
-}
-
 void bough_summary_text(bough_summary *s, const char *key, const char *text) {
     begin(s, key);
     if (text) {

@@ -23,7 +23,6 @@ bough_status bough_summary_open(bough_summary *s, const char *folder, const char
 // JSON knows no NaN and no infinity: such a number becomes null, as does a NULL text.
 void bough_summary_number(bough_summary *s, const char *key, double value);
 void bough_summary_integer(bough_summary *s, const char *key, long long value);
-void bough_summary_bool(bough_summary *s, const char *key, bool value);
 void bough_summary_text(bough_summary *s, const char *key, const char *text);
 
 // An object or array as a field or element, up to bough_summary_end.

@@ -41,7 +41,7 @@ bough_status bough_beam_build(bough_arena *arena, bough_beam *beam, bough_integr
 }
 
 const bough_rod_model *bough_beam_mesh(const bough_beam *beam) {
-    return beam->rod != NULL ? bough_rod_body_model(beam->rod) : bough_modal_body_rod(beam->modal);
+    return beam->rod != NULL ? bough_rod_body_model(beam->rod) : bough_modal_body_model(beam->modal)->rod;
 }
 
 bough_rod_loads *bough_beam_loads(const bough_beam *beam) {

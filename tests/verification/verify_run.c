@@ -1,5 +1,6 @@
 // One case of a study of kind verify on one mesh: its quantities.
 #include "tests/verification/verify.h"
+#include "tests/tree_measure.h"
 
 #include "apps/analysis/steady.h"
 #include "apps/analysis/vibration.h"
@@ -187,7 +188,7 @@ static void add_vertex(const bough_beam *beam, const bough_beam_motion *m, int i
 static invariants measure(const gauge *g) {
     bough_simulation *s = g->simulation;
     bough_simulation_update(s);
-    bough_tree_sums tree = bough_tree_sum(s->tree, s->view);
+    tree_sums tree = tree_sum(s->tree, s->view);
     invariants sum = {.energy = tree.kinetic + tree.potential,
                       .motion_energy = tree.kinetic,
                       .strain_energy = tree.elastic,
