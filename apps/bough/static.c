@@ -1,11 +1,10 @@
 // bough static: the shape of each rod and the angles of the joints at rest, or in steady rotation,
 // under gravity and the whole of the scene's loads.
-#include "apps/analysis/steady.h"
 #include "apps/bough/open.h"
+#include "apps/bough/static_find.h"
 #include "apps/bough/static_path.h"
 #include "apps/bough/verb.h"
 #include "apps/output/folder.h"
-#include "apps/simulation/equilibrium.h"
 
 enum { MOTION = 6 }; // displacement and rotation, or force and moment
 
@@ -38,8 +37,8 @@ static void print_row(double span, const double value[MOTION]) {
     putchar('\n');
 }
 
-static void print_three(const char *what, const double *v, const char *unit) {
-    printf("%s %.7g %.7g %.7g %s", what, v[0], v[1], v[2], unit);
+static void print_three(const char *what, bough_vec3 v, const char *unit) {
+    printf("%s %.7g %.7g %.7g %s", what, v.x, v.y, v.z, unit);
 }
 
 static void print_rod(bough_steady *x) {
@@ -63,14 +62,20 @@ static void print_rod(bough_steady *x) {
         stress_of(x, n, value);
         print_row(middle_of(x, n), value);
     }
-    motion_of(x, m->n_segment, value);
+    bough_vec3 result[BOUGH_STATIC_RESULTS];
+    bough_static_results(x, result);
     printf("tip %s:", m->name);
-    print_three(" u", value, "m,");
-    print_three(" r", value + 3, "deg\n");
-    bough_rod_root_wrench(m, &x->work.scaled, x->time, x->state, x->input, &x->work.scratch, value);
+    print_three(" u", result[BOUGH_STATIC_DISPLACEMENT], "m,");
+    print_three(" r", bough_scale(1 / degree, result[BOUGH_STATIC_ROTATION]), "deg\n");
     printf("root %s:", m->name);
-    print_three(" force", value, "N,");
-    print_three(" moment", value + 3, "N m\n");
+    print_three(" force", result[BOUGH_STATIC_FORCE], "N,");
+    print_three(" moment", result[BOUGH_STATIC_MOMENT], "N m\n");
+}
+
+static void print_mesh_error(const bough_steady *x, const double error[BOUGH_STATIC_RESULTS]) {
+    printf("mesh error %s: tip u %.2g m, r %.2g deg, root force %.2g N, moment %.2g N m\n", x->model->name,
+           error[BOUGH_STATIC_DISPLACEMENT], error[BOUGH_STATIC_ROTATION] / degree, error[BOUGH_STATIC_FORCE],
+           error[BOUGH_STATIC_MOMENT]);
 }
 
 // Coordinates and speeds of the joints, and the speeds that are kept.
@@ -92,6 +97,14 @@ static void print_joints(const bough_simulation *s) {
         }
         putchar('\n');
     }
+}
+
+static void print_whole(const bough_static *x) {
+    printf("whole scene: %d steps", x->work.steps);
+    if (x->work.samples > 0) printf(", %d samples of the air", x->work.samples);
+    if (x->time > 0) printf(", loads at %.6g s", x->time);
+    putchar('\n');
+    print_joints(x->simulation);
 }
 
 // -- file -----------------------------------------------------------------------------------------
@@ -124,23 +137,21 @@ static void write_rod(FILE *file, const bough_steady *x) {
 }
 
 // What the run's channels are in the equilibrium: joints, drives, closures, markers, roots, rotor.
-static bough_status write_channels(bough_arena *arena, bough_simulation *s, const char *folder,
-                                   double time) {
-    bough_channels channels = bough_channels_start(arena);
-    bough_status status = bough_simulation_channels(s, &channels);
-    if (!bough_is_ok(&status)) return status;
-    double *value = bough_arena_doubles(arena, (size_t)channels.count + 1);
-    bough_simulation_update(s);
-    bough_channels_sample(&channels, time, value);
+static bough_status write_channels(const bough_static *x, const bough_error_share *mesh, const char *folder) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
-    status = bough_folder_open(folder, "static-channels.csv", path, &file);
+    bough_status status = bough_folder_open(folder, "static-channels.csv", path, &file);
     if (!bough_is_ok(&status)) return status;
-    fputs("channel,unit,value\n", file);
-    for (int i = 0; i < channels.count; i++) {
-        const bough_channel *c = &channels.channel[i];
-        printf("%s: %.7g %s\n", c->name, value[i], c->unit);
-        fprintf(file, "%s,%s,%.10g\n", c->name, c->unit, value[i]);
+    fputs("channel,unit,value,mesh error\n", file);
+    for (int i = 0; i < x->channels.count; i++) {
+        const bough_channel *c = &x->channels.channel[i];
+        bool told = mesh->unknown[0] == '\0' && i < x->simulation->n_motion_channel;
+        printf("%s: %.7g %s", c->name, x->value[i], c->unit);
+        fprintf(file, "%s,%s,%.10g,", c->name, c->unit, x->value[i]);
+        if (told) printf(", mesh error %.2g", mesh->largest[i]);
+        if (told) fprintf(file, "%.3g", mesh->largest[i]);
+        putchar('\n');
+        fputc('\n', file);
     }
     return bough_folder_commit(path, file);
 }
@@ -157,38 +168,6 @@ static bough_status write_file(const char *folder, const bough_steady *steady, i
 }
 
 // -- the command ----------------------------------------------------------------------------------
-
-// Each rod by itself.
-static bough_status find_apart(bough_arena *arena, const bough_simulation *s,
-                               bough_steady *steady) {
-    const bough_turning rest = {0};
-    int n = 0;
-    for (int k = 0; k < s->n_beam; k++) {
-        if (s->beam[k].rod == NULL) continue;
-        bough_status status = bough_steady_find(arena, s, &s->beam[k], &rest, &steady[n++]);
-        if (!bough_is_ok(&status)) return status;
-    }
-    return bough_ok();
-}
-
-// All together.
-static bough_status find_whole(bough_arena *arena, bough_simulation *s, bough_steady *steady) {
-    bough_equilibrium_work work;
-    double time = bough_equilibrium_time(s);
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, time, &work);
-    if (!bough_is_ok(&status)) return status;
-    printf("whole scene: %d steps", work.steps);
-    if (work.samples > 0) printf(", %d samples of the air", work.samples);
-    if (time > 0) printf(", loads at %.6g s", time);
-    putchar('\n');
-    print_joints(s);
-    int n = 0;
-    for (int k = 0; k < s->n_beam && bough_is_ok(&status); k++) {
-        if (s->beam[k].rod == NULL) continue;
-        status = bough_steady_equilibrium(arena, s, &s->beam[k], time, &steady[n++]);
-    }
-    return status;
-}
 
 // Where the tips of modal bodies are.
 static void print_modal(bough_simulation *s) {
@@ -216,18 +195,21 @@ bough_status bough_verb_static(bough_arena *arena, const bough_options *options)
         return bough_fail(BOUGH_INVALID, "%.200s: no body of the scene can move or bend", s->scene->file);
     }
     const char *folder = bough_out_folder(arena, options);
-    bough_steady *steady = bough_arena_take(arena, ((size_t)s->n_rod + 1) * sizeof *steady);
     if (options->path) return bough_static_path(arena, s, folder);
-    int n = bough_steady_rods(s);
-    bool apart = bough_equilibrium_apart(s) && n == s->n_rod; // a modal body only with the whole
-    status = apart ? find_apart(arena, s, steady) : find_whole(arena, s, steady);
+    bough_static x;
+    bough_error_share mesh;
+    status = bough_static_find(arena, s, &x);
     if (!bough_is_ok(&status)) return status;
-    for (int k = 0; k < n; k++) print_rod(&steady[k]);
-    print_modal(s);
-    status = write_file(folder, steady, n);
-    if (bough_is_ok(&status) && !apart) {
-        status = write_channels(arena, s, folder, bough_equilibrium_time(s));
+    const double *error = bough_static_mesh_error(arena, &x, &mesh);
+    if (!x.apart) print_whole(&x);
+    for (int k = 0; k < x.n; k++) {
+        print_rod(&x.rod[k]);
+        if (mesh.unknown[0] == '\0') print_mesh_error(&x.rod[k], error + BOUGH_STATIC_RESULTS * k);
     }
+    print_modal(s);
+    if (mesh.unknown[0]) printf("mesh error: not estimated: %s\n", mesh.unknown);
+    status = write_file(folder, x.rod, x.n);
+    if (bough_is_ok(&status) && !x.apart) status = write_channels(&x, &mesh, folder);
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }

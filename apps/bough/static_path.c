@@ -33,6 +33,7 @@ static bough_status write_point(void *self, double share, bool limit) {
 static void print_end(const bough_path_report *report) {
     printf("path: %d points, %d limit points, %d steps, ", report->points, report->limits, report->steps);
     printf("to %.7g of the loads\n", report->share);
+    puts("mesh error: not estimated along a path");
 }
 
 bough_status bough_static_path(bough_arena *arena, bough_simulation *s, const char *folder) {

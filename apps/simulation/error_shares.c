@@ -74,22 +74,30 @@ static bough_status pass_row(void *self, double t) {
 }
 
 // The loads on vertices stay at their places.
-static void follow_vertices(bough_arena *arena, bough_scene *scene) {
+static void follow_vertices(bough_arena *arena, bough_scene *scene, int times) {
     size_t n = (size_t)scene->n_load;
     bough_scene_load *load = bough_arena_take(arena, n * sizeof *load);
     for (size_t i = 0; i < n; i++) {
         load[i] = scene->load[i];
-        if (load[i].place == BOUGH_SCENE_AT_VERTEX) load[i].vertex *= 2;
+        if (load[i].place == BOUGH_SCENE_AT_VERTEX) load[i].vertex *= times;
     }
     scene->load = load;
 }
 
-// Twice the segments: half of them may be too few for the order to hold.
-static bool refine_mesh(bough_arena *arena, bough_scene *scene, bough_error_share *share) {
+static bool repeatable(const bough_scene *scene, bough_error_share *share) {
+    share->unknown[0] = '\0';
+    if (scene->control.node && scene->control.kind == BOUGH_SCENE_BLADED) {
+        unknown(share, "the controller's library keeps a state that a second run would change");
+    }
+    return share->unknown[0] == '\0';
+}
+
+bool bough_error_share_refine(bough_arena *arena, bough_scene *scene, int times, bough_error_share *share) {
     size_t n = (size_t)scene->n_body;
     bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
     bool any = false;
-    follow_vertices(arena, scene);
+    if (!repeatable(scene, share)) return false;
+    follow_vertices(arena, scene, times);
     memcpy(body, scene->body, n * sizeof *body);
     for (size_t i = 0; i < n; i++) {
         if (!body[i].rod.node || body[i].fidelity == BOUGH_SCENE_RIGID) continue;
@@ -97,11 +105,11 @@ static bool refine_mesh(bough_arena *arena, bough_scene *scene, bough_error_shar
             unknown(share, "%s is a modal body, whose shapes have errors of their own", body[i].name);
             return false;
         }
-        body[i].rod.n_segment *= 2;
+        body[i].rod.n_segment *= times;
         any = true;
     }
     if (!any) unknown(share, "no body has a mesh");
-    share->part = 1 / (1 - pow(2, -mesh_order));
+    share->part = 1 / (1 - pow(times, -mesh_order));
     scene->body = body;
     return any;
 }
@@ -109,6 +117,7 @@ static bool refine_mesh(bough_arena *arena, bough_scene *scene, bough_error_shar
 // Twice the samples: half of them may be too few to be stable.
 static bool refine_air(bough_scene *scene, bough_error_share *share) {
     double finer = pow(2, scene->aero.hold == BOUGH_SCENE_CONSTANT ? held_air_order : linear_air_order);
+    if (!repeatable(scene, share)) return false;
     if (!scene->aero.node) unknown(share, "the scene has no air");
     scene->aero.rate *= 2;
     share->part = finer / (finer - 1);
@@ -183,20 +192,16 @@ static bough_status find(bough_arena *arena, void *self) {
     const finding *x = self;
     bough_error_share *share = &x->shares->share[x->kind];
     bough_scene base = *x->run->simulation->scene;
-    share->unknown[0] = '\0';
     base.simulation.error_estimate = BOUGH_ERROR_NOT_TOLD;
     base.simulation.error_bound = 0;
     base.simulation.error_shares = false;
-    if (base.control.node && base.control.kind == BOUGH_SCENE_BLADED) {
-        unknown(share, "the controller's library keeps a state that a second run would change");
-        return bough_ok();
-    }
     if (!refine_time(arena, &base)) {
         unknown(share, "out of memory");
         return bough_ok();
     }
     bough_scene scene = base;
-    bool ready = x->kind == BOUGH_SHARE_MESH ? refine_mesh(arena, &scene, share) : refine_air(&scene, share);
+    bool mesh = x->kind == BOUGH_SHARE_MESH; // twice the segments: half of them may be too few for the order to hold
+    bool ready = mesh ? bough_error_share_refine(arena, &scene, 2, share) : refine_air(&scene, share);
     if (ready && pass_base(arena, x, &base)) pass(arena, x, &scene, false);
     return bough_ok();
 }
