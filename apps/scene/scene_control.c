@@ -4,80 +4,77 @@
 // clang-format off
 
 // The constants of the law with those of the NREL 5 MW turbine.
-#define LAW(key_name, unit, given, shown, what)                                                    \
-    {.name = #key_name, .kind = BOUGH_KEY_NUMBER, .dimension = unit, .fallback = given,            \
-     .example = shown, .offset = offsetof(bough_controller_def, key_name), .help = what}
+#define FILLS bough_controller_def
+#define LAW(member, unit, given, shown, what)                                                      \
+    {KEY(NUMBER, member), UNIT(unit), .fallback = given, .example = shown, .help = what}
 static const bough_key law_keys[] = {
-    LAW(corner, BOUGH_ANGULAR_SPEED, "1.570796 rad/s", "2 rad/s",
+    LAW(corner, ANGULAR_SPEED, "1.570796 rad/s", "2 rad/s",
         "corner frequency of the low-pass filter of the generator's speed"),
-    LAW(cut_in, BOUGH_ANGULAR_SPEED, "70.16224 rad/s", "670 rpm", "generator speed below which the torque "
-                                        "is zero"),
-    LAW(optimal_from, BOUGH_ANGULAR_SPEED, "91.21091 rad/s", "871 rpm",
+    LAW(cut_in, ANGULAR_SPEED, "70.16224 rad/s", "670 rpm",
+        "generator speed below which the torque is zero"),
+    LAW(optimal_from, ANGULAR_SPEED, "91.21091 rad/s", "871 rpm",
         "generator speed from which the torque is optimal_gain speed^2"),
-    LAW(optimal_gain, BOUGH_PURE_NUMBER, "2.332287", "2.4", "optimal gain, in N m s^2/rad^2"),
-    LAW(rated_speed, BOUGH_ANGULAR_SPEED, "121.6805 rad/s", "1162 rpm",
+    LAW(optimal_gain, PURE_NUMBER, "2.332287", "2.4", "optimal gain, in N m s^2/rad^2"),
+    LAW(rated_speed, ANGULAR_SPEED, "121.6805 rad/s", "1162 rpm",
         "generator speed from which power or torque is constant"),
-    {.name = "above_rated", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("power", "torque"),
-     .fallback = "power", .offset = offsetof(bough_controller_def, above_rated),
-     .example = "torque", .help = "quantity that is constant above rated speed"},
-    LAW(rated_power, BOUGH_PURE_NUMBER, "5296610", "5.3e6", "rated mechanical power, in W"),
-    LAW(slip, BOUGH_PURE_NUMBER, "0.1", "0.05", "slip of the linear transition from the optimal "
-                                        "to the rated torque"),
-    LAW(most_torque, BOUGH_MOMENT, "47402.91", "47.4 kN m", "largest torque of the generator"),
-    LAW(torque_rate, BOUGH_PURE_NUMBER, "15000", "12e3", "largest rate of the torque, in N m/s"),
-    LAW(power_pitch, BOUGH_ANGLE, "0.01745329 rad", "1 deg",
+    {KEY(CHOICE, above_rated), CHOICES("power", "torque"), .fallback = "power", .example = "torque",
+     .help = "quantity that is constant above rated speed"},
+    LAW(rated_power, PURE_NUMBER, "5296610", "5.3e6", "rated mechanical power, in W"),
+    LAW(slip, PURE_NUMBER, "0.1", "0.05",
+        "slip of the linear transition from the optimal to the rated torque"),
+    LAW(most_torque, MOMENT, "47402.91", "47.4 kN m", "largest torque of the generator"),
+    LAW(torque_rate, PURE_NUMBER, "15000", "12e3", "largest rate of the torque, in N m/s"),
+    LAW(power_pitch, ANGLE, "0.01745329 rad", "1 deg",
         "pitch above which the power is constant at any speed"),
-    LAW(reference_speed, BOUGH_ANGULAR_SPEED, "122.9096 rad/s", "1174 rpm",
+    LAW(reference_speed, ANGULAR_SPEED, "122.9096 rad/s", "1174 rpm",
         "generator speed to which the pitch controls"),
-    LAW(proportional, BOUGH_PURE_NUMBER, "0.01882681", "0.02",
+    LAW(proportional, PURE_NUMBER, "0.01882681", "0.02",
         "proportional gain of the pitch controller at zero pitch, in s"),
-    LAW(integral, BOUGH_PURE_NUMBER, "0.008068634", "0.01", "integral gain of the pitch controller at "
-                                        "zero pitch"),
-    LAW(halving_pitch, BOUGH_ANGLE, "0.1099965 rad", "6.3 deg", "pitch at which both gains are halved"),
-    LAW(least_pitch, BOUGH_ANGLE, "0", "-1 deg", "limit of the pitch"),
-    LAW(most_pitch, BOUGH_ANGLE, "1.570796 rad", "85 deg", "limit of the pitch"),
-    LAW(pitch_rate, BOUGH_ANGULAR_SPEED, "0.1396263 rad/s", "7 deg/s", "largest pitch rate, for all controllers"),
+    LAW(integral, PURE_NUMBER, "0.008068634", "0.01",
+        "integral gain of the pitch controller at zero pitch"),
+    LAW(halving_pitch, ANGLE, "0.1099965 rad", "6.3 deg", "pitch at which both gains are halved"),
+    LAW(least_pitch, ANGLE, "0", "-1 deg", "limit of the pitch"),
+    LAW(most_pitch, ANGLE, "1.570796 rad", "85 deg", "limit of the pitch"),
+    LAW(pitch_rate, ANGULAR_SPEED, "0.1396263 rad/s", "7 deg/s",
+        "largest pitch rate, for all controllers"),
 };
-static const bough_schema law_schema = {.name = "the law's constants",
-    .size = sizeof(bough_controller_def), .n_key = COUNT(law_keys), .key = law_keys};
+#undef FILLS
+static const bough_schema law_schema = {
+    SCHEMA("the law's constants", bough_controller_def, law_keys)};
 
 #define FAULTS "pitch-stuck|pitch-runaway"
-#define AT(member) .offset = offsetof(bough_scene_event, member)
+#define FILLS bough_scene_event
 static const bough_key event_keys[] = {
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE,
-     .choices = CHOICES("start", "stop", "emergency-stop", "grid-loss", "pitch-stuck",
-                        "pitch-runaway", "yaw-runaway"),
-     .required = true, AT(kind),
+    {KEY(CHOICE, kind),
+     CHOICES("start", "stop", "emergency-stop", "grid-loss", "pitch-stuck", "pitch-runaway",
+             "yaw-runaway"),
+     .required = true,
      .help = "start: until then the turbine idles with the pitch of its joints; stop: pitch to "
-             "feather, torque to zero in 10 s; emergency-stop: pitch to feather at the largest rate, "
-             "no torque; grid-loss: no torque, the pitch is controlled; pitch-stuck: one blade keeps "
-             "its pitch; pitch-runaway: one blade pitches to 'angle'; yaw-runaway: the yaw drive "
-             "turns to 'angle'"},
-    {.name = "at", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = ">= 0",
-     .fallback = "0", AT(at), .example = "90 s", .help = "time of the event; with a channel the "
-                                        "earliest time"},
-    {.name = "channel", .kind = BOUGH_KEY_TEXT, AT(channel), .example = "GenSpeed",
+             "feather, torque to zero in 10 s; emergency-stop: pitch to feather at the largest "
+             "rate, no torque; grid-loss: no torque, the pitch is controlled; pitch-stuck: one "
+             "blade keeps its pitch; pitch-runaway: one blade pitches to 'angle'; yaw-runaway: the "
+             "yaw drive turns to 'angle'"},
+    {KEY(NUMBER, at), UNIT(TIME), .range = ">= 0", .fallback = "0", .example = "90 s",
+     .help = "time of the event; with a channel the earliest time"},
+    {KEY(TEXT, channel), .example = "GenSpeed",
      .help = "channel whose threshold triggers the event; default: the event occurs at the time"},
-    {.name = "above", .kind = BOUGH_KEY_NUMBER, AT(above), .example = "1300",
+    {KEY(NUMBER, above), .example = "1300",
      .help = "the event occurs when the channel is beyond this threshold, in the channel's unit"},
-    {.name = "below", .kind = BOUGH_KEY_NUMBER, AT(below), .example = "100",
+    {KEY(NUMBER, below), .example = "100",
      .help = "the event occurs when the channel is beyond this threshold, in the channel's unit"},
-    {.name = "blade", .kind = BOUGH_KEY_INTEGER, .range = "[1, 3]", .required = true,
-     .when_key = "kind", .when = FAULTS, AT(blade), .example = "2", .help = "number of the blade in turbine.blades"},
-    {.name = "body", .kind = BOUGH_KEY_TEXT, .required = true, .when_key = "kind",
-     .when = "yaw-runaway", AT(body_name), .example = "yaw",
-     .help = "body on the yaw joint, which must have a motion"},
-    {.name = "angle", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGLE, .word = "auto",
-     .fallback = "auto", .when_key = "kind",
-     .when = "stop|emergency-stop|pitch-runaway|yaw-runaway", AT(angle), .example = "20 deg",
+    {KEY(INTEGER, blade), .range = "[1, 3]", .required = true, WHEN("kind", FAULTS), .example = "2",
+     .help = "number of the blade in turbine.blades"},
+    {NAMED("body", TEXT), AT(body_name), .required = true, WHEN("kind", "yaw-runaway"),
+     .example = "yaw", .help = "body on the yaw joint, which must have a motion"},
+    {KEY(NUMBER, angle), UNIT(ANGLE), .word = "auto", .fallback = "auto",
+     WHEN("kind", "stop|emergency-stop|pitch-runaway|yaw-runaway"), .example = "20 deg",
      .help = "final angle; auto: 90 degrees for stops, else 0"},
-    {.name = "rate", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_ANGULAR_SPEED, .range = "> 0",
-     .word = "auto", .fallback = "auto", .when_key = "kind",
-     .when = "stop|emergency-stop|pitch-runaway|yaw-runaway", AT(rate), .example = "2 deg/s",
+    {KEY(NUMBER, rate), UNIT(ANGULAR_SPEED), .range = "> 0", .word = "auto", .fallback = "auto",
+     WHEN("kind", "stop|emergency-stop|pitch-runaway|yaw-runaway"), .example = "2 deg/s",
      .help = "rate of the motion, for pitch at most the law's pitch_rate; auto: 4 deg/s for a "
              "stop, 0.3 deg/s for the yaw, else the law's pitch_rate"},
 };
-#undef AT
+#undef FILLS
 
 static void check_event(bough_schema_reader *r, void *item) {
     bough_scene_event *e = item;
@@ -93,44 +90,38 @@ static void check_event(bough_schema_reader *r, void *item) {
     e->threshold = below ? e->below : e->above;
 }
 
-static const bough_schema event_schema = {.name = "an event", .size = sizeof(bough_scene_event),
-    .n_key = COUNT(event_keys), .key = event_keys, .check = check_event};
+static const bough_schema event_schema = {
+    SCHEMA("an event", bough_scene_event, event_keys), .check = check_event};
 
-#define AT(member) .offset = offsetof(bough_scene_control, member)
+#define FILLS bough_scene_control
 static const bough_key control_keys[] = {
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("variable-speed", "bladed", "external"),
-     .required = true, AT(kind),
+    {KEY(CHOICE, kind), CHOICES("variable-speed", "bladed", "external"), .required = true,
      .help = "variable-speed: the baseline law of the NREL 5 MW turbine; bladed: a shared library "
              "with Bladed's interface (function DISCON); external: another program, by the inputs "
              "GenTqCom (torque on the fast shaft) and BlPitchCom1 to 3"},
-    {.name = "rate", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_FREQUENCY, .range = "> 0",
-     .fallback = "50", AT(rate), .example = "80 Hz",
+    {KEY(NUMBER, rate), UNIT(FREQUENCY), .range = "> 0", .fallback = "50", .example = "80 Hz",
      .help = "sampling rate; the period is a multiple of the macro step"},
-    {.name = "gear_ratio", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .fallback = "97",
-     AT(gear_ratio), .example = "105", .help = "generator speed divided by rotor speed"},
-    {.name = "efficiency", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0.944",
-     AT(efficiency), .example = "0.965",
+    {KEY(NUMBER, gear_ratio), .range = "> 0", .fallback = "97", .example = "105",
+     .help = "generator speed divided by rotor speed"},
+    {KEY(NUMBER, efficiency), .range = "[0, 1]", .fallback = "0.944", .example = "0.965",
      .help = "electrical power divided by mechanical power of the generator"},
-    {.name = "pitch", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(pitch),
+    {KEY(BOOLEAN, pitch), .fallback = "true",
      .help = "controls the pitch of the blades, which need joints that can pitch; false: torque "
              "only"},
-    {.name = "individual_pitch", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", .when_key = "kind",
-     .when = "bladed", AT(individual), .example = "true",
+    {NAMED("individual_pitch", BOOLEAN), AT(individual), .fallback = "false",
+     WHEN("kind", "bladed"), .example = "true",
      .help = "each blade follows its own demand (records 42 to 44) instead of the collective one "
              "(record 45)"},
-    {.name = "library", .kind = BOUGH_KEY_TEXT, .required = true, .when_key = "kind",
-     .when = "bladed", AT(library), .example = "libdiscon.so",
+    {KEY(TEXT, library), .required = true, WHEN("kind", "bladed"), .example = "libdiscon.so",
      .help = "file relative to the scene"},
-    {.name = "input", .kind = BOUGH_KEY_TEXT, .when_key = "kind",
-     .when = "bladed", AT(input), .example = "DISCON.IN",
+    {KEY(TEXT, input), WHEN("kind", "bladed"), .example = "DISCON.IN",
      .help = "the controller's own input file, relative to the scene"},
-    {.name = "law", .kind = BOUGH_KEY_MAPPING, .of = &law_schema, AT(law),
+    {KEY(MAPPING, law), .of = &law_schema,
      .help = "constants of the control law; the defaults are those of the NREL 5 MW turbine"},
-    {.name = "events", .kind = BOUGH_KEY_LIST, .of = &event_schema, AT(event),
-     .count_offset = offsetof(bough_scene_control, n_event),
+    {NAMED("events", LIST), AT(event), .of = &event_schema, COUNT_AT(n_event),
      .help = "events of the turbine, at most 8"},
 };
-#undef AT
+#undef FILLS
 // clang-format on
 
 static void check_control(bough_schema_reader *r, void *item) {
@@ -140,6 +131,5 @@ static void check_control(bough_schema_reader *r, void *item) {
     c->input = c->input && c->input[0] ? bough_schema_path(r, c->input) : "";
 }
 
-const bough_schema bough_scene_control_schema = {.name = "the control",
-    .size = sizeof(bough_scene_control), .n_key = COUNT(control_keys), .key = control_keys,
-    .check = check_control};
+const bough_schema bough_scene_control_schema = {
+    SCHEMA("the control", bough_scene_control, control_keys), .check = check_control};

@@ -28,6 +28,17 @@ void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node,
 void bough_scene_read_load_factor(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
 
+// Values over time.
+typedef struct bough_scene_table {
+    const bough_node *node;
+    int n_time, n_value;    // equal
+    double *times, *values; // (n_time) strictly increasing [s]; SI
+} bough_scene_table;
+
+// Reads {times: [...], values: [...]} with values of that dimension; false after an error.
+bool bough_scene_read_table(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
+                            bough_scene_table *table);
+
 // Whether the symmetric matrix xx yy zz xy xz yz is not below zero about any axis.
 bool bough_scene_semidefinite(const double v[6]);
 

@@ -1,7 +1,6 @@
 // Loads of a scene: on a joint's axis, on a rod at a place or along a stretch, on a rigid body.
 #include "apps/scene/scene_internal.h"
 
-
 #include <math.h>
 #include <string.h>
 
@@ -45,56 +44,10 @@ static void read_three(bough_schema_reader *r, const bough_node *node, bough_dim
     }
 }
 
-typedef struct load_table {
-    int n_time, n_value;
-    double *times, *values;
-} load_table;
-
-#define TIMES                                                                                      \
-    {.name = "times",                                                                              \
-     .kind = BOUGH_KEY_NUMBERS,                                                                    \
-     .dimension = BOUGH_TIME,                                                                      \
-     .range = ">= 0",                                                                              \
-     .count = 2,                                                                                   \
-     .required = true,                                                                             \
-     .offset = offsetof(load_table, times),                                                        \
-     .count_offset = offsetof(load_table, n_time)}
-#define VALUES(what)                                                                               \
-    {.name = "values",                                                                             \
-     .kind = BOUGH_KEY_NUMBERS,                                                                    \
-     .dimension = what,                                                                            \
-     .count = 2,                                                                                   \
-     .required = true,                                                                             \
-     .offset = offsetof(load_table, values),                                                       \
-     .count_offset = offsetof(load_table, n_value)}
-static const bough_key torque_keys[] = {TIMES, VALUES(BOUGH_MOMENT)};
-static const bough_key force_keys[] = {TIMES, VALUES(BOUGH_FORCE)};
-static const bough_key factor_keys[] = {TIMES, VALUES(BOUGH_PURE_NUMBER)};
-#undef TIMES
-#undef VALUES
-static const bough_schema torque_schema = {
-    .name = "a table", .size = sizeof(load_table), .n_key = 2, .key = torque_keys};
-static const bough_schema force_schema = {
-    .name = "a table", .size = sizeof(load_table), .n_key = 2, .key = force_keys};
-
-static const bough_schema factor_schema = {
-    .name = "a table", .size = sizeof(load_table), .n_key = 2, .key = factor_keys};
-
-static void read_table(bough_schema_reader *r, const bough_node *node, const bough_schema *schema,
+static void read_table(bough_schema_reader *r, const bough_node *node, bough_dimension dimension,
                        bough_scene_load *load) {
-    load_table table = {0};
-    int before = r->errors->n + r->errors->dropped;
-    bough_schema_read(r, schema, node, &table);
-    if (r->errors->n + r->errors->dropped > before || table.times == NULL) return;
-    if (table.n_time != table.n_value) {
-        bough_schema_error(r, node, "", "%d times, but %d values", table.n_time, table.n_value);
-        return;
-    }
-    for (int i = 1; i < table.n_time; i++) {
-        if (table.times[i] > table.times[i - 1]) continue;
-        bough_schema_error(r, bough_node_find(node, "times")->value[i], "times", "must increase");
-        return;
-    }
+    bough_scene_table table;
+    if (!bough_scene_read_table(r, node, dimension, &table)) return;
     load->n_time = table.n_time;
     load->times = table.times;
     load->values = table.values;
@@ -104,7 +57,7 @@ static void read_table(bough_schema_reader *r, const bough_node *node, const bou
 static void read_amount(bough_schema_reader *r, const bough_node *node, bough_dimension dimension,
                         bough_scene_load *load) {
     if (node->kind == BOUGH_MAPPING) {
-        read_table(r, node, dimension == BOUGH_MOMENT ? &torque_schema : &force_schema, load);
+        read_table(r, node, dimension, load);
     } else {
         load->amount = bough_schema_number(r, node, dimension);
     }
@@ -124,7 +77,7 @@ void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node,
 }
 
 void bough_scene_read_load_factor(bough_schema_reader *r, const bough_node *node, void *field) {
-    read_table(r, node, &factor_schema, field);
+    read_table(r, node, BOUGH_PURE_NUMBER, field);
 }
 
 void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field) {

@@ -1,5 +1,5 @@
 // The prescribed motion of a joint: its speed or itself, constant, by a ramp or by a table.
-#include "apps/scene/scene_internal.h"
+#include "apps/scene/scene_tables.h"
 
 #include <math.h>
 #include <string.h>
@@ -16,78 +16,65 @@ typedef struct universal_pair {
 
 // -- a table or a ramp ----------------------------------------------------------------------------
 
-typedef struct table {
-    const bough_node *node;
-    int n_time, n_value;
-    double *times, *values;
-} table;
+// Reads a mapping of such keys; false after an error.
+static bool read_form(bough_schema_reader *r, const bough_node *node, const bough_schema *schema,
+                      void *item) {
+    int before = r->errors->n + r->errors->dropped;
+    bough_schema_read(r, schema, node, item);
+    return r->errors->n + r->errors->dropped == before;
+}
+
+// clang-format off
+bool bough_scene_read_table(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
+                            bough_scene_table *table) {
+#define FILLS bough_scene_table
+    const bough_key keys[] = {
+        {KEY(NUMBERS, times), UNIT(TIME), .range = ">= 0", .count = 2, .required = true, COUNT_AT(n_time)},
+        {KEY(NUMBERS, values), .dimension = unit, .count = 2, .required = true, COUNT_AT(n_value)},
+    };
+#undef FILLS
+    const bough_schema schema = {SCHEMA("a table", bough_scene_table, keys)};
+    *table = (bough_scene_table){0};
+    if (!read_form(r, node, &schema, table)) return false;
+    if (table->n_time != table->n_value) {
+        bough_schema_error(r, node, "", "%d times, but %d values", table->n_time, table->n_value);
+        return false;
+    }
+    for (int i = 1; i < table->n_time; i++) {
+        if (table->times[i] > table->times[i - 1]) continue;
+        bough_schema_error(r, bough_node_find(node, "times")->value[i], "times", "must increase");
+        return false;
+    }
+    return true;
+}
 
 typedef struct ramp {
     const bough_node *node;
     double from, to, ramp[2];
 } ramp;
 
-// clang-format off
-#define TABLE(unit)                                                                                \
-    (const bough_key[]){                                                                           \
-        {.name = "times", .kind = BOUGH_KEY_NUMBERS, .dimension = BOUGH_TIME, .range = ">= 0",     \
-         .count = 2, .required = true, .offset = offsetof(table, times),                           \
-         .count_offset = offsetof(table, n_time)},                                                 \
-        {.name = "values", .kind = BOUGH_KEY_NUMBERS, .dimension = unit, .count = 2,               \
-         .required = true, .offset = offsetof(table, values),                                      \
-         .count_offset = offsetof(table, n_value)}}
-#define RAMP(unit)                                                                                 \
-    (const bough_key[]){                                                                           \
-        {.name = "from", .kind = BOUGH_KEY_NUMBER, .dimension = unit, .fallback = "0",             \
-         .offset = offsetof(ramp, from)},                                                          \
-        {.name = "to", .kind = BOUGH_KEY_NUMBER, .dimension = unit, .required = true,              \
-         .offset = offsetof(ramp, to)},                                                            \
-        {.name = "ramp", .kind = BOUGH_KEY_VECTOR, .count = 2, .dimension = BOUGH_TIME,            \
-         .range = ">= 0", .required = true, .offset = offsetof(ramp, ramp)}}
-#define FORMS(unit)                                                                                \
-    [unit] = {{.name = "a table", .size = sizeof(table), .n_key = 2, .key = TABLE(unit)},          \
-              {.name = "a ramp", .size = sizeof(ramp), .n_key = 3, .key = RAMP(unit)}}
-static const struct {
-    bough_schema table, ramp;
-} forms[] = {FORMS(BOUGH_LENGTH), FORMS(BOUGH_ANGLE), FORMS(BOUGH_SPEED),
-             FORMS(BOUGH_ANGULAR_SPEED)};
-// clang-format on
-
-static void read_table(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
-                       bough_scene_motion *motion) {
-    table t = {0};
-    int before = r->errors->n + r->errors->dropped;
-    bough_schema_read(r, &forms[unit].table, node, &t);
-    if (r->errors->n + r->errors->dropped > before || t.times == NULL) return;
-    if (t.n_time != t.n_value) {
-        bough_schema_error(r, node, "", "%d times, but %d values", t.n_time, t.n_value);
-        return;
-    }
-    for (int i = 1; i < t.n_time; i++) {
-        if (t.times[i] > t.times[i - 1]) continue;
-        bough_schema_error(r, bough_node_find(node, "times")->value[i], "times", "must increase");
-        return;
-    }
-    motion->def.n = t.n_time;
-    motion->def.times = t.times;
-    motion->def.values = t.values;
-}
-
 static void read_ramp(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
-                      bough_scene_motion *motion) {
+                      bough_motion_def *def) {
+#define FILLS ramp
+    const bough_key keys[] = {
+        {KEY(NUMBER, from), .dimension = unit, .fallback = "0"},
+        {KEY(NUMBER, to), .dimension = unit, .required = true},
+        {KEY(VECTOR, ramp), UNIT(TIME), .count = 2, .range = ">= 0", .required = true},
+    };
+#undef FILLS
+    const bough_schema schema = {SCHEMA("a ramp", ramp, keys)};
     ramp x = {0};
-    int before = r->errors->n + r->errors->dropped;
-    bough_schema_read(r, &forms[unit].ramp, node, &x);
-    if (r->errors->n + r->errors->dropped > before) return;
+    if (!read_form(r, node, &schema, &x)) return;
     if (!(x.ramp[1] > x.ramp[0])) {
         bough_schema_error(r, bough_node_find(node, "ramp"), "ramp",
                            "must end after it starts, got [%g s, %g s]", x.ramp[0], x.ramp[1]);
     }
-    motion->def.from = x.from;
-    motion->def.to = x.to;
-    motion->def.start = x.ramp[0];
-    motion->def.end = x.ramp[1];
+    def->from = x.from;
+    def->to = x.to;
+    def->start = x.ramp[0];
+    def->end = x.ramp[1];
 }
+// clang-format on
 
 // A number, a ramp or a table.
 static void read_values(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
@@ -95,9 +82,13 @@ static void read_values(bough_schema_reader *r, const bough_node *node, bough_di
     if (node->kind != BOUGH_MAPPING) {
         motion->def.from = motion->def.to = bough_schema_number(r, node, unit);
     } else if (bough_node_find(node, "times") != NULL || bough_node_find(node, "values") != NULL) {
-        read_table(r, node, unit, motion);
+        bough_scene_table table;
+        if (!bough_scene_read_table(r, node, unit, &table)) return;
+        motion->def.n = table.n_time;
+        motion->def.times = table.times;
+        motion->def.values = table.values;
     } else {
-        read_ramp(r, node, unit, motion);
+        read_ramp(r, node, unit, &motion->def);
     }
 }
 
@@ -119,31 +110,32 @@ static void read_speed(bough_schema_reader *r, const bough_node *node, void *fie
     read_values(r, node, BOUGH_SPEED, field);
 }
 
+// clang-format off
 #define FORM .form = "a number, {from: 0, to: ..., ramp: [...]} or {times: [...], values: [...]}"
+#define FILLS bough_scene_motion
 #define INPUT                                                                                      \
-    {.name = "input", .kind = BOUGH_KEY_TEXT, .offset = offsetof(bough_scene_motion, input),       \
-     .example = "yaw", .help = "with a constant place: name by which it is set between steps"}
+    {KEY(TEXT, input), .example = "yaw",                                                           \
+     .help = "with a constant place: name by which it is set between steps"}
 static const bough_key revolute_keys[] = {
-    {.name = "speed", .kind = BOUGH_KEY_CUSTOM, .read = read_angular_speed, FORM},
-    {.name = "angle", .kind = BOUGH_KEY_CUSTOM, .read = read_angle, FORM},
+    {NAMED("speed", CUSTOM), .read = read_angular_speed, FORM},
+    {NAMED("angle", CUSTOM), .read = read_angle, FORM},
     INPUT,
 };
 static const bough_key prismatic_keys[] = {
-    {.name = "speed", .kind = BOUGH_KEY_CUSTOM, .read = read_speed, FORM},
-    {.name = "position", .kind = BOUGH_KEY_CUSTOM, .read = read_position, FORM},
+    {NAMED("speed", CUSTOM), .read = read_speed, FORM},
+    {NAMED("position", CUSTOM), .read = read_position, FORM},
     INPUT,
 };
-#undef FORM
-#undef INPUT
-
+#undef FILLS
+#define FILLS motion_pair
 static const bough_key cylindrical_keys[] = {
-    {.name = "speed", .kind = BOUGH_KEY_CUSTOM, .read = read_speed},
-    {.name = "position", .kind = BOUGH_KEY_CUSTOM, .read = read_position},
-    {.name = "angular_speed", .kind = BOUGH_KEY_CUSTOM, .read = read_angular_speed,
-     .offset = offsetof(motion_pair, second)},
-    {.name = "angle", .kind = BOUGH_KEY_CUSTOM, .read = read_angle,
-     .offset = offsetof(motion_pair, second)},
+    {NAMED("speed", CUSTOM), .read = read_speed},
+    {NAMED("position", CUSTOM), .read = read_position},
+    {NAMED("angular_speed", CUSTOM), AT(second), .read = read_angular_speed},
+    {NAMED("angle", CUSTOM), AT(second), .read = read_angle},
 };
+#undef FILLS
+// clang-format on
 
 // One of a pair of keys at most, the speed first.
 static void check_one(bough_schema_reader *r, const bough_node *node, const char *speed,
@@ -181,23 +173,22 @@ static void check_pair(bough_schema_reader *r, void *item) {
     if (node->n == 0) bough_schema_error(r, node, "", "expected what is prescribed");
 }
 
-#define MOTION(what, type, keys, checker)                                                          \
-    {.name = what, .size = sizeof(type), .n_key = (int)(sizeof keys / sizeof *keys),               \
-     .key = keys, .check = checker}
-static const bough_schema revolute_motion =
-    MOTION("the motion of a revolute joint", bough_scene_motion, revolute_keys, check_motion);
-static const bough_schema prismatic_motion =
-    MOTION("the motion of a prismatic joint", bough_scene_motion, prismatic_keys, check_motion);
-static const bough_schema cylindrical_motion =
-    MOTION("the motion of a cylindrical joint", motion_pair, cylindrical_keys, check_pair);
+// clang-format off
+static const bough_schema revolute_motion = {
+    SCHEMA("the motion of a revolute joint", bough_scene_motion, revolute_keys), .check = check_motion};
+static const bough_schema prismatic_motion = {
+    SCHEMA("the motion of a prismatic joint", bough_scene_motion, prismatic_keys), .check = check_motion};
+static const bough_schema cylindrical_motion = {
+    SCHEMA("the motion of a cylindrical joint", motion_pair, cylindrical_keys), .check = check_pair};
+#define FILLS universal_pair
 static const bough_key universal_keys[] = {
-    {.name = "first", .kind = BOUGH_KEY_MAPPING, .of = &revolute_motion,
-     .offset = offsetof(universal_pair, first)},
-    {.name = "second", .kind = BOUGH_KEY_MAPPING, .of = &revolute_motion,
-     .offset = offsetof(universal_pair, second)},
+    {KEY(MAPPING, first), .of = &revolute_motion},
+    {KEY(MAPPING, second), .of = &revolute_motion},
 };
-static const bough_schema universal_motion =
-    MOTION("the motion of a universal joint", universal_pair, universal_keys, NULL);
+#undef FILLS
+static const bough_schema universal_motion = {
+    SCHEMA("the motion of a universal joint", universal_pair, universal_keys)};
+// clang-format on
 
 // field: the joint, whose kind is read before
 void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, void *field) {

@@ -1,7 +1,7 @@
 // The keys of sweeps and load sets, and their reading.
 #include "apps/study/load_set.h"
 
-#include "apps/config/schema.h"
+#include "apps/config/schema_keys.h"
 #include "apps/study/load_set_internal.h"
 #include "apps/study/study_internal.h"
 
@@ -9,34 +9,26 @@
 #include <string.h>
 
 // clang-format off
-#define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
-#define CHOICES(...) (const char *const[]){__VA_ARGS__, NULL}
-
-#define AT(member) .offset = offsetof(bough_load_group, member)
+#define FILLS bough_load_group
 static const bough_key group_keys[] = {
-    {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name), .example = "DLC1.2",
-     .help = "name of the load case"},
-    {.name = "scene", .kind = BOUGH_KEY_TEXT, AT(scene_name), .example = "parked.yaml",
+    {KEY(TEXT, name), .required = true, .example = "DLC1.2", .help = "name of the load case"},
+    {NAMED("scene", TEXT), AT(scene_name), .example = "parked.yaml",
      .help = "scene of this load case; replaces the set's"},
-    {.name = "set", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings,
-     .form = "{KEY: VALUE, ...}", AT(set), .help = "replaced keys of its cases"},
-    {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_grid,
-     .form = "{KEY: [VALUE, ...], ...}", AT(grid),
+    {KEY(CUSTOM, set), .read = bough_study_read_settings, .form = "{KEY: VALUE, ...}",
+     .help = "replaced keys of its cases"},
+    {KEY(CUSTOM, grid), .read = bough_study_read_grid, .form = "{KEY: [VALUE, ...], ...}",
      .help = "one case for each combination of the values; default one case"},
-    {.name = "weibull", .kind = BOUGH_KEY_NUMBER, .range = "[0, 1]", .fallback = "0", AT(weibull),
-     .example = "0.95",
+    {KEY(NUMBER, weibull), .range = "[0, 1]", .fallback = "0", .example = "0.95",
      .help = "share of all hours, distributed over the values of aero.wind.speed"},
-    {.name = "hours", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0", AT(hours),
-     .example = "50", .help = "hours in a year, of all its cases together"},
-    {.name = "events", .kind = BOUGH_KEY_NUMBER, .range = ">= 0", .fallback = "0", AT(events),
-     .example = "1000", .help = "events in a year, of all its cases together; each run is one "
-                                "event"},
-    {.name = "factor", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .fallback = "1.35", AT(factor),
-     .example = "1.1", .help = "partial safety factor of its extremes"},
-    {.name = "extremes", .kind = BOUGH_KEY_BOOLEAN, .fallback = "true", AT(extremes),
-     .help = "its extremes count"},
+    {KEY(NUMBER, hours), .range = ">= 0", .fallback = "0", .example = "50",
+     .help = "hours in a year, of all its cases together"},
+    {KEY(NUMBER, events), .range = ">= 0", .fallback = "0", .example = "1000",
+     .help = "events in a year, of all its cases together; each run is one event"},
+    {KEY(NUMBER, factor), .range = "> 0", .fallback = "1.35", .example = "1.1",
+     .help = "partial safety factor of its extremes"},
+    {KEY(BOOLEAN, extremes), .fallback = "true", .help = "its extremes count"},
 };
-#undef AT
+#undef FILLS
 
 static void check_group(bough_schema_reader *r, void *item) {
     const bough_load_group *g = item;
@@ -46,64 +38,57 @@ static void check_group(bough_schema_reader *r, void *item) {
 }
 
 static const bough_schema group_schema = {
-    .name = "a load case", .size = sizeof(bough_load_group), .n_key = COUNT(group_keys),
-    .key = group_keys, .check = check_group};
+    SCHEMA("a load case", bough_load_group, group_keys), .check = check_group};
 
-#define AT(member) .offset = offsetof(bough_load_wind, member)
+#define FILLS bough_load_wind
 static const bough_key wind_keys[] = {
-    {.name = "average", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_SPEED, .range = "> 0",
-     .required = true, AT(average), .example = "10 m/s", .help = "yearly mean at hub height"},
-    {.name = "shape", .kind = BOUGH_KEY_NUMBER, .range = "[1, 10]", .fallback = "2", AT(shape),
-     .example = "2.1", .help = "shape of the Weibull distribution; 2: Rayleigh distribution"},
+    {KEY(NUMBER, average), UNIT(SPEED), .range = "> 0", .required = true, .example = "10 m/s",
+     .help = "yearly mean at hub height"},
+    {KEY(NUMBER, shape), .range = "[1, 10]", .fallback = "2", .example = "2.1",
+     .help = "shape of the Weibull distribution; 2: Rayleigh distribution"},
 };
-#undef AT
-static const bough_schema wind_schema = {.name = "the wind's distribution",
-    .size = sizeof(bough_load_wind), .n_key = COUNT(wind_keys), .key = wind_keys};
+#undef FILLS
+static const bough_schema wind_schema = {
+    SCHEMA("the wind's distribution", bough_load_wind, wind_keys)};
 
-#define AT(member) .offset = offsetof(bough_load_set, member)
+#define FILLS bough_load_set
 #define HEAD(kinds)                                                                                \
-    {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line of description"},       \
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES(kinds), .required = true,        \
-     AT(kind), .help = "kind of study"},                                                           \
-    {.name = "common", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings,                \
-     .form = "{KEY: VALUE, ...}", AT(common), .help = "replaced keys of every case"},              \
-    {.name = "from", .kind = BOUGH_KEY_NUMBER, .dimension = BOUGH_TIME, .range = ">= 0",           \
-     .fallback = "0", AT(from), .example = "30 s", .help = "start of the statistics"},    \
-    {.name = "channels", .kind = BOUGH_KEY_TEXTS, .count = 1, AT(wanted),                          \
-     .count_offset = offsetof(bough_load_set, n_wanted), .example = "[RotSpeed, RootMyb1]",        \
-     .help = "channels that are kept; default all"},                                                      \
-    {.name = "series", .kind = BOUGH_KEY_BOOLEAN, .fallback = "false", AT(series),                 \
-     .help = "every case keeps its channels.out"}
+    {KEY(TEXT, title), .help = "one line of description"},                                         \
+    {KEY(CHOICE, kind), CHOICES(kinds), .required = true, .help = "kind of study"},                \
+    {KEY(CUSTOM, common), .read = bough_study_read_settings, .form = "{KEY: VALUE, ...}",          \
+     .help = "replaced keys of every case"},                                                       \
+    {KEY(NUMBER, from), UNIT(TIME), .range = ">= 0", .fallback = "0", .example = "30 s",           \
+     .help = "start of the statistics"},                                                           \
+    {NAMED("channels", TEXTS), AT(wanted), .count = 1, COUNT_AT(n_wanted),                         \
+     .example = "[RotSpeed, RootMyb1]", .help = "channels that are kept; default all"},            \
+    {KEY(BOOLEAN, series), .fallback = "false", .help = "every case keeps its channels.out"}
 
 static const bough_key sweep_keys[] = {
     HEAD("sweep"),
-    {.name = "scene", .kind = BOUGH_KEY_TEXT, AT(scene_name),
+    {NAMED("scene", TEXT), AT(scene_name),
      .help = "file of the scene, relative to the study; not given if the grid has the key 'scene'"},
-    {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_grid, .required = true,
-     .form = "{KEY: [VALUE, ...], ...}", AT(grid),
+    {KEY(CUSTOM, grid), .read = bough_study_read_grid, .required = true,
+     .form = "{KEY: [VALUE, ...], ...}",
      .help = "one run for each combination of the values; the key 'scene' takes files"},
 };
-const bough_schema bough_sweep_schema = {.name = "a sweep", .size = sizeof(bough_load_set),
-    .n_key = COUNT(sweep_keys), .key = sweep_keys};
+const bough_schema bough_sweep_schema = {SCHEMA("a sweep", bough_load_set, sweep_keys)};
 
 static const bough_key set_keys[] = {
     HEAD("load-set"),
-    {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
+    {NAMED("scene", TEXT), AT(scene_name), .required = true,
      .help = "file of the scene, relative to the study"},
-    {.name = "slopes", .kind = BOUGH_KEY_NUMBERS, .range = "[1, 30]", .count = 1, .required = true,
-     AT(slope), .count_offset = offsetof(bough_load_set, n_slope), .example = "[4, 10]",
-     .help = "exponents of the S-N curves"},
-    {.name = "equivalent_cycles", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .fallback = "1e7",
-     AT(cycles), .example = "2e6", .help = "number of cycles of the lifetime's damage-equivalent "
-                                        "loads"},
-    {.name = "lifetime", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .fallback = "20", AT(lifetime),
-     .example = "25", .help = "lifetime in years"},
-    {.name = "wind", .kind = BOUGH_KEY_MAPPING, .of = &wind_schema, AT(wind),
+    {NAMED("slopes", NUMBERS), AT(slope), .range = "[1, 30]", .count = 1, .required = true,
+     COUNT_AT(n_slope), .example = "[4, 10]", .help = "exponents of the S-N curves"},
+    {NAMED("equivalent_cycles", NUMBER), AT(cycles), .range = "> 0", .fallback = "1e7",
+     .example = "2e6", .help = "number of cycles of the lifetime's damage-equivalent loads"},
+    {KEY(NUMBER, lifetime), .range = "> 0", .fallback = "20", .example = "25",
+     .help = "lifetime in years"},
+    {KEY(MAPPING, wind), .of = &wind_schema,
      .help = "distribution of the wind speed, for 'weibull'"},
-    {.name = "cases", .kind = BOUGH_KEY_LIST, .of = &group_schema, .count = 1, .required = true,
-     AT(group), .count_offset = offsetof(bough_load_set, n_group), .help = "design load cases"},
+    {NAMED("cases", LIST), AT(group), .of = &group_schema, .count = 1, .required = true,
+     COUNT_AT(n_group), .help = "design load cases"},
 };
-#undef AT
+#undef FILLS
 
 static void check_set(bough_schema_reader *r, void *item) {
     const bough_load_set *s = item;
@@ -123,8 +108,8 @@ static void check_set(bough_schema_reader *r, void *item) {
     }
 }
 
-const bough_schema bough_load_set_schema = {.name = "a load set", .size = sizeof(bough_load_set),
-    .n_key = COUNT(set_keys), .key = set_keys, .check = check_set};
+const bough_schema bough_load_set_schema = {
+    SCHEMA("a load set", bough_load_set, set_keys), .check = check_set};
 // clang-format on
 
 // A sweep is one group.

@@ -1,7 +1,7 @@
 // The keys of a study and their reading.
 #include "apps/study/study.h"
 
-#include "apps/config/schema.h"
+#include "apps/config/schema_keys.h"
 #include "apps/study/load_set.h"
 #include "apps/study/study_internal.h"
 #include "core/input_file.h"
@@ -215,54 +215,47 @@ static void check_measure(bough_schema_reader *r, void *item) {
 
 // One line a key would become one line a field:
 // clang-format off
-#define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
-#define CHOICES(...) (const char *const[]){__VA_ARGS__, NULL}
-
-#define AT(member) .offset = offsetof(bough_study_measure, member)
+#define FILLS bough_study_measure
 static const bough_key measure_keys[] = {
-    {.name = "name", .kind = BOUGH_KEY_TEXT, .required = true, AT(name),
-     .help = "heading of its column"},
-    {.name = "channel", .kind = BOUGH_KEY_TEXT, AT(channel), .help = "name of a channel"},
-    {.name = "channels", .kind = BOUGH_KEY_CUSTOM, .read = read_channels, .form = channels_form,
-     AT(channels), .help = "components of a vector; of several vectors the largest difference "
-                           "counts"},
-    {.name = "norm", .kind = BOUGH_KEY_CHOICE, .choices = CHOICES("euclid", "largest"),
-     .fallback = "euclid", AT(norm), .help = "norm of a vector"},
-    {.name = "scale", .kind = BOUGH_KEY_NUMBER, .range = "> 0", .fallback = "1", AT(scale),
+    {KEY(TEXT, name), .required = true, .help = "heading of its column"},
+    {KEY(TEXT, channel), .help = "name of a channel"},
+    {KEY(CUSTOM, channels), .read = read_channels, .form = channels_form,
+     .help = "components of a vector; of several vectors the largest difference counts"},
+    {KEY(CHOICE, norm), CHOICES("euclid", "largest"), .fallback = "euclid",
+     .help = "norm of a vector"},
+    {KEY(NUMBER, scale), .range = "> 0", .fallback = "1",
      .help = "factor from the channels' unit to 'unit'"},
-    {.name = "unit", .kind = BOUGH_KEY_TEXT, AT(unit),
-     .help = "unit of the difference after scaling; default the channels' unit"},
+    {KEY(TEXT, unit), .help = "unit of the difference after scaling; default the channels' unit"},
 };
-#undef AT
+#undef FILLS
 static const bough_schema measure_schema = {
-    .name = "a measure", .size = sizeof(bough_study_measure), .n_key = COUNT(measure_keys),
-    .key = measure_keys, .check = check_measure};
+    SCHEMA("a measure", bough_study_measure, measure_keys), .check = check_measure};
 
-#define AT(member) .offset = offsetof(bough_study, member)
+#define FILLS bough_study
 static const bough_key study_keys[] = {
-    {.name = "title", .kind = BOUGH_KEY_TEXT, AT(title), .help = "one line of description"},
-    {.name = "scene", .kind = BOUGH_KEY_TEXT, .required = true, AT(scene_name),
+    {KEY(TEXT, title), .help = "one line of description"},
+    {NAMED("scene", TEXT), AT(scene_name), .required = true,
      .help = "file of the scene, relative to the study"},
-    {.name = "kind", .kind = BOUGH_KEY_CHOICE,
-     .choices = CHOICES("work-precision", "timing", "stability", "sweep", "load-set"), .required = true, AT(kind),
+    {KEY(CHOICE, kind), CHOICES("work-precision", "timing", "stability", "sweep", "load-set"),
+     .required = true,
      .help = "work-precision: time and error of every cell of the grid against one reference; "
-             "timing: cost of the cells, measured in turns; stability: map of errors and diagnoses, "
-             "each cell against a reference with the same model parameters; sweep: statistics of "
-             "every cell; load-set: lifetime loads of weighted cases (both: docs/loads.md)"},
-    {.name = "reference", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings, .required = true,
-     .form = "{KEY: VALUE, ...}", AT(reference), .help = "replaced keys of the reference run"},
-    {.name = "grid", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_grid, .required = true,
-     .form = "{KEY: [VALUE, ...], ...}", AT(grid),
-     .help = "one run for each combination of the values"},
-    {.name = "common", .kind = BOUGH_KEY_CUSTOM, .read = bough_study_read_settings,
-     .form = "{KEY: VALUE, ...}", AT(common), .help = "replaced keys of every run"},
-    {.name = "measures", .kind = BOUGH_KEY_LIST, .of = &measure_schema, .count = 1,
-     .required = true, AT(measure), .count_offset = offsetof(bough_study, n_measure),
+             "timing: cost of the cells, measured in turns; stability: map of errors and "
+             "diagnoses, each cell against a reference with the same model parameters; sweep: "
+             "statistics of every cell; load-set: lifetime loads of weighted cases (both: "
+             "docs/loads.md)"},
+    {KEY(CUSTOM, reference), .read = bough_study_read_settings, .required = true,
+     .form = "{KEY: VALUE, ...}", .help = "replaced keys of the reference run"},
+    {KEY(CUSTOM, grid), .read = bough_study_read_grid, .required = true,
+     .form = "{KEY: [VALUE, ...], ...}", .help = "one run for each combination of the values"},
+    {KEY(CUSTOM, common), .read = bough_study_read_settings, .form = "{KEY: VALUE, ...}",
+     .help = "replaced keys of every run"},
+    {NAMED("measures", LIST), AT(measure), .of = &measure_schema, .count = 1, .required = true,
+     COUNT_AT(n_measure),
      .help = "largest differences to the reference at the common output times"},
-    {.name = "repeat", .kind = BOUGH_KEY_INTEGER, .range = "[1, 99]", .fallback = "1", AT(repeat),
+    {KEY(INTEGER, repeat), .range = "[1, 99]", .fallback = "1",
      .help = "number of runs of each cell; times are medians"},
 };
-#undef AT
+#undef FILLS
 
 static void check_study(bough_schema_reader *r, void *item) {
     const bough_study *s = item;
@@ -272,8 +265,7 @@ static void check_study(bough_schema_reader *r, void *item) {
 }
 
 static const bough_schema study_schema = {
-    .name = "a study", .size = sizeof(bough_study), .n_key = COUNT(study_keys),
-    .key = study_keys, .check = check_study};
+    SCHEMA("a study", bough_study, study_keys), .check = check_study};
 // clang-format on
 
 // -- help -----------------------------------------------------------------------------------------
