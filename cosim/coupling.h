@@ -97,6 +97,8 @@ typedef struct bough_coupling {
     bough_member *whole;
 
     long sweeps; // by the iterated scheme: runs of all members over a macro step so far
+    long unfinished; // macro steps that went on before they had converged
+    bool measured; // the run's error is estimated, with that of such steps
 } bough_coupling;
 
 // Builds the working data and evaluates the outputs at the members' current states; the scheme's own

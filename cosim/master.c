@@ -98,7 +98,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     m->monitor = bough_monitor_create(arena, m->coupling);
     if (bough_is_ok(&status)) m->breakdown = bough_breakdown_create(arena, m->assembly);
     m->error = def->error;
-    m->lightly_damped = def->lightly_damped;
+    m->suits_linearised = def->suits_linearised;
     bool controlled = def->control.tolerance > 0 && !scheme->one_system;
     if (bough_is_ok(&status) && controlled) {
         m->estimate = bough_error_estimate_create(arena, m->coupling);
@@ -121,7 +121,7 @@ bool bough_master_done(const bough_master *m) {
 }
 
 // The next synchronisation point: grid point, event or the end, whichever comes first.
-static double next_time(const bough_master *m) {
+double bough_master_next(const bough_master *m) {
     double eps = resolution(m);
     double next = (double)(m->grid_index + 1) * m->macro_step;
     for (int i = m->next_event; i < m->n_event; i++) {
@@ -203,13 +203,14 @@ static bough_status interrupted(const bough_master *m) {
 static bough_status macro_step(bough_master *m) {
     bough_coupling *c = m->coupling;
     c->t0 = m->time;
-    c->t1 = next_time(m);
+    c->t1 = bough_master_next(m);
     c->restart = m->at_event;
     begin_loads(m, c->t0 + resolution(m));
     bough_status status = sample_loads(m, &c->restart);
     if (!bough_is_ok(&status)) return status;
 
     bough_breakdown_keep(m->breakdown, c);
+    c->measured = !m->control && bough_master_state_error(m);
     status = m->control ? take_controlled_step(m) : take_step(m);
     if (!bough_is_ok(&status) && m->stop && m->stop()) {
         bough_breakdown_undo(m->breakdown, c);
@@ -267,6 +268,7 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_snapshot_take(s, &c->theta, sizeof c->theta);
     bough_snapshot_take(s, &c->interface_ratio, sizeof c->interface_ratio);
     bough_snapshot_take(s, &c->sweeps, sizeof c->sweeps);
+    bough_snapshot_take(s, &c->unfinished, sizeof c->unfinished);
     if (c->scheme->snapshot) c->scheme->snapshot(c, s);
     bough_monitor_snapshot(m->monitor, c, s);
     if (m->estimate) bough_error_estimate_snapshot(m->estimate, s);

@@ -40,7 +40,7 @@ typedef struct bough_master_def {
     double macro_step; // H, the longest [s]
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
     bough_error_source error;
-    bool lightly_damped; // members vibrate too long for the linearised members to tell their errors
+    bool suits_linearised; // linearised members tell the errors of such a scene, as far as its coupling lets them
     double duration;   // [s]; the run starts at time 0
     int n_load;
     const bough_sampled_load *load; // (n_load), copied
@@ -62,7 +62,7 @@ typedef struct bough_master {
     bough_error_estimate *estimate; // NULL: the scheme makes no coupling error
     bough_second_solution *second;  // NULL: there is none
     bough_error_source error;       // asked for
-    bool lightly_damped;            // see bough_master_def
+    bool suits_linearised;          // see bough_master_def
     bough_step_control *control;    // NULL: fixed steps
     bough_breakdown *breakdown;
     int n_load;
@@ -130,11 +130,17 @@ enum { BOUGH_MASTER_ADVICE = 120 };
 // Settings with an error that is smaller by that factor: words to follow "try".
 void bough_master_advise(const bough_master *m, double factor, char text[BOUGH_MASTER_ADVICE]);
 
+// Leaves the choice of linearised members to the second solution where they are not known to tell the errors.
+void bough_master_choose_estimate(bough_master *m);
+
 // Whether the error is to be measured by a second solution, and by which, without `beside`.
 bool bough_master_wants_second(const bough_master *m, bough_second_solution_def *def);
 
 // Builds the error estimate in the arena; called at time 0. `beside`: see bough_second_solution_def, or NULL.
 bough_status bough_master_watch(bough_master *m, bough_arena *arena, bough_master *beside);
+
+// The next synchronisation point without step control: grid point, event or the end, whichever comes first [s].
+double bough_master_next(const bough_master *m);
 
 // Whether the duration is reached.
 bool bough_master_done(const bough_master *m);

@@ -10,8 +10,8 @@ static const double fine_share = 1.25;      // of the difference to it: its own 
 static const double halved_share = 8.0 / 6; // of that to steps of half the length: 8/7 at order 3
 static const double tight = 1e-7; // tolerance of other monolithic methods from which on it is a reference
 
-// Above so many states a second solution costs what people notice, and ramp on a heavy interface under
-// sub-solvers that tell their errors is told well by the linearised members (0.5 to 3 of the error).
+// Above so many states a second solution costs what people notice. On a heavy interface, under sub-solvers that tell
+// their errors, ramp is told well by the linearised members (0.5 to 3 of the error).
 static const int many_states = 600;
 static const double heavy_interface = 0.25;
 
@@ -49,18 +49,25 @@ static bool can_linearise(const bough_master *m) {
     return c->whole->own_error;
 }
 
-// Only ramp has a weight.
+// Only ramp has a weight, and none where it repeats its steps.
 static bool linearised_serves(const bough_master *m) {
     const bough_coupling *c = m->coupling;
-    return !m->lightly_damped && c->theta > 0 && c->theta < 0.501 && c->interface_ratio < heavy_interface &&
-           m->assembly->n_state >= many_states && members_tell(m->assembly);
+    bool light = c->interface_ratio >= heavy_interface || c->theta > 0.501;
+    if (!m->suits_linearised || light) return false;
+    return c->scheme->one_system ? can_linearise(m) : members_tell(m->assembly);
+}
+
+void bough_master_choose_estimate(bough_master *m) {
+    if (m->error == BOUGH_ERROR_BY_LINEARISED_MEMBERS && !linearised_serves(m)) m->error = BOUGH_ERROR_BY_SECOND_SOLUTION;
 }
 
 static bool wants_second(const bough_master *m) {
     if (m->error == BOUGH_ERROR_BY_SECOND_SOLUTION) return true;
     if (m->error != BOUGH_ERROR_BY_BEST) return false;
     const bough_integrator_options *own = &m->coupling->options.integrator;
-    if (!m->coupling->scheme->one_system) return !linearised_serves(m);
+    if (!m->coupling->scheme->one_system) {
+        return !(linearised_serves(m) && m->coupling->theta > 0 && m->assembly->n_state >= many_states);
+    }
     return has_order_three(own) || own->rtol > tight;
 }
 
@@ -72,13 +79,15 @@ bool bough_master_wants_second(const bough_master *m, bough_second_solution_def 
 
 static bough_status step_second(void *self) { return bough_step(self); }
 
+static double end_of_second(void *self) { return bough_master_next(self); }
+
 static void stop_second(void *self, bool (*stop)(void)) { bough_master_stop_by(self, stop); }
 
 bough_status bough_master_watch(bough_master *m, bough_arena *arena, bough_master *beside) {
     bough_status status = bough_ok();
     bough_second_solution_def chosen;
     if (bough_master_wants_second(m, &chosen)) {
-        if (beside) chosen.beside = (bough_second_model){beside, beside->coupling, step_second, stop_second};
+        if (beside) chosen.beside = (bough_second_model){beside, beside->coupling, step_second, end_of_second, stop_second};
         status = bough_second_solution_create(arena, m->coupling, &chosen, &m->second);
     }
     bool one_system = m->coupling->scheme->one_system;
@@ -98,6 +107,7 @@ bool bough_master_measures(const bough_master *m) {
 
 // A second solution that broke down leaves its place to the linearised members.
 long bough_master_errors(const bough_master *m) {
+    if (bough_master_measures(m)) return bough_second_solution_compared(m->second);
     if (m->second) return m->steps;
     return m->estimate ? bough_error_estimate_batches(m->estimate) : 0;
 }

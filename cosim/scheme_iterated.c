@@ -31,6 +31,10 @@
 #include <math.h>
 #include <string.h>
 
+// The largest residual with which a step goes on where the run tells what it errs by: the noise of adaptive sub-solvers,
+// or an accelerator that no longer gains, leaves 1e-5 to 1e-3, and an iteration that diverges more than 1.
+static const double tolerable = 0.01;
+
 // Ports below this share of the largest one hold rounding only.
 static const double least_scale = 1e-6;
 
@@ -45,7 +49,8 @@ struct bough_iteration {
     void **copy;                    // (n_member) states at T_k
     int n_node;
     const double *node; // (n_node) in (0, 1], the last is 1
-    double *prescribed; // (n_node × n_input) values of the inputs in use
+    size_t n_prescribed; // n_node × n_input
+    double *prescribed, *best; // (n_prescribed) values of the inputs in use, and those with the smallest residual
     double *obtained;   // (n_node × n_output) outputs in the last sweep; of end values the coupling's
     int n_input;        // of all members
     int n;              // feedback inputs
@@ -96,7 +101,9 @@ static void take(bough_iteration *it, const bough_assembly *a, bough_arena *aren
     it->input = bough_arena_take(arena, n * sizeof *it->input);
     it->group = bough_arena_take(arena, n * sizeof *it->group);
     it->is_feedback = bough_arena_take(arena, n * sizeof *it->is_feedback);
-    it->prescribed = bough_arena_doubles(arena, n_node * n);
+    it->n_prescribed = n_node * n;
+    it->prescribed = bough_arena_doubles(arena, it->n_prescribed);
+    it->best = bough_arena_doubles(arena, it->n_prescribed);
     it->size = bough_arena_doubles(arena, n);
     it->scale = bough_arena_doubles(arena, n);
     it->guess = bough_arena_doubles(arena, n_node * n);
@@ -316,6 +323,16 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
                       c->t1, residual, sweeps, contraction, advice);
 }
 
+// The step with the values that left the smallest residual: the run tells what it errs by.
+static bough_status go_back(bough_coupling *c) {
+    bough_iteration *it = c->iteration;
+    bough_status status = bough_coupling_each(c, BOUGH_ALL_STAGES, restore);
+    memcpy(it->prescribed, it->best, it->n_prescribed * sizeof(double));
+    c->sweeps++;
+    c->unfinished++;
+    return bough_is_ok(&status) ? sweep(c) : status;
+}
+
 bough_status bough_iteration_step(bough_coupling *c) {
     bough_iteration *it = c->iteration;
     bough_coupling_begin(c);
@@ -325,6 +342,7 @@ bough_status bough_iteration_step(bough_coupling *c) {
     if (bough_is_ok(&status) && it->newton) {
         status = bough_interface_newton_update(it->newton, c, it->span);
     }
+    double best = HUGE_VAL;
     for (int k = 1; bough_is_ok(&status); k++) {
         status = sweep(c);
         c->sweeps++;
@@ -333,8 +351,13 @@ bough_status bough_iteration_step(bough_coupling *c) {
         double residual = evaluate(c);
         bool lost = k == 1 && !isfinite(residual); // before iterating: for the monitor to tell
         if (residual <= c->options.tolerance || lost) break;
+        if (residual < best) {
+            best = residual;
+            memcpy(it->best, it->prescribed, it->n_prescribed * sizeof(double));
+        }
         if (k == c->options.iterations || bough_accelerator_diverges(it->accelerator)) {
-            return not_converged(c, k, residual);
+            if (!c->measured || !(best < tolerable)) return not_converged(c, k, residual);
+            return go_back(c);
         }
         correct(c);
         status = bough_coupling_each(c, BOUGH_ALL_STAGES, restore);

@@ -20,6 +20,7 @@ struct bough_second_solution {
     double share;
     double *error;                 // (n_state)
     double *input_error, *input_worst; // (n_input) of what inputs should be given: now, largest
+    long compared;
     bool lost;
     char reason[BOUGH_SECOND_SOLUTION_REASON]; // of its loss
     double left; // steps that it may still take
@@ -84,6 +85,7 @@ static void give_up(bough_second_solution *s, double t, const char *why) {
 }
 
 static void compare(bough_second_solution *s, const bough_coupling *c) {
+    s->compared++;
     const bough_assembly *a = s->assembly;
     const double *state = whole_of(s)->state, *input;
     bough_assembly_states(a, s->error);
@@ -111,7 +113,8 @@ void bough_second_solution_stop_by(bough_second_solution *s, bool (*stop)(void))
 bool bough_second_solution_step(bough_second_solution *s, const bough_coupling *c) {
     if (s->lost) return true;
     const bough_member *whole = whole_of(s);
-    assert(whole->time == c->t0);
+    if (s->beside.coupling && c->t1 < s->beside.end(s->beside.self)) return true;
+    assert(s->beside.coupling || whole->time == c->t0);
     bough_status status = s->beside.coupling ? s->beside.step(s->beside.self)
                                              : bough_member_advance(&s->whole, c->t1, NULL, c->restart);
     if (!bough_is_ok(&status) && whole->stop && whole->stop()) return false;
@@ -124,6 +127,8 @@ bool bough_second_solution_step(bough_second_solution *s, const bough_coupling *
     }
     return true;
 }
+
+long bough_second_solution_compared(const bough_second_solution *s) { return s->compared; }
 
 const double *bough_second_solution_error(const bough_second_solution *s) {
     return s->lost ? NULL : s->error;
@@ -149,6 +154,7 @@ void bough_second_solution_snapshot(bough_second_solution *s, bough_snapshot *sn
     bough_snapshot_doubles(snapshot, s->error, a->n_state);
     bough_snapshot_doubles(snapshot, s->input_error, a->n_input);
     bough_snapshot_doubles(snapshot, s->input_worst, a->n_input);
+    bough_snapshot_take(snapshot, &s->compared, sizeof s->compared);
     bough_snapshot_take(snapshot, &s->lost, sizeof s->lost);
     bough_snapshot_take(snapshot, s->reason, sizeof s->reason);
     bough_snapshot_take(snapshot, &s->left, sizeof s->left);

@@ -22,7 +22,8 @@ typedef struct bough_second_solution bough_second_solution;
 typedef struct bough_second_model {
     void *self;
     const bough_coupling *coupling; // NULL: there is none
-    bough_status (*step)(void *self); // the macro step of the run
+    bough_status (*step)(void *self); // a whole macro step; a run under step control takes several meanwhile
+    double (*end)(void *self); // of that step [s]
     void (*stop_by)(void *self, bool (*stop)(void)); // see below
 } bough_second_model;
 
@@ -41,12 +42,15 @@ bough_status bough_second_solution_create(bough_arena *arena, const bough_coupli
                                           const bough_second_solution_def *def,
                                           bough_second_solution **second);
 
-// Advances the second solution over the last macro step of the run.
+// Advances the second solution over the last macro step of the run, or, under step control, when a whole one is over.
 // False: it was stopped on the way, and must not go on.
 bool bough_second_solution_step(bough_second_solution *s, const bough_coupling *c);
 
 // Asks stop() at each of its evaluations; NULL: never.
 void bough_second_solution_stop_by(bough_second_solution *s, bool (*stop)(void));
+
+// Number of comparisons with the run so far.
+long bough_second_solution_compared(const bough_second_solution *s);
 
 // Error of the run's states (n_state), in their units; NULL if the second solution has failed.
 const double *bough_second_solution_error(const bough_second_solution *s);

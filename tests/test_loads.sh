@@ -64,6 +64,10 @@ END
 study 0 '4 runs, 0 failed' sweep.yaml --out sweep
 head -n 1 sweep/cases.csv | grep -q '^case,aero.wind.speed,aero.air_density,outcome,RotSpeed min \[rpm\]' ||
     fail "head of cases.csv: $(head -n 1 sweep/cases.csv)"
+# What is told decides here, too.
+sed 's/duration: 3 s/duration: 1.5 s, simulation.error_bound: 1e-9/' sweep.yaml >beyond.yaml
+study 3 '4 of 4 runs failed' beyond.yaml --out beyond
+grep -q 'error bound 1e-09 is exceeded' log || fail "cases beyond their error bound: $(cat log)"
 # The statistics of a case are those of the same run alone.
 "$bough" run "$power" --set simulation.duration="3 s" --set aero.wind.speed=10 --set aero.air_density=1.225 \
     --set simulation.output.from="1 s" --threads 1 --out alone --quiet >log || fail "run alone: $(cat log)"

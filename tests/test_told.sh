@@ -55,6 +55,14 @@ bodies:
 END
 run 0 '^error: ' carrying.yaml
 
+# Linearised members tell a hundredth of errors like this one; where they are not measured, the second solution serves.
+run 0 '^error: .* by second solution' carrying.yaml --set simulation.error_estimate=linearised
+
+# A step whose repetitions end before they agree goes on, because the run tells what it errs by; else it stops.
+noisy='simulation.coupling={scheme: iterated, tolerance: 1e-12, iterations: 5}'
+run 0 'warning: .* of 20 macro steps went on before they had converged' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms'
+run 3 'not converged' carrying.yaml --set "$noisy" --set 'simulation.macro_step=5 ms' --set simulation.error_estimate=none
+
 # A reference tells nothing, and says so; a bound of 0 is none.
 run 0 '^error: not estimated' fall.yaml --set "$coupled" --set simulation.error_estimate=none
 grep -q '"relative": null' out/summary.json || fail 'an unknown error is null'

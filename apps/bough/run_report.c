@@ -71,6 +71,7 @@ static void write_method(bough_summary *s, const bough_run *run) {
     bough_summary_number(s, "theta", c->theta > 0 ? c->theta : none);
     bough_summary_number(s, "interface_ratio", c->interface_ratio);
     bough_summary_number(s, "sweeps_per_step", (double)c->sweeps / steps);
+    bough_summary_integer(s, "unfinished_steps", c->unfinished);
     bough_summary_number(s, "macro_step", m->macro_step);
     bough_summary_number(s, "master_rtol", sim->master.rtol);
     bough_summary_number(s, "micro_rtol", sim->micro.rtol);
@@ -323,6 +324,11 @@ static void tell_energy(const bough_run *run, FILE *stream) {
 }
 
 static void tell_warnings(const bough_run *run, FILE *stream) {
+    const bough_master *m = run->simulation->master;
+    if (m->coupling->unfinished > 0) {
+        fprintf(stream, "warning: %ld of %ld macro steps went on before they had converged; the error contains what this "
+                "changes\n", m->coupling->unfinished, m->steps);
+    }
     for (int k = 0; k < BOUGH_LIMITS; k++) {
         char text[LINE];
         if (!run->simulation->validity->limit[k].passed) continue;

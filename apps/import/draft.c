@@ -78,7 +78,7 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
             "  macro_step: %g s\n"
             "  coupling: {scheme: monolithic} # all bodies coupled at the stages of the steps\n"
             "  master: {solver: rosenbrock, step: %g ms, rtol: 4.5e-4}\n"
-            "  error_estimate: linearised # second-solution: surer, at three times the cost\n  threads: 2\n",
+            "  error_estimate: linearised # with a controller: second-solution, at three times the cost\n  threads: 2\n",
             -gravity, steps * step, step, 500 * step);
 }
 

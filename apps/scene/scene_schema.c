@@ -129,8 +129,8 @@ static const bough_key simulation_keys[] = {
     {KEY(CHOICE, error_estimate), .fallback = "auto",
      CHOICES("auto", "second-solution", "linearised", "none"),
      .help = "how the run estimates its error: by a second solution beside the run, or by the "
-             "linearised members driven by the coupling defects; auto: linearised where that is "
-             "known to be reliable"},
+             "linearised members driven by the coupling defects, where these are known to be reliable; "
+             "auto: likewise, but only for ramp from 600 states on"},
     {KEY(BOOLEAN, error_shares), .fallback = "false",
      .help = "also estimates the errors of mesh and air, by three more runs with short steps: as "
              "it is, with twice the segments of each rod, and with twice the aerodynamic sampling "

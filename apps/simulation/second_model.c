@@ -9,7 +9,7 @@ static bool loads_react(const bough_scene *scene) { return scene->aero.node || s
 static bool can_follow(const bough_simulation *s) {
     const bough_scene_control *control = &s->scene->control;
     bool library = control->node && control->kind == BOUGH_SCENE_BLADED;
-    return !library && !s->inputs && !s->master->control && !s->master->assembly->opaque;
+    return !library && !s->inputs && !s->master->assembly->opaque;
 }
 
 static int monolithic(void) {

@@ -101,6 +101,8 @@ static bough_status run_in(bough_arena *arena, void *self) {
     r->run.beside = true;
     r->run.stop = r->stop;
     bough_run_all(&r->run);
+    double bound = r->run.simulation->scene->simulation.error_bound;
+    if (bough_is_ok(&r->run.outcome)) r->run.outcome = bough_error_probe_judge(&r->run.probe, bound);
     bough_counts_finish(r->counts);
     result->time = r->run.simulation->master->time;
     result->counted = result->time - r->set->from;
