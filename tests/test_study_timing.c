@@ -1,5 +1,4 @@
-// Studies of kind timing: all cells in every turn, their errors, and a clock that changes no bit.
-#include "apps/simulation/build.h"
+// Studies of kind timing: all cells in every turn, and their errors.
 #include "apps/study/study_perform.h"
 #include "apps/study/study_timing.h"
 #include "tests/scratch.h"
@@ -46,43 +45,7 @@ static void every_turn_has_every_cell_and_errors_are_told(void **state) {
     assert_int_equal(count(csv, "\n"), 1 + 4 * 3);
     assert_int_equal(count(csv, ",1\n"), 2 * 3); // against itself
     assert_int_equal(count(table, "0.0e+00"), 2); // the reference's settings
-    assert_non_null(strstr(table, "rod steps"));
     free(csv), free(table);
-    bough_arena_destroy(arena);
-}
-
-static bough_simulation *build(bough_arena *arena) {
-    static const char *const sets[] = {"simulation.coupling.scheme=ramp", "simulation.duration=1 s"};
-    bough_errors errors = {.arena = arena};
-    bough_scene *scene;
-    bough_simulation *s;
-    bough_status status = bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/runup.yaml", sets,
-                                           2, &errors, &scene);
-    assert_int_equal(status.code, BOUGH_OK);
-    status = bough_simulation_build(arena, scene, &s);
-    assert_int_equal(status.code, BOUGH_OK);
-    return s;
-}
-
-static void clock_changes_no_bit_and_sees_all_parts(void **state) {
-    (void)state;
-    bough_arena *arena = bough_arena_create();
-    bough_simulation *plain = build(arena), *clocked = build(arena);
-    bough_clock *clock;
-    double seconds[BOUGH_CLOCK_PARTS];
-    bough_status status = bough_clock_create(arena, clocked, &clock);
-    assert_int_equal(status.code, BOUGH_OK);
-    for (int k = 0; k < 10; k++) {
-        bough_status one = bough_step(plain->master), other = bough_step(clocked->master);
-        assert_true(bough_is_ok(&one) && bough_is_ok(&other));
-    }
-    for (int k = 0; k < plain->n_rod; k++) {
-        const bough_member *rod = &plain->rod[k];
-        assert_memory_equal(rod->state, clocked->rod[k].state,
-                            (size_t)rod->system.n_state * sizeof(double));
-    }
-    bough_clock_read(clock, seconds);
-    for (int p = 0; p < BOUGH_CLOCK_RECORDING; p++) assert_true(seconds[p] > 0);
     bough_arena_destroy(arena);
 }
 
@@ -90,7 +53,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(every_turn_has_every_cell_and_errors_are_told, scratch_make,
                                         scratch_remove),
-        cmocka_unit_test(clock_changes_no_bit_and_sees_all_parts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

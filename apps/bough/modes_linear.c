@@ -11,7 +11,8 @@ typedef struct content {
     const bough_signal_name *list; // (rows)
 } content;
 
-static void write_matrix(FILE *file, const content *x) {
+static void write_matrix(const void *self, FILE *file) {
+    const content *x = self;
     long entries = 0, all = (long)x->rows * x->columns;
     for (long k = 0; k < all; k++) entries += x->matrix[k] != 0;
     fprintf(file, "%%%%MatrixMarket matrix coordinate real general\n%d %d %ld\n", x->rows, x->columns,
@@ -22,23 +23,11 @@ static void write_matrix(FILE *file, const content *x) {
     }
 }
 
-static void write_list(FILE *file, const content *x) {
+static void write_list(const void *self, FILE *file) {
+    const content *x = self;
     fputs("number,name,unit,value\n", file);
     for (int k = 0; k < x->rows; k++)
         fprintf(file, "%d,\"%s\",%s,%.12g\n", k + 1, x->list[k].name, x->list[k].unit, x->list[k].value);
-}
-
-static bough_status write_content(const char *folder, const content *x) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file = NULL;
-    bough_status status = bough_folder_open(folder, x->name, path, &file);
-    if (!bough_is_ok(&status)) return status;
-    if (x->matrix) {
-        write_matrix(file, x);
-    } else {
-        write_list(file, x);
-    }
-    return bough_folder_commit(path, file);
 }
 
 bough_status bough_modes_linear(bough_arena *arena, bough_simulation *s, double time, const char *folder) {
@@ -53,7 +42,10 @@ bough_status bough_modes_linear(bough_arena *arena, bough_simulation *s, double 
         {"inputs.csv", x.n_input, 1, NULL, x.input},
         {"outputs.csv", x.n_output, 1, NULL, x.output},
     };
-    for (int k = 0; k < 7 && bough_is_ok(&status); k++) status = write_content(folder, &contents[k]);
+    for (int k = 0; k < 7 && bough_is_ok(&status); k++) {
+        const content *c = &contents[k];
+        status = bough_folder_write(folder, c->name, c->matrix ? write_matrix : write_list, c);
+    }
     if (bough_is_ok(&status))
         printf("linear system: %d states, %d inputs, %d outputs\n", x.n, x.n_input, x.n_output);
     return status;

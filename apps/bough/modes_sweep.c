@@ -176,7 +176,9 @@ static bough_status solve_point(bough_arena *keep, const bough_options *options,
         }
         if (bough_is_ok(&status)) add_modes(sim, &v, point, before, now, s);
         s->speed[point] = fabs(v.spin) * 30 / BOUGH_PI;
-        s->x[point] = strtod(s->value[point], NULL);
+        char *end;
+        s->x[point] = strtod(s->value[point], &end);
+        if (end == s->value[point]) s->x[point] = point + 1;
     } else if (status.message[0]) {
         status = bough_fail(status.code, "%s=%s: %s", s->key[0], s->value[point], status.message);
     }
@@ -196,7 +198,8 @@ static void print_point(const bough_sweep *s, int point, int first) {
     }
 }
 
-static void write_table(const bough_sweep *s, FILE *file) {
+static void write_table(const void *self, FILE *file) {
+    const bough_sweep *s = self;
     fputs("point", file);
     for (int k = 0; k < s->n_key; k++) fprintf(file, ",%s", s->key[k]);
     fputs(",rotor speed (rpm),line,frequency (Hz),damped frequency (Hz),damping ratio (-),body,shape,"
@@ -210,16 +213,6 @@ static void write_table(const bough_sweep *s, FILE *file) {
         fprintf(file, ",%.10g,%d,%.10g,%.10g,%.10g,%s,%s,%s\n", s->speed[m->point], m->line + 1,
                 m->frequency, m->damped, m->damping, m->body, m->shape, m->pattern);
     }
-}
-
-static bough_status write_file(const char *folder, const char *name, const bough_sweep *s,
-                               void (*write)(const bough_sweep *, FILE *)) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file = NULL;
-    bough_status status = bough_folder_open(folder, name, path, &file);
-    if (!bough_is_ok(&status)) return status;
-    write(s, file);
-    return bough_folder_commit(path, file);
 }
 
 bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options) {
@@ -236,8 +229,8 @@ bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options)
         if (bough_is_ok(&status)) print_point(&s, i, first);
     }
     if (bough_is_ok(&status)) status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = write_file(folder, "campbell.csv", &s, write_table);
-    if (bough_is_ok(&status)) status = write_file(folder, "campbell.svg", &s, bough_modes_plot);
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "campbell.csv", write_table, &s);
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "campbell.svg", bough_modes_plot, &s);
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;
 }

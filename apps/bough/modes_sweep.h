@@ -18,7 +18,8 @@ typedef struct bough_sweep {
     int n_key, n_point;
     const char **key;      // (n_key)
     const char **value;    // (n_key × n_point) as written
-    double *x, *speed;     // (n_point) number of the first key's value; of the rotor [rpm]
+    double *x, *speed;     // (n_point) of the first key, else its place in the list;
+                           // of the rotor [rpm]
     int n_mode, n_line;
     bough_sweep_mode *mode; // (n_mode) point after point
 } bough_sweep;
@@ -26,7 +27,7 @@ typedef struct bough_sweep {
 // Solves every point and writes campbell.csv and campbell.svg.
 bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options);
 
-// The picture, modes_plot.c.
-void bough_modes_plot(const bough_sweep *sweep, FILE *svg);
+// The picture of a bough_sweep (modes_plot.c).
+void bough_modes_plot(const void *sweep, FILE *svg);
 
 #endif

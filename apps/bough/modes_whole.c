@@ -83,7 +83,15 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
 
 // -- files ----------------------------------------------------------------------------------------
 
-static void write_modes(FILE *file, const bough_simulation *s, const bough_vibration *v) {
+typedef struct solution {
+    const bough_simulation *simulation;
+    const bough_vibration *found;
+} solution;
+
+static void write_modes(const void *self, FILE *file) {
+    const solution *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_vibration *v = x->found;
     int n_body = s->scene->n_body;
     fputs("mode,frequency (Hz),damped frequency (Hz),damping ratio (-),body,shape,pattern,"
           "collective (-),forward (-),backward (-)", file);
@@ -99,7 +107,10 @@ static void write_modes(FILE *file, const bough_simulation *s, const bough_vibra
     }
 }
 
-static void write_shapes(FILE *file, const bough_simulation *s, const bough_vibration *v) {
+static void write_shapes(const void *self, FILE *file) {
+    const solution *x = self;
+    const bough_simulation *s = x->simulation;
+    const bough_vibration *v = x->found;
     fputs("body,mode,span (m),ux (m),uy (m),uz (m),rx (rad),ry (rad),rz (rad),imaginary ux (m),"
           "imaginary uy (m),imaginary uz (m),imaginary rx (rad),imaginary ry (rad),"
           "imaginary rz (rad)\n", file);
@@ -113,18 +124,6 @@ static void write_shapes(FILE *file, const bough_simulation *s, const bough_vibr
     }
 }
 
-static bough_status write_file(const char *folder, const char *name, const bough_simulation *s,
-                               const bough_vibration *v,
-                               void (*write)(FILE *, const bough_simulation *,
-                                             const bough_vibration *)) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file = NULL;
-    bough_status status = bough_folder_open(folder, name, path, &file);
-    if (!bough_is_ok(&status)) return status;
-    write(file, s, v);
-    return bough_folder_commit(path, file);
-}
-
 bough_status bough_modes_whole(bough_arena *arena, const bough_options *options,
                                bough_simulation *s) {
     bough_vibration v;
@@ -134,11 +133,12 @@ bough_status bough_modes_whole(bough_arena *arena, const bough_options *options,
     }
     bough_status status = bough_vibration_find(arena, s, s->scene->modes.count, &v);
     if (!bough_is_ok(&status)) return status;
+    const solution x = {s, &v};
     print_modes(s, &v);
     status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = write_file(folder, "modes.csv", s, &v, write_modes);
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "modes.csv", write_modes, &x);
     if (bough_is_ok(&status) && s->scene->modes.shapes) {
-        status = write_file(folder, "shapes.csv", s, &v, write_shapes);
+        status = bough_folder_write(folder, "shapes.csv", write_shapes, &x);
     }
     bool balanced = s->scene->modes.at == BOUGH_SCENE_IN_EQUILIBRIUM;
     if (bough_is_ok(&status) && s->scene->modes.linear) {

@@ -93,14 +93,7 @@ static bough_status open_texts(bough_draft *d) {
     return good ? bough_ok() : bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
 }
 
-static bough_status write_file(const char *folder, int kind, const char *text) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file;
-    bough_status status = bough_folder_open(folder, bough_import_name[kind], path, &file);
-    if (!bough_is_ok(&status)) return status;
-    fputs(text, file);
-    return bough_folder_commit(path, file);
-}
+static void put_text(const void *text, FILE *file) { fputs(text, file); }
 
 static bough_status write_box(const char *folder, const bough_wind_box *box) {
     char path[BOUGH_PATH_MAX];
@@ -115,7 +108,8 @@ static bough_status write_box(const char *folder, const bough_wind_box *box) {
 static bough_status write_files(const char *folder, const bough_draft *d) {
     bough_status status = bough_folder_make(folder);
     for (int i = 0; i < BOUGH_N_IMPORT_FILE && bough_is_ok(&status); i++) {
-        if (d->file_text[i][0]) status = write_file(folder, i, d->file_text[i]);
+        const char *text = d->file_text[i];
+        if (text[0]) status = bough_folder_write(folder, bough_import_name[i], put_text, text);
     }
     if (d->box && bough_is_ok(&status)) status = write_box(folder, d->box);
     return status;

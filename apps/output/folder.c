@@ -71,6 +71,16 @@ bough_status bough_folder_open(const char *folder, const char *name, char *path,
     return bough_is_ok(&status) ? bough_folder_open_partial(path, file) : status;
 }
 
+bough_status bough_folder_write(const char *folder, const char *name,
+                                void (*write)(const void *self, FILE *file), const void *self) {
+    char path[BOUGH_PATH_MAX];
+    FILE *file = NULL;
+    bough_status status = bough_folder_open(folder, name, path, &file);
+    if (!bough_is_ok(&status)) return status;
+    write(self, file);
+    return bough_folder_commit(path, file);
+}
+
 bough_status bough_folder_keep(const char *path, FILE *file, long *bytes) {
     errno = 0;
     bool good = !ferror(file) && fflush(file) == 0 && fsync(fileno(file)) == 0;

@@ -22,6 +22,10 @@ bough_status bough_folder_open_partial(const char *path, FILE **file);
 // The same for a file of the folder; its path goes to `path` (BOUGH_PATH_MAX).
 bough_status bough_folder_open(const char *folder, const char *name, char *path, FILE **file);
 
+// Writes a whole file of the folder: what `write` prints of `self`.
+bough_status bough_folder_write(const char *folder, const char *name,
+                                void (*write)(const void *self, FILE *file), const void *self);
+
 // What of a file is on the disk for good.
 typedef struct bough_kept {
     long count; // rows or frames

@@ -190,37 +190,34 @@ static bough_status read_all(bough_arena *arena, const work *w, bough_case_table
     return bough_ok();
 }
 
-static void print_table(const work *w, const bough_lifetime *l, const char *failures, FILE *f) {
-    const bough_load_set *s = w->set;
+// What the tables are made of.
+typedef struct conclusion {
+    const bough_load_set *set;
+    const char *folder;
+    const bough_lifetime *lifetime;
+    const bough_case_plot *plot;
+    char *failures; // a text
+} conclusion;
+
+static void print_table(const void *self, FILE *f) {
+    const conclusion *c = self;
+    const bough_load_set *s = c->set;
     fprintf(f, "%s\n", s->title ? s->title : s->file);
     if (s->sweep) {
         fprintf(f, "%d runs, %d failed; statistics of %d channels from %g s on in cases.csv\n",
-                s->n_case, l->n_failed, s->n_channel, s->from);
+                s->n_case, c->lifetime->n_failed, s->n_channel, s->from);
     } else {
-        bough_lifetime_print(l, f);
+        bough_lifetime_print(c->lifetime, f);
     }
-    fputs(failures, f);
+    fputs(c->failures, f);
 }
 
-static bough_status write_table(const work *w, const bough_lifetime *l, const char *failures) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file;
-    bough_status status = bough_folder_open(w->options->folder, "table.txt", path, &file);
+static bough_status write_all(const conclusion *c) {
+    bool sweep = c->set->sweep;
+    bough_status status = sweep ? bough_ok() : bough_lifetime_write(c->lifetime, c->folder);
+    if (bough_is_ok(&status)) status = bough_folder_write(c->folder, "table.txt", print_table, c);
     if (!bough_is_ok(&status)) return status;
-    print_table(w, l, failures, file);
-    return bough_folder_commit(path, file);
-}
-
-static bough_status write_all(const work *w, const bough_lifetime *l, const bough_case_plot *plot,
-                              const char *failures) {
-    const char *folder = w->options->folder;
-    bough_status status = w->set->sweep ? bough_ok() : bough_lifetime_write(l, folder);
-    if (bough_is_ok(&status)) status = write_table(w, l, failures);
-    if (bough_is_ok(&status)) {
-        status = w->set->sweep ? bough_case_plot_write(plot, folder)
-                               : bough_lifetime_plot(l, folder);
-    }
-    return status;
+    return sweep ? bough_case_plot_write(c->plot, c->folder) : bough_lifetime_plot(c->lifetime, c->folder);
 }
 
 static bough_status judge(const work *w, const bough_lifetime *l) {
@@ -238,19 +235,19 @@ static bough_status conclude_in(bough_arena *arena, const work *w) {
     bough_lifetime lifetime = bough_lifetime_take(arena, w->set);
     bough_case_plot plot = bough_case_plot_take(arena, w->set);
     bough_case_tables tables;
-    char *failures = NULL;
+    conclusion all = {w->set, w->options->folder, &lifetime, &plot, NULL};
     size_t size = 0;
-    FILE *stream = open_memstream(&failures, &size);
+    FILE *stream = open_memstream(&all.failures, &size);
     if (!stream) bough_arena_leave(arena);
     bough_status status = bough_case_tables_open(w->options->folder, w->set, &tables);
     if (bough_is_ok(&status)) status = read_all(arena, w, &tables, &plot, &lifetime, stream);
     bough_status end = bough_case_tables_close(&tables, bough_is_ok(&status));
     if (bough_is_ok(&status)) status = end;
     fclose(stream);
-    if (bough_is_ok(&status)) status = write_all(w, &lifetime, &plot, failures);
-    if (bough_is_ok(&status)) print_table(w, &lifetime, failures, w->options->stream);
+    if (bough_is_ok(&status)) status = write_all(&all);
+    if (bough_is_ok(&status)) print_table(&all, w->options->stream);
     if (bough_is_ok(&status)) status = judge(w, &lifetime);
-    free(failures);
+    free(all.failures);
     return status;
 }
 

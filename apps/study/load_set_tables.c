@@ -100,7 +100,8 @@ bough_status bough_case_tables_close(bough_case_tables *t, bool keep) {
 
 // -- lifetime -------------------------------------------------------------------------------------
 
-static void put_equivalent(const bough_lifetime *l, FILE *f) {
+static void put_equivalent(const void *self, FILE *f) {
+    const bough_lifetime *l = self;
     const bough_load_set *s = l->set;
     fputs("channel,unit", f);
     for (int k = 0; k < s->n_slope; k++) fprintf(f, ",DEL(m=%g; %g cycles)", s->slope[k], s->cycles);
@@ -128,7 +129,8 @@ static void put_extreme(const bough_lifetime *l, int i, const char *what, const 
     fputc('\n', f);
 }
 
-static void put_extremes(const bough_lifetime *l, FILE *f) {
+static void put_extremes(const void *self, FILE *f) {
+    const bough_lifetime *l = self;
     const bough_load_set *s = l->set;
     fputs("channel,unit,extreme,value,factor,case,load case,settings,time [s]", f);
     for (int k = 0; k < s->n_channel; k++) fprintf(f, ",%s [%s]", s->channel[k], s->unit[k]);
@@ -139,7 +141,8 @@ static void put_extremes(const bough_lifetime *l, FILE *f) {
     }
 }
 
-static void put_ranges(const bough_lifetime *l, FILE *f) {
+static void put_ranges(const void *self, FILE *f) {
+    const bough_lifetime *l = self;
     fputs("channel,unit,range from,range to,cycles in the lifetime\n", f);
     for (int i = 0; i < l->set->n_channel; i++) {
         const bough_levels *r = &l->channel[i].ranges;
@@ -151,7 +154,8 @@ static void put_ranges(const bough_lifetime *l, FILE *f) {
     }
 }
 
-static void put_levels(const bough_lifetime *l, FILE *f) {
+static void put_levels(const void *self, FILE *f) {
+    const bough_lifetime *l = self;
     fputs("channel,unit,from,to,hours in the lifetime,upward crossings of from\n", f);
     for (int i = 0; i < l->set->n_channel; i++) {
         const bough_levels *r = &l->channel[i].levels;
@@ -165,23 +169,10 @@ static void put_levels(const bough_lifetime *l, FILE *f) {
 }
 
 bough_status bough_lifetime_write(const bough_lifetime *l, const char *folder) {
-    static const struct {
-        const char *name;
-        void (*put)(const bough_lifetime *, FILE *);
-    } tables[] = {{"equivalent.csv", put_equivalent},
-                  {"extremes.csv", put_extremes},
-                  {"ranges.csv", put_ranges},
-                  {"levels.csv", put_levels}};
-    for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
-        char path[BOUGH_PATH_MAX];
-        FILE *file;
-        bough_status status = bough_folder_open(folder, tables[i].name, path, &file);
-        if (!bough_is_ok(&status)) return status;
-        tables[i].put(l, file);
-        status = bough_folder_commit(path, file);
-        if (!bough_is_ok(&status)) return status;
-    }
-    return bough_ok();
+    bough_status status = bough_folder_write(folder, "equivalent.csv", put_equivalent, l);
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "extremes.csv", put_extremes, l);
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "ranges.csv", put_ranges, l);
+    return bough_is_ok(&status) ? bough_folder_write(folder, "levels.csv", put_levels, l) : status;
 }
 
 // -- for people -----------------------------------------------------------------------------------

@@ -10,17 +10,6 @@
 // Of the picture [px].
 enum { LEFT = 12, TOP = 84, ROW = 20, PER_CHARACTER = 7, GAP = 10 };
 
-static void put_text(FILE *svg, const char *text) {
-    for (; *text; text++) {
-        switch (*text) {
-        case '&': fputs("&amp;", svg); break;
-        case '<': fputs("&lt;", svg); break;
-        case '>': fputs("&gt;", svg); break;
-        default: fputc(*text, svg);
-        }
-    }
-}
-
 static int longest_row(const bough_map *m) {
     size_t longest = 0;
     for (int i = 0; i < m->n_row; i++) {
@@ -49,7 +38,7 @@ static void draw_cell(FILE *svg, const bough_map *m, const bough_map_cell *c, do
     if (c->kind == BOUGH_MAP_EMPTY) return;
     bool dark = c->kind == BOUGH_MAP_STOPPED || c->shade > 0.5;
     fprintf(svg, "<g><title>");
-    put_text(svg, c->hint ? c->hint : c->text);
+    bough_picture_text(svg, c->hint ? c->hint : c->text);
     fprintf(svg, "</title><rect x=\"%.1f\" y=\"%.1f\" width=\"%d\" height=\"%d\" fill=\"", x, y,
             m->column_width, ROW);
     put_colour(svg, c);
@@ -57,7 +46,7 @@ static void draw_cell(FILE *svg, const bough_map *m, const bough_map_cell *c, do
     if (PER_CHARACTER * (int)strlen(c->text) <= m->column_width + 4) {
         fprintf(svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\" font-size=\"10\"%s>",
                 x + 0.5 * m->column_width, y + 14, dark ? " fill=\"#fff\"" : " fill=\"#222\"");
-        put_text(svg, c->text);
+        bough_picture_text(svg, c->text);
         fputs("</text>", svg);
     }
     fputs("</g>\n", svg);
@@ -71,33 +60,30 @@ static void draw_columns(FILE *svg, const bough_map *m, int left) {
     }
     int every = (int)ceil((double)(PER_CHARACTER * (longest + 1)) / m->column_width);
     fprintf(svg, "<text x=\"%d\" y=\"%d\">", left, TOP - 22);
-    put_text(svg, m->across);
+    bough_picture_text(svg, m->across);
     fputs("</text>\n", svg);
     for (int k = 0; k < m->n_column; k += every) {
         fprintf(svg, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">",
                 left + (k + 0.5) * m->column_width, TOP - 6);
-        put_text(svg, m->column[k]);
+        bough_picture_text(svg, m->column[k]);
         fputs("</text>\n", svg);
     }
 }
 
-static void draw(FILE *svg, const bough_map *m) {
+static void draw(const void *self, FILE *svg) {
+    const bough_map *m = self;
     int left = longest_row(m), width = left + m->n_column * m->column_width + 2 * LEFT;
     int height = height_of(m), y = TOP;
-    fprintf(svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
-            "viewBox=\"0 0 %d %d\" font-family=\"sans-serif\" font-size=\"12\">\n" BOUGH_PICTURE_STYLE
-            "<text x=\"%d\" y=\"22\" font-size=\"15\" font-weight=\"bold\">",
-            width, height, width, height, LEFT);
-    put_text(svg, m->title);
-    fprintf(svg, "</text>\n<text x=\"%d\" y=\"42\" class=\"weak\">", LEFT);
-    put_text(svg, m->legend);
+    bough_picture_begin(svg, width, height);
+    bough_picture_title(svg, LEFT, m->title);
+    fprintf(svg, "<text x=\"%d\" y=\"42\" class=\"weak\">", LEFT);
+    bough_picture_text(svg, m->legend);
     fputs("</text>\n", svg);
     draw_columns(svg, m, left);
     for (int i = 0; i < m->n_row; y += m->row[i++] ? ROW : GAP) {
         if (!m->row[i]) continue;
         fprintf(svg, "<text x=\"%d\" y=\"%d\">", LEFT, y + 14);
-        put_text(svg, m->row[i]);
+        bough_picture_text(svg, m->row[i]);
         fputs("</text>\n", svg);
         for (int k = 0; k < m->n_column; k++) {
             draw_cell(svg, m, &m->cell[i * m->n_column + k], left + k * m->column_width, y);
@@ -107,10 +93,5 @@ static void draw(FILE *svg, const bough_map *m) {
 }
 
 bough_status bough_map_write(const bough_map *map, const char *folder, const char *name) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file = NULL;
-    bough_status status = bough_folder_open(folder, name, path, &file);
-    if (!bough_is_ok(&status)) return status;
-    draw(file, map);
-    return bough_folder_commit(path, file);
+    return bough_folder_write(folder, name, draw, map);
 }

@@ -25,5 +25,4 @@ typedef struct bough_map {
 // Writes folder/name.
 bough_status bough_map_write(const bough_map *map, const char *folder, const char *name);
 
-
 #endif

@@ -7,9 +7,6 @@
 #include "apps/study/study_store.h"
 #include "apps/study/study_timing.h"
 
-#include <errno.h>
-#include <string.h>
-
 // -- work-precision -------------------------------------------------------------------------------
 
 typedef struct work {
@@ -30,16 +27,9 @@ static int count_missing(const work *w) {
 
 // Tables of an earlier state must not stand beside new cells.
 static bough_status remove_results(const char *folder) {
-    static const char *const names[] = {"table.txt", "table.csv", "plot.svg"};
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
-        char path[BOUGH_PATH_MAX];
-        bough_status status = bough_folder_path(folder, names[i], path);
-        if (!bough_is_ok(&status)) return status;
-        if (remove(path) != 0 && errno != ENOENT) {
-            return bough_fail(BOUGH_IO, "cannot replace '%.200s': %s", path, strerror(errno));
-        }
-    }
-    return bough_ok();
+    bough_status status = bough_folder_remove(folder, "table.txt");
+    if (bough_is_ok(&status)) status = bough_folder_remove(folder, "table.csv");
+    return bough_is_ok(&status) ? bough_folder_remove(folder, "plot.svg") : status;
 }
 
 static bough_status start(bough_arena *arena, work *w) {

@@ -21,23 +21,10 @@ enum {
     PER_ROW = 2,
 };
 
-// The palette of Okabe and Ito, told apart by colour-blind readers, without yellow, which is too pale on
-// white, and with grey in place of black, which is none on dark pages.
-static const char *const colours[] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                      "#E69F00", "#56B4E9", "#7A7A7A"};
-enum { N_COLOUR = sizeof colours / sizeof *colours, N_SHAPE = 4 };
-
-// An axis from `low` to `high`, logarithms to base 10, drawn from pixel `from` to `to`.
-typedef struct scale {
-    double low, high;
-    double from, to;
-} scale;
-
 typedef struct panel {
     const bough_study_results *results;
     int measure;
-    scale x, y;
-    FILE *svg;
+    bough_panel at;
 } panel;
 
 // -- data -----------------------------------------------------------------------------------------
@@ -53,122 +40,31 @@ static bool has_point(const bough_study_result *r, int measure) {
     return r->done && bough_is_ok(&r->outcome) && r->error[measure] > 0 && cost(r) > 0;
 }
 
-static void include(scale *s, double value) {
-    s->low = fmin(s->low, log10(value));
-    s->high = fmax(s->high, log10(value));
-}
-
-// A margin, and at least a factor of ten.
-static void widen(scale *s) {
-    if (s->low > s->high) s->low = s->high = 0;
-    double margin = fmax(0.08 * (s->high - s->low), 0.5 * (1 - (s->high - s->low)));
-    s->low -= margin;
-    s->high += margin;
-}
-
 static void find_ranges(panel *p) {
-    p->x.low = p->y.low = HUGE_VAL;
-    p->x.high = p->y.high = -HUGE_VAL;
+    bough_axis *x = &p->at.x, *y = &p->at.y;
     for (int i = 0; i < p->results->study->n_cell; i++) {
         const bough_study_result *r = &p->results->result[i];
         if (!has_point(r, p->measure)) continue;
-        include(&p->x, r->error[p->measure]);
-        include(&p->y, cost(r));
+        bough_axis_include(x, r->error[p->measure]);
+        bough_axis_include(y, cost(r));
     }
-    widen(&p->x);
-    widen(&p->y);
-}
-
-static double place(const scale *s, double value) {
-    return s->from + (s->to - s->from) * (log10(value) - s->low) / (s->high - s->low);
-}
-
-// -- text -----------------------------------------------------------------------------------------
-
-// Characters of a text in UTF-8.
-static int letters(const char *text) {
-    int n = 0;
-    for (; *text; text++) n += (*text & 0xC0) != 0x80;
-    return n;
-}
-
-static void put_text(FILE *svg, const char *text) {
-    for (; *text; text++) {
-        switch (*text) {
-        case '&': fputs("&amp;", svg); break;
-        case '<': fputs("&lt;", svg); break;
-        case '>': fputs("&gt;", svg); break;
-        default: fputc(*text, svg);
-        }
-    }
-}
-
-// Plain near 1, a power of ten elsewhere.
-static void put_tick_label(FILE *svg, int factor, int decade) {
-    if (decade >= -2 && decade <= 2) {
-        fprintf(svg, "%.*f", decade < 0 ? -decade : 0, factor * pow(10, decade));
-        return;
-    }
-    if (factor > 1) fprintf(svg, "%d·", factor);
-    fprintf(svg, "10<tspan dy=\"-5\" font-size=\"9\">%s%d</tspan>", decade < 0 ? "−" : "",
-            decade < 0 ? -decade : decade);
-}
-
-// -- axes -----------------------------------------------------------------------------------------
-
-static void draw_tick_x(const panel *p, double at, int factor, int decade) {
-    fprintf(p->svg, "<path class=\"grid\" d=\"M%.1f %.1fV%.1f\"/>\n", at, p->y.from, p->y.to);
-    fprintf(p->svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">", at, p->y.from + 17);
-    put_tick_label(p->svg, factor, decade);
-    fputs("</text>\n", p->svg);
-}
-
-static void draw_tick_y(const panel *p, double at, int factor, int decade) {
-    fprintf(p->svg, "<path class=\"grid\" d=\"M%.1f %.1fH%.1f\"/>\n", p->x.from, at, p->x.to);
-    fprintf(p->svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"end\">", p->x.from - 6, at + 4);
-    put_tick_label(p->svg, factor, decade);
-    fputs("</text>\n", p->svg);
-}
-
-// Every decade is labelled; on a short axis also its double and fivefold.
-static void draw_ticks(const panel *p, const scale *s,
-                       void (*draw)(const panel *, double, int, int)) {
-    static const int factors[] = {1, 2, 5};
-    int n = s->high - s->low < 2 ? 3 : 1;
-    for (int decade = (int)floor(s->low); decade <= (int)ceil(s->high); decade++) {
-        for (int i = 0; i < n; i++) {
-            double value = factors[i] * pow(10, decade);
-            if (log10(value) < s->low || log10(value) > s->high) continue;
-            draw(p, place(s, value), factors[i], decade);
-        }
-    }
+    bough_axis_widen(x, 0.08);
+    bough_axis_widen(y, 0.08);
 }
 
 static void draw_axes(const panel *p) {
     const bough_study_measure *m = &p->results->study->measure[p->measure];
-    draw_ticks(p, &p->x, draw_tick_x);
-    draw_ticks(p, &p->y, draw_tick_y);
-    fprintf(p->svg, "<path class=\"axis\" d=\"M%.1f %.1fV%.1fH%.1f\"/>\n", p->x.from, p->y.to,
-            p->y.from, p->x.to);
-    fprintf(p->svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">largest difference: ",
-            0.5 * (p->x.from + p->x.to), p->y.from + 40);
-    put_text(p->svg, m->name);
-    fputs(" [", p->svg);
-    put_text(p->svg, m->unit);
-    fputs("]</text>\n", p->svg);
-    double x = p->x.from - 52, y = 0.5 * (p->y.from + p->y.to);
-    fprintf(p->svg,
-            "<text transform=\"translate(%.1f %.1f) rotate(-90)\" text-anchor=\"middle\">"
-            "CPU time per simulated second [s]</text>\n",
-            x, y);
+    char across[200];
+    snprintf(across, sizeof across, "largest difference: %.120s [%.40s]", m->name, m->unit);
+    bough_panel_axes(&p->at, "CPU time per simulated second [s]", across);
 }
 
 // -- lines ----------------------------------------------------------------------------------------
 
 // Shapes differ as well as colours.
 static void draw_marker(FILE *svg, double x, double y, int line) {
-    fprintf(svg, "<path fill=\"%s\" d=\"", colours[line % N_COLOUR]);
-    switch (line % N_SHAPE) {
+    fprintf(svg, "<path fill=\"%s\" d=\"", bough_picture_colour(line));
+    switch (line % 4) {
     case 0: fprintf(svg, "M%.1f %.1fa4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0", x - 4.5, y); break;
     case 1: fprintf(svg, "M%.1f %.1fh8v8h-8z", x - 4, y - 4); break;
     case 2: fprintf(svg, "M%.1f %.1fl5.5 9.5h-11z", x, y - 6); break;
@@ -178,14 +74,15 @@ static void draw_marker(FILE *svg, double x, double y, int line) {
 }
 
 static void draw_polyline(const panel *p, int line, int first, int n) {
-    fprintf(p->svg, "<polyline fill=\"none\" stroke-width=\"1.6\" stroke=\"%s\" points=\"",
-            colours[line % N_COLOUR]);
+    fprintf(p->at.svg, "<polyline fill=\"none\" stroke-width=\"1.6\" stroke=\"%s\" points=\"",
+            bough_picture_colour(line));
     for (int i = first; i < first + n; i++) {
         const bough_study_result *r = &p->results->result[i];
         if (!has_point(r, p->measure)) continue;
-        fprintf(p->svg, "%.1f,%.1f ", place(&p->x, r->error[p->measure]), place(&p->y, cost(r)));
+        fprintf(p->at.svg, "%.1f,%.1f ", bough_axis_place(&p->at.x, r->error[p->measure]),
+                bough_axis_place(&p->at.y, cost(r)));
     }
-    fputs("\"/>\n", p->svg);
+    fputs("\"/>\n", p->at.svg);
 }
 
 static void draw_points(const panel *p, int line, int first, int n) {
@@ -193,14 +90,15 @@ static void draw_points(const panel *p, int line, int first, int n) {
     for (int i = first; i < first + n; i++) {
         const bough_study_result *r = &p->results->result[i];
         if (!has_point(r, p->measure)) continue;
-        double x = place(&p->x, r->error[p->measure]), y = place(&p->y, cost(r));
+        double x = bough_axis_place(&p->at.x, r->error[p->measure]);
+        double y = bough_axis_place(&p->at.y, cost(r));
         const char *value = bough_study_value(s, &s->cell[i], s->grid.n - 1);
-        bool before = x + 7 + letters(value) * LETTER > p->x.to + RIGHT; // no room behind the point
-        draw_marker(p->svg, x, y, line);
-        fprintf(p->svg, "<text class=\"weak\" font-size=\"10\" x=\"%.1f\" y=\"%.1f\"%s>",
+        bool before = x + 7 + bough_picture_letters(value) * LETTER > p->at.x.to + RIGHT; // no room
+        draw_marker(p->at.svg, x, y, line);
+        fprintf(p->at.svg, "<text class=\"weak\" font-size=\"10\" x=\"%.1f\" y=\"%.1f\"%s>",
                 before ? x - 7 : x + 7, y - 5, before ? " text-anchor=\"end\"" : "");
-        put_text(p->svg, value);
-        fputs("</text>\n", p->svg);
+        bough_picture_text(p->at.svg, value);
+        fputs("</text>\n", p->at.svg);
     }
 }
 
@@ -223,9 +121,9 @@ static void put_line_name(FILE *svg, const bough_study *s, int line) {
     for (int i = 0; i + 1 < s->grid.n; i++) {
         if (s->grid.axis[i].value.n < 2) continue;
         if (said++) fputs(", ", svg);
-        put_text(svg, bough_study_value(s, cell, i));
+        bough_picture_text(svg, bough_study_value(s, cell, i));
     }
-    if (!said) put_text(svg, s->grid.axis[s->grid.n - 1].label);
+    if (!said) bough_picture_text(svg, s->grid.axis[s->grid.n - 1].label);
 }
 
 // Runs of the line that have no point, and why.
@@ -238,16 +136,16 @@ static void put_missing(FILE *svg, const bough_study_results *results, int line)
         char status[40];
         bough_study_status(r, status);
         fputs(said++ ? "; " : " — ", svg);
-        put_text(svg, bough_study_value(s, &s->cell[i], s->grid.n - 1));
+        bough_picture_text(svg, bough_study_value(s, &s->cell[i], s->grid.n - 1));
         fputc(' ', svg);
-        put_text(svg, strcmp(status, "ok") == 0 ? "equals the reference" : status);
+        bough_picture_text(svg, strcmp(status, "ok") == 0 ? "equals the reference" : status);
     }
 }
 
 static void draw_legend(FILE *svg, const bough_study_results *results, double y) {
     for (int line = 0; line < count_lines(results->study); line++, y += LEGEND_LINE) {
         fprintf(svg, "<path stroke=\"%s\" stroke-width=\"1.6\" d=\"M%d %.1fh28\"/>\n",
-                colours[line % N_COLOUR], LEFT, y);
+                bough_picture_colour(line), LEFT, y);
         draw_marker(svg, LEFT + 14, y, line);
         fprintf(svg, "<text x=\"%d\" y=\"%.1f\">", LEFT + 36, y + 4);
         put_line_name(svg, results->study, line);
@@ -260,20 +158,10 @@ static void draw_legend(FILE *svg, const bough_study_results *results, double y)
 
 static const char *title_of(const bough_study *s) { return s->title ? s->title : s->file; }
 
-static void begin(FILE *svg, const bough_study *s, int width, int height) {
-    fprintf(svg,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
-            "viewBox=\"0 0 %d %d\" font-family=\"sans-serif\" font-size=\"12\">\n" BOUGH_PICTURE_STYLE,
-            width, height, width, height);
-    fprintf(svg, "<text x=\"%d\" y=\"22\" font-size=\"15\" font-weight=\"bold\">", LEFT);
-    put_text(svg, title_of(s));
-    fputs("</text>\n", svg);
-}
-
 // That of the panels side by side, or more where the title or a line of the legend needs it.
 static int width_of(const bough_study_results *results, int n_column) {
     const bough_study *s = results->study;
-    int title = LEFT + letters(title_of(s)) * LETTER * 4 / 3 + RIGHT;
+    int title = LEFT + bough_picture_letters(title_of(s)) * LETTER * 4 / 3 + RIGHT;
     int width = n_column * PANEL_WIDTH > title ? n_column * PANEL_WIDTH : title;
     for (int i = 0; i < count_lines(s); i++) {
         char *text = NULL;
@@ -283,27 +171,28 @@ static int width_of(const bough_study_results *results, int n_column) {
         put_line_name(line, s, i);
         put_missing(line, results, i);
         fclose(line);
-        int needed = text ? LEFT + 36 + letters(text) * LETTER + RIGHT : 0;
+        int needed = text ? LEFT + 36 + bough_picture_letters(text) * LETTER + RIGHT : 0;
         free(text);
         if (needed > width) width = needed;
     }
     return width;
 }
 
-static void draw(FILE *svg, const bough_study_results *results) {
+static void draw(const void *self, FILE *svg) {
+    const bough_study_results *results = self;
     const bough_study *s = results->study;
     int n_column = s->n_measure < PER_ROW ? s->n_measure : PER_ROW;
     int n_row = (s->n_measure + PER_ROW - 1) / PER_ROW;
     int panels_end = TITLE_HEIGHT + n_row * PANEL_HEIGHT;
     int height = panels_end + (count_lines(s) + 1) * LEGEND_LINE;
-    begin(svg, s, width_of(results, n_column), height);
+    bough_picture_begin(svg, width_of(results, n_column), height);
+    bough_picture_title(svg, LEFT, title_of(s));
     for (int i = 0; i < s->n_measure; i++) {
         int x = i % PER_ROW * PANEL_WIDTH, y = TITLE_HEIGHT + i / PER_ROW * PANEL_HEIGHT;
-        panel p = {.results = results,
-                   .measure = i,
-                   .x = {.from = x + LEFT, .to = x + PANEL_WIDTH - RIGHT},
-                   .y = {.from = y + PANEL_HEIGHT - BOTTOM, .to = y + TOP},
-                   .svg = svg};
+        bough_panel at = {
+            svg, bough_axis_between(x + LEFT, x + PANEL_WIDTH - RIGHT, true),
+            bough_axis_between(y + PANEL_HEIGHT - BOTTOM, y + TOP, true)};
+        panel p = {results, i, at};
         draw_panel(&p);
     }
     draw_legend(svg, results, panels_end + 0.5 * LEGEND_LINE);
@@ -311,10 +200,5 @@ static void draw(FILE *svg, const bough_study_results *results) {
 }
 
 bough_status bough_study_plot(const bough_study_results *results, const char *folder) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file = NULL;
-    bough_status status = bough_folder_open(folder, "plot.svg", path, &file);
-    if (!bough_is_ok(&status)) return status;
-    draw(file, results);
-    return bough_folder_commit(path, file);
+    return bough_folder_write(folder, "plot.svg", draw, results);
 }

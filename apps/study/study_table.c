@@ -224,7 +224,8 @@ static void write_csv_row(const bough_study_results *results, int row, FILE *f) 
     fputc('\n', f);
 }
 
-static void write_csv(const bough_study_results *results, FILE *f) {
+static void write_csv(const void *self, FILE *f) {
+    const bough_study_results *results = self;
     write_csv_head(results->study, f);
     for (int row = -1; row < results->study->n_cell; row++)
         write_csv_row(results, row, f);
@@ -232,19 +233,9 @@ static void write_csv(const bough_study_results *results, FILE *f) {
 
 // -- files ----------------------------------------------------------------------------------------
 
-static bough_status write_file(const bough_study_results *results, const char *folder,
-                               const char *name,
-                               void (*write)(const bough_study_results *, FILE *)) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file = NULL;
-    bough_status status = bough_folder_open(folder, name, path, &file);
-    if (!bough_is_ok(&status)) return status;
-    write(results, file);
-    return bough_folder_commit(path, file);
-}
+static void write_text(const void *self, FILE *f) { bough_study_print(self, f); }
 
 bough_status bough_study_write_tables(const bough_study_results *results, const char *folder) {
-    bough_status status = write_file(results, folder, "table.txt", bough_study_print);
-    if (bough_is_ok(&status)) status = write_file(results, folder, "table.csv", write_csv);
-    return status;
+    bough_status status = bough_folder_write(folder, "table.txt", write_text, results);
+    return bough_is_ok(&status) ? bough_folder_write(folder, "table.csv", write_csv, results) : status;
 }

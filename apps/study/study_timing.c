@@ -17,7 +17,6 @@ typedef struct spread {
 typedef struct cell_times {
     double wall[MAX_REPEAT], cpu[MAX_REPEAT], ratio[MAX_REPEAT]; // per turn
     double build;               // of the first turn [s]
-    bough_timing_run clocked;   // behind the clock
     bough_study_result result;  // errors against the reference
 } cell_times;
 
@@ -74,7 +73,7 @@ static bough_status take_turn(timing *t, int turn) {
     for (int i = 0; i < t->study->n_cell; i++) {
         bough_timing_run run;
         bough_status status =
-            bough_timing_run_cell(t->study, &t->study->cell[i], t->options, false, &run);
+            bough_timing_run_cell(t->study, &t->study->cell[i], t->options, &run);
         if (!bough_is_ok(&status)) return status;
         t->cell[i].wall[turn] = run.wall;
         t->cell[i].cpu[turn] = run.cpu;
@@ -91,17 +90,14 @@ static bough_status run_all(timing *t) {
     bough_status status = find_errors(t);
     for (int turn = 0; turn < t->study->repeat && bough_is_ok(&status); turn++)
         status = take_turn(t, turn);
-    for (int i = 0; i < t->study->n_cell && bough_is_ok(&status); i++) {
-        status = bough_timing_run_cell(t->study, &t->study->cell[i], t->options, true,
-                                       &t->cell[i].clocked);
-    }
     bough_progress_clear(&t->drive.progress);
     return status;
 }
 
 // -- tables ---------------------------------------------------------------------------------------
 
-static void print_times(const timing *t, FILE *f) {
+static void print_times(const void *self, FILE *f) {
+    const timing *t = self;
     const bough_study *s = t->study;
     fprintf(f, "%s\n%d turns: medians, quartiles in brackets; ratio: wall time of the first %s to the "
             "cell's\n\n", s->title ? s->title : s->file, s->repeat,
@@ -127,29 +123,8 @@ static void print_times(const timing *t, FILE *f) {
     }
 }
 
-// Shares of the wall time: parts that run side by side come to more than 100 together. The rest is
-// what the coupling itself does, and waiting.
-static void print_shares(const timing *t, FILE *f) {
-    const bough_study *s = t->study;
-    fprintf(f, "\nshares of the wall time behind the clock, summed over the threads, in percent\n%-52s", "");
-    for (int p = 0; p < BOUGH_CLOCK_PARTS; p++) {
-        fprintf(f, " %11s", bough_clock_name((bough_clock_part)p));
-    }
-    fprintf(f, " %11s\n", "rest");
-    for (int i = 0; i < s->n_cell; i++) {
-        const bough_timing_run *run = &t->cell[i].clocked;
-        double all = run->wall, rest = all;
-        fprintf(f, "%-52s", s->cell[i].settings);
-        for (int p = 0; p < BOUGH_CLOCK_PARTS; p++) {
-            fprintf(f, " %11.1f", 100 * run->part[p] / all);
-            rest -= run->part[p];
-        }
-        if (rest >= 0) fprintf(f, " %11.1f", 100 * rest / all);
-        fprintf(f, "\n");
-    }
-}
-
-static void write_csv(const timing *t, FILE *f) {
+static void write_csv(const void *self, FILE *f) {
+    const timing *t = self;
     const bough_study *s = t->study;
     fprintf(f, "settings,turn,cpu (s),wall (s),ratio\n");
     for (int i = 0; i < s->n_cell; i++) {
@@ -159,25 +134,6 @@ static void write_csv(const timing *t, FILE *f) {
                     t->cell[i].ratio[k]);
         }
     }
-}
-
-static bough_status write_tables(const timing *t) {
-    static const char *const names[] = {"timing.csv", "table.txt"};
-    bough_status status = bough_ok();
-    for (int i = 0; i < 2 && bough_is_ok(&status); i++) {
-        char path[BOUGH_PATH_MAX];
-        FILE *f = NULL;
-        status = bough_folder_open(t->options->folder, names[i], path, &f);
-        if (!bough_is_ok(&status)) break;
-        if (i == 0) {
-            write_csv(t, f);
-        } else {
-            print_times(t, f);
-            print_shares(t, f);
-        }
-        status = bough_folder_commit(path, f);
-    }
-    return status;
 }
 
 bough_status bough_timing_perform(bough_arena *arena, const bough_study *study,
@@ -190,9 +146,8 @@ bough_status bough_timing_perform(bough_arena *arena, const bough_study *study,
     t.drive.progress = bough_progress_start(0, study->duration, options->quiet);
     bough_status status = bough_folder_make(options->folder);
     if (bough_is_ok(&status)) status = run_all(&t);
-    if (bough_is_ok(&status)) status = write_tables(&t);
-    if (!bough_is_ok(&status)) return status;
-    print_times(&t, options->stream);
-    print_shares(&t, options->stream);
+    if (bough_is_ok(&status)) status = bough_folder_write(options->folder, "timing.csv", write_csv, &t);
+    if (bough_is_ok(&status)) status = bough_folder_write(options->folder, "table.txt", print_times, &t);
+    if (bough_is_ok(&status)) print_times(&t, options->stream);
     return status;
 }

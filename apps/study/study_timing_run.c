@@ -10,20 +10,13 @@ typedef struct timed {
     const bough_study *study;
     const bough_study_cell *cell;
     const bough_study_options *options;
-    bool parts; // a clock is asked for
     bough_timing_run *result;
     bough_run run;
     bough_recorder *recorder;
-    bough_clock *clock; // NULL unless asked for
-    double recording;   // [s]
 } timed;
 
 static bough_status record(void *self, double time) {
-    timed *t = self;
-    double began = t->clock ? bough_wall_clock() : 0;
-    bough_status status = bough_recorder_sample(t->recorder, time);
-    if (t->clock) t->recording += bough_wall_clock() - began;
-    return status;
+    return bough_recorder_sample(((timed *)self)->recorder, time);
 }
 
 static bough_status build(bough_arena *arena, timed *t) {
@@ -46,9 +39,6 @@ static bough_status run_in(bough_arena *arena, void *self) {
     double began = bough_wall_clock();
     bough_status status = build(arena, t);
     run->build = bough_wall_clock() - began;
-    if (bough_is_ok(&status) && t->parts) {
-        status = bough_clock_create(arena, t->run.simulation, &t->clock);
-    }
     bough_recorder_def def = {
         .folder = t->options->folder, .title = t->study->title, .channels = &t->run.channels};
     if (bough_is_ok(&status)) status = bough_recorder_open(arena, &def, &t->recorder);
@@ -56,16 +46,13 @@ static bough_status run_in(bough_arena *arena, void *self) {
     bough_run_all(&t->run);
     run->cpu = t->run.cpu_s;
     run->wall = t->run.wall_s;
-    if (t->clock) bough_clock_read(t->clock, run->part);
-    run->part[BOUGH_CLOCK_RECORDING] = t->recording;
     status = bough_recorder_finish(t->recorder, &t->run.outcome);
     return bough_is_ok(&t->run.outcome) ? status : t->run.outcome;
 }
 
 bough_status bough_timing_run_cell(const bough_study *study, const bough_study_cell *cell,
-                                   const bough_study_options *options, bool parts,
-                                   bough_timing_run *run) {
-    timed t = {.study = study, .cell = cell, .options = options, .parts = parts, .result = run};
+                                   const bough_study_options *options, bough_timing_run *run) {
+    timed t = {.study = study, .cell = cell, .options = options, .result = run};
     *run = (bough_timing_run){0};
     return bough_arena_use(run_in, &t);
 }
