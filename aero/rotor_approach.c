@@ -116,7 +116,7 @@ static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *mo
         bough_vec3 place = bough_add(frame.position, bough_mat3_mul(frame.rotation, centre));
         lane_store(r.place, s, j, place);
         r.radius[j] = e.radius;
-        r.turning[j] = bough_dot(turning, e.z);
+        r.turning[j] = bough_dot(turning, bough_cross(shaft, e.y)); // about the radius: no turn of the rotor
         double along = bough_dot(section.c1, shaft), across = bough_dot(section.c2, shaft);
         double y1 = bough_dot(section.c1, e.y), y2 = bough_dot(section.c2, e.y);
         double size = sqrt(along * along + across * across), scale = 1 / (size > 1e-9 ? size : 1);
