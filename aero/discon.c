@@ -124,13 +124,14 @@ static void hear(const bough_discon *d, bough_discon_demand *demand) {
     const float *r = d->record;
     bool individual = r[PITCH_CONTROL] == 1;
     demand->torque = (double)r[DEMANDED_TORQUE];
-    for (int b = 0; b < BOUGH_DISCON_BLADES; b++)
-        demand->pitch[b] = (double)r[individual ? DEMANDED_PITCH + b : COLLECTIVE_PITCH];
+    for (int b = 0; b < BOUGH_MOST_BLADES; b++)
+        demand->pitch[b] = (double)r[individual && b < BOUGH_DISCON_BLADES ? DEMANDED_PITCH + b
+                                                                   : COLLECTIVE_PITCH];
 }
 
 static bool is_sound(const bough_discon_demand *d) {
     bool sound = isfinite(d->torque) && fabs(d->torque) < 1e12;
-    for (int b = 0; b < BOUGH_DISCON_BLADES; b++)
+    for (int b = 0; b < BOUGH_MOST_BLADES; b++)
         sound = sound && isfinite(d->pitch[b]) && fabs(d->pitch[b]) < 100;
     return sound;
 }
@@ -146,6 +147,12 @@ bough_status bough_discon_call(bough_discon *d, const bough_discon_sensed *sense
     if (fail < 0) {
         return bough_fail(BOUGH_FAILED, "the controller %.100s fails at %g s: %.200s", d->library,
                           sensed->time, d->message[0] ? d->message : "without a message");
+    }
+    if (d->record[PITCH_CONTROL] == 1 && sensed->n_blade > BOUGH_DISCON_BLADES) {
+        return bough_fail(BOUGH_FAILED,
+                          "the controller %.100s pitches each blade by itself, for which its interface "
+                          "has %d blades; the rotor has %d", d->library, (int)BOUGH_DISCON_BLADES,
+                          sensed->n_blade);
     }
     if (!is_sound(demand)) {
         return bough_fail(BOUGH_FAILED,

@@ -13,16 +13,19 @@
 #include "core/arena.h"
 #include "core/status.h"
 
-enum { BOUGH_DISCON_BLADES = 3 };
+enum {
+    BOUGH_DISCON_BLADES = 3, // that the interface has records for
+    BOUGH_MOST_BLADES = 16,  // of a rotor that is controlled
+};
 
 // The measured values for the controller; those of the generator are at the fast shaft.
 typedef struct bough_discon_sensed {
     double time, step;       // [s]
     bool last;               // of the run
-    int n_blade;             // 1 to 3
-    double pitch[BOUGH_DISCON_BLADES];       // [rad]
-    double root_moment[BOUGH_DISCON_BLADES]; // out of plane [N m]
-    double in_plane[BOUGH_DISCON_BLADES];    // the other one [N m]
+    int n_blade;
+    double pitch[BOUGH_MOST_BLADES];       // [rad]
+    double root_moment[BOUGH_MOST_BLADES]; // out of plane [N m]
+    double in_plane[BOUGH_MOST_BLADES];    // the other one [N m]
     bool individual;         // each blade is to follow its own demand
     double yaw_error;        // wind's direction less the nacelle's [rad]
     double heading;          // of the nacelle, from ground x about z [rad]
@@ -37,7 +40,7 @@ typedef struct bough_discon_sensed {
 
 typedef struct bough_discon_demand {
     double torque;                     // of the generator [N m]
-    double pitch[BOUGH_DISCON_BLADES]; // [rad]
+    double pitch[BOUGH_MOST_BLADES]; // [rad]
 } bough_discon_demand;
 
 typedef struct bough_discon bough_discon;

@@ -33,6 +33,20 @@ static void demands_come_back(void **state) {
     }
 }
 
+static void more_blades_than_records_have_one_pitch(void **state) {
+    (void)state;
+    for (int individual = 0; individual < 2; individual++) {
+        fixture f = open_controller(individual ? "individual" : "");
+        bough_discon_sensed sensed = {.time = 2, .step = 0.01, .n_blade = 5, .generator_speed = 120};
+        bough_discon_demand demand;
+        bough_status status = bough_discon_call(f.discon, &sensed, &demand);
+        assert_int_equal(status.code, individual ? BOUGH_FAILED : BOUGH_OK);
+        if (individual) assert_non_null(strstr(status.message, "has 3 blades; the rotor has 5"));
+        if (!individual) check_near(demand.pitch[4], 0.102, 1e-6, 0);
+        bough_arena_destroy(f.arena);
+    }
+}
+
 // Every record that the controller is told, by its number in the interface's manual.
 static void records_are_served(void **state) {
     (void)state;
@@ -112,6 +126,7 @@ static void what_is_no_controller_is_refused(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(demands_come_back),
+        cmocka_unit_test(more_blades_than_records_have_one_pitch),
         cmocka_unit_test(records_are_served),
         cmocka_unit_test(status_tells_first_and_last),
         cmocka_unit_test(failures_are_told),

@@ -266,7 +266,7 @@ static void bad_decks_are_told_where(void **context) {
          "servo.dat:4: GenEff: expected 0 to 100, got 195"},
         {{"parts/wind.dat", "12    HWindSpeed", "-1 HWindSpeed"},
          "wind.dat:5: HWindSpeed: expected 0 to 200, got -1"},
-        {{"parts/elasto.dat", "3    NumBl", "4    NumBl"},
+        {{"parts/elasto.dat", "3    NumBl", "40    NumBl"},
          "elasto.dat:13: NumBl: expected a whole"},
         {{"parts/elasto.dat", "True          YawDOF", "Maybe         YawDOF"},
          "elasto.dat:6: YawDOF: expected True or False, got 'Maybe'"},

@@ -278,6 +278,27 @@ static void two_blades_teeter(void **context) {
     done(&t);
 }
 
+static void any_number_of_blades_is_taken(void **context) {
+    (void)context;
+    static const edit number[] = {
+        {"parts/elasto.dat", "         3    NumBl", "         1    NumBl"},
+        {"parts/elasto.dat", "         3    NumBl",
+         "5 NumBl\n1 BlPitch(4)\n2 BlPitch(5)\n-3 PreCone(4)\n-2 PreCone(5)"}};
+    for (int k = 0; k < 2; k++) {
+        trial t = import(&number[k]);
+        assert_string_equal(t.status.message, "");
+        int n = k == 0 ? 1 : 5;
+        assert_int_equal(at(read_file(&t, "scene.yaml"), "turbine.blades")->n, n);
+        if (k == 1) {
+            assert_string_equal(text(body(&t, "blade5"), "pitch"), "2 deg");
+            assert_string_equal(text(body(&t, "blade5"), "joint.placement.0"), "rotate x 288 deg");
+            assert_string_equal(text(body(&t, "blade5"), "joint.placement.1"), "rotate y -2 deg");
+        }
+        steps(&t);
+        done(&t);
+    }
+}
+
 // The tail hangs on an axis along y of the nacelle, so that x of its frame is y, and y is -x; the rotor's
 // part is held at 5 degrees about the vertical through (0.5, 0).
 static void tails_and_rotors_furl(void **context) {
@@ -385,6 +406,7 @@ int main(void) {
         cmocka_unit_test(aerodyn_14_has_elements_too),
         cmocka_unit_test(masses_on_tips_and_yaw_bearing),
         cmocka_unit_test(two_blades_teeter),
+        cmocka_unit_test(any_number_of_blades_is_taken),
         cmocka_unit_test(tails_and_rotors_furl),
         cmocka_unit_test(induction_generators_are_lines),
         cmocka_unit_test(structural_control_is_on_the_list),

@@ -213,6 +213,16 @@ static void assembly_gives_the_nacelle(void **context) {
     done(&t);
 }
 
+static void any_number_of_blades_is_taken(void **context) {
+    (void)context;
+    trial t = import_with("number_of_blades: 3", "number_of_blades: 5");
+    assert_string_equal(t.status.message, "");
+    const bough_node *s = read_file(&t, "scene.yaml");
+    assert_string_equal(text(s, "turbine.blades.4"), "blade5");
+    assert_string_equal(text(s, "bodies.7.joint.placement.0"), "rotate x 288 deg");
+    done(&t);
+}
+
 static void polars_go_round(void **context) {
     (void)context;
     trial t = import_with("[-3.14, -0.5, 0.5, 3.14]", "[-1.5, -0.5, 0.5, 1.5]");
@@ -273,7 +283,7 @@ static void bad_files_are_told_where(void **context) {
         {"material: steel", "material: wood", "material: no material is named 'wood'"},
         {"values: [0.02, 0.01]", "values: [1.02, 0.01]", "thickness: expected a value from 0 to the"},
         {"diameter: 2.0", "diameter: 0", "diameter: expected a positive value"},
-        {"number_of_blades: 3", "number_of_blades: 2.5", "number_of_blades: expected 1 to 3"},
+        {"number_of_blades: 3", "number_of_blades: 2.5", "number_of_blades: expected a whole number from 1 to 16, got 2.5"},
         {"gear_ratio: 10", "gear_ratio: 10\n      gear_ratio: 10", "is given twice"},
         {"gear_ratio: 10", "gear_ratio: -1", "gear_ratio: expected a positive value"},
     };
@@ -295,6 +305,7 @@ int main(void) {
         cmocka_unit_test(both_layouts_give_one_scene),
         cmocka_unit_test(what_is_not_given_is_told),
         cmocka_unit_test(assembly_gives_the_nacelle),
+        cmocka_unit_test(any_number_of_blades_is_taken),
         cmocka_unit_test(polars_go_round),
         cmocka_unit_test(scene_steps),
         cmocka_unit_test(bad_files_are_told_where),

@@ -33,6 +33,14 @@ void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format
     va_end(list);
 }
 
+void bough_draft_turbine(bough_draft *d, const char *rotor, int n_blade) {
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    fprintf(file, "turbine:\n  rotor: %s\n  blades: [blade1", rotor);
+    for (int k = 2; k <= n_blade; k++)
+        fprintf(file, ", blade%d", k);
+    fputs("]\n", file);
+}
+
 void bough_import_list(FILE *file, const double *value, int n) {
     for (int i = 0; i < n; i++)
         fprintf(file, "%s%.10g", i == 0 ? "[" : ", ", value[i] + 0.0);

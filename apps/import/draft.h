@@ -64,6 +64,11 @@ void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format
 void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity,
                       double duration, double rotor_speed);
 
+enum { BOUGH_IMPORT_BLADES = 16 }; // at most
+
+// The scene's 'turbine': blades are named blade1, blade2 ...
+void bough_draft_turbine(bough_draft *d, const char *rotor, int n_blade);
+
 // "[1, 2, 3]" in the scene's spelling.
 void bough_import_list(FILE *file, const double *value, int n);
 

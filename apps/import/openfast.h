@@ -8,8 +8,6 @@
 #include "apps/import/import.h"
 #include "core/vec3.h"
 
-enum { BOUGH_IMPORT_BLADES = 3 };
-
 // What acts on the generator.
 typedef enum bough_generator {
     BOUGH_GENERATOR_FREE,    // nothing

@@ -235,9 +235,7 @@ static void put_rotor(bough_openfast *o) {
     put_hub(o, twists);
     for (int k = 1; k <= o->n_blade; k++)
         put_blade(o, k);
-    fprintf(o->draft.file[BOUGH_IMPORT_SCENE], "turbine:\n  rotor: %s\n  blades: [blade1%s%s]\n",
-            twists ? "generator" : teeters(o) ? "shaft" : "hub", o->n_blade > 1 ? ", blade2" : "",
-            o->n_blade > 2 ? ", blade3" : "");
+    bough_draft_turbine(&o->draft, twists ? "generator" : teeters(o) ? "shaft" : "hub", o->n_blade);
 }
 
 static void note_left(bough_openfast *o) {

@@ -49,13 +49,14 @@ static void read_assembly(bough_windio *w) {
     bough_draft *d = &w->draft;
     const bough_node *assembly = bough_entry_need(d, w->root, "assembly");
     double blades = bough_entry_number_or(d, assembly, "number_of_blades", 3);
-    if (!(blades == 1 || blades == 2 || blades == 3)) {
-        bough_entry_fail(d, assembly, "number_of_blades: expected 1 to 3, got %g", blades);
+    if (!(blades >= 1 && blades <= BOUGH_IMPORT_BLADES && blades == floor(blades))) {
+        bough_entry_fail(d, assembly, "number_of_blades: expected a whole number from 1 to %d, got %g",
+                         (int)BOUGH_IMPORT_BLADES, blades);
     }
     const bough_node *side = bough_entry(assembly, "rotor_orientation");
     bool downwind = side && side->kind == BOUGH_SCALAR && strchr("dD", side->text[0]) != NULL;
     w->forward = downwind && side->text[0] ? -1 : 1;
-    w->n_blade = (int)blades;
+    w->n_blade = bough_is_ok(d->status) ? (int)blades : 1;
     w->rated_power = bough_entry_number_or(d, assembly, "rated_power", 0);
     w->density = bough_entry_number_or(d, w->root, "environment.air_density", 1.225);
     w->hub_radius = bough_entry_number(d, w->hub, "diameter") / 2;

@@ -196,8 +196,7 @@ static void put_blades(bough_windio *w, double cone, double pitch) {
                 360.0 * (k - 1) / w->n_blade, -w->forward * cone, w->hub_radius, pitch,
                 bough_import_name[BOUGH_IMPORT_BLADE]);
     }
-    fprintf(file, "turbine:\n  rotor: hub\n  blades: [blade1%s%s]\n",
-            w->n_blade > 1 ? ", blade2" : "", w->n_blade > 2 ? ", blade3" : "");
+    bough_draft_turbine(&w->draft, "hub", w->n_blade);
 }
 
 static double gear_ratio(bough_windio *w) {

@@ -98,7 +98,7 @@ static const bough_key control_keys[] = {
     {KEY(CHOICE, kind), CHOICES("variable-speed", "bladed", "external"), .required = true,
      .help = "variable-speed: the baseline law of the NREL 5 MW turbine; bladed: a shared library "
              "with Bladed's interface (function DISCON); external: another program, by the inputs "
-             "GenTqCom (torque on the fast shaft) and BlPitchCom1 to 3"},
+             "GenTqCom (torque on the fast shaft) and BlPitchCom1, 2 ..."},
     {KEY(NUMBER, rate), UNIT(FREQUENCY), .range = "> 0", .fallback = "50", .example = "80 Hz",
      .help = "sampling rate; the period is a multiple of the macro step"},
     {KEY(NUMBER, gear_ratio), .range = "> 0", .fallback = "97", .example = "105",

@@ -94,8 +94,9 @@ static void add_control(bough_arena *arena, bough_scene *s) {
     const bough_scene_control *control = &s->control;
     if (control->node == NULL || control->kind != BOUGH_SCENE_EXTERNAL) return;
     add(s, control->node, "GenTqCom", BOUGH_INPUT_TORQUE)->dimension = BOUGH_MOMENT;
-    for (int b = 0; control->pitch && b < s->turbine.n_blade && b < 3; b++) {
-        char end[2] = {(char)('1' + b), '\0'};
+    for (int b = 0; control->pitch && b < s->turbine.n_blade; b++) {
+        char end[12];
+        snprintf(end, sizeof end, "%d", b + 1);
         bough_scene_input *input =
             add(s, control->node, joined(arena, "BlPitchCom", end), BOUGH_INPUT_PITCH);
         input->dimension = BOUGH_ANGLE;

@@ -1,4 +1,5 @@
 // Names of the turbine, its air and its control become indices; see scene_link.c.
+#include "aero/discon.h"
 #include "apps/scene/scene_internal.h"
 
 #include <math.h>
@@ -220,6 +221,10 @@ void bough_link_control(bough_schema_reader *r, bough_scene *s) {
             bough_schema_error(r, b->node, "", "the pitch joint of '%s' must turn about z",
                                b->name);
         }
+    }
+    if (s->turbine.n_blade > BOUGH_MOST_BLADES) {
+        bough_schema_error(r, s->control.node, "", "expected a rotor of at most %d blades, got %d",
+                           (int)BOUGH_MOST_BLADES, s->turbine.n_blade);
     }
     if (s->control.n_event > 8) {
         bough_link_at(r, "control");

@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-enum { BLADES = BOUGH_DISCON_BLADES };
+enum { BLADES = BOUGH_MOST_BLADES };
 
 // Doubles only.
 typedef struct memory {
@@ -48,7 +48,7 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
     l->simulation = simulation;
     l->control = &scene->control;
     l->load = load;
-    l->n_blade = scene->turbine.n_blade < BLADES ? scene->turbine.n_blade : BLADES;
+    l->n_blade = scene->turbine.n_blade;
     l->steers = scene->control.pitch && scene->body[scene->turbine.blade[0]].joint.motion.node != NULL;
     for (int b = 0; b < l->n_blade && l->steers; b++)
         l->now.pitch_joint[b] = joint_point(simulation, blade_body(l, b));
