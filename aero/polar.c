@@ -9,26 +9,6 @@ enum { ROW = BOUGH_POLAR_ROW };
 
 static const double turn = 2 * BOUGH_PI;
 
-static bough_status check(const bough_polar_def *def) {
-    const char *name = def->name ? def->name : "unnamed";
-    if (def->n < 1) return bough_fail(BOUGH_INVALID, "Polar %s has no rows.", name);
-    for (int i = 0; i < 4 * def->n; i++) {
-        if (!isfinite(def->row[i])) {
-            return bough_fail(BOUGH_INVALID, "Polar %s, row %d: not a number.", name, i / 4 + 1);
-        }
-    }
-    for (int i = 1; i < def->n; i++) {
-        if (!(def->row[4 * i] > def->row[4 * (i - 1)])) {
-            return bough_fail(BOUGH_INVALID, "Polar %s, row %d: angles must increase.", name,
-                              i + 1);
-        }
-    }
-    if (def->row[4 * (def->n - 1)] - def->row[0] > 360) {
-        return bough_fail(BOUGH_INVALID, "Polar %s spans more than 360 degrees.", name);
-    }
-    return bough_ok();
-}
-
 // Copies the knots, closes the turn, and prepares the slopes.
 static void fill_rows(const bough_polar_def *def, int n, double *row) {
     for (int i = 0; i < n; i++) {
@@ -116,9 +96,7 @@ static void fit_attached(bough_polar *polar) {
     if (find_zero_lift(polar, &polar->zero_lift)) polar->slope = steepest(polar, polar->zero_lift);
 }
 
-bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar) {
-    bough_status status = check(def);
-    if (!bough_is_ok(&status)) return status;
+void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar) {
     bool closed = def->row[4 * (def->n - 1)] - def->row[0] >= 360 * (1 - 1e-12);
     int n = closed ? def->n : def->n + 1;
     // Bins of half a degree: at most two knots to pass in the tables of the field.
@@ -132,7 +110,6 @@ bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, b
     fill_bins(polar, bin);
     find_range(def, polar);
     fit_attached(polar);
-    return bough_ok();
 }
 
 // -- blending and smoothing -----------------------------------------------------------------------
@@ -142,8 +119,8 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-bough_status bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b,
-                               double share, bough_polar *polar) {
+void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b,
+                       double share, bough_polar *polar) {
     int most = a->n + b->n, n = 0;
     double *angle = bough_arena_doubles(arena, (size_t)most);
     double *row = bough_arena_doubles(arena, 4 * (size_t)most);
@@ -160,11 +137,10 @@ bough_status bough_polar_blend(bough_arena *arena, const bough_polar *a, const b
         to[3] = (1 - share) * x.moment + share * y.moment;
     }
     bough_polar_def def = {.name = "blend", .n = n, .row = row};
-    bough_status status = bough_polar_build(arena, &def, polar);
+    bough_polar_build(arena, &def, polar);
     bool a_whole = a->high - a->low >= turn, b_whole = b->high - b->low >= turn;
     polar->low = a_whole ? b->low : b_whole ? a->low : fmax(a->low, b->low);
     polar->high = a_whole ? b->high : b_whole ? a->high : fmin(a->high, b->high);
-    return status;
 }
 
 // The slope at a knot between chords of slopes s0, s1 over h0, h1: none at an extremum, else the
@@ -175,7 +151,7 @@ static double monotone_slope(double h0, double s0, double h1, double s1) {
     return (w0 + w1) / (w0 / s0 + w1 / s1);
 }
 
-bough_status bough_polar_smoothen(bough_arena *arena, bough_polar *polar) {
+void bough_polar_smoothen(bough_arena *arena, bough_polar *polar) {
     int last = polar->n - 1;
     double *curve = bough_arena_doubles(arena, 6 * (size_t)polar->n);
     double *slope = bough_arena_doubles(arena, 3 * (size_t)polar->n);
@@ -198,5 +174,4 @@ bough_status bough_polar_smoothen(bough_arena *arena, bough_polar *polar) {
     }
     polar->curve = curve;
     fit_attached(polar);
-    return bough_ok();
 }

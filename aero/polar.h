@@ -5,7 +5,6 @@
 
 #include "core/arena.h"
 #include "core/base.h"
-#include "core/status.h"
 
 #include <math.h>
 
@@ -37,15 +36,16 @@ typedef struct bough_polar {
     double zero_lift; // where the lift grows through zero, nearest to no angle [rad]
 } bough_polar;
 
-bough_status bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar);
+// From rows of finite numbers whose angles increase over 360 degrees at most.
+void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar);
 
 // The mixture (1 − share)·a + share·b of two linear polars, exactly: with the knots of both.
-bough_status bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b,
-                               double share, bough_polar *polar);
+void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b,
+                       double share, bough_polar *polar);
 
 // Makes a linear polar smooth: continuous slopes, between knots as monotone as the knots are.
 // F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984).
-bough_status bough_polar_smoothen(bough_arena *arena, bough_polar *polar);
+void bough_polar_smoothen(bough_arena *arena, bough_polar *polar);
 
 // The last knot at or below an angle; `alpha` moves into the table's turn. No branch depends on it
 // but that into the turn, for the next is not to be foretold. A NaN stays one and takes the first knot.

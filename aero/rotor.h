@@ -125,13 +125,13 @@ typedef struct bough_rotor_data {
     struct bough_rotor_scratch *scratch;
 } bough_rotor_data;
 
-// Builds the model; the def and all it points to may be released afterwards.
+// Builds the model; the def and all it points to may be released afterwards. BOUGH_INVALID for a
+// station off the blade and for wind that cannot be read or made.
 bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                                const bough_rotor **rotor);
 
 // Takes the memory of a data struct; its loads are zero. The only other allocation.
-bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor,
-                                    bough_rotor_data *data);
+void bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor, bough_rotor_data *data);
 
 // Evaluates the loads at the given motion. In equilibrium inflow and with static polars they are a
 // pure function of it: nothing is kept from sample to sample. Else the memory goes on from the last

@@ -4,6 +4,7 @@
 #include "core/base.h"
 #include "core/rotation.h"
 
+#include <assert.h>
 #include <string.h>
 
 // Loads are piecewise linear between stations, the deformed reference axis piecewise linear
@@ -21,47 +22,14 @@ bough_rotor_def bough_rotor_def_default(void) {
 
 // -- build ----------------------------------------------------------------------------------------
 
-static bough_status check_station(const bough_rotor_def *def, int j) {
-    const bough_station_def *s = def->station + j;
+static bough_status check_spans(const bough_rotor_def *def) {
     double length = def->vertex_span[def->n_vertex - 1];
-    if (j > 0 && !(s->span > s[-1].span)) {
-        return bough_fail(BOUGH_INVALID, "Aero station %d: spans must increase.", j + 1);
-    }
-    if (s->span < def->vertex_span[0] - 1e-6 * length || s->span > length * (1 + 1e-6)) {
-        return bough_fail(BOUGH_INVALID, "Aero station %d: span %g m is not on the blade (%g m).",
-                          j + 1, s->span, length);
-    }
-    if (!(s->chord > 0)) {
-        return bough_fail(BOUGH_INVALID, "Aero station %d: the chord must be positive.", j + 1);
-    }
-    const int wanted[2] = {s->polar, s->share > 0 ? s->second : s->polar};
-    for (int i = 0; i < 2; i++) {
-        if (wanted[i] >= 0 && wanted[i] < def->n_polar) continue;
-        return bough_fail(BOUGH_INVALID, "Aero station %d: there is no polar %d.", j + 1,
-                          wanted[i]);
-    }
-    if (!(s->share >= 0 && s->share <= 1)) {
-        return bough_fail(BOUGH_INVALID, "Aero station %d: a polar's share is from 0 to 1.", j + 1);
-    }
-    return bough_ok();
-}
-
-static bough_status check(const bough_rotor_def *def) {
-    if (def->n_blade < 1) return bough_fail(BOUGH_INVALID, "The rotor needs a blade.");
-    if (def->n_station < 2) return bough_fail(BOUGH_INVALID, "A blade needs two aero stations.");
-    if (def->n_vertex < 2) return bough_fail(BOUGH_INVALID, "A blade needs two vertices.");
-    if (!(def->density > 0)) return bough_fail(BOUGH_INVALID, "The air density must be positive.");
-    if (!(def->hub_radius > 0)) {
-        return bough_fail(BOUGH_INVALID, "The hub radius must be positive.");
-    }
-    for (int i = 1; i < def->n_vertex; i++) {
-        if (!(def->vertex_span[i] > def->vertex_span[i - 1])) {
-            return bough_fail(BOUGH_INVALID, "Vertex %d: spans must increase.", i + 1);
-        }
-    }
     for (int j = 0; j < def->n_station; j++) {
-        bough_status status = check_station(def, j);
-        if (!bough_is_ok(&status)) return status;
+        double span = def->station[j].span;
+        assert(j == 0 || span > def->station[j - 1].span);
+        if (span >= def->vertex_span[0] - 1e-6 * length && span <= length * (1 + 1e-6)) continue;
+        return bough_fail(BOUGH_INVALID, "Aero station %d: span %g m is not on the blade (%g m).",
+                          j + 1, span, length);
     }
     return bough_ok();
 }
@@ -186,41 +154,34 @@ static void compress_rows(int n, int n_station, const double *dense, vertex_row 
 }
 
 // The def's polars and, after them, one for each station that has a mixture.
-static bough_status build_polars(bough_arena *arena, const bough_rotor_def *def,
-                                 const bough_polar **polars) {
+static const bough_polar *build_polars(bough_arena *arena, const bough_rotor_def *def) {
     int most = def->n_polar + def->n_station;
     bough_polar *polar = bough_arena_take(arena, (size_t)most * sizeof *polar);
-    *polars = polar;
-    bough_status status = bough_ok();
-    for (int i = 0; i < most && bough_is_ok(&status); i++) {
-        if (i < def->n_polar) {
-            status = bough_polar_build(arena, def->polar + i, polar + i);
-            continue;
-        }
-        const bough_station_def *s = def->station + i - def->n_polar;
-        if (s->share > 0) {
-            status = bough_polar_blend(arena, polar + s->polar, polar + s->second, s->share,
-                                       polar + i);
-        }
+    for (int i = 0; i < def->n_polar; i++)
+        bough_polar_build(arena, def->polar + i, polar + i);
+    for (int j = 0; j < def->n_station; j++) {
+        const bough_station_def *s = def->station + j;
+        if (s->share == 0) continue;
+        bough_polar_blend(arena, polar + s->polar, polar + s->second, s->share,
+                          polar + def->n_polar + j);
     }
-    for (int i = 0; i < most && def->smooth_polars && bough_is_ok(&status); i++)
-        if (polar[i].n > 0) status = bough_polar_smoothen(arena, polar + i);
-    return status;
+    for (int i = 0; i < most && def->smooth_polars; i++)
+        if (polar[i].n > 0) bough_polar_smoothen(arena, polar + i);
+    return polar;
 }
 
-static bough_status prepare_stall(bough_arena *arena, bough_rotor *rotor) {
+static void prepare_stall(bough_arena *arena, bough_rotor *rotor) {
     size_t n = (size_t)rotor->n_station;
     bough_stall_airfoil *airfoil = bough_arena_take(arena, n * sizeof *airfoil);
     for (size_t j = 0; j < n; j++)
         airfoil[j] = bough_stall_airfoil_of(rotor->station.polar[j]);
     rotor->airfoil = airfoil;
-    return bough_ok();
 }
 
 bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                                const bough_rotor **result) {
     *result = NULL;
-    bough_status status = check(def);
+    bough_status status = check_spans(def);
     if (!bough_is_ok(&status)) return status;
     size_t n_station = (size_t)def->n_station, n_vertex = (size_t)def->n_vertex;
     bough_rotor *rotor = bough_arena_take(arena, sizeof *rotor);
@@ -247,19 +208,17 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                            .mean = row + n_vertex,
                            .slope = row + 2 * n_vertex - 1};
     take_stations(arena, rotor->stride, &rotor->station);
-    const bough_polar *polar = NULL;
-    status = build_polars(arena, def, &polar);
-    if (bough_is_ok(&status)) status = bough_wind_build(arena, &def->wind, &rotor->wind);
-    if (bough_is_ok(&status)) status = bough_tower_build(arena, &def->tower, &rotor->tower);
+    status = bough_wind_build(arena, &def->wind, &rotor->wind);
     if (!bough_is_ok(&status)) return status;
-    place_stations(def, polar, rotor);
+    bough_tower_build(arena, &def->tower, &rotor->tower);
+    place_stations(def, build_polars(arena, def), rotor);
     fill_mappings(def, &map);
     compress_rows(def->n_vertex, def->n_station, map.vertex, rotor->row);
     compress_rows(def->n_vertex - 1, def->n_station, map.mean, rotor->mean);
     compress_rows(def->n_vertex - 1, def->n_station, map.slope, rotor->slope);
-    if (def->stall != BOUGH_STALL_NONE) status = prepare_stall(arena, rotor);
-    if (bough_is_ok(&status)) *result = rotor;
-    return status;
+    if (def->stall != BOUGH_STALL_NONE) prepare_stall(arena, rotor);
+    *result = rotor;
+    return bough_ok();
 }
 
 // Stations keep their place on the radius of the undeformed rotor, as the loss factors do.
@@ -303,8 +262,7 @@ static void take_rows(bough_arena *arena, const bough_rotor *rotor, blade_rows *
     rows->bend = bough_arena_doubles(arena, 3 * (size_t)rotor->n_vertex);
 }
 
-bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor,
-                                    bough_rotor_data *data) {
+void bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor, bough_rotor_data *data) {
     size_t n_blade = (size_t)rotor->n_blade;
     *data = (bough_rotor_data){0};
     data->load = bough_arena_doubles(arena, 6 * n_blade * (size_t)rotor->n_vertex);
@@ -320,5 +278,4 @@ bough_status bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor
     for (int b = 0; b < rotor->n_blade; b++)
         take_rows(arena, rotor, s->blade + b);
     take_memory(arena, rotor, &data->memory);
-    return bough_ok();
 }

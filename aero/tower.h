@@ -9,7 +9,6 @@
 #define BOUGH_AERO_TOWER_H
 
 #include "core/arena.h"
-#include "core/status.h"
 #include "core/vec3.h"
 
 #include <stdbool.h>
@@ -43,7 +42,8 @@ typedef struct bough_tower {
     bough_tower_shadow shadow;
 } bough_tower;
 
-bough_status bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tower *tower);
+// From heights that increase; n 0: there is no tower.
+void bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tower *tower);
 
 // The drag on the tower at a place of its axis, unit vector `axis`, in air of that density [kg/m³]
 // and velocity against the tower [m/s]; only what blows across counts [N/m].

@@ -2,27 +2,13 @@
 
 #include "aero/wind_turbulence.h"
 #include "core/base.h"
+#include "core/force.h"
 
+#include <assert.h>
 #include <string.h>
 
 bough_wind_def bough_wind_def_default(void) {
     return (bough_wind_def){.exponent = 0.2, .roughness = 0.03, .reference_height = 90};
-}
-
-static bough_status check(const bough_wind_def *def) {
-    if (def->shear != BOUGH_WIND_UNIFORM && !(def->reference_height > 0)) {
-        return bough_fail(BOUGH_INVALID, "Wind: the reference height must be positive.");
-    }
-    if (def->shear == BOUGH_WIND_LOG &&
-        !(def->roughness > 0 && def->roughness < def->reference_height)) {
-        return bough_fail(BOUGH_INVALID, "Wind: the roughness length must be positive and less "
-                                         "than the reference height.");
-    }
-    for (int i = 1; i < def->n_time; i++) {
-        if (def->time[i] > def->time[i - 1]) continue;
-        return bough_fail(BOUGH_INVALID, "Wind table row %d: times must increase.", i + 1);
-    }
-    return bough_ok();
 }
 
 static const double *copied(bough_arena *arena, const double *from, int n) {
@@ -35,9 +21,6 @@ static bough_status read_hub(bough_arena *arena, bough_wind *wind) {
     bough_wind_hub *hub = bough_arena_take(arena, sizeof *hub);
     hub->reference_height = wind->def.reference_height;
     hub->reference_length = wind->def.reference_length;
-    if (!(hub->reference_height > 0 && hub->reference_length > 0)) {
-        return bough_fail(BOUGH_INVALID, "Wind: reference height and length must be positive.");
-    }
     wind->hub = hub;
     return bough_wind_hub_read(arena, wind->def.file, hub);
 }
@@ -72,9 +55,8 @@ static bough_status build(bough_arena *arena, const bough_wind_def *def, bough_w
     if (def->source == BOUGH_WIND_STANDARD) return make_standard(arena, wind);
     if (def->source == BOUGH_WIND_HUB_FILE) return read_hub(arena, wind);
     if (def->source == BOUGH_WIND_BOX_FILE) return read_box(arena, wind);
-    bough_status status = check(def);
-    if (!bough_is_ok(&status)) return status;
     if (def->shear == BOUGH_WIND_LOG) {
+        assert(def->roughness > 0 && def->roughness < def->reference_height);
         wind->shear_scale = 1 / log(def->reference_height / def->roughness);
     }
     if (def->n_time == 0) return bough_ok();
@@ -92,24 +74,6 @@ bough_status bough_wind_build(bough_arena *arena, const bough_wind_def *def, bou
     bough_status status = build(arena, def, wind);
     wind->level = wind->box ? wind->box->hub : wind->iec ? def->iec.height : def->reference_height;
     return status;
-}
-
-static double speed_at(const bough_wind_def *def, double t) {
-    int n = def->n_time;
-    if (n == 0) return def->speed;
-    if (t <= def->time[0]) return def->speed_at_time[0];
-    if (t >= def->time[n - 1]) return def->speed_at_time[n - 1];
-    int low = 0, high = n - 1; // time[low] ≤ t < time[high]
-    while (high - low > 1) {
-        int middle = (low + high) / 2;
-        if (t < def->time[middle]) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    double w = (t - def->time[low]) / (def->time[high] - def->time[low]);
-    return (1 - w) * def->speed_at_time[low] + w * def->speed_at_time[high];
 }
 
 static double share_at(const bough_wind *wind, double height) {
@@ -149,8 +113,11 @@ static bough_vec3 along_at(const bough_wind *wind, bough_vec3 position, double t
     if (wind->hub) return bough_wind_hub_at(wind->hub, to_file(wind, position), t);
     if (wind->box) return bough_wind_box_at(wind->box, to_file(wind, position), t);
     if (wind->iec) return bough_wind_iec_at(wind->iec, to_file(wind, position), t);
-    double speed = speed_at(&wind->def, t) * share_at(wind, position.z);
-    return bough_v3(speed, 0, wind->def.vertical);
+    const bough_wind_def *def = &wind->def;
+    double speed = def->speed;
+    if (def->n_time > 0) speed = bough_table_value(def->n_time, def->time, def->speed_at_time, t);
+    speed *= share_at(wind, position.z);
+    return bough_v3(speed, 0, def->vertical);
 }
 
 static bough_vec3 inclined(const bough_wind *wind, bough_vec3 v) {

@@ -228,13 +228,16 @@ double bough_ramp_factor(double start, double end, double t) {
 }
 
 double bough_table_value(int n, const double *times, const double *values, double t) {
-    int last = n - 1, i = 0;
+    int low = 0, high = n - 1; // times[low] ≤ t < times[high]
     if (t <= times[0]) return values[0];
-    if (t >= times[last]) return values[last];
-    while (t > times[i + 1])
-        i++;
-    double f = (t - times[i]) / (times[i + 1] - times[i]);
-    return (1 - f) * values[i] + f * values[i + 1];
+    if (t >= times[high]) return values[high];
+    while (high - low > 1) {
+        int middle = (low + high) / 2;
+        if (t < times[middle]) high = middle;
+        else low = middle;
+    }
+    double f = (t - times[low]) / (times[high] - times[low]);
+    return (1 - f) * values[low] + f * values[high];
 }
 
 bough_wrench bough_applied_force(const bough_tree *tree, const bough_tree_data *data, int k,

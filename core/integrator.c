@@ -1,5 +1,7 @@
 #include "core/integrator.h"
 
+#include <assert.h>
+
 static const bough_integrator_ops *const methods[] = {
     [BOUGH_IDA] = &bough_integrator_ida,
     [BOUGH_CVODE_BDF] = &bough_integrator_cvode,
@@ -23,10 +25,7 @@ bough_status bough_integrator_create(bough_arena *arena, const bough_ode *ode,
                                      bough_integrator *integrator) {
     const bough_integrator_ops *ops = methods[options->kind];
     *integrator = (bough_integrator){.ops = ops};
-    if (!(options->rtol > 0)) {
-        return bough_fail(BOUGH_INVALID, "%s: the relative tolerance of %s must be positive, not %g",
-                          ode->name, ops->title, options->rtol);
-    }
+    assert(options->rtol > 0);
     if (ops->most_states > 0 && ode->n > ops->most_states) {
         return bough_fail(BOUGH_INVALID,
                           "%s: %s works with dense matrices and suits up to %d states, not %d; "

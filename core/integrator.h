@@ -102,8 +102,8 @@ const bough_integrator_ops *bough_integrator_find(bough_integrator_kind kind);
 // Name of the method at that place of the table, as of bough_integrator_kind; NULL beyond its end.
 const char *bough_integrator_name(int index);
 
-// The integrator of the options' kind in the arena. BOUGH_INVALID where the tolerance is not
-// positive or the method does not suit so large a system.
+// The integrator of the options' kind in the arena. BOUGH_INVALID where the method does not suit so
+// large a system.
 bough_status bough_integrator_create(bough_arena *arena, const bough_ode *ode,
                                      const bough_integrator_options *options,
                                      bough_integrator *integrator);

@@ -32,10 +32,9 @@ typedef struct bough_motion_point {
     double q, v, a; // coordinate, speed, acceleration [rad, m; per s; per s²]
 } bough_motion_point;
 
-// `initial` is q at time 0 where the speed is given. BOUGH_INVALID where a value is not finite, a
-// ramp ends before it starts or times do not increase, without saying whose.
-bough_status bough_motion_create(bough_arena *arena, const bough_motion_def *def, double initial,
-                                 bough_motion **motion);
+// `initial` is q at time 0 where the speed is given. Values are finite, a ramp ends after it starts,
+// times increase.
+bough_motion *bough_motion_create(bough_arena *arena, const bough_motion_def *def, double initial);
 
 // From t on goes by a cubic from one point to another `span` [s] later, accelerations aside, and on
 // from there: for motions that are told sample by sample. What was given before is forgotten.

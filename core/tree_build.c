@@ -3,9 +3,55 @@
 #include "core/base.h"
 #include "core/dynamics.h"
 #include "core/loop.h"
-#include "core/tree_internal.h"
 
+#include <assert.h>
 #include <string.h>
+
+// -- before it is built ---------------------------------------------------------------------------
+
+// Placements are sums of steps, which may overflow.
+static bough_status check_place(const char *what, const char *name, bough_vec3 x) {
+    if (isfinite(x.x) && isfinite(x.y) && isfinite(x.z)) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "%s '%s': its position is not finite", what, name);
+}
+
+static bough_status check_places(const bough_tree_def *def) {
+    bough_status status = bough_ok();
+    for (int b = 0; b < def->n_bodies && bough_is_ok(&status); b++) {
+        const bough_body_def *body = &def->bodies[b];
+        status = check_place("joint of body", body->name, body->joint.position);
+    }
+    for (int m = 0; m < def->n_markers && bough_is_ok(&status); m++) {
+        const bough_marker_def *marker = &def->markers[m];
+        status = check_place("marker", marker->name, marker->placement.position);
+    }
+    return status;
+}
+
+// Levels from 1, 0 where not known yet. Every body is walked over once.
+static void find_level(const bough_tree_def *def, int body, int *level) {
+    int steps = 0, top = body;
+    for (; top >= 0 && level[top] == 0; top = def->bodies[top].parent) {
+        steps++;
+        assert(steps <= def->n_bodies);
+    }
+    int above = top < 0 ? 0 : level[top];
+    for (int b = body; b != top; b = def->bodies[b].parent) level[b] = above + steps--;
+}
+
+// The bodies level by level from the ground, within a level in the order of the definition: order
+// (n_bodies). scratch (2·n_bodies + 1) zeros.
+static void order_bodies(const bough_tree_def *def, int *scratch, int *order) {
+    int n = def->n_bodies, *level = scratch, *first = scratch + n; // first (n + 1): of each level
+    for (int b = 0; b < n; b++) {
+        find_level(def, b, level);
+        first[level[b]]++;
+    }
+    for (int k = 1; k <= n; k++) first[k] += first[k - 1];
+    for (int b = 0; b < n; b++) order[first[level[b] - 1]++] = b;
+}
+
+// -- the model ------------------------------------------------------------------------------------
 
 static bough_frame ground_frame(void) {
     return (bough_frame){.link = BOUGH_GROUND, .placement = bough_transform_identity()};
@@ -87,6 +133,7 @@ static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
         if (def->ports[p].axes) tree->axes[tree->n_axes++] = p;
     }
     for (int e = 0; e < def->n_ends; e++) {
+        assert(def->bodies[def->ends[e].body].kind == BOUGH_JOINT_FREE);
         tree->ends[e].link = tree->bodies[def->ends[e].body].link;
         tree->ends[e].placement = bough_transform_identity();
         add_inertia(tree, &tree->ends[e], def->ends[e].inertia);
@@ -97,23 +144,15 @@ static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
     }
 }
 
-static bough_status create_motions(bough_arena *arena, const bough_tree_def *def,
-                                   bough_tree *tree) {
+static void create_motions(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     for (int i = 0; i < tree->n_links; i++) {
         bough_link *link = &tree->links[i];
         const bough_body_def *b = &def->bodies[link->body];
         const bough_motion_def *given = link->part == 0 ? &b->motion : &b->second_motion;
         if (!given->given) continue;
-        bough_motion *motion = NULL;
-        bough_status status =
-            bough_motion_create(arena, given, b->coordinates[link->part], &motion);
-        if (status.code == BOUGH_INVALID) {
-            return bough_fail(BOUGH_INVALID, "body '%s': %s", b->name, status.message);
-        }
-        if (!bough_is_ok(&status)) return status;
-        link->motion = motion;
+        assert(link->n_speeds == 1);
+        link->motion = bough_motion_create(arena, given, b->coordinates[link->part]);
     }
-    return bough_ok();
 }
 
 static void set_initial(bough_tree *tree, const bough_tree_def *def) {
@@ -210,12 +249,11 @@ static bough_status check_dynamics(bough_arena *arena, const bough_tree_def *def
 }
 
 bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bough_tree **out) {
-    bough_status status = bough_tree_check(def);
+    bough_status status = check_places(def);
     if (!bough_is_ok(&status)) return status;
     size_t n = (size_t)def->n_bodies;
     int *scratch = bough_arena_take(arena, (3 * n + 1) * sizeof *scratch), *order = scratch;
-    status = bough_tree_order(def, scratch + n, order);
-    if (!bough_is_ok(&status)) return status;
+    order_bodies(def, scratch + n, order);
     bough_tree *tree = bough_arena_take(arena, sizeof *tree);
     take_model(arena, def, tree);
     take_names(arena, def, tree);
@@ -227,8 +265,7 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     for (int k = 0; k < def->n_bushings; k++)
         tree->bushings[k] = def->bushings[k];
     take_tables(arena, def, tree);
-    status = create_motions(arena, def, tree);
-    if (!bough_is_ok(&status)) return status;
+    create_motions(arena, def, tree);
     set_initial(tree, def);
     *out = tree;
     status = bough_loops_place(arena, def, tree);

@@ -4,8 +4,9 @@
 
 #include "core/tree.h"
 
-// Builds the tree in the arena. BOUGH_INVALID for an unknown parent, a cycle, a joint that moves
-// no inertia and the like, naming the body.
+// Builds the tree in the arena from a def whose indices are valid, parents without a cycle.
+// BOUGH_INVALID, naming the body, for a place that is not finite, a joint that moves no inertia and a
+// loop that does not close.
 bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bough_tree **tree);
 
 // Data for evaluations of the tree; as many as there are threads or users.

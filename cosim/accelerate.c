@@ -7,6 +7,7 @@
 // Newton's method does the same to u + (I − J)⁻¹ r, so that the differences correct the Jacobian.
 #include "cosim/accelerate.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
@@ -39,21 +40,9 @@ const char *const bough_acceleration_names[] = {[BOUGH_ACCELERATE_NONE] = "none"
                                                 [BOUGH_ACCELERATE_NEWTON] = "interface-newton",
                                                 NULL};
 
-static bough_status check(const bough_accelerator_def *def) {
-    if (def->kind < BOUGH_ACCELERATE_NONE || def->kind > BOUGH_ACCELERATE_NEWTON) {
-        return bough_fail(BOUGH_INVALID, "unknown accelerator");
-    }
-    if (!(def->relaxation > 0) || !(def->relaxation <= 1)) {
-        return bough_fail(BOUGH_INVALID, "relaxation is %g, must be above 0 and at most 1",
-                          def->relaxation);
-    }
-    return bough_ok();
-}
-
-bough_status bough_accelerator_create(bough_arena *arena, const bough_accelerator_def *def,
-                                      bough_accelerator **accelerator) {
-    bough_status status = check(def);
-    if (!bough_is_ok(&status)) return status;
+bough_accelerator *bough_accelerator_create(bough_arena *arena,
+                                            const bough_accelerator_def *def) {
+    assert(def->relaxation > 0 && def->relaxation <= 1);
     bough_accelerator *a = bough_arena_take(arena, sizeof *a);
     size_t n = (size_t)def->n;
     a->def = *def;
@@ -70,8 +59,7 @@ bough_status bough_accelerator_create(bough_arena *arena, const bough_accelerato
         a->q[k] = bough_arena_doubles(arena, n);
     }
     bough_accelerator_start(a);
-    *accelerator = a;
-    return bough_ok();
+    return a;
 }
 
 void bough_accelerator_start(bough_accelerator *a) {

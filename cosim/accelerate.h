@@ -5,7 +5,6 @@
 #define BOUGH_COSIM_ACCELERATE_H
 
 #include "core/arena.h"
-#include "core/status.h"
 
 #include <stdbool.h>
 
@@ -20,7 +19,7 @@ typedef enum bough_acceleration {
 typedef struct bough_accelerator_def {
     bough_acceleration kind;
     int n;             // components
-    double relaxation; // ω, of Aitken and IQN-ILS in the first iteration
+    double relaxation; // ω in (0, 1], of Aitken and IQN-ILS in the first iteration
     // of Newton: x (n) ← (I − ∂H/∂u)⁻¹ x, as nearly as is known
     void (*solve)(void *self, double *x);
     void *self;
@@ -32,8 +31,8 @@ typedef struct bough_accelerator bough_accelerator;
 extern const char *const bough_acceleration_names[];
 
 // Takes all memory from the arena; iterating takes none.
-bough_status bough_accelerator_create(bough_arena *arena, const bough_accelerator_def *def,
-                                      bough_accelerator **accelerator);
+bough_accelerator *bough_accelerator_create(bough_arena *arena,
+                                            const bough_accelerator_def *def);
 
 // Forgets everything: a new problem begins.
 void bough_accelerator_start(bough_accelerator *a);

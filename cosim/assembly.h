@@ -55,9 +55,9 @@ typedef struct bough_assembly {
     bough_interface *interface; // (n_interface)
 } bough_assembly;
 
-// Builds the assembly in the arena. BOUGH_INVALID when an input is unconnected or connected twice,
-// a connection leaves its ports' ranges, or the outputs form an algebraic loop. Feedthrough is
-// found by probing output_tangent at the members' current states.
+// Builds the assembly in the arena; every input is connected once. BOUGH_INVALID when the outputs
+// form an algebraic loop. Feedthrough is found by probing output_tangent at the members' current
+// states.
 bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *def,
                                   bough_assembly **assembly);
 

@@ -1,5 +1,6 @@
 #include "cosim/master.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,7 +19,7 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static bough_status copy_loads(bough_master *m, bough_arena *arena, const bough_master_def *def) {
+static void copy_loads(bough_master *m, bough_arena *arena, const bough_master_def *def) {
     m->load = bough_arena_take(arena, (size_t)def->n_load * sizeof *m->load);
     m->load_every = bough_arena_take(arena, (size_t)def->n_load * sizeof *m->load_every);
     m->event = bough_arena_doubles(arena, (size_t)def->n_event);
@@ -26,23 +27,11 @@ static bough_status copy_loads(bough_master *m, bough_arena *arena, const bough_
     for (int i = 0; i < def->n_load; i++) {
         m->load[i] = def->load[i];
         m->load_every[i] = bough_master_multiple(def->load[i].period, def->macro_step);
-        if (m->load_every[i] > 0) continue;
-        return bough_fail(BOUGH_INVALID,
-                          "a load is sampled every %.9g s, not a multiple of the macro step %.9g s",
-                          def->load[i].period, def->macro_step);
+        assert(m->load_every[i] > 0);
     }
     m->n_event = def->n_event;
     for (int i = 0; i < def->n_event; i++) m->event[i] = def->event[i];
     if (m->n_event > 0) qsort(m->event, (size_t)m->n_event, sizeof(double), ascending);
-    return bough_ok();
-}
-
-static bough_status check(const bough_master_def *def) {
-    if (!(def->macro_step > 0) || !(def->duration > 0) || !isfinite(def->duration)) {
-        return bough_fail(BOUGH_INVALID, "macro step %g s and duration %g s must be positive",
-                          def->macro_step, def->duration);
-    }
-    return bough_ok();
 }
 
 // Nothing to say when the judgement fails: the run will show why.
@@ -82,32 +71,27 @@ static void evaluate_loads(bough_master *m) {
 
 bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
                                 bough_master **master) {
-    bough_status status = check(def);
-    if (!bough_is_ok(&status)) return status;
+    assert(def->macro_step > 0 && def->duration > 0 && isfinite(def->duration));
     bough_master *m = bough_arena_take(arena, sizeof *m);
     m->macro_step = def->macro_step;
     m->duration = def->duration;
     m->at_event = true;
-    status = copy_loads(m, arena, def);
-    if (!bough_is_ok(&status)) return status;
-    status = bough_assembly_build(arena, &def->assembly, &m->assembly);
+    copy_loads(m, arena, def);
+    bough_status status = bough_assembly_build(arena, &def->assembly, &m->assembly);
     if (!bough_is_ok(&status)) return status;
     status = bough_scheme_couple(arena, m->assembly, &def->scheme, def->pool, &m->coupling);
     if (!bough_is_ok(&status)) return status;
     const bough_scheme *scheme = m->coupling->scheme;
     m->monitor = bough_monitor_create(arena, m->coupling);
-    if (bough_is_ok(&status)) m->breakdown = bough_breakdown_create(arena, m->assembly);
+    m->breakdown = bough_breakdown_create(arena, m->assembly);
     m->error = def->error;
     m->suits_linearised = def->suits_linearised;
     bool controlled = def->control.tolerance > 0 && !scheme->one_system;
-    if (bough_is_ok(&status) && controlled) {
-        m->estimate = bough_error_estimate_create(arena, m->coupling);
-    }
-    if (bough_is_ok(&status) && controlled) {
+    if (controlled) {
         int order = bough_scheme_defect_order(scheme, &def->scheme);
+        m->estimate = bough_error_estimate_create(arena, m->coupling);
         m->control = bough_step_control_create(arena, m->coupling, &def->control, m->macro_step, order);
     }
-    if (!bough_is_ok(&status)) return status;
     begin_loads(m, 0);
     if (!m->control) judge(m);
     evaluate_loads(m);

@@ -1,5 +1,6 @@
 #include "cosim/scheme.h"
 
+#include <assert.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -44,9 +45,7 @@ bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assem
                                  const bough_scheme_options *options, bough_pool *pool,
                                  bough_coupling **coupling) {
     const bough_scheme *scheme = bough_scheme_find(options->name);
-    if (!scheme) {
-        return bough_fail(BOUGH_INVALID, "unknown coupling scheme \"%s\"", options->name);
-    }
+    assert(scheme != NULL);
     *coupling = bough_coupling_create(arena, assembly, options, pool);
     (*coupling)->scheme = scheme;
     return scheme->create ? scheme->create(*coupling, arena) : bough_ok();

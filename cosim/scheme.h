@@ -46,8 +46,8 @@ bough_scheme_options bough_scheme_options_default(void);
 // The scheme of that name; NULL when unknown.
 const bough_scheme *bough_scheme_find(const char *name);
 
-// Builds the working data of a coupling and creates the scheme that the options name. BOUGH_INVALID
-// when there is none of that name or its options do not fit.
+// Builds the working data of a coupling and creates the scheme that the options name, one of the
+// table. BOUGH_INVALID when it does not suit the assembly.
 bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assembly,
                                  const bough_scheme_options *options, bough_pool *pool,
                                  bough_coupling **coupling);

@@ -5,17 +5,11 @@
 #include "cosim/scheme.h"
 #include "cosim/sequence.h"
 
-static bough_status create(bough_coupling *c, bough_arena *arena) {
-    (void)arena;
-    if (c->options.order >= 0 && c->options.order < BOUGH_HISTORY) return bough_ok();
-    return bough_fail(BOUGH_INVALID, "extrapolated coupling: order is %d, must be 0, 1 or 2",
-                      c->options.order);
-}
-
 static bough_status create_held(bough_coupling *c, bough_arena *arena) {
+    (void)arena;
     c->options.order = 0;
     c->options.parallel = false;
-    return create(c, arena);
+    return bough_ok();
 }
 
 static bough_status step_parallel(bough_coupling *c) {
@@ -54,7 +48,6 @@ const bough_scheme bough_scheme_extrapolated = {
     .reads = BOUGH_READS_ORDER,
     .explicit_forces = true,
     .judged = true,
-    .create = create,
     .step = step,
     .defect_order = defect_order,
 };

@@ -2,7 +2,10 @@
 
 #include "cosim/port.h"
 
+#include <assert.h>
+
 void bough_sequence_extrapolate(bough_coupling *c, int member, int j, int degree) {
+    assert(degree >= 0 && degree < BOUGH_HISTORY);
     int n_point = degree < c->n_past ? degree + 1 : c->n_past;
     const double *value[BOUGH_HISTORY];
     for (int p = 0; p < n_point; p++) value[p] = c->past[p] + j;

@@ -1,5 +1,6 @@
 #include "flexbody/modal_chain.h"
 
+#include <assert.h>
 #include <string.h>
 
 // -- build ----------------------------------------------------------------------------------------
@@ -10,10 +11,7 @@ bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, in
     bough_modal_piece *piece = bough_arena_take(arena, (size_t)pieces * sizeof *piece);
     int *offset = bough_arena_take(arena, (size_t)pieces * sizeof *offset);
     bough_rod_model *rod = NULL;
-    if (pieces > def->n_segment) {
-        return bough_fail(BOUGH_INVALID, "%s: %d pieces of %d segments; give it more segments",
-                          def->name, pieces, def->n_segment);
-    }
+    assert(pieces <= def->n_segment);
     bough_status status = bough_rod_create(arena, def, &rod);
     if (!bough_is_ok(&status)) return status;
     *m = (bough_modal_model){rod->name, rod, pieces, piece, offset, 0};

@@ -32,8 +32,7 @@ typedef struct bough_modal_chain {
     bough_modal_frame_change *change; // of each piece's frame and the last tip's (n_piece + 1)
 } bough_modal_chain;
 
-// Cuts the rod into `pieces` of equally many segments, as far as they go. BOUGH_INVALID when there
-// are fewer segments than pieces.
+// Cuts the rod into `pieces` of equally many segments, as far as they go.
 bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, int pieces,
                                 bough_modal_options options, bough_modal_model **model);
 

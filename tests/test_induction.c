@@ -17,16 +17,14 @@ static int set_up(void **state) {
     airfoils *a = test_malloc(sizeof *a);
     a->arena = bough_arena_create();
     for (int i = 0; i < 8; i++) {
-        bough_status status = bough_polar_build(a->arena, nrel5mw_polars + i, a->polar + i);
-        assert_int_equal(status.code, BOUGH_OK);
+        bough_polar_build(a->arena, nrel5mw_polars + i, a->polar + i);
     }
     for (int i = 0; i < PLATE; i++) {
         plate_row[i][0] = -180 + 0.1 * i;
         plate_row[i][1] = 2 * BOUGH_PI * sin(plate_row[i][0] * BOUGH_PI / 180);
     }
     bough_polar_def def = {"plate", PLATE, &plate_row[0][0]};
-    bough_status status = bough_polar_build(a->arena, &def, &a->plate);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_polar_build(a->arena, &def, &a->plate);
     *state = a;
     return 0;
 }

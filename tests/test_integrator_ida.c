@@ -173,18 +173,6 @@ static void refused_rate_is_retried(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void bad_tolerance_is_refused(void **state) {
-    (void)state;
-    oscillator o = ordinary();
-    bough_arena *arena = bough_arena_create();
-    bough_ode ode = {"oscillator", 2, unit, &o, derivative, NULL, linearise, factor, solve, NULL};
-    bough_integrator_options options = {.kind = BOUGH_IDA};
-    bough_integrator ida;
-    bough_status status = bough_integrator_create(arena, &ode, &options, &ida);
-    assert_int_equal(status.code, BOUGH_INVALID);
-    bough_arena_destroy(arena);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(error_follows_the_tolerance),
@@ -192,7 +180,6 @@ int main(void) {
         cmocka_unit_test(restarting_repeats_bit_by_bit),
         cmocka_unit_test(failures_name_body_time_and_cure),
         cmocka_unit_test(refused_rate_is_retried),
-        cmocka_unit_test(bad_tolerance_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

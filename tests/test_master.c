@@ -67,30 +67,6 @@ static void loads_are_sampled_at_their_period(void **state) {
     bough_two_mass_destroy(&m);
 }
 
-static void check_refused(bough_master_def def, const char *part) {
-    bough_two_mass m = bough_two_mass_default();
-    bough_status status = bough_two_mass_build(&m, def);
-    assert_int_equal(status.code, BOUGH_INVALID);
-    assert_non_null(strstr(status.message, part));
-    bough_two_mass_destroy(&m);
-}
-
-static void invalid_definitions_are_refused(void **state) {
-    (void)state;
-    bough_sampled_load load = {.period = .15, .sample = sample};
-    bough_master_def def = definition(.1, 1);
-    def.load = &load;
-    def.n_load = 1;
-    check_refused(def, "multiple");
-    check_refused(definition(0, 1), "positive");
-    def = definition(.1, 1);
-    def.scheme.name = "magic";
-    check_refused(def, "magic");
-    def.scheme.name = "extrapolated";
-    def.scheme.order = 3;
-    check_refused(def, "order");
-}
-
 // -- one leader, three followers ------------------------------------------------------------------
 
 enum { N_FOLLOWER = 3 };
@@ -206,7 +182,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_end_on_events_and_on_the_duration),
         cmocka_unit_test(loads_are_sampled_at_their_period),
-        cmocka_unit_test(invalid_definitions_are_refused),
         cmocka_unit_test(threads_do_not_change_a_bit),
         cmocka_unit_test(schemes_converge_to_the_monolithic_run),
         cmocka_unit_test(algebraic_loops_are_refused),

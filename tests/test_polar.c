@@ -8,8 +8,7 @@ static const double degree = BOUGH_PI / 180;
 
 static bough_polar build(bough_arena *arena, const bough_polar_def *def) {
     bough_polar polar;
-    bough_status status = bough_polar_build(arena, def, &polar);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_polar_build(arena, def, &polar);
     return polar;
 }
 
@@ -100,8 +99,7 @@ static void smooth_polars_are_monotone_and_smooth(void **state) {
     for (int p = 0; p < 8; p++) {
         const bough_polar_def *def = nrel5mw_polars + p;
         bough_polar polar = build(arena, def);
-        bough_status status = bough_polar_smoothen(arena, &polar);
-        assert_int_equal(status.code, BOUGH_OK);
+        bough_polar_smoothen(arena, &polar);
         for (int i = 0; i + 1 < def->n; i++) {
             const double *r = def->row + 4 * i;
             double a = r[0] * degree, b = r[4] * degree, h = 1e-7;
@@ -145,8 +143,7 @@ static void blends_are_exact(void **state) {
     for (int i = 0; i < 3; i++) {
         const bough_polar *other = i == 1 ? &c : &b;
         double share = i == 2 ? 1 : 0.3;
-        bough_status status = bough_polar_blend(arena, &a, other, share, &mixed);
-        assert_int_equal(status.code, BOUGH_OK);
+        bough_polar_blend(arena, &a, other, share, &mixed);
         for (double x = -3.5; x < 3.5; x += 0.0317) {
             bough_coefficients p = bough_polar_at(&a, x), q = bough_polar_at(other, x);
             bough_coefficients m = bough_polar_at(&mixed, x);
@@ -154,21 +151,6 @@ static void blends_are_exact(void **state) {
             check_near(m.drag, (1 - share) * p.drag + share * q.drag, 1e-9, 1e-9);
             check_near(m.moment, (1 - share) * p.moment + share * q.moment, 1e-9, 1e-9);
         }
-    }
-    bough_arena_destroy(arena);
-}
-
-static void bad_tables_are_refused(void **state) {
-    (void)state;
-    const double backward[] = {0, 1, 0, 0, -1, 1, 0, 0}, wide[] = {-180, 1, 0, 0, 181, 1, 0, 0};
-    const double absent[] = {0, (double)NAN, 0, 0};
-    const bough_polar_def bad[] = {
-        {"empty", 0, backward}, {"backward", 2, backward}, {"wide", 2, wide}, {"nan", 1, absent}};
-    bough_arena *arena = bough_arena_create();
-    bough_polar polar;
-    for (int i = 0; i < 4; i++) {
-        bough_status status = bough_polar_build(arena, bad + i, &polar);
-        assert_int_equal(status.code, BOUGH_INVALID);
     }
     bough_arena_destroy(arena);
 }
@@ -193,12 +175,10 @@ static void gaps_are_known(void **state) {
             assert_false(bough_polar_outside_table(&whole, turned + d * degree));
         }
     }
-    bough_status status = bough_polar_blend(arena, &a, &b, 0.5, &mixed);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_polar_blend(arena, &a, &b, 0.5, &mixed);
     check_near(mixed.low, -20 * degree, 1e-12, 0);
     check_near(mixed.high, 15 * degree, 1e-12, 0);
-    status = bough_polar_blend(arena, &a, &whole, 0.5, &mixed);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_polar_blend(arena, &a, &whole, 0.5, &mixed);
     check_near(mixed.high, 25 * degree, 1e-12, 0);
     bough_arena_destroy(arena);
 }
@@ -209,7 +189,7 @@ int main(void) {
         cmocka_unit_test(turns_repeat),           cmocka_unit_test(any_angle_has_an_answer),
         cmocka_unit_test(gap_is_bridged),
         cmocka_unit_test(smooth_polars_are_monotone_and_smooth),
-        cmocka_unit_test(blends_are_exact),       cmocka_unit_test(bad_tables_are_refused),
+        cmocka_unit_test(blends_are_exact),
         cmocka_unit_test(gaps_are_known),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -354,23 +354,6 @@ static void iteration_that_diverges_says_so(void **state) {
     bough_two_mass_destroy(&m);
 }
 
-static void iterated_options_are_checked(void **state) {
-    (void)state;
-    for (int k = 0; k < 5; k++) {
-        bough_two_mass m = bough_two_mass_default();
-        bough_master_def def = iterated(BOUGH_ACCELERATE_AITKEN, .02);
-        if (k == 0) def.scheme.order = 3;
-        if (k == 1) def.scheme.tolerance = 0;
-        if (k == 2) def.scheme.iterations = 0;
-        if (k == 3) def.scheme.relaxation = 2;
-        if (k == 4) def.scheme.accelerator = BOUGH_ACCELERATE_NEWTON;
-        if (k == 4) def.scheme.reversed = true;
-        bough_status status = bough_two_mass_build(&m, def);
-        assert_int_equal(status.code, BOUGH_INVALID);
-        bough_two_mass_destroy(&m);
-    }
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exact_solution_is_the_published_one),
@@ -393,7 +376,6 @@ int main(void) {
         cmocka_unit_test(iterated_takes_a_light_interface_body),
         cmocka_unit_test(converged_but_unstable_is_warned_of),
         cmocka_unit_test(iteration_that_diverges_says_so),
-        cmocka_unit_test(iterated_options_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

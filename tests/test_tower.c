@@ -10,8 +10,7 @@ static bough_tower build(bough_arena *arena, bough_vec3 base) {
     static const double height[] = {0, 87.6}, diameter[] = {6, 3.87};
     const bough_tower_def def = {.base = base, .n = 2, .height = height, .diameter = diameter};
     bough_tower tower;
-    bough_status status = bough_tower_build(arena, &def, &tower);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_tower_build(arena, &def, &tower);
     return tower;
 }
 
@@ -78,8 +77,7 @@ static bough_tower build_kind(bough_arena *arena, bough_tower_influence influenc
                                  .influence = influence,
                                  .shadow = shadow};
     bough_tower tower;
-    bough_status status = bough_tower_build(arena, &def, &tower);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_tower_build(arena, &def, &tower);
     return tower;
 }
 
@@ -93,12 +91,10 @@ static void bak_matches_reference(void **state) {
                            .diameter = diameter,
                            .influence = BOUGH_TOWER_BAK};
     bough_tower tower;
-    bough_status status = bough_tower_build(arena, &def, &tower);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_tower_build(arena, &def, &tower);
     check_near(wind_at_blade(&tower, BOUGH_PI, 52.75).x, 6.290952, 1e-6, 0);
     def.drag = drag; // without drag only the shift by a tenth of the radius is left
-    status = bough_tower_build(arena, &def, &tower);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_tower_build(arena, &def, &tower);
     double x = -5.0191 / (5.0943 / 2) + 0.1;
     check_near(wind_at_blade(&tower, BOUGH_PI, 52.75).x, 10 * (1 - 1 / (x * x)), 1e-4, 0);
     bough_arena_destroy(arena);
@@ -167,8 +163,7 @@ static void drag_is_across_the_axis(void **state) {
     const bough_tower_def def = {
         .n = 2, .height = height, .diameter = diameter, .drag = drag, .base = {0, 0, 10}};
     bough_tower tower;
-    bough_status status = bough_tower_build(arena, &def, &tower);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_tower_build(arena, &def, &tower);
     bough_vec3 axis = bough_v3(sin(0.1), 0, cos(0.1));
     bough_vec3 wind = bough_axpy(7, axis, bough_v3(0, 9, 0));
     bough_vec3 f = bough_tower_drag(&tower, 1.2, bough_v3(1, 2, 60), axis, wind);
@@ -182,25 +177,8 @@ static void drag_is_across_the_axis(void **state) {
 static void no_tower_leaves_the_wind(void **state) {
     (void)state;
     bough_tower tower;
-    bough_status status = bough_tower_build(NULL, &(bough_tower_def){0}, &tower);
-    assert_int_equal(status.code, BOUGH_OK);
+    bough_tower_build(NULL, &(bough_tower_def){0}, &tower);
     check_near(bough_tower_disturbed(&tower, bough_v3(-1, 0, 5), bough_v3(7, 0, 0)).x, 7, 0, 0);
-}
-
-static void bad_tables_are_refused(void **state) {
-    (void)state;
-    static const double up[] = {0, 10}, down[] = {10, 0}, nothing[] = {1, 0}, negative[] = {1, -1};
-    const bough_tower_def bad[] = {{.n = 1, .height = up, .diameter = up},
-                                   {.n = 2, .height = down, .diameter = up},
-                                   {.n = 2, .height = up, .diameter = nothing},
-                                   {.n = 2, .height = up, .diameter = up, .drag = negative}};
-    bough_arena *arena = bough_arena_create();
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        bough_tower tower;
-        bough_status status = bough_tower_build(arena, bad + i, &tower);
-        assert_int_equal(status.code, BOUGH_INVALID);
-    }
-    bough_arena_destroy(arena);
 }
 
 int main(void) {
@@ -213,7 +191,6 @@ int main(void) {
         cmocka_unit_test(inside_is_finite),
         cmocka_unit_test(drag_is_across_the_axis),
         cmocka_unit_test(no_tower_leaves_the_wind),
-        cmocka_unit_test(bad_tables_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

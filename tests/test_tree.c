@@ -263,7 +263,7 @@ static void universal_joint_swings_as_a_spherical_pendulum(void **state) {
 // 8 N m falling to 0 from 1 s to 3 s, on J = 4.
 static void tabulated_joint_load_spins_up(void **state) {
     (void)state;
-    const double times[] = {1, 3}, values[] = {8, 0}, back[] = {3, 1};
+    const double times[] = {1, 3}, values[] = {8, 0};
     bough_body_def b = bough_body_def_default();
     b.name = "rotor", b.kind = BOUGH_JOINT_REVOLUTE, b.inertia = diagonal(1, 1, 4);
     bough_joint_load_def load = {.body = 0, .n = 2, .times = times, .values = values};
@@ -277,11 +277,6 @@ static void tabulated_joint_load_spins_up(void **state) {
     advance(&f, 4, true);
     check_near(f.m->state[1], 2 + 2, 1e-6, 0);
     bough_arena_destroy(f.arena);
-    load.times = back;
-    bough_arena *arena = bough_arena_create();
-    bough_tree *tree;
-    assert_int_equal(bough_tree_create(arena, &def, &tree).code, BOUGH_INVALID);
-    bough_arena_destroy(arena);
 }
 
 // -- topology --------------------------------------------------------------------------------
@@ -402,27 +397,10 @@ static void bad_defs_are_named(void **state) {
                            random_body(&seed, "two", 0, BOUGH_JOINT_SPHERICAL)};
     bough_body_def good[2] = {b[0], b[1]};
     assert_int_equal(create_code(b, 2, ""), BOUGH_OK);
-    b[1].parent = 2;
+    b[1].joint.position.y = (double)INFINITY;
     assert_int_equal(create_code(b, 2, "'two'"), BOUGH_INVALID);
-    b[1] = good[1], b[0].parent = 1;
-    assert_int_equal(create_code(b, 2, "cycle"), BOUGH_INVALID);
-    b[0] = good[0], b[1].mass = 0, b[1].inertia = diagonal(0, 0, 0);
+    b[1] = good[1], b[1].mass = 0, b[1].inertia = diagonal(0, 0, 0);
     assert_int_equal(create_code(b, 2, "'two'"), BOUGH_INVALID);
-    b[1] = good[1], b[0].axis = bough_v3(0, 0, 0);
-    assert_int_equal(create_code(b, 2, "axis"), BOUGH_INVALID);
-    b[0] = good[0], b[1].mass = NAN;
-    assert_int_equal(create_code(b, 2, "'two'"), BOUGH_INVALID);
-    b[1] = good[1], b[1].joint.rotation.c1.x += 0.1;
-    assert_int_equal(create_code(b, 2, "rotation"), BOUGH_INVALID);
-    b[0].kind = BOUGH_JOINT_UNIVERSAL, b[0].second_axis = bough_v3(1, 1, 1);
-    b[0].axis = bough_v3(1, 1, 0);
-    assert_int_equal(create_code(b, 2, "normal"), BOUGH_INVALID);
-    b[0] = good[0];
-    b[0].spring = (bough_joint_spring){.low = 1, .high = 1, .stop_stiffness = 1};
-    assert_int_equal(create_code(b, 2, "stops"), BOUGH_INVALID);
-    b[0] = good[0], b[1].spring.stiffness = 1;
-    assert_int_equal(create_code(b, 2, "spherical"), BOUGH_INVALID);
-    b[1] = good[1];
     // a point mass on its own axis, and a free point mass away from its origin
     b[1] = good[1], b[1].inertia = diagonal(0, 0, 0);
     b[1].kind = BOUGH_JOINT_REVOLUTE, b[1].mass_centre = b[1].axis;

@@ -135,21 +135,11 @@ static void wrench_and_twist_are_conjugate(void **context) {
     bough_arena_destroy(f.arena);
 }
 
-static void end_needs_a_free_joint(void **context) {
-    (void)context;
-    fixture f = {.arena = bough_arena_create()};
-    bough_status status = create(&f, BOUGH_JOINT_SPHERICAL);
-    assert_int_equal(status.code, BOUGH_INVALID);
-    assert_non_null(strstr(status.message, "end 'end of a rod': it needs a body on a free joint"));
-    bough_arena_destroy(f.arena);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(tree_with_an_end_fulfils_the_contract),
         cmocka_unit_test(outputs_are_the_motion_in_the_frame_of_the_flexible_body),
         cmocka_unit_test(wrench_and_twist_are_conjugate),
-        cmocka_unit_test(end_needs_a_free_joint),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -90,23 +90,6 @@ static void table_is_linear_between_and_constant_outside(void **state) {
     bough_arena_destroy(arena);
 }
 
-static void bad_defs_are_refused(void **state) {
-    (void)state;
-    static const double still[] = {0, 1, 1}, speed[] = {5, 6, 7};
-    const bough_wind_def bad[] = {
-        {.n_time = 3, .time = still, .speed_at_time = speed},
-        {.shear = BOUGH_WIND_POWER},
-        {.shear = BOUGH_WIND_LOG, .reference_height = 10},
-        {.shear = BOUGH_WIND_LOG, .reference_height = 10, .roughness = 10},
-    };
-    bough_arena *arena = bough_arena_create();
-    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
-        bough_wind wind;
-        assert_int_equal(bough_wind_build(arena, bad + i, &wind).code, BOUGH_INVALID);
-    }
-    bough_arena_destroy(arena);
-}
-
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(default_is_calm),
@@ -115,7 +98,6 @@ int main(void) {
         cmocka_unit_test(shear_follows_logarithmic_law),
         cmocka_unit_test(direction_turns_the_horizontal_part),
         cmocka_unit_test(table_is_linear_between_and_constant_outside),
-        cmocka_unit_test(bad_defs_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -241,7 +241,7 @@ static const bough_key aero_keys[] = {
      .help = "parts of the blade element momentum theory"},
     {KEY(MAPPING, tower), .of = &tower_schema,
      .help = "influence of a vertical tower on the wind at the blades; default none"},
-    {KEY(NUMBER, hub_radius), UNIT(LENGTH), .range = ">= 0", .required = true, .example = "1.5 m",
+    {KEY(NUMBER, hub_radius), UNIT(LENGTH), .range = "> 0", .required = true, .example = "1.5 m",
      .help = "from the rotor axis to the blade roots"},
     {KEY(NUMBER, hub_drag_area), .range = ">= 0", .fallback = "0", .example = "5",
      .help = "drag coefficient times area of the hub, in m2; drag on the rotor"},

@@ -211,12 +211,11 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
     bough_rotor_def def = rotor_def(l, &t);
     status = bough_rotor_build(arena, &def, &l->rotor);
     if (bough_is_ok(&status)) status = check_reach(l);
-    for (int i = 0; i < 2 && bough_is_ok(&status); i++) {
-        status = bough_rotor_data_build(arena, l->rotor, &l->data[i]);
-    }
+    if (!bough_is_ok(&status)) return status;
+    for (int i = 0; i < 2; i++) bough_rotor_data_build(arena, l->rotor, &l->data[i]);
     l->data[1].memory = l->data[0].memory;
     bough_aero_link_renew(l);
-    if (bough_is_ok(&status)) *link = l;
+    *link = l;
     return status;
 }
 
