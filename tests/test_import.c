@@ -226,7 +226,7 @@ static void controller_libraries_and_wind_files_stay_in_place(void **context) {
     (void)context;
     char line[512];
     snprintf(line, sizeof line,
-             "5  VSContrl - library\n5  PCMode - library\n\"%s\"  DLL_FileName\n"
+             "5  VSContrl - library\n3  TPCOn\n5  PCMode - library\n\"%s\"  DLL_FileName\n"
              "\"parts\\in\"  DLL_InFile\n0  XContrl",
              BOUGH_SAMPLE_DISCON);
     const edit library = {"parts/servo.dat", "0   PCMode", line};
@@ -238,6 +238,7 @@ static void controller_libraries_and_wind_files_stay_in_place(void **context) {
     assert_string_equal(text(s, "control.kind"), "bladed");
     assert_string_equal(text(s, "control.library"), BOUGH_SAMPLE_DISCON);
     assert_string_equal(text(s, "bodies.4.joint.kind"), "revolute");
+    assert_true(list_says(&t, "TPCOn"));
     assert_string_equal(text(s, "aero.wind.kind"), "bts");
     assert_int_equal(text(s, "aero.wind.file")[0], '/');
     assert_non_null(strstr(text(s, "aero.wind.file"), "/parts/box.bts"));

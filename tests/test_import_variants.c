@@ -88,6 +88,27 @@ static void old_decks_name_two_files_alike(void **context) {
     done(&t);
 }
 
+// Each type's height is that of its own section.
+static void old_decks_name_heights_alike(void **context) {
+    (void)context;
+    const edit height = {"parts/wind.dat", "   0.2    PLexp          - (-)",
+                         "0.2 PLexp\n== Parameters for Uniform wind file ==\n"
+                         "\"" BOUGH_SOURCE_DIR "/tests/fuzz/corpus/wind/hub.wnd\" Filename\n 33 RefHt\n 44 RefLength\n"
+                         "== Parameters for Binary TurbSim Full-Field files ==\n\"box.bts\"  Filename\n"
+                         "== Parameters for HAWC-format binary files ==\n\"u.bin\" FileName_u\n\"v.bin\" "
+                         "FileName_v\n\"w.bin\" FileName_w\n8 nx\n8 ny\n8 nz\n3 dx\n3 dy\n3 dz\n55 RefHt\n"
+                         "9 URef\n0.1 PLExp"};
+    trial t = import_with(&(edit){"parts/wind.dat", "1    WindType", "2    WindType"}, &height);
+    assert_string_equal(t.status.message, "");
+    assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.wind.reference_height"), "33 m");
+    assert_string_equal(text(read_file(&t, "scene.yaml"), "aero.wind.reference_length"), "44 m");
+    done(&t);
+    t = import_with(&(edit){"parts/wind.dat", "1    WindType", "5    WindType"}, &height);
+    assert_string_equal(t.status.message, "");
+    assert_true(list_says(&t, "the wind file is missing"));
+    done(&t);
+}
+
 static void offshore_turbines_stand_on_their_base(void **context) {
     (void)context;
     const edit water = {"main.fst", "0    CompHydro", "1    CompHydro"};
@@ -354,6 +375,10 @@ static void induction_generators_are_lines(void **context) {
     check_near(low, omega, 1e-6, 0);
     check_near(line, torque, 0.01, 0);
     done(&t);
+    t = import(&(edit){"parts/servo.dat", "1   VSContrl", "3 GenModel\n0   VSContrl"});
+    assert_string_equal(t.status.message, "");
+    assert_true(list_says(&t, "the user's generator of GenModel 3"));
+    done(&t);
 }
 
 // What ServoDyn also steers is on the list.
@@ -397,6 +422,7 @@ int main(void) {
         cmocka_unit_test(missing_controller_leaves_the_speed),
         cmocka_unit_test(missing_wind_leaves_a_steady_one),
         cmocka_unit_test(old_decks_name_two_files_alike),
+        cmocka_unit_test(old_decks_name_heights_alike),
         cmocka_unit_test(offshore_turbines_stand_on_their_base),
         cmocka_unit_test(blade_elements_reach_root_and_tip),
         cmocka_unit_test(structures_reach_root_and_tip),

@@ -116,18 +116,14 @@ static bool has_no_value(const char *line) {
     return strncmp(line, "---", 3) == 0 || strncmp(line, "===", 3) == 0 || strchr("!#%", *line);
 }
 
-int bough_deck_line_from(const bough_deck *deck, int first, const char *names) {
+int bough_deck_line(const bough_deck *deck, const char *names) {
     char word[WORD];
-    for (int i = first; deck && i < deck->n; i++) {
+    for (int i = deck ? deck->first : 0; deck && i < deck->n; i++) {
         const char *at = deck->line[i];
         if (has_no_value(at) || !next_word(&at, word)) continue;
         if (next_word(&at, word) && is_one_of(word, names)) return i;
     }
     return -1;
-}
-
-int bough_deck_line(const bough_deck *deck, const char *names) {
-    return bough_deck_line_from(deck, 0, names);
 }
 
 int bough_deck_find(const bough_deck *deck, const char *words) {
@@ -137,6 +133,13 @@ int bough_deck_find(const bough_deck *deck, const char *words) {
         }
     }
     return -1;
+}
+
+bough_deck bough_deck_part(const bough_deck *deck, const char *words) {
+    bough_deck part = *deck;
+    int line = bough_deck_find(deck, words);
+    part.first = line < 0 ? 0 : line;
+    return part;
 }
 
 // The first word of the line of that name; its line, -1 after a failure.

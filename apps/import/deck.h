@@ -16,6 +16,7 @@ typedef struct bough_deck {
     const char *path;
     const char **line; // (n)
     int n;
+    int first; // where names are looked for
     bough_arena *arena;
     bough_status *status;
 } bough_deck;
@@ -29,8 +30,9 @@ bough_deck *bough_deck_open(bough_arena *arena, const char *path, bough_status *
 // The line [from 0] that has the name behind its value; -1: none.
 int bough_deck_line(const bough_deck *deck, const char *names);
 
-// The same from a line on.
-int bough_deck_line_from(const bough_deck *deck, int first, const char *names);
+// The deck from the line on that contains the words, for names that it has several times; the whole deck
+// where there is no such line.
+bough_deck bough_deck_part(const bough_deck *deck, const char *words);
 
 // The value of that name.
 double bough_deck_number(const bough_deck *deck, const char *names);

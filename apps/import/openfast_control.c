@@ -37,7 +37,8 @@ double bough_openfast_rotor_speed(const bough_openfast *o) {
     bool free = bough_deck_flag_or(o->elasto, "GenDOF", true);
     if (!free || !o->servo) return speed;
     if (torque_mode(o) == SIMPLE) fast = bough_deck_number(o->servo, "VS_RtGnSp") * rpm;
-    if (torque_mode(o) == NONE) fast = synchronous_speed(o);
+    int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
+    if (torque_mode(o) == NONE && (model == SIMPLE || model == THEVENIN)) fast = synchronous_speed(o);
     speed = fmax(speed, ratio > 0 && isfinite(fast) ? fabs(fast) / ratio : 0);
     return speed > 0 ? speed : usual_tip / bough_deck_number(o->elasto, "TipRad");
 }
@@ -261,6 +262,9 @@ static void put_library(bough_openfast *o) {
         bough_import_path(file, input);
     }
     fputc('\n', file);
+    if (o->servo && bough_deck_number_or(o->servo, "TPCOn", 0) > 0) {
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "TPCOn: the library controls the pitch from the start");
+    }
     double asked = o->servo ? bough_deck_number_or(o->servo, "DLL_DT", step) : step;
     if (fabs(asked - step) > 1e-9) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "DLL_DT %g s: the library is called every "

@@ -10,14 +10,19 @@ enum { STEADY = 1, UNIFORM, TURBSIM, BLADED, HAWC, NATIVE_BLADED = 7 };
 
 // -- which file -----------------------------------------------------------------------------------
 
-// The line that names the file of a type; -1: none. Old decks have the name 'Filename' twice.
+// The section of a type: before version 3.1 sections share the names of their lines.
+static bough_deck section_of(const bough_deck *w, int type) {
+    static const char *const title[] = {[UNIFORM] = "Parameters for Uniform", [TURBSIM] = "Parameters for Binary Turb",
+                                        [BLADED] = "Parameters for Binary Bladed", [HAWC] = "Parameters for HAWC"};
+    return bough_deck_part(w, title[type]);
+}
+
+// The line that names the file of a type; -1: none.
 static int file_line(const bough_deck *w, int type) {
-    if (type == UNIFORM) return bough_deck_line(w, "FileName_Uni|Filename");
-    if (type == TURBSIM) {
-        int line = bough_deck_line(w, "FileName_BTS"), part = bough_deck_find(w, "Parameters for Binary");
-        return line >= 0 || part < 0 ? line : bough_deck_line_from(w, part, "Filename");
-    }
-    return bough_deck_line(w, type == HAWC ? "FileName_u" : "FileNameRoot|FilenameRoot");
+    static const char *const name[] = {[UNIFORM] = "FileName_Uni|Filename", [TURBSIM] = "FileName_BTS|Filename",
+                                       [BLADED] = "FileNameRoot|FilenameRoot", [HAWC] = "FileName_u"};
+    bough_deck section = section_of(w, type);
+    return bough_deck_line(&section, name[type]);
 }
 
 // -- what is written ------------------------------------------------------------------------------
@@ -29,8 +34,8 @@ static double hub_height(const bough_openfast *o) {
 }
 
 // The number of a name above zero, else the fallback.
-static double positive(const bough_openfast *o, const char *names, double fallback) {
-    double value = o->inflow ? bough_deck_number_or(o->inflow, names, fallback) : fallback;
+static double positive(const bough_deck *w, const char *names, double fallback) {
+    double value = w ? bough_deck_number_or(w, names, fallback) : fallback;
     return value > 0 ? value : fallback;
 }
 
@@ -40,14 +45,14 @@ static void put_steady(bough_openfast *o, double speed) {
     fprintf(file, "  wind: {kind: %s, speed: %.10g m/s", power > 0 ? "power" : "uniform", speed);
     if (power > 0) {
         fprintf(file, ", exponent: %.10g, reference_height: %.10g m", fmin(power, 1),
-                positive(o, "RefHt", hub_height(o)));
+                positive(o->inflow, "RefHt", hub_height(o)));
     }
 }
 
 // A steady wind in place of what cannot be had; the scene and the list say so.
 static void put_stand_in(bough_openfast *o, const char *why) {
     const double usual = 8; // [m/s]
-    double speed = positive(o, "HWindSpeed", positive(o, "URef", usual));
+    double speed = positive(o->inflow, "HWindSpeed", positive(o->inflow, "URef", usual));
     fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
             "  # This scene lacks its wind, which --wind FILE of the import gives:\n  # %s\n", why);
     put_steady(o, speed);
@@ -62,17 +67,17 @@ static bough_status read_hawc(bough_openfast *o, bough_wind_box *box) {
     static const char *const names[] = {"FileName_u", "FileName_v", "FileName_w"};
     static const char *const factor[] = {"SFx", "SFy", "SFz"};
     static const char *const sigma[] = {"SigmaFx", "SigmaFy", "SigmaFz"};
-    const bough_deck *w = o->inflow;
+    bough_deck section = section_of(o->inflow, HAWC), *w = &section;
     bough_hawc_def d = {.nx = bough_deck_whole(w, "nx", 2, 1 << 24),
                         .ny = bough_deck_whole(w, "ny", 2, 4096),
                         .nz = bough_deck_whole(w, "nz", 2, 4096),
                         .dx = bough_deck_number(w, "dx"),
                         .dy = bough_deck_number(w, "dy"),
                         .dz = bough_deck_number(w, "dz"),
-                        .height = bough_deck_number(w, "RefHt_Hawc|RefHt_HAWC"),
+                        .height = bough_deck_number(w, "RefHt_Hawc|RefHt"),
                         .mean = bough_deck_number(w, "URef"),
                         .profile = bough_deck_whole_or(w, "WindProfile", 0),
-                        .exponent = bough_deck_number_or(w, "PLExp_Hawc|PLExp_HAWC", 0),
+                        .exponent = bough_deck_number_or(w, "PLExp_Hawc|PLExp", 0),
                         .roughness = bough_deck_number_or(w, "Z0", 0),
                         .scaling = bough_deck_whole_or(w, "ScaleMethod", 0)};
     for (int c = 0; c < 3; c++) {
@@ -95,8 +100,11 @@ static void take_status(bough_openfast *o, bough_status status) {
 }
 
 static void put_file(bough_openfast *o, bough_wind_form form, const char *path) {
-    take_status(o, bough_wind_given(&o->draft, form, path, positive(o, "RefHt_Uni|RefHt", hub_height(o)),
-                                    positive(o, "RefLength", rotor_diameter(o))));
+    bough_deck uniform = {0};
+    if (o->inflow) uniform = section_of(o->inflow, UNIFORM);
+    const bough_deck *w = o->inflow ? &uniform : NULL;
+    take_status(o, bough_wind_given(&o->draft, form, path, positive(w, "RefHt_Uni|RefHt", hub_height(o)),
+                                    positive(w, "RefLength", rotor_diameter(o))));
 }
 
 static void put_hawc(bough_openfast *o, const char *path) {
