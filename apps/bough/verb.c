@@ -25,7 +25,6 @@ bough_status bough_verb_unknown(const char *what, const char *word, const char *
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%s", i == 0 ? "" : ", ", known[i]);
     }
-    const char *near = bough_nearest(word, known, n);
-    return bough_fail(BOUGH_INVALID, "unknown %s '%.80s'%s%s%s; known: %s", what, word,
-                      near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "", list);
+    return bough_fail(BOUGH_INVALID, "unknown %s '%.80s'%s; known: %s", what, word,
+                      bough_suggest(word, known, n).text, list);
 }

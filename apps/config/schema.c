@@ -52,10 +52,8 @@ static void unknown_key(bough_schema_reader *r, const bough_schema *schema, cons
     for (; n < schema->n_key && n < 64; n++)
         names[n] = schema->key[n].name;
     if (r->errors->dropped > 0) n = 0; // a hostile file: spelling costs time
-    const char *near = bough_nearest(name, names, n);
-    bough_schema_error(r, at, "", "unknown key %s%s%s%s", bough_node_shown(&word, shown),
-                       near == NULL ? "" : " (did you mean '", near == NULL ? "" : near,
-                       near == NULL ? "" : "'?)");
+    bough_schema_error(r, at, "", "unknown key %s%s", bough_node_shown(&word, shown),
+                       bough_suggest(name, names, n).text);
 }
 
 // The heads of a compact table: key names with the unit of their plain numbers, "twist deg".

@@ -116,6 +116,12 @@ bool bough_whole_number(const char *text, int *value);
 // The candidate nearest to a misspelt word, NULL when none is near. Candidates may be NULL.
 const char *bough_nearest(const char *word, const char *const *candidates, int n);
 
+// The same for the end of a message: " (did you mean 'hub'?)", or "" when none is near.
+typedef struct bough_suggestion {
+    char text[64];
+} bough_suggestion;
+bough_suggestion bough_suggest(const char *word, const char *const *candidates, int n);
+
 // What a node holds, for messages: "'12 x'", "a list", "nothing".
 const char *bough_node_shown(const bough_node *node, char buffer[64]);
 

@@ -174,11 +174,9 @@ static void read_choice(bough_schema_reader *r, const bough_key *key, const boug
         snprintf(list + used, sizeof list - used, "%s%s", n == 0 ? "" : ", ", choices[n]);
     }
     *field = -1;
-    const char *near =
-        node->kind == BOUGH_SCALAR ? bough_nearest(node->text, choices, n) : NULL;
-    bough_schema_error(r, node, "", "expected %s%s, got %s%s%s%s", n > 1 ? "one of " : "", list,
-                       bough_node_shown(node, shown), near == NULL ? "" : " (did you mean '",
-                       near == NULL ? "" : near, near == NULL ? "" : "'?)");
+    const char *word = node->kind == BOUGH_SCALAR ? node->text : "";
+    bough_schema_error(r, node, "", "expected %s%s, got %s%s", n > 1 ? "one of " : "", list,
+                       bough_node_shown(node, shown), bough_suggest(word, choices, n).text);
 }
 
 static void read_boolean(bough_schema_reader *r, const bough_node *node, bool *field) {

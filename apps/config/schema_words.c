@@ -56,3 +56,10 @@ const char *bough_nearest(const char *word, const char *const *candidates, int n
     }
     return nearest;
 }
+
+bough_suggestion bough_suggest(const char *word, const char *const *candidates, int n) {
+    bough_suggestion s = {""};
+    const char *near = bough_nearest(word, candidates, n);
+    if (near) snprintf(s.text, sizeof s.text, " (did you mean '%s'?)", near);
+    return s;
+}

@@ -10,10 +10,12 @@ static const char *const usual_motion[BOUGH_SCENE_MOTION] = {"vx", "vy", "vz", "
                                                              "wz", "gx", "gy", "gz"};
 static const char *const usual_wrench[BOUGH_SCENE_WRENCH] = {"Fx", "Fy", "Fz", "Mx", "My", "Mz"};
 
-static const char *nearest(bough_schema_reader *r, const bough_fmu_description *d, const char *name) {
+static void unknown(bough_schema_reader *r, const bough_fmu_description *d, const bough_node *node,
+                    const char *key, const char *name) {
     const char **names = bough_arena_take(r->arena, (size_t)d->n_variable * sizeof *names);
     for (int k = 0; k < d->n_variable; k++) names[k] = d->variable[k].name;
-    return bough_nearest(name, names, d->n_variable);
+    bough_schema_error(r, node, key, "the FMU has no variable '%.60s' of type Float64%s", name,
+                       bough_suggest(name, names, d->n_variable).text);
 }
 
 // The variable of that name; NULL for "none" and after an error.
@@ -26,12 +28,8 @@ static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_
     const bough_fmu_variable *v = bough_fmu_find(d, name);
     const char *kind = causality == BOUGH_FMU_INPUT ? "input" : "output";
     if (!v) {
-        const char *near = nearest(r, d, name);
-        bough_schema_error(r, node, key, "the FMU has no variable '%.60s' of type Float64%s%s%s", name,
-                           near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
-        return NULL;
-    }
-    if (v->causality != causality) {
+        unknown(r, d, node, key, name);
+    } else if (v->causality != causality) {
         bough_schema_error(r, node, key, "the variable '%.60s' is no %s", name, kind);
     } else if (v->array) {
         bough_schema_error(r, node, key, "the variable '%.60s' is an array", name);

@@ -44,14 +44,14 @@ static int find_body(const bough_scene *s, const char *name) {
 }
 
 // Among the bodies, and the ground where a parent is named.
-static const char *nearest_body(bough_schema_reader *r, const bough_scene *s, const char *key,
-                                const char *name) {
-    if (r->errors->dropped > 0) return NULL; // a hostile file: spelling costs time
+static bough_suggestion suggest_body(bough_schema_reader *r, const bough_scene *s, const char *key,
+                                     const char *name) {
+    if (r->errors->dropped > 0) return (bough_suggestion){""}; // a hostile file: spelling costs time
     const char **names = bough_arena_take(r->arena, ((size_t)s->n_body + 1) * sizeof *names);
     for (int i = 0; i < s->n_body; i++)
         names[i] = s->body[i].name;
     names[s->n_body] = "ground";
-    return bough_nearest(name, names, s->n_body + (strcmp(key, "parent") == 0));
+    return bough_suggest(name, names, s->n_body + (strcmp(key, "parent") == 0));
 }
 
 int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node,
@@ -59,10 +59,8 @@ int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_no
     if (name == NULL) return BOUGH_UNRESOLVED;
     int index = find_body(s, name);
     if (index != BOUGH_UNRESOLVED) return index;
-    const char *near = nearest_body(r, s, key, name);
-    bough_schema_error(r, node, key, "there is no body '%.48s'%s%s%s", name,
-                       near == NULL ? "" : " (did you mean '", near == NULL ? "" : near,
-                       near == NULL ? "" : "'?)");
+    bough_schema_error(r, node, key, "there is no body '%.48s'%s", name,
+                       suggest_body(r, s, key, name).text);
     return BOUGH_UNRESOLVED;
 }
 

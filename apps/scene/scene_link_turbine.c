@@ -68,11 +68,8 @@ static int find_polar(bough_schema_reader *r, bough_scene *s, const char *const 
     bool compact = bough_node_find(s->aero.blade.node, "stations")->kind == BOUGH_MAPPING;
     bough_link_at(r, "stations%s[%d]", compact ? ".rows" : "", i);
     int n = r->errors->dropped > 0 ? 0 : polars->n_polar;
-    const char *near = bough_nearest(name, names, n);
     bough_schema_error(r, bough_link_value(s->aero.blade.station[i].node, key), key,
-                       "the polars file has no '%.48s'%s%s%s", name,
-                       near == NULL ? "" : " (did you mean '", near == NULL ? "" : near,
-                       near == NULL ? "" : "'?)");
+                       "the polars file has no '%.48s'%s", name, bough_suggest(name, names, n).text);
     return -1;
 }
 

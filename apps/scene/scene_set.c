@@ -82,15 +82,15 @@ static int named_item(const bough_node *node, const char *rest, char **end) {
     return -1;
 }
 
-// The name in a list that is nearest to a misspelt one; NULL when none is near.
-static const char *nearest_item(const replacement *s, const bough_node *node, const char *name) {
-    if (node == NULL || node->kind != BOUGH_SEQUENCE) return NULL;
+// The name in a list that is nearest to a misspelt one.
+static bough_suggestion suggest_item(const replacement *s, const bough_node *node, const char *name) {
+    if (node == NULL || node->kind != BOUGH_SEQUENCE) return (bough_suggestion){""};
     const char **names = bough_arena_take(s->arena, (size_t)node->n * sizeof *names);
     for (int i = 0; i < node->n; i++) {
         const bough_node *given = bough_node_find(node->value[i], "name");
         names[i] = given && given->kind == BOUGH_SCALAR ? given->text : NULL;
     }
-    return bough_nearest(name, names, node->n);
+    return bough_suggest(name, names, node->n);
 }
 
 // "[2]…" or "[blade1]…": an item that exists; "[2-4]…": several.
@@ -102,9 +102,8 @@ static bough_node *put_item(const replacement *s, const bough_node *node, const 
     if (is_name && named < 0) {
         char name[61];
         snprintf(name, sizeof name, "%.*s", (int)fmin(60, (double)(end - rest - 1)), rest + 1);
-        const char *near = nearest_item(s, node, name);
-        snprintf(text, sizeof text, "there is no item with 'name: %s' in that list%s%.40s%s", name,
-                 near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
+        snprintf(text, sizeof text, "there is no item with 'name: %s' in that list%s", name,
+                 suggest_item(s, node, name).text);
         return refuse(s, text);
     }
     long index = named >= 0                         ? named

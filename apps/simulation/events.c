@@ -25,9 +25,8 @@ static bough_status find_channel(bough_arena *arena, bough_events *e, int i) {
     int n = e->channels.count;
     const char **names = bough_arena_take(arena, (size_t)(n + 1) * sizeof *names);
     for (int k = 0; k < n; k++) names[k] = e->channels.channel[k].name;
-    const char *near = bough_nearest(name, names, n);
-    return bough_fail(BOUGH_INVALID, "control.events[%d].channel: the scene has no channel '%.80s'%s%s%s",
-                      i, name, near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
+    return bough_fail(BOUGH_INVALID, "control.events[%d].channel: the scene has no channel '%.80s'%s", i,
+                      name, bough_suggest(name, names, n).text);
 }
 
 static bough_status find_channels(bough_arena *arena, bough_events *e) {

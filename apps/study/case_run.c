@@ -3,6 +3,7 @@
 #include "apps/output/folder.h"
 #include "apps/output/recorder.h"
 #include "apps/simulation/run.h"
+#include "apps/study/study_run.h"
 
 #include <time.h>
 
@@ -46,19 +47,6 @@ static bough_status sample(void *self, double t) {
     return bough_ok();
 }
 
-static bough_status find_channels(bough_arena *arena, case_run *r) {
-    const bough_load_set *s = r->set;
-    r->column = bough_arena_take(arena, (size_t)s->n_channel * sizeof *r->column);
-    r->chosen = bough_arena_doubles(arena, (size_t)s->n_channel);
-    for (int i = 0; i < s->n_channel; i++) {
-        r->column[i] = bough_channels_find(&r->run.channels, s->channel[i]);
-        if (r->column[i] < 0) {
-            return bough_fail(BOUGH_FAILED, "this case has no channel '%.80s'", s->channel[i]);
-        }
-    }
-    return bough_ok();
-}
-
 static bough_status open_series(bough_arena *arena, const bough_load_case *c, const char *folder,
                                 case_run *r) {
     if (!r->set->series) return bough_ok();
@@ -86,7 +74,10 @@ static bough_status build(bough_arena *arena, const bough_load_case *c, const ch
     if (!bough_is_ok(&status)) return status;
     scene->simulation.threads = 1;
     status = bough_run_create(arena, scene, &r->run);
-    if (bough_is_ok(&status)) status = find_channels(arena, r);
+    const bough_load_set *s = r->set;
+    r->chosen = bough_arena_doubles(arena, (size_t)s->n_channel);
+    if (bough_is_ok(&status))
+        status = bough_study_columns(arena, &r->run.channels, s->n_channel, s->channel, &r->column);
     if (status.code == BOUGH_INVALID) status.code = BOUGH_FAILED;
     return bough_is_ok(&status) ? open_series(arena, c, folder, r) : status;
 }
@@ -111,11 +102,6 @@ static bough_status run_in(bough_arena *arena, void *self) {
     return bough_is_ok(&r->run.outcome) ? end : r->run.outcome;
 }
 
-// A run that fails says something about its settings; these outcomes do not.
-static bool ends_study(bough_code code) {
-    return code == BOUGH_INTERRUPTED || code == BOUGH_OUT_OF_MEMORY || code == BOUGH_IO;
-}
-
 bough_status bough_case_run(const bough_load_set *set, const bough_load_case *c, const char *folder,
                             bool (*stop)(void), bough_case_result *result) {
     double wall = bough_wall_clock(), cpu = cpu_clock();
@@ -128,7 +114,7 @@ bough_status bough_case_run(const bough_load_set *set, const bough_load_case *c,
     result->outcome = bough_arena_use(run_in, &r);
     result->cpu = cpu_clock() - cpu;
     result->wall = bough_wall_clock() - wall;
-    if (ends_study(result->outcome.code)) return result->outcome;
+    if (bough_study_ends(result->outcome.code)) return result->outcome;
     result->done = true;
     return bough_ok();
 }

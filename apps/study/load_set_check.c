@@ -15,41 +15,13 @@
 static const bough_node *origin(const bough_load_set *s, const bough_load_case *c,
                                 const bough_error *e) {
     const bough_load_group *g = &s->group[c->group];
-    for (int i = 0; i < g->grid.n; i++) {
-        bough_study_settings value = {.n = 1, .item = &g->grid.axis[i].value.item[c->index[i]]};
-        if (bough_study_concerned(&value, e)) return value.item->node;
-    }
-    const bough_study_setting *found = bough_study_concerned(&g->set, e);
+    const bough_study_setting *found = bough_study_concerned_value(&g->grid, c->index, e);
+    if (!found) found = bough_study_concerned(&g->set, e);
     if (!found) found = bough_study_concerned(&s->common, e);
     return found ? found->node : g->node;
 }
 
-static bool is_reported(const bough_errors *errors, const char *text) {
-    for (int i = 0; i < errors->n; i++)
-        if (strcmp(errors->item[i].text, text) == 0) return true;
-    return false;
-}
-
-// Once for all cases that have it.
-static void tell(const bough_load_set *s, const bough_load_case *c, const bough_error *e,
-                 bough_errors *errors) {
-    bough_node where = {.file = e->file, .line = e->line, .column = e->column};
-    if (e->line == 0 && strcmp(e->file, c->scene) != 0) where = *origin(s, c, e);
-    if (!is_reported(errors, e->text)) bough_errors_add(errors, &where, e->path, "%s", e->text);
-}
-
 // -- channels -------------------------------------------------------------------------------------
-
-static void unknown_channel(const bough_load_set *s, const char *name,
-                            const bough_channels *channels, bough_errors *errors) {
-    const char **names = bough_arena_take(errors->arena,
-                                          (size_t)(channels->count + 1) * sizeof *names);
-    for (int i = 0; i < channels->count; i++) names[i] = channels->channel[i].name;
-    const char *near = bough_nearest(name, names, channels->count);
-    bough_errors_add(errors, bough_node_find(s->node, "channels"), "channels",
-                     "the scene has no channel '%.80s'%s%s%s", name,
-                     near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
-}
 
 static void keep_channels(bough_arena *arena, bough_load_set *s, const bough_channels *channels) {
     bool all = s->n_wanted == 0;
@@ -74,7 +46,8 @@ static bough_status check_channels(bough_arena *arena, bough_arena *own, bough_l
     bool known = bough_is_ok(&status);
     for (int i = 0; i < s->n_wanted && known; i++) {
         if (bough_channels_find(&channels, s->wanted[i]) < 0) {
-            unknown_channel(s, s->wanted[i], &channels, errors);
+            bough_study_unknown_channel(&channels, s->wanted[i], bough_node_find(s->node, "channels"),
+                                        "channels", errors);
         }
     }
     if (known && errors->n == 0 && !s->channel) keep_channels(arena, s, &channels);
@@ -102,8 +75,8 @@ static void check_from(const bough_load_set *s, const bough_scene *scene, const 
     char text[200];
     snprintf(text, sizeof text, "%g s is not before the end, %g s, of %.100s", s->from,
              scene->simulation.duration, c->scene);
-    const bough_node *node = bough_node_find(s->node, "from");
-    if (!is_reported(errors, text)) bough_errors_add(errors, node, "from", "%s", text);
+    const bough_node *at = bough_node_find(s->node, "from");
+    bough_study_tell(&(bough_error){at->file, at->line, at->column, "from", text}, c->scene, at, errors);
 }
 
 static bough_status check_case(bough_arena *arena, bough_load_set *s, int i, uint64_t program,
@@ -113,7 +86,8 @@ static bough_status check_case(bough_arena *arena, bough_load_set *s, int i, uin
     bough_load_case *c = &s->cases[i];
     bough_scene *scene;
     bough_status status = bough_scene_read(own, c->scene, c->set, c->n_set, &found, &scene);
-    for (int k = 0; k < found.n; k++) tell(s, c, &found.item[k], errors);
+    for (int k = 0; k < found.n; k++)
+        bough_study_tell(&found.item[k], c->scene, origin(s, c, &found.item[k]), errors);
     if (status.code == BOUGH_INVALID) status = bough_ok();
     if (scene) {
         c->fingerprint = fingerprint(s, c, program, scene);

@@ -9,11 +9,7 @@
 
 static const char speed_key[] = "aero.wind.speed", scene_key[] = "scene";
 
-static int count_group(const bough_load_group *g) {
-    long n = 1;
-    for (int i = 0; i < g->grid.n && n <= BOUGH_MOST_CASES; i++) n *= g->grid.axis[i].value.n;
-    return n <= BOUGH_MOST_CASES ? (int)n : BOUGH_MOST_CASES + 1;
-}
+static int count_group(const bough_load_group *g) { return bough_grid_count(&g->grid, BOUGH_MOST_CASES); }
 
 static const bough_study_setting *value_of(const bough_load_group *g, const bough_load_case *c,
                                            int axis) {
@@ -43,10 +39,11 @@ static double share_of_speed(const bough_load_wind *wind, const bough_study_axis
     return share_below(wind, here + above / 2) - share_below(wind, here - below / 2);
 }
 
-static const bough_study_axis *speeds_of(const bough_load_group *g) {
-    for (int i = 0; i < g->grid.n; i++)
-        if (strcmp(g->grid.axis[i].key, speed_key) == 0) return &g->grid.axis[i];
-    return NULL;
+// The place of an axis of that key in the grid; −1: there is none.
+static int axis_of(const bough_load_group *g, const char *key) {
+    int i = g->grid.n - 1;
+    while (i >= 0 && strcmp(g->grid.axis[i].key, key) != 0) i--;
+    return i;
 }
 
 static bool are_rising(const bough_study_axis *axis) {
@@ -56,8 +53,8 @@ static bool are_rising(const bough_study_axis *axis) {
 }
 
 static void check_speeds(const bough_load_group *g, bough_errors *errors) {
-    const bough_study_axis *axis = speeds_of(g);
-    if (!(g->weibull > 0) || (axis && are_rising(axis))) return;
+    int speeds = axis_of(g, speed_key);
+    if (!(g->weibull > 0) || (speeds >= 0 && are_rising(&g->grid.axis[speeds]))) return;
     bough_errors_add(errors, g->node, "weibull",
                      "'%.80s' needs at least two rising speeds of '%s' in its grid", g->name,
                      speed_key);
@@ -65,13 +62,11 @@ static void check_speeds(const bough_load_group *g, bough_errors *errors) {
 
 static double share_of(const bough_load_set *s, const bough_load_case *c, int n_group) {
     const bough_load_group *g = &s->group[c->group];
+    int speeds = axis_of(g, speed_key);
     if (!(g->weibull > 0)) return 1. / n_group;
-    for (int i = 0; i < g->grid.n; i++) {
-        const bough_study_axis *axis = &g->grid.axis[i];
-        if (strcmp(axis->key, speed_key) != 0) continue;
-        return share_of_speed(&s->wind, axis, c->index[i]) * axis->value.n / n_group;
-    }
-    return 0;
+    if (speeds < 0) return 0;
+    const bough_study_axis *axis = &g->grid.axis[speeds];
+    return share_of_speed(&s->wind, axis, c->index[speeds]) * axis->value.n / n_group;
 }
 
 // -- cases ----------------------------------------------------------------------------------------
@@ -104,21 +99,10 @@ static const char *write_command(bough_arena *arena, const bough_load_case *c) {
     return bough_arena_string(arena, text);
 }
 
-static const char *write_settings(bough_arena *arena, const bough_load_group *g,
-                                  const bough_load_case *c) {
-    char text[1024] = "";
-    for (int i = 0; i < g->grid.n; i++) {
-        size_t used = strlen(text);
-        snprintf(text + used, sizeof text - used, "%s%s=%s", i ? ", " : "", g->grid.axis[i].label,
-                 value_of(g, c, i)->value);
-    }
-    return bough_arena_string(arena, text);
-}
-
 static const char *scene_of(const bough_load_set *s, const bough_load_case *c) {
     const bough_load_group *g = &s->group[c->group];
-    for (int i = 0; i < g->grid.n; i++)
-        if (strcmp(g->grid.axis[i].key, scene_key) == 0) return value_of(g, c, i)->value;
+    int scenes = axis_of(g, scene_key);
+    if (scenes >= 0) return value_of(g, c, scenes)->value;
     return g->scene_name ? g->scene_name : s->scene_name;
 }
 
@@ -130,10 +114,7 @@ static void make_case(bough_arena *arena, bough_load_set *s, int group, int numb
                       bough_load_case *c) {
     const bough_load_group *g = &s->group[group];
     c->group = group;
-    for (int i = g->grid.n - 1; i >= 0; i--) {
-        c->index[i] = number % g->grid.axis[i].value.n;
-        number /= g->grid.axis[i].value.n;
-    }
+    bough_grid_place(&g->grid, number, c->index);
     c->share = share_of(s, c, n_group);
     c->scene = bough_study_path(arena, s->file, scene_of(s, c));
     size_t most = (size_t)(s->common.n + g->set.n + g->grid.n) + 1;
@@ -143,14 +124,8 @@ static void make_case(bough_arena *arena, bough_load_set *s, int group, int numb
     for (int i = 0; i < g->grid.n; i++) {
         if (strcmp(g->grid.axis[i].key, scene_key) != 0) c->set[c->n_set++] = value_of(g, c, i)->set;
     }
-    c->settings = write_settings(arena, g, c);
+    c->settings = bough_grid_settings(arena, &g->grid, c->index);
     c->command = write_command(arena, c);
-}
-
-static bool has_scene(const bough_load_group *g) {
-    for (int i = 0; i < g->grid.n; i++)
-        if (strcmp(g->grid.axis[i].key, scene_key) == 0) return true;
-    return false;
 }
 
 void bough_load_set_expand(bough_arena *arena, bough_load_set *s, bough_errors *errors) {
@@ -158,7 +133,8 @@ void bough_load_set_expand(bough_arena *arena, bough_load_set *s, bough_errors *
     for (int g = 0; g < s->n_group && n <= BOUGH_MOST_CASES; g++) {
         check_speeds(&s->group[g], errors);
         n += count_group(&s->group[g]);
-        if (s->scene_name || s->group[g].scene_name || has_scene(&s->group[g])) continue;
+        bool named = s->scene_name || s->group[g].scene_name;
+        if (named || axis_of(&s->group[g], scene_key) >= 0) continue;
         bough_errors_add(errors, s->node, "", "required key 'scene' is missing");
     }
     if (n > BOUGH_MOST_CASES) {

@@ -132,9 +132,8 @@ static bough_status check_name(bough_arena *arena, const work *w) {
         names[i] = s->group[i].name;
         if (!w->options->only || strcmp(names[i], w->options->only) == 0) return bough_ok();
     }
-    const char *near = bough_nearest(w->options->only, names, s->n_group);
-    return bough_fail(BOUGH_INVALID, "%s has no load case '%.80s'%s%s%s", s->file, w->options->only,
-                      near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
+    return bough_fail(BOUGH_INVALID, "%s has no load case '%.80s'%s", s->file, w->options->only,
+                      bough_suggest(w->options->only, names, s->n_group).text);
 }
 
 static bough_status start(bough_arena *arena, work *w) {

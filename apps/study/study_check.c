@@ -66,24 +66,19 @@ const bough_study_setting *bough_study_concerned(const bough_study_settings *set
     return NULL;
 }
 
-// Where the study says what the error in the cell's scene is about.
-static const bough_node *origin(const bough_study *s, const bough_study_cell *cell,
-                                const bough_error *e) {
-    for (int i = 0; i < s->grid.n && cell->index[0] >= 0; i++) {
-        const bough_study_setting *value = &s->grid.axis[i].value.item[cell->index[i]];
-        if (concerns(e, value)) return value->node;
+const bough_study_setting *bough_study_concerned_value(const bough_study_grid *grid, const int *index,
+                                                       const bough_error *e) {
+    for (int i = 0; i < grid->n; i++) {
+        const bough_study_setting *value = &grid->axis[i].value.item[index[i]];
+        if (concerns(e, value)) return value;
     }
-    const bough_study_setting *found = NULL;
-    if (cell->index[0] < 0) found = bough_study_concerned(&s->reference, e);
-    if (!found) found = bough_study_concerned(&s->common, e);
-    return found ? found->node
-                 : bough_node_find(s->node, cell->index[0] < 0 ? "reference" : "grid");
+    return NULL;
 }
 
-static bool is_reported(const bough_errors *errors, const bough_error *e) {
+static bool is_reported(const bough_errors *errors, const bough_node *at, const bough_error *e) {
     for (int i = 0; i < errors->n; i++) {
         const bough_error *old = &errors->item[i];
-        if (old->line == e->line && old->column == e->column && strcmp(old->file, e->file) == 0 &&
+        if (old->line == at->line && old->column == at->column && strcmp(old->file, at->file) == 0 &&
             strcmp(old->path, e->path) == 0 && strcmp(old->text, e->text) == 0) {
             return true;
         }
@@ -91,17 +86,22 @@ static bool is_reported(const bough_errors *errors, const bough_error *e) {
     return false;
 }
 
-// An error of a cell's scene, once for all cells that have it; one in a replacement is moved to
-// where the study gives it.
-static void tell(const bough_study *s, const bough_study_cell *cell, const bough_error *e,
-                 bough_errors *errors) {
+void bough_study_tell(const bough_error *e, const char *scene, const bough_node *origin,
+                      bough_errors *errors) {
     bough_node where = {.file = e->file, .line = e->line, .column = e->column};
-    if (e->line == 0 && strcmp(e->file, s->scene) != 0) where = *origin(s, cell, e);
-    bough_error moved = *e;
-    moved.file = where.file;
-    moved.line = where.line;
-    moved.column = where.column;
-    if (!is_reported(errors, &moved)) bough_errors_add(errors, &where, e->path, "%s", e->text);
+    if (e->line == 0 && strcmp(e->file, scene) != 0) where = *origin;
+    if (!is_reported(errors, &where, e)) bough_errors_add(errors, &where, e->path, "%s", e->text);
+}
+
+// Where the study says what the error in the cell's scene is about.
+static const bough_node *origin(const bough_study *s, const bough_study_cell *cell,
+                                const bough_error *e) {
+    bool reference = cell->index[0] < 0;
+    const bough_study_setting *found =
+        reference ? bough_study_concerned(&s->reference, e)
+                  : bough_study_concerned_value(&s->grid, cell->index, e);
+    if (!found) found = bough_study_concerned(&s->common, e);
+    return found ? found->node : bough_node_find(s->node, reference ? "reference" : "grid");
 }
 
 static bough_scene *read_scene(bough_arena *arena, const bough_study *s,
@@ -110,7 +110,7 @@ static bough_scene *read_scene(bough_arena *arena, const bough_study *s,
     bough_scene *scene;
     bough_scene_read(arena, s->scene, cell->set, cell->n_set, &own, &scene);
     for (int i = 0; i < own.n; i++)
-        tell(s, cell, &own.item[i], errors);
+        bough_study_tell(&own.item[i], s->scene, origin(s, cell, &own.item[i]), errors);
     return scene;
 }
 
@@ -140,15 +140,12 @@ static void check_cells(bough_study *s, bool times, bough_errors *errors) {
 
 // -- channels -------------------------------------------------------------------------------------
 
-static void unknown_channel(const bough_study_measure *m, const char *name,
-                            const bough_channels *channels, bough_arena *arena,
-                            bough_errors *errors) {
-    const char **names = bough_arena_take(arena, (size_t)(channels->count + 1) * sizeof *names);
-    for (int i = 0; i < channels->count; i++)
-        names[i] = channels->channel[i].name;
-    const char *near = bough_nearest(name, names, channels->count);
-    bough_errors_add(errors, m->node, "measures", "the scene has no channel '%.80s'%s%s%s", name,
-                     near ? " (did you mean '" : "", near ? near : "", near ? "'?)" : "");
+void bough_study_unknown_channel(const bough_channels *channels, const char *name,
+                                 const bough_node *node, const char *key, bough_errors *errors) {
+    const char **names = bough_arena_take(errors->arena, (size_t)(channels->count + 1) * sizeof *names);
+    for (int i = 0; i < channels->count; i++) names[i] = channels->channel[i].name;
+    bough_errors_add(errors, node, key, "the scene has no channel '%.80s'%s", name,
+                     bough_suggest(name, names, channels->count).text);
 }
 
 static void check_unit(bough_study_measure *m, const bough_channel *channel, bough_arena *arena,
@@ -174,7 +171,7 @@ static void check_vector(bough_study *s, bough_study_measure *m, const bough_stu
     for (int i = 0; i < vector->n; i++) {
         int k = bough_channels_find(channels, vector->channel[i]);
         if (k < 0) {
-            unknown_channel(m, vector->channel[i], channels, errors->arena, errors);
+            bough_study_unknown_channel(channels, vector->channel[i], m->node, "measures", errors);
         } else {
             check_unit(m, &channels->channel[k], errors->arena, errors);
         }

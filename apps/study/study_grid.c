@@ -5,11 +5,29 @@
 #include <stdio.h>
 #include <string.h>
 
-static int count_cells(const bough_study_grid *grid) {
+int bough_grid_count(const bough_study_grid *grid, int most) {
     long n = 1;
-    for (int i = 0; i < grid->n && n <= BOUGH_STUDY_CELLS; i++)
-        n *= grid->axis[i].value.n;
-    return n <= BOUGH_STUDY_CELLS ? (int)n : -1;
+    for (int i = 0; i < grid->n && n <= most; i++) n *= grid->axis[i].value.n;
+    return n <= most ? (int)n : most + 1;
+}
+
+void bough_grid_place(const bough_study_grid *grid, int number, int *index) {
+    for (int i = grid->n - 1; i >= 0; i--) {
+        index[i] = number % grid->axis[i].value.n;
+        number /= grid->axis[i].value.n;
+    }
+}
+
+const char *bough_grid_settings(bough_arena *arena, const bough_study_grid *grid, const int *index) {
+    size_t size = 1, used = 0;
+    for (int i = 0; i < grid->n; i++)
+        size += strlen(grid->axis[i].label) + strlen(grid->axis[i].value.item[index[i]].value) + 3;
+    char *text = bough_arena_take(arena, size);
+    for (int i = 0; i < grid->n; i++) {
+        used += (size_t)snprintf(text + used, size - used, "%s%s=%s", i ? ", " : "",
+                                 grid->axis[i].label, grid->axis[i].value.item[index[i]].value);
+    }
+    return text;
 }
 
 static void add_set(bough_study_cell *cell, const bough_study_setting *setting) {
@@ -22,31 +40,13 @@ static void take_sets(bough_arena *arena, const bough_study *s, int n_own, bough
         add_set(cell, &s->common.item[i]);
 }
 
-// "scheme=ramp, macro_step=5 ms"
-static const char *write_settings(bough_arena *arena, const bough_study *s,
-                                  const bough_study_cell *cell) {
-    size_t size = 1, used = 0;
-    for (int i = 0; i < s->grid.n; i++)
-        size += strlen(s->grid.axis[i].key) + strlen(bough_study_value(s, cell, i)) + 3;
-    char *text = bough_arena_take(arena, size);
-    for (int i = 0; i < s->grid.n; i++) {
-        used += (size_t)snprintf(text + used, size - used, "%s%s=%s", i ? ", " : "",
-                                 s->grid.axis[i].label, bough_study_value(s, cell, i));
-    }
-    return text;
-}
-
 static void make_cell(bough_arena *arena, const bough_study *s, int number,
                       bough_study_cell *cell) {
-    for (int i = s->grid.n - 1; i >= 0; i--) {
-        int n = s->grid.axis[i].value.n;
-        cell->index[i] = number % n;
-        number /= n;
-    }
+    bough_grid_place(&s->grid, number, cell->index);
     take_sets(arena, s, s->grid.n, cell);
     for (int i = 0; i < s->grid.n; i++)
         add_set(cell, &s->grid.axis[i].value.item[cell->index[i]]);
-    cell->settings = write_settings(arena, s, cell);
+    cell->settings = bough_grid_settings(arena, &s->grid, cell->index);
 }
 
 // What is no setting of the simulation is a parameter of the model.
@@ -108,8 +108,8 @@ static void make_references(bough_arena *arena, bough_study *s) {
 }
 
 void bough_study_expand(bough_arena *arena, bough_study *s, bough_errors *errors) {
-    int n = count_cells(&s->grid);
-    if (n < 0) {
+    int n = bough_grid_count(&s->grid, BOUGH_STUDY_CELLS);
+    if (n > BOUGH_STUDY_CELLS) {
         bough_errors_add(errors, bough_node_find(s->node, "grid"), "grid",
                          "expected at most %d combinations", BOUGH_STUDY_CELLS);
         return;

@@ -89,16 +89,12 @@ static bough_status update_estimates(void *self) {
 
 // -- one run --------------------------------------------------------------------------------------
 
-static bough_status find_channels(bough_arena *arena, cell_run *r) {
-    const bough_study *s = r->study;
-    r->column = bough_arena_take(arena, (size_t)s->n_channel * sizeof *r->column);
-    r->gathered = bough_arena_doubles(arena, (size_t)s->n_channel);
-    r->zero = bough_arena_doubles(arena, (size_t)s->n_channel);
-    for (int i = 0; i < s->n_channel; i++) {
-        r->column[i] = bough_channels_find(&r->run.channels, s->channel[i]);
-        if (r->column[i] < 0) {
-            return bough_fail(BOUGH_INVALID, "this run has no channel '%.80s'", s->channel[i]);
-        }
+bough_status bough_study_columns(bough_arena *arena, const bough_channels *channels, int n,
+                                 const char *const *name, int **column) {
+    int *found = *column = bough_arena_take(arena, (size_t)n * sizeof *found);
+    for (int i = 0; i < n; i++) {
+        found[i] = bough_channels_find(channels, name[i]);
+        if (found[i] < 0) return bough_fail(BOUGH_INVALID, "this run has no channel '%.80s'", name[i]);
     }
     return bough_ok();
 }
@@ -138,8 +134,11 @@ static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell
     else if (r->study->threads > 0) scene->simulation.threads = r->study->threads;
     bough_study_estimate_cheaply(scene);
     status = bough_run_create(arena, scene, &r->run);
-    if (bough_is_ok(&status)) status = find_channels(arena, r);
-    return status;
+    if (!bough_is_ok(&status)) return status;
+    const bough_study *s = r->study;
+    r->gathered = bough_arena_doubles(arena, (size_t)s->n_channel);
+    r->zero = bough_arena_doubles(arena, (size_t)s->n_channel);
+    return bough_study_columns(arena, &r->run.channels, s->n_channel, s->channel, &r->column);
 }
 
 static bough_status run_in(bough_arena *arena, void *self) {
@@ -182,8 +181,7 @@ static double median(double *values, int n) {
     return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
 }
 
-// A run that fails says something about its settings; these outcomes do not.
-static bool ends_study(bough_code code) {
+bool bough_study_ends(bough_code code) {
     return code == BOUGH_INTERRUPTED || code == BOUGH_OUT_OF_MEMORY || code == BOUGH_IO;
 }
 
@@ -201,7 +199,7 @@ bough_status bough_study_run(const bough_study *study, const bough_study_cell *c
         cpu[n] = result->cpu;
         n++;
     }
-    if (ends_study(result->outcome.code)) return result->outcome;
+    if (bough_study_ends(result->outcome.code)) return result->outcome;
     // The times of a failed repeat are its own: they belong to the time it reached.
     bool good = bough_is_ok(&result->outcome);
     result->wall = good ? median(wall, n) : wall[n - 1];

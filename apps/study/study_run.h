@@ -2,6 +2,7 @@
 #ifndef BOUGH_APPS_STUDY_STUDY_RUN_H
 #define BOUGH_APPS_STUDY_STUDY_RUN_H
 
+#include "apps/output/channels.h"
 #include "apps/output/progress.h"
 #include "apps/scene/scene.h"
 #include "apps/study/study.h"
@@ -36,6 +37,14 @@ typedef struct bough_study_drive {
 void bough_study_estimate_cheaply(bough_scene *scene);
 
 bough_study_series bough_study_series_take(bough_arena *arena, const bough_study *study);
+
+// Whether a run that ends so ends the study: a run that fails says something about its settings, memory,
+// files and interrupts do not.
+bool bough_study_ends(bough_code code);
+
+// The places of n channels among a run's: column (n). BOUGH_INVALID names one that the run does not have.
+bough_status bough_study_columns(bough_arena *arena, const bough_channels *channels, int n,
+                                 const char *const *name, int **column);
 
 // Runs a cell `repeat` times. The outcome of the run is in the result; the status is not BOUGH_OK
 // when the whole study must end: BOUGH_INTERRUPTED, BOUGH_OUT_OF_MEMORY. The errors are not computed.
