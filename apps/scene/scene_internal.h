@@ -28,6 +28,10 @@ void bough_scene_read_load_force(bough_schema_reader *r, const bough_node *node,
 void bough_scene_read_load_factor(bough_schema_reader *r, const bough_node *node, void *field);
 void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node, void *field);
 
+// Adds an error at each of the keys "a|b" that the mapping has.
+void bough_scene_refuse(bough_schema_reader *r, const bough_node *mapping, const char *keys,
+                        const char *format, ...) __attribute__((format(printf, 4, 5)));
+
 // Values over time.
 typedef struct bough_scene_table {
     const bough_node *node;

@@ -5,6 +5,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,6 +14,21 @@ void bough_link_at(bough_schema_reader *r, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(r->path, sizeof r->path, format, arguments);
     va_end(arguments);
+}
+
+void bough_scene_refuse(bough_schema_reader *r, const bough_node *mapping, const char *keys,
+                        const char *format, ...) {
+    char key[32], text[300];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    for (size_t n; *keys != '\0'; keys += n + (keys[n] == '|')) {
+        n = strcspn(keys, "|");
+        snprintf(key, sizeof key, "%.*s", (int)n, keys);
+        const bough_node *given = bough_node_find(mapping, key);
+        if (given != NULL) bough_schema_error(r, given, key, "%s", text);
+    }
 }
 
 static const char *name_of(const bough_scene_body *b) { return b->name == NULL ? "" : b->name; }
@@ -90,17 +106,14 @@ static void check_name(bough_schema_reader *r, const bough_scene *s, int i) {
 }
 
 static void check_rod_use(bough_schema_reader *r, const bough_scene_body *b) {
-    const bough_node *pitch = bough_node_find(b->node, "pitch");
+    static const char *const flexible[] = {"", "rod", "modal", "segmented-modal"};
     if (b->fidelity < 0 || b->node == NULL) return;
     bool has_rod = bough_node_find(b->node, "rod") != NULL;
-    if (!has_rod && pitch != NULL) {
-        bough_schema_error(r, pitch, "pitch", "only used with a rod");
-    }
+    if (!has_rod) bough_scene_refuse(r, b->node, "pitch", "only used with a rod");
     if (b->fidelity == BOUGH_SCENE_FMU) {
-        if (has_rod) bough_schema_error(r, bough_node_find(b->node, "rod"), "rod", "not used with 'fidelity: fmu'");
+        bough_scene_refuse(r, b->node, "rod", "not used with 'fidelity: fmu'");
         return;
     }
-    static const char *const flexible[] = {"", "rod", "modal", "segmented-modal"};
     if (b->fidelity != BOUGH_SCENE_RIGID && !has_rod) {
         bough_schema_error(r, b->node, "", "required key 'rod' is missing (with 'fidelity: %s')",
                            flexible[b->fidelity]);
@@ -114,10 +127,8 @@ static void check_rod_use(bough_schema_reader *r, const bough_scene_body *b) {
         bough_schema_error(r, b->node, "modal.pieces", "%d pieces of %d segments: give the rod more"
                            " segments", b->modal.pieces, b->rod.n_segment);
     }
-    static const char *const rigid[] = {"mass", "centre_of_mass", "inertia"};
-    for (int k = 0; k < 3 && has_rod && b->fidelity == BOUGH_SCENE_RIGID; k++) {
-        const bough_node *given = bough_node_find(b->node, rigid[k]);
-        if (given != NULL) bough_schema_error(r, given, rigid[k], "follows from the body's rod");
+    if (has_rod && b->fidelity == BOUGH_SCENE_RIGID) {
+        bough_scene_refuse(r, b->node, "mass|centre_of_mass|inertia", "follows from the body's rod");
     }
 }
 
@@ -241,15 +252,12 @@ static void link_joint_load(bough_schema_reader *r, const bough_scene *s, bough_
                            load->joint_name);
         return;
     }
-    const char *wrong = revolute ? "force" : "torque";
-    const bough_node *given = bough_node_find(load->node, wrong);
-    if (given != NULL) {
-        bough_schema_error(r, given, wrong, "the joint of '%s' is %s: give a %s", load->joint_name,
-                           revolute ? "revolute" : "prismatic", revolute ? "torque" : "force");
-    }
+    bough_scene_refuse(r, load->node, revolute ? "force" : "torque", "the joint of '%s' is %s: give a %s",
+                       load->joint_name, revolute ? "revolute" : "prismatic", revolute ? "torque" : "force");
 }
 
-static void link_load(bough_schema_reader *r, const bough_scene *s, bough_scene_load *load) {
+static void link_load(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_load *load = item;
     load->joint = load->body = BOUGH_UNRESOLVED;
     if (load->body_name != NULL) {
         const bough_node *node = bough_link_value(load->node, "body");
@@ -280,12 +288,24 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
 }
 
 // The kinds are a joint's but free.
-static void link_closure(bough_schema_reader *r, const bough_scene *s, bough_scene_closure *c) {
+static void link_closure(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_closure *c = item;
     link_ends(r, s, c->node, c->body_name, c->body);
     if (c->kind >= BOUGH_JOINT_FREE) c->kind++;
 }
 
-static void link_marker(bough_schema_reader *r, const bough_scene *s, bough_scene_marker *marker) {
+static void link_spring(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_spring *spring = item;
+    link_ends(r, s, spring->node, spring->body_name, spring->body);
+}
+
+static void link_bushing(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_bushing *bushing = item;
+    link_ends(r, s, bushing->node, bushing->body_name, bushing->body);
+}
+
+static void link_marker(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_marker *marker = item;
     marker->body = BOUGH_GROUND;
     if (marker->body_name == NULL || strcmp(marker->body_name, "ground") == 0) return;
     const bough_node *node = bough_link_value(marker->node, "body");
@@ -303,7 +323,8 @@ static bool is_sensed_before(const bough_scene *s, const bough_scene_sensor *sen
     return false;
 }
 
-static void link_sensor(bough_schema_reader *r, const bough_scene *s, bough_scene_sensor *sensor) {
+static void link_sensor(bough_schema_reader *r, const bough_scene *s, void *item) {
+    bough_scene_sensor *sensor = item;
     const bough_node *node = bough_link_value(sensor->node, "body");
     sensor->body = bough_link_body(r, s, node, "body", sensor->body_name);
     if (sensor->body < 0) return;
@@ -432,39 +453,40 @@ static void choose_coupling(bough_scene_simulation *s) {
     if (!tolerance) master->rtol = default_rtol;
 }
 
+#define LIST(what, items, count, link)                                                             \
+    {what, offsetof(bough_scene, items), offsetof(bough_scene, count),                             \
+     sizeof *((bough_scene *)0)->items, link}
+static const struct {
+    const char *name;
+    size_t items, count, size; // place of the pointer and of the number of items, size of one
+    void (*link)(bough_schema_reader *r, const bough_scene *s, void *item);
+} lists[] = {
+    LIST("loads", load, n_load, link_load),
+    LIST("markers", marker, n_marker, link_marker),
+    LIST("sensors", sensor, n_sensor, link_sensor),
+    LIST("bushings", bushing, n_bushing, link_bushing),
+    LIST("springs", spring, n_spring, link_spring),
+    LIST("closures", closure, n_closure, link_closure),
+};
+
+static void link_lists(bough_schema_reader *r, bough_scene *s) {
+    for (size_t k = 0; k < sizeof lists / sizeof *lists; k++) {
+        char *items = *(char **)(void *)((char *)s + lists[k].items);
+        int count = *(int *)(void *)((char *)s + lists[k].count);
+        for (int i = 0; i < count; i++) {
+            void *item = items + (size_t)i * lists[k].size;
+            bough_link_at(r, "%s[%d]", lists[k].name, i);
+            if (*(const bough_node **)item != NULL) lists[k].link(r, s, item);
+        }
+    }
+}
+
 void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
     sort_names(r, scene);
     choose_coupling(&scene->simulation);
     check_times(r, scene);
     link_bodies(r, scene);
-    for (int i = 0; i < scene->n_load; i++) {
-        bough_link_at(r, "loads[%d]", i);
-        if (scene->load[i].node != NULL) link_load(r, scene, &scene->load[i]);
-    }
-    for (int i = 0; i < scene->n_marker; i++) {
-        bough_link_at(r, "markers[%d]", i);
-        if (scene->marker[i].node != NULL) link_marker(r, scene, &scene->marker[i]);
-    }
-    for (int i = 0; i < scene->n_sensor; i++) {
-        bough_link_at(r, "sensors[%d]", i);
-        if (scene->sensor[i].node != NULL) link_sensor(r, scene, &scene->sensor[i]);
-    }
-    for (int i = 0; i < scene->n_bushing; i++) {
-        bough_link_at(r, "bushings[%d]", i);
-        bough_scene_bushing *bushing = &scene->bushing[i];
-        if (bushing->node == NULL) continue;
-        link_ends(r, scene, bushing->node, bushing->body_name, bushing->body);
-    }
-    for (int i = 0; i < scene->n_spring; i++) {
-        bough_link_at(r, "springs[%d]", i);
-        bough_scene_spring *spring = &scene->spring[i];
-        if (spring->node == NULL) continue;
-        link_ends(r, scene, spring->node, spring->body_name, spring->body);
-    }
-    for (int i = 0; i < scene->n_closure; i++) {
-        bough_link_at(r, "closures[%d]", i);
-        if (scene->closure[i].node != NULL) link_closure(r, scene, &scene->closure[i]);
-    }
+    link_lists(r, scene);
     bough_link_fmus(r, scene);
     bough_link_turbine(r, scene);
     bough_link_aero(r, scene);

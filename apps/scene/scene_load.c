@@ -97,44 +97,30 @@ static bool check_either(bough_schema_reader *r, const bough_node *load, const c
     return false;
 }
 
-static void refuse_keys(bough_schema_reader *r, const bough_node *load, const char *const *keys,
-                        const char *with) {
-    for (; *keys != NULL; keys++) {
-        const bough_node *given = bough_node_find(load, *keys);
-        if (given != NULL) bough_schema_error(r, given, *keys, "only used with '%s'", with);
-    }
-}
-
 static void check_joint_keys(bough_schema_reader *r, const bough_node *load) {
-    static const char *const of_rods[] = {"at",     "along", "moment",    "frame",
-                                           "factor", "point", "end_force", "end_moment", NULL};
     check_either(r, load, "torque", "force");
-    refuse_keys(r, load, of_rods, "body");
+    bough_scene_refuse(r, load, "at|along|moment|frame|factor|point|end_force|end_moment",
+                       "only used with 'body'");
 }
 
 // Where an end is not given it is as the start.
 static void read_ends(bough_schema_reader *r, bough_scene_load *load) {
-    static const char *const of_lines[] = {"end_force", "end_moment", NULL};
-    if (!is_spread(load)) refuse_keys(r, load->node, of_lines, "along");
-    if (bough_node_find(load->node, of_lines[0]) == NULL) {
+    if (!is_spread(load)) bough_scene_refuse(r, load->node, "end_force|end_moment", "only used with 'along'");
+    if (bough_node_find(load->node, "end_force") == NULL) {
         memcpy(load->end_force, load->force, sizeof load->force);
     }
-    if (bough_node_find(load->node, of_lines[1]) == NULL) {
+    if (bough_node_find(load->node, "end_moment") == NULL) {
         memcpy(load->end_moment, load->moment, sizeof load->moment);
     }
 }
 
 static void check_body_keys(bough_schema_reader *r, bough_scene_load *load) {
-    static const char *const of_joints[] = {"torque", NULL};
-    refuse_keys(r, load->node, of_joints, "joint");
+    bough_scene_refuse(r, load->node, "torque", "only used with 'joint'");
     if (bough_node_find(load->node, "at") != NULL &&
         !check_either(r, load->node, "at", "along")) {
         return;
     }
-    const bough_node *ramp = bough_node_find(load->node, "ramp");
-    if (ramp != NULL && load->n_time > 0) {
-        bough_schema_error(r, ramp, "ramp", "only used without 'factor'");
-    }
+    if (load->n_time > 0) bough_scene_refuse(r, load->node, "ramp", "only used without 'factor'");
     if (bough_node_find(load->node, "force") == NULL &&
         bough_node_find(load->node, "moment") == NULL &&
         bough_node_find(load->node, "end_force") == NULL &&
@@ -200,21 +186,10 @@ static void check_place(bough_schema_reader *r, const bough_scene_load *load,
 }
 
 static void check_rigid_load(bough_schema_reader *r, const bough_scene_load *load) {
-    static const char *const of_rods[] = {"at", "along"};
-    for (int k = 0; k < 2; k++) {
-        const bough_node *given = bough_node_find(load->node, of_rods[k]);
-        if (given == NULL) continue;
-        bough_schema_error(r, given, of_rods[k], "'%s' is rigid: give the 'point'",
-                           load->body_name);
-    }
+    bough_scene_refuse(r, load->node, "at|along", "'%s' is rigid: give the 'point'", load->body_name);
     if (load->frame != BOUGH_SCENE_LOAD_FOLLOWER) return;
     bough_schema_error(r, bough_node_find(load->node, "frame"), "frame",
                        "'%s' is rigid: 'frame: body' turns with it", load->body_name);
-}
-
-static void refuse_rigid_keys(bough_schema_reader *r, const bough_scene_load *load) {
-    const bough_node *given = bough_node_find(load->node, "point");
-    if (given != NULL) bough_schema_error(r, given, "point", "only used with a rigid body");
 }
 
 void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scene,
@@ -228,7 +203,7 @@ void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scen
                            load->body_name);
         return;
     }
-    refuse_rigid_keys(r, load);
+    bough_scene_refuse(r, load->node, "point", "only used with a rigid body");
     if (!check_either(r, load->node, "at", "along")) return;
     if (body->fidelity > BOUGH_SCENE_ROD && load->frame == BOUGH_SCENE_LOAD_FOLLOWER) {
         bough_schema_error(r, bough_node_find(load->node, "frame"), "frame",

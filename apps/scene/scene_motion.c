@@ -213,23 +213,14 @@ void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, voi
     }
 }
 
-static void refuse(bough_schema_reader *r, const bough_scene_joint *joint, const char *key,
-                   bool follows) {
-    const bough_node *given = bough_node_find(joint->node, key);
-    if (given == NULL || !follows) return;
-    bough_schema_error(r, given, key, "follows from the joint's motion");
-}
-
 // The joint starts where and as fast as its motion says.
 void bough_scene_check_motion(bough_schema_reader *r, const bough_scene_joint *joint) {
+    static const char why[] = "follows from the joint's motion";
     const bough_scene_motion *first = &joint->motion, *second = &joint->second_motion;
     bool placed = first->node != NULL && !first->def.speed;
-    refuse(r, joint, "speed", first->node != NULL);
-    refuse(r, joint, "position", placed);
-    if (joint->kind != BOUGH_JOINT_CYLINDRICAL) {
-        refuse(r, joint, "angle", placed);
-        return;
-    }
-    refuse(r, joint, "angular_speed", second->node != NULL);
-    refuse(r, joint, "angle", second->node != NULL && !second->def.speed);
+    bool apart = joint->kind == BOUGH_JOINT_CYLINDRICAL; // its angle is the second motion's
+    if (first->node != NULL) bough_scene_refuse(r, joint->node, "speed", why);
+    if (placed) bough_scene_refuse(r, joint->node, apart ? "position" : "position|angle", why);
+    if (!apart || second->node == NULL) return;
+    bough_scene_refuse(r, joint->node, second->def.speed ? "angular_speed" : "angular_speed|angle", why);
 }

@@ -2,12 +2,12 @@
 #include "apps/scene/scene_internal.h"
 
 #include "core/base.h"
+#include "core/linalg.h"
 
 #include <math.h>
 #include <string.h>
 
-// -- placement
-// --------------------------------------------------------------------------------------
+// -- placement ------------------------------------------------------------------------------------
 
 // "move z 1.96 m" or "rotate y 5 deg".
 static bool parse_step(bough_schema_reader *r, const bough_node *node, bough_scene_step *step) {
@@ -82,27 +82,18 @@ void bough_scene_check_joint(bough_schema_reader *r, void *item) {
                        "must not be the first axis");
 }
 
-// -- matrices
-// ---------------------------------------------------------------------------------------
+// -- matrices -------------------------------------------------------------------------------------
 
-// Cholesky's factorisation of the n×n matrix, of which a pivot below 1e-12 of its diagonal entry
-// counts as none.
+// Whether Cholesky's factorisation of the symmetric n×n matrix, scaled to a diagonal of 1, has pivots above
+// 1e-12.
 static bool is_positive_definite(const double *matrix, int n) {
-    double l[36];
-    memcpy(l, matrix, (size_t)(n * n) * sizeof *l);
-    for (int j = 0; j < n; j++) {
-        double pivot = l[n * j + j];
-        for (int k = 0; k < j; k++)
-            pivot -= l[n * j + k] * l[n * j + k];
-        if (!(pivot > 1e-12 * matrix[n * j + j])) return false;
-        l[n * j + j] = sqrt(pivot);
-        for (int i = j + 1; i < n; i++) {
-            for (int k = 0; k < j; k++)
-                l[n * i + j] -= l[n * i + k] * l[n * j + k];
-            l[n * i + j] /= l[n * j + j];
-        }
+    double scaled[36];
+    for (int i = 0; i < n * n; i++) {
+        double row = matrix[i / n * (n + 1)], column = matrix[i % n * (n + 1)];
+        if (!(row > 0) || !(column > 0)) return false;
+        scaled[i] = matrix[i] / sqrt(row * column) - (i / n == i % n ? 1e-12 : 0);
     }
-    return true;
+    return bough_cholesky_factor(n, scaled);
 }
 
 // field: the matrix (36)
@@ -200,8 +191,7 @@ void bough_scene_read_axis_offset(bough_schema_reader *r, const bough_node *node
     }
 }
 
-// -- tables
-// -----------------------------------------------------------------------------------------
+// -- tables ---------------------------------------------------------------------------------------
 
 // Puts "list[i]" or "list.rows[i]" at the end of the path.
 static size_t push_row(bough_schema_reader *r, const bough_node *owner, const char *list, int i) {
@@ -348,24 +338,17 @@ void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
 
 // The wind of a file is all in it; its path becomes relative to where the program runs.
 static void check_wind_file(bough_schema_reader *r, bough_scene_wind *w) {
-    static const char *const unused[] = {"speed", "table", "vertical"};
-    for (int i = 0; i < 3; i++) {
-        const bough_node *node = bough_node_find(w->node, unused[i]);
-        if (node) bough_schema_error(r, node, unused[i], "only used without a file");
-    }
+    bough_scene_refuse(r, w->node, "speed|table|vertical", "only used without a file");
     if (w->file != NULL) w->file = bough_schema_path(r, w->file);
 }
 
 // A condition of the standard gives the speed over time, the extreme wind its mean too.
 static void check_wind_condition(bough_schema_reader *r, bough_scene_wind *w) {
-    static const char *const unused[] = {"table", "vertical", "speed"};
     bool extreme = bough_wind_iec_is_extreme_speed(w->iec.condition);
-    for (int i = 0; i < (extreme ? 3 : 2); i++) {
-        const bough_node *node = bough_node_find(w->node, unused[i]);
-        if (node) {
-            bough_schema_error(r, node, unused[i], "not used with '%s'",
-                               extreme ? "condition: ewm" : "kind: iec");
-        }
+    if (extreme) {
+        bough_scene_refuse(r, w->node, "table|vertical|speed", "not used with 'condition: ewm'");
+    } else {
+        bough_scene_refuse(r, w->node, "table|vertical", "not used with 'kind: iec'");
     }
     if (!extreme && !(w->speed > 0)) {
         const bough_node *node = bough_node_find(w->node, "speed");
@@ -414,22 +397,19 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
     check_increasing(r, t->node, "height", t->height, "m");
 }
 
-// -- rods and ramps
-// ---------------------------------------------------------------------------------
+// -- rods and ramps -------------------------------------------------------------------------------
 
 // A table, or a uniform section given here, never parts of both.
 static void check_rod_keys(bough_schema_reader *r, const bough_scene_rod *rod, bool table) {
-    static const char *const uniform[] = {"length", "stiffness", "mass", "twist"};
-    const bough_node *part = bough_node_find(rod->node, "part");
-    if (!table && part != NULL) bough_schema_error(r, part, "part", "only used with a table");
-    for (int i = 0; i < 4; i++) {
-        const bough_node *given = bough_node_find(rod->node, uniform[i]);
-        if (table && given != NULL) {
-            bough_schema_error(r, given, uniform[i], "only used without a table");
-        } else if (!table && given == NULL && i < 3) {
-            bough_schema_error(r, rod->node, "", "required key '%s' is missing (without a table)",
-                               uniform[i]);
-        }
+    static const char *const needed[] = {"length", "stiffness", "mass"};
+    if (table) {
+        bough_scene_refuse(r, rod->node, "length|stiffness|mass|twist", "only used without a table");
+        return;
+    }
+    bough_scene_refuse(r, rod->node, "part", "only used with a table");
+    for (int i = 0; i < 3; i++) {
+        if (bough_node_find(rod->node, needed[i]) != NULL) continue;
+        bough_schema_error(r, rod->node, "", "required key '%s' is missing (without a table)", needed[i]);
     }
 }
 

@@ -4,9 +4,21 @@
 #include <string.h>
 
 // clang-format off
+// A channel with OpenFAST's name. Three channels along or about x, y and z, with small letters in their names
+// and with capitals; `text` and `after` enclose the axis.
+#define SAME(name, unit, text) {name, unit, text, name}
+#define XYZ(name, end, unit, text, after)                                                          \
+    {name "x" end, unit, text "x" after, NULL}, {name "y" end, unit, text "y" after, NULL},        \
+    {name "z" end, unit, text "z" after, NULL}
+#define SAME_XYZ(name, end, unit, text, after)                                                     \
+    SAME(name "x" end, unit, text "x" after), SAME(name "y" end, unit, text "y" after),            \
+    SAME(name "z" end, unit, text "z" after)
+#define AXES(name, unit, text, after)                                                              \
+    {name "X", unit, text "x" after, NULL}, {name "Y", unit, text "y" after, NULL},                \
+    {name "Z", unit, text "z" after, NULL}
 static const bough_channel_row rotor[] = {
-    {"RotSpeed", "rpm", "speed of the rotor's joint, positive about its axis", "RotSpeed"},
-    {"Azimuth", "deg", "angle of the rotor's joint, from 0 to 360", "Azimuth"},
+    SAME("RotSpeed", "rpm", "speed of the rotor's joint, positive about its axis"),
+    SAME("Azimuth", "deg", "angle of the rotor's joint, from 0 to 360"),
 };
 static const bough_channel_row revolute[] = {
     {"{a}Pos", "deg", "angle of the joint about its axis", NULL},
@@ -37,23 +49,13 @@ static const bough_channel_row planar[] = {
     {"{a}AngVel", "deg/s", "rate of the angle", NULL},
 };
 static const bough_channel_row free_body[] = {
-    {"{a}PosX", "m", "position of the body's frame along ground x", NULL},
-    {"{a}PosY", "m", "position of the body's frame along ground y", NULL},
-    {"{a}PosZ", "m", "position of the body's frame along ground z", NULL},
-    {"{a}VelX", "m/s", "velocity of the body's frame along ground x", NULL},
-    {"{a}VelY", "m/s", "velocity of the body's frame along ground y", NULL},
-    {"{a}VelZ", "m/s", "velocity of the body's frame along ground z", NULL},
+    AXES("{a}Pos", "m", "position of the body's frame along ground ", ""),
+    AXES("{a}Vel", "m/s", "velocity of the body's frame along ground ", ""),
 };
 static const bough_channel_row turning_body[] = {
-    {"{a}DirXx", "-", "x component of the body's x axis, ground axes", NULL},
-    {"{a}DirXy", "-", "y component of the body's x axis, ground axes", NULL},
-    {"{a}DirXz", "-", "z component of the body's x axis, ground axes", NULL},
-    {"{a}DirZx", "-", "x component of the body's z axis, ground axes", NULL},
-    {"{a}DirZy", "-", "y component of the body's z axis, ground axes", NULL},
-    {"{a}DirZz", "-", "z component of the body's z axis, ground axes", NULL},
-    {"{a}OmegaX", "deg/s", "angular velocity of the body about ground x", NULL},
-    {"{a}OmegaY", "deg/s", "angular velocity of the body about ground y", NULL},
-    {"{a}OmegaZ", "deg/s", "angular velocity of the body about ground z", NULL},
+    XYZ("{a}DirX", "", "-", "", " component of the body's x axis, ground axes"),
+    XYZ("{a}DirZ", "", "-", "", " component of the body's z axis, ground axes"),
+    AXES("{a}Omega", "deg/s", "angular velocity of the body about ground ", ""),
 };
 static const bough_channel_row drive_torque[] = {
     {"{a}Trq", "N-m", "torque on the body about the axis that the prescribed motion needs", NULL},
@@ -69,91 +71,61 @@ static const bough_channel_row spring[] = {
     {"{a}Frc", "N", "force of the spring, positive in tension", NULL},
 };
 static const bough_channel_row bushing[] = {
-    {"{a}FrcX", "N", "force on the second body, x axis of the first body", NULL},
-    {"{a}FrcY", "N", "force on the second body, y axis of the first body", NULL},
-    {"{a}FrcZ", "N", "force on the second body, z axis of the first body", NULL},
-    {"{a}MomX", "N-m", "moment on the second body, x axis of the first body", NULL},
-    {"{a}MomY", "N-m", "moment on the second body, y axis of the first body", NULL},
-    {"{a}MomZ", "N-m", "moment on the second body, z axis of the first body", NULL},
+    AXES("{a}Frc", "N", "force on the second body, ", " axis of the first body"),
+    AXES("{a}Mom", "N-m", "moment on the second body, ", " axis of the first body"),
 };
 static const bough_channel_row closure[] = {
-    {"{a}Fx", "N", "force on the body 'to', x axis of the joint's frame there", NULL},
-    {"{a}Fy", "N", "force on the body 'to', y axis of the joint's frame there", NULL},
-    {"{a}Fz", "N", "force on the body 'to', z axis of the joint's frame there", NULL},
-    {"{a}Mx", "N-m", "moment on the body 'to', x axis of the joint's frame there", NULL},
-    {"{a}My", "N-m", "moment on the body 'to', y axis of the joint's frame there", NULL},
-    {"{a}Mz", "N-m", "moment on the body 'to', z axis of the joint's frame there", NULL},
+    XYZ("{a}F", "", "N", "force on the body 'to', ", " axis of the joint's frame there"),
+    XYZ("{a}M", "", "N-m", "moment on the body 'to', ", " axis of the joint's frame there"),
 };
 static const bough_channel_row marker[] = {
-    {"{a}X", "m", "position of the point along ground x", NULL},
-    {"{a}Y", "m", "position of the point along ground y", NULL},
-    {"{a}Z", "m", "position of the point along ground z", NULL},
+    AXES("{a}", "m", "position of the point along ground ", ""),
 };
 static const bough_channel_row blade[] = {
-    {"OoPDefl{a}", "m", "displacement of the tip along x before the pitch: downwind", "OoPDefl{a}"},
-    {"IPDefl{a}", "m", "displacement of the tip along y before the pitch", "IPDefl{a}"},
+    SAME("OoPDefl{a}", "m", "displacement of the tip along x before the pitch: downwind"),
+    SAME("IPDefl{a}", "m", "displacement of the tip along y before the pitch"),
     {"TwstDefl{a}", "deg", "third component of the rotation vector of the tip's section, blade axes", "TipRDzb{a}"},
-    {"TipDxb{a}", "m", "displacement of the tip along the blade's x", "TipDxb{a}"},
-    {"TipDyb{a}", "m", "displacement of the tip along the blade's y", "TipDyb{a}"},
-    {"TipDzb{a}", "m", "displacement of the tip along the blade's z", "TipDzb{a}"},
-    {"RootFxb{a}", "kN", "force of the blade on the hub along the blade's x", "RootFxb{a}"},
-    {"RootFyb{a}", "kN", "force of the blade on the hub along the blade's y", "RootFyb{a}"},
-    {"RootFzb{a}", "kN", "force of the blade on the hub along the blade's z", "RootFzb{a}"},
-    {"RootMxb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's x: edgewise", "RootMxb{a}"},
-    {"RootMyb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's y: flapwise", "RootMyb{a}"},
-    {"RootMzb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's z: torsion", "RootMzb{a}"},
+    SAME_XYZ("TipD", "b{a}", "m", "displacement of the tip along the blade's ", ""),
+    SAME_XYZ("RootF", "b{a}", "kN", "force of the blade on the hub along the blade's ", ""),
+    SAME("RootMxb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's x: edgewise"),
+    SAME("RootMyb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's y: flapwise"),
+    SAME("RootMzb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's z: torsion"),
 };
 static const bough_channel_row tower[] = {
-    {"TTDspFA", "m", "displacement of the tower's top along its x", "TTDspFA"},
-    {"TTDspSS", "m", "displacement of the tower's top along its y", "TTDspSS"},
-    {"TTDspAx", "m", "displacement of the tower's top along its z", "TTDspAx"},
-    {"TTDspRoll", "deg", "rotation vector of the tower's top, x component", "TTDspRoll"},
-    {"TTDspPtch", "deg", "rotation vector of the tower's top, y component", "TTDspPtch"},
-    {"TTDspTwst", "deg", "rotation vector of the tower's top, z component", "TTDspTwst"},
-    {"TwrBsFxt", "kN", "force of the tower on the foundation along the tower's x", "TwrBsFxt"},
-    {"TwrBsFyt", "kN", "force of the tower on the foundation along the tower's y", "TwrBsFyt"},
-    {"TwrBsFzt", "kN", "force of the tower on the foundation along the tower's z", "TwrBsFzt"},
-    {"TwrBsMxt", "kN-m", "moment of the tower on the foundation about the tower's x: side to side", "TwrBsMxt"},
-    {"TwrBsMyt", "kN-m", "moment of the tower on the foundation about the tower's y: fore and aft", "TwrBsMyt"},
-    {"TwrBsMzt", "kN-m", "moment of the tower on the foundation about the tower's z: torsion", "TwrBsMzt"},
+    SAME("TTDspFA", "m", "displacement of the tower's top along its x"),
+    SAME("TTDspSS", "m", "displacement of the tower's top along its y"),
+    SAME("TTDspAx", "m", "displacement of the tower's top along its z"),
+    SAME("TTDspRoll", "deg", "rotation vector of the tower's top, x component"),
+    SAME("TTDspPtch", "deg", "rotation vector of the tower's top, y component"),
+    SAME("TTDspTwst", "deg", "rotation vector of the tower's top, z component"),
+    SAME_XYZ("TwrBsF", "t", "kN", "force of the tower on the foundation along the tower's ", ""),
+    SAME("TwrBsMxt", "kN-m", "moment of the tower on the foundation about the tower's x: side to side"),
+    SAME("TwrBsMyt", "kN-m", "moment of the tower on the foundation about the tower's y: fore and aft"),
+    SAME("TwrBsMzt", "kN-m", "moment of the tower on the foundation about the tower's z: torsion"),
 };
 static const bough_channel_row tip[] = {
-    {"{a}TipX", "m", "position of the rod's end along ground x", NULL},
-    {"{a}TipY", "m", "position of the rod's end along ground y", NULL},
-    {"{a}TipZ", "m", "position of the rod's end along ground z", NULL},
+    AXES("{a}Tip", "m", "position of the rod's end along ground ", ""),
 };
 static const bough_channel_row fmu[] = {
-    {"{a}Fx", "N", "force of the FMU on the body that carries it, x axis of its frame", NULL},
-    {"{a}Fy", "N", "force of the FMU on the body that carries it, y axis of its frame", NULL},
-    {"{a}Fz", "N", "force of the FMU on the body that carries it, z axis of its frame", NULL},
-    {"{a}Mx", "N-m", "moment of the FMU about its frame's origin, x axis of its frame", NULL},
-    {"{a}My", "N-m", "moment of the FMU about its frame's origin, y axis of its frame", NULL},
-    {"{a}Mz", "N-m", "moment of the FMU about its frame's origin, z axis of its frame", NULL},
+    XYZ("{a}F", "", "N", "force of the FMU on the body that carries it, ", " axis of its frame"),
+    XYZ("{a}M", "", "N-m", "moment of the FMU about its frame's origin, ", " axis of its frame"),
 };
 // The twelve channels of a place on a rod: P before, S behind "TDx".
-#define SECTION(P, S, EP, ES)                                                                                                     \
-    {P "TDx" S, "m", "displacement along the body's x", EP "TDx" ES},                                                             \
-    {P "TDy" S, "m", "displacement along the body's y", EP "TDy" ES},                                                             \
-    {P "TDz" S, "m", "displacement along the body's z", EP "TDz" ES},                                                             \
-    {P "RDx" S, "deg", "rotation vector of the section, x component in the body's axes", EP "RDx" ES},                            \
-    {P "RDy" S, "deg", "rotation vector of the section, y component in the body's axes", EP "RDy" ES},                            \
-    {P "RDz" S, "deg", "rotation vector of the section, z component in the body's axes", EP "RDz" ES},                            \
-    {P "FLx" S, "kN", "force of the outer part on the inner part along x of the section axes", EP "FLx" ES},                      \
-    {P "FLy" S, "kN", "force of the outer part on the inner part along y of the section axes", EP "FLy" ES},                      \
-    {P "FLz" S, "kN", "force of the outer part on the inner part along z of the section axes, positive in tension", EP "FLz" ES}, \
-    {P "MLx" S, "kN-m", "moment of the outer part on the inner part about x of the section axes", EP "MLx" ES},                   \
-    {P "MLy" S, "kN-m", "moment of the outer part on the inner part about y of the section axes", EP "MLy" ES},                   \
-    {P "MLz" S, "kN-m", "moment of the outer part on the inner part about z of the section axes: torsion", EP "MLz" ES}
-static const bough_channel_row blade_section[] = {SECTION("Spn{b}", "b{a}", "Spn{b}", "b{a}")};
-static const bough_channel_row tower_section[] = {SECTION("TwHt{b}", "t", "TwHt{b}", "t")};
+#define SECTION(P, S)                                                                              \
+    SAME_XYZ(P "TD", S, "m", "displacement along the body's ", ""),                                \
+    SAME_XYZ(P "RD", S, "deg", "rotation vector of the section, ", " component in the body's axes"), \
+    SAME(P "FLx" S, "kN", "force of the outer part on the inner part along x of the section axes"), \
+    SAME(P "FLy" S, "kN", "force of the outer part on the inner part along y of the section axes"), \
+    SAME(P "FLz" S, "kN", "force of the outer part on the inner part along z of the section axes, positive in tension"), \
+    SAME(P "MLx" S, "kN-m", "moment of the outer part on the inner part about x of the section axes"), \
+    SAME(P "MLy" S, "kN-m", "moment of the outer part on the inner part about y of the section axes"), \
+    SAME(P "MLz" S, "kN-m", "moment of the outer part on the inner part about z of the section axes: torsion")
+static const bough_channel_row blade_section[] = {SECTION("Spn{b}", "b{a}")};
+static const bough_channel_row tower_section[] = {SECTION("TwHt{b}", "t")};
 #undef SECTION
 static const bough_channel_row section[] = {
-    {"{a}Spn{b}TDx", "m", "displacement along the body's x", NULL},
-    {"{a}Spn{b}TDy", "m", "displacement along the body's y", NULL},
-    {"{a}Spn{b}TDz", "m", "displacement along the body's z", NULL},
-    {"{a}Spn{b}RDx", "deg", "rotation vector of the section, x component in the body's axes", NULL},
-    {"{a}Spn{b}RDy", "deg", "rotation vector of the section, y component in the body's axes", NULL},
-    {"{a}Spn{b}RDz", "deg", "rotation vector of the section, z component in the body's axes", NULL},
+    XYZ("{a}Spn{b}TD", "", "m", "displacement along the body's ", ""),
+    XYZ("{a}Spn{b}RD", "", "deg", "rotation vector of the section, ", " component in the body's axes"),
     {"{a}Spn{b}FLx", "kN", "force of the outer part on the inner part along x of the section axes", NULL},
     {"{a}Spn{b}FLy", "kN", "force of the outer part on the inner part along y of the section axes", NULL},
     {"{a}Spn{b}FLz", "kN", "force of the outer part on the inner part along z of the section axes, positive in tension", NULL},
@@ -162,50 +134,44 @@ static const bough_channel_row section[] = {
     {"{a}Spn{b}MLz", "kN-m", "moment of the outer part on the inner part about z of the section axes: torsion", NULL},
 };
 static const bough_channel_row shaft[] = {
-    {"RotTorq", "kN-m", "torque of the rotor on loads, spring, generator and motion of its joint; positive when these brake a rotor that turns forward", "RotTorq"},
-    {"RotPwr", "kW", "RotTorq times the rotor's speed", "RotPwr"},
+    SAME("RotTorq", "kN-m", "torque of the rotor on loads, spring, generator and motion of its joint; positive when these brake a rotor that turns forward"),
+    SAME("RotPwr", "kW", "RotTorq times the rotor's speed"),
 };
 static const bough_channel_row yaw_bearing[] = {
-    {"YawBrFxp", "kN", "force of the nacelle on the tower's top, x axis of the top section", "YawBrFxp"},
-    {"YawBrFyp", "kN", "force of the nacelle on the tower's top, y axis of the top section", "YawBrFyp"},
-    {"YawBrFzp", "kN", "force of the nacelle on the tower's top, z axis of the top section", "YawBrFzp"},
-    {"YawBrMxp", "kN-m", "moment of the nacelle on the tower's top, x axis of the top section", "YawBrMxp"},
-    {"YawBrMyp", "kN-m", "moment of the nacelle on the tower's top, y axis of the top section", "YawBrMyp"},
-    {"YawBrMzp", "kN-m", "moment of the nacelle on the tower's top, z axis of the top section", "YawBrMzp"},
+    SAME_XYZ("YawBrF", "p", "kN", "force of the nacelle on the tower's top, ", " axis of the top section"),
+    SAME_XYZ("YawBrM", "p", "kN-m", "moment of the nacelle on the tower's top, ", " axis of the top section"),
 };
 static const bough_channel_row air[] = {
-    {"RtAeroFxh", "N", "thrust of the air on the rotor, along the hub's x", "RtAeroFxh"},
-    {"RtAeroMxh", "N-m", "torque of the air on the rotor, about the hub's x", "RtAeroMxh"},
-    {"RtAeroPwr", "W", "RtAeroMxh times the rotor's speed", "RtAeroPwr"},
+    SAME("RtAeroFxh", "N", "thrust of the air on the rotor, along the hub's x"),
+    SAME("RtAeroMxh", "N-m", "torque of the air on the rotor, about the hub's x"),
+    SAME("RtAeroPwr", "W", "RtAeroMxh times the rotor's speed"),
 };
 static const bough_channel_row wind[] = {
-    {"Wind1VelX", "m/s", "undisturbed wind at the initial position of the hub, along ground x", "Wind1VelX"},
-    {"Wind1VelY", "m/s", "undisturbed wind at the initial position of the hub, along ground y", "Wind1VelY"},
-    {"Wind1VelZ", "m/s", "undisturbed wind at the initial position of the hub, along ground z", "Wind1VelZ"},
-    {"RtVAvgxh", "m/s", "mean wind over the rotor, with the tower's influence, along the hub's x", "RtVAvgxh"},
-    {"RtVAvgyh", "m/s", "mean wind over the rotor, with the tower's influence, along the hub's y", "RtVAvgyh"},
-    {"RtVAvgzh", "m/s", "mean wind over the rotor, with the tower's influence, along the hub's z", "RtVAvgzh"},
-    {"RtTSR", "-", "tip-speed ratio: rotor speed times the undeformed rotor's radius, divided by RtVAvgxh", "RtTSR"},
+    SAME("Wind1VelX", "m/s", "undisturbed wind at the initial position of the hub, along ground x"),
+    SAME("Wind1VelY", "m/s", "undisturbed wind at the initial position of the hub, along ground y"),
+    SAME("Wind1VelZ", "m/s", "undisturbed wind at the initial position of the hub, along ground z"),
+    SAME_XYZ("RtVAvg", "h", "m/s", "mean wind over the rotor, with the tower's influence, along the hub's ", ""),
+    SAME("RtTSR", "-", "tip-speed ratio: rotor speed times the undeformed rotor's radius, divided by RtVAvgxh"),
 };
 static const bough_channel_row element[] = {
-    {"AB{a}N{b}VRel", "m/s", "speed of the air relative to the element", "AB{a}N{b}VRel"},
-    {"AB{a}N{b}Alpha", "deg", "angle of attack", "AB{a}N{b}Alpha"},
-    {"AB{a}N{b}Phi", "deg", "inflow angle", "AB{a}N{b}Phi"},
-    {"AB{a}N{b}AxInd", "-", "axial induction factor", "AB{a}N{b}AxInd"},
-    {"AB{a}N{b}TnInd", "-", "tangential induction factor", "AB{a}N{b}TnInd"},
-    {"AB{a}N{b}Cl", "-", "lift coefficient", "AB{a}N{b}Cl"},
-    {"AB{a}N{b}Cd", "-", "drag coefficient", "AB{a}N{b}Cd"},
-    {"AB{a}N{b}Cm", "-", "moment coefficient", "AB{a}N{b}Cm"},
-    {"AB{a}N{b}Fx", "N/m", "force per length normal to the rotor plane", "AB{a}N{b}Fx"},
-    {"AB{a}N{b}Fy", "N/m", "force per length in the rotor plane, positive against the rotation where the air brakes", "AB{a}N{b}Fy"},
+    SAME("AB{a}N{b}VRel", "m/s", "speed of the air relative to the element"),
+    SAME("AB{a}N{b}Alpha", "deg", "angle of attack"),
+    SAME("AB{a}N{b}Phi", "deg", "inflow angle"),
+    SAME("AB{a}N{b}AxInd", "-", "axial induction factor"),
+    SAME("AB{a}N{b}TnInd", "-", "tangential induction factor"),
+    SAME("AB{a}N{b}Cl", "-", "lift coefficient"),
+    SAME("AB{a}N{b}Cd", "-", "drag coefficient"),
+    SAME("AB{a}N{b}Cm", "-", "moment coefficient"),
+    SAME("AB{a}N{b}Fx", "N/m", "force per length normal to the rotor plane"),
+    SAME("AB{a}N{b}Fy", "N/m", "force per length in the rotor plane, positive against the rotation where the air brakes"),
 };
 static const bough_channel_row control[] = {
-    {"GenSpeed", "rpm", "speed of the generator: rotor speed times gear ratio", "GenSpeed"},
-    {"GenTq", "kN-m", "torque of the generator at the fast shaft, positive when it brakes", "GenTq"},
-    {"GenPwr", "kW", "electrical power", "GenPwr"},
+    SAME("GenSpeed", "rpm", "speed of the generator: rotor speed times gear ratio"),
+    SAME("GenTq", "kN-m", "torque of the generator at the fast shaft, positive when it brakes"),
+    SAME("GenPwr", "kW", "electrical power"),
 };
 static const bough_channel_row pitch[] = {
-    {"BldPitch{a}", "deg", "pitch of the blade: sum of the body's pitch and the joint's angle, positive towards feather", "BldPitch{a}"},
+    SAME("BldPitch{a}", "deg", "pitch of the blade: sum of the body's pitch and the joint's angle, positive towards feather"),
 };
 static const bough_channel_row law[] = {
     {"LawGenSpeed", "rad/s", "speed of the generator now, as a control law uses it, without rounding", NULL},
