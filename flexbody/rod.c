@@ -160,6 +160,7 @@ void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
     scratch->segment = bough_arena_doubles(arena, 9 * (size_t)model->stride);
     scratch->load = bough_rod_vertex_rows(arena, model, 6);
     scratch->follower = bough_rod_vertex_rows(arena, model, 6);
+    scratch->following = bough_arena_doubles(arena, 3 * (size_t)model->stride);
     scratch->time = 0;
     scratch->rest = model->strain0;
     scratch->turning = false;

@@ -147,8 +147,9 @@ typedef struct bough_rod_scratch {
     // set with the loads:
     double time;        // of the last bough_rod_derivative [s]
     const double *rest; // strains without stress (6 × stride); before any loads e⁰
-    bool turning;       // part of it is made by dead loads along the segments and turns with them:
-    double *along;      // these in the axes of the segments' middles (12 × stride)
+    bool turning;       // part of it is made by ramped loads along the segments, and turns with dead ones:
+    double *along;      // the dead ones in the axes of the segments' middles (12 × stride)
+    double *following;  // forces of the followers per length, in section axes (3 × stride)
     double *own_rest;   // (6 × stride)
 } bough_rod_scratch;
 

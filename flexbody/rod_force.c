@@ -121,46 +121,47 @@ static bool loads_lie_along(const bough_rod_loads *loads) {
     return false;
 }
 
-// Adds the moments about the chord of segment n of a dead load per length on the bent axis.
-static void add_chord_moments_of(const bough_rod_model *m, int n, bough_mat3 middle, bough_vec3 line,
-                       bough_rod_scratch *scratch) {
+// Adds the moments beside the chord of segment n of the loads per length on its axis.
+static void add_chord_moments_of(const bough_rod_model *m, int n, bough_rod_scratch *scratch) {
     int s = m->stride;
-    bough_mat3 left = bough_rotation_matrix(load_vertex(scratch->vertex, s, n).p);
-    bough_mat3 right = bough_rotation_matrix(load_vertex(scratch->vertex, s, n + 1).p);
-    bough_vec3 change = bough_sub(right.c3, left.c3);
-    change = bough_sub(change, bough_mat3_mul(middle, load3(m->bend0, s, n)));
-    bough_vec3 moment = chord_moment(m->length[n], change, line);
+    double h = m->length[n];
+    vertex_state l = load_vertex(scratch->vertex, s, n), r = load_vertex(scratch->vertex, s, n + 1);
+    segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);
+    bough_vec3 change = bough_sub(bough_rotation_matrix(r.p).c3, bough_rotation_matrix(l.p).c3);
+    change = bough_sub(change, bough_mat3_mul(shape.r, load3(m->bend0, s, n)));
+    bough_vec3 moment = chord_moment(h, change, bough_mat3_mul(shape.r, load3(scratch->along, s, n)));
+    bough_vec3 bend = bough_axpy(-h, load3(m->strain0 + 3 * s, s, n), shape.phi);
+    bough_vec3 following = following_moment(h, bend, load3(scratch->following, s, n));
+    moment = bough_add(moment, bough_mat3_mul(shape.r, following));
     double *load = scratch->load + 3 * s + n;
     for (int side = 0; side < 2; side++, load++) {
         store3(load, s, 0, bough_add(load3(load, s, 0), moment));
     }
 }
 
-// Adds D q of the ramped loads along the segments, the dead ones turned into their middles, and the latter's
-// moments about the chords.
+// Adds D q of the ramped loads along the segments, the dead ones turned into their middles, and the moments beside
+// the chords.
 static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                       bough_rod_scratch *scratch) {
     int s = m->stride;
     size_t bytes = 6 * (size_t)s * sizeof(double);
     if (!loads->moving) memcpy(scratch->own_rest, loads->rest, bytes);
     memset(scratch->along, 0, 2 * bytes);
+    memset(scratch->following, 0, bytes / 2);
+    scratch->turning = true;
     scratch->rest = scratch->own_rest;
     for (const bough_rod_ramped_load *l = loads->ramped; l != NULL; l = l->next) {
         double factor = bough_rod_ramp_factor(l, t);
         if (!l->along) continue;
-        scratch->turning = scratch->turning || !l->follower;
         for (int n = 0; n < m->n_segment; n++) {
             bough_mat3 r = middle_of(m, scratch, n);
             bough_vec3 q[4];
             for (int part = 0; part < 4; part++) {
-                double *along = scratch->along + 3 * part * s;
+                double *to = l->follower ? scratch->following : scratch->along + 3 * part * s;
                 q[part] = bough_scale(factor, load3(l->line + 3 * part * s, s, n));
-                if (l->follower) continue;
-                q[part] = bough_mat3_tmul(r, q[part]);
-                store3(along, s, n, bough_add(load3(along, s, n), q[part]));
-            }
-            if (!l->follower) {
-                add_chord_moments_of(m, n, r, bough_scale(factor, load3(l->line, s, n)), scratch);
+                if (!l->follower) q[part] = bough_mat3_tmul(r, q[part]);
+                if (l->follower && part > 0) continue;
+                store3(to, s, n, bough_add(load3(to, s, n), q[part]));
             }
             double *rest = scratch->own_rest;
             strain e = line_strain(m->line, s, n, q);
@@ -168,6 +169,7 @@ static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, do
             store3(rest + 3 * s, s, n, bough_add(load3(rest + 3 * s, s, n), e.u));
         }
     }
+    for (int n = 0; n < m->n_segment; n++) add_chord_moments_of(m, n, scratch);
 }
 
 static void move_rest(const bough_rod_model *m, const bough_rod_loads *loads, double elapsed,

@@ -76,15 +76,27 @@ static inline bough_vec3 chord_moment(double h, bough_vec3 change, bough_vec3 lo
     return bough_scale(-h * h / 24, bough_cross(change, load));
 }
 
-// Adds what the turns phi of the sections change in that moment of the dead loads `along` the segment.
-static inline segment_force add_chord_moments(segment_force f, bough_mat3 rl, bough_mat3 rr, bough_mat3 r,
-                                    bough_vec3 phi_l, bough_vec3 phi_r, bough_vec3 middle,
-                                    bough_vec3 bend0, bough_vec3 along, double h) {
+// The same of a load that turns with the sections, in the axes of the middle: the end couples t×q h²/12 that
+// D q stands for turn with it, and leave their differences between segments.
+static inline bough_vec3 following_moment(double h, bough_vec3 bend, bough_vec3 load) {
+    return bough_scale(-h * h / 24, bough_cross(bend, (bough_vec3){-load.y, load.x, 0}));
+}
+
+// Adds what the turns phi of the sections change in these moments of the loads along segment n, dead ones and
+// followers.
+static inline segment_force add_chord_moments(segment_force f, segment_geometry shape, segment_variation d,
+                                              bough_mat3 rl, bough_mat3 rr, bough_vec3 phi_l,
+                                              bough_vec3 phi_r, bough_vec3 bend0, bough_vec3 turn0,
+                                              bough_vec3 along, bough_vec3 following, double h) {
     const bough_vec3 tangent = {0, 0, 1};
     bough_vec3 change = bough_sub(bough_mat3_mul(rr, bough_cross(phi_r, tangent)),
                                   bough_mat3_mul(rl, bough_cross(phi_l, tangent)));
-    change = bough_sub(change, bough_mat3_mul(r, bough_cross(middle, bend0)));
-    bough_vec3 moment = chord_moment(h, change, bough_mat3_mul(r, along));
+    change = bough_sub(change, bough_mat3_mul(shape.r, bough_cross(d.middle, bend0)));
+    bough_vec3 moment = chord_moment(h, change, bough_mat3_mul(shape.r, along));
+    bough_vec3 bend = bough_axpy(-h, turn0, shape.phi);
+    bough_vec3 turned = bough_cross(d.middle, following_moment(h, bend, following));
+    turned = bough_add(turned, following_moment(h, d.phi, following));
+    moment = bough_add(moment, bough_mat3_mul(shape.r, turned));
     f.ll = bough_add(f.ll, bough_mat3_tmul(rl, moment));
     f.lr = bough_add(f.lr, bough_mat3_tmul(rr, moment));
     return f;
@@ -112,8 +124,9 @@ static inline segment_force segment_tangent(const bough_rod_model *m,
                                 symmetric_times(m->damping, s, n, drate));
     segment_force f = force_variation(shape, d, stress, dstress, h);
     if (!scratch->turning) return f;
-    return add_chord_moments(f, bough_rotation_matrix(l.p), bough_rotation_matrix(r.p), shape.r, dl->phi,
-                   dr->phi, d.middle, load3(m->bend0, s, n), load3(scratch->along, s, n), h);
+    return add_chord_moments(f, shape, d, bough_rotation_matrix(l.p), bough_rotation_matrix(r.p), dl->phi, dr->phi,
+                             load3(m->bend0, s, n), load3(m->strain0 + 3 * s, s, n),
+                             load3(scratch->along, s, n), load3(scratch->following, s, n), h);
 }
 
 #endif

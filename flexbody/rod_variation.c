@@ -109,7 +109,7 @@ static inline void store_force(double *restrict column, int l, segment_force f) 
     store3(column + LANES * DIRECTIONS * LR, LANES * DIRECTIONS, l, f.lr);
 }
 
-// `turning`: D q turns as well, and what dead loads along the segment do beside its chord.
+// `turning`: D q turns as well, and the moments of loads along the segment beside its chord.
 static inline void position_direction(const bough_rod_model *m, const bough_rod_scratch *scratch,
                                       bool turning, int first, const double *restrict base,
                                       vertex_variation dl, vertex_variation dr,
@@ -117,6 +117,7 @@ static inline void position_direction(const bough_rod_model *m, const bough_rod_
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict along = scratch->along + first;
     const double *restrict line = m->line + first, *restrict bend = m->bend0 + first;
+    const double *restrict turn = m->strain0 + 3 * s + first, *restrict following = scratch->following + first;
     const double *restrict c = m->stiffness + first, *restrict gradient = m->gradient + first;
     const double *restrict damping = m->damping + first;
     const double *restrict inverse = m->inverse_length + first, *restrict h = m->length + first;
@@ -141,8 +142,8 @@ static inline void position_direction(const bough_rod_model *m, const bough_rod_
         if (turning) {
             bough_mat3 rl = bough_rotation_matrix(load_vertex(at, s, l).p);
             bough_mat3 rr = bough_rotation_matrix(load_vertex(at, s, l + 1).p);
-            f = add_chord_moments(f, rl, rr, shape.r, dl.phi, dr.phi, d.middle, load3(bend, s, l),
-                        load3(along, s, l), h[l]);
+            f = add_chord_moments(f, shape, d, rl, rr, dl.phi, dr.phi, load3(bend, s, l), load3(turn, s, l),
+                                  load3(along, s, l), load3(following, s, l), h[l]);
         }
         store_force(column, l, f);
     }

@@ -114,15 +114,7 @@ static void load_that_falls_along_the_rod_bends_it_as_beam_theory_says(void **co
     }
 }
 
-// A strip of 1.5 m, bending stiffness 2 and 36, torsional 3, its ends turned by `pretwist`.
-static bent strip_of(bough_arena *arena, int n, double pretwist) {
-    const bough_section_station station[2] = {
-        {.stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3}, .mass = 1,
-         .inertia = {0.01, 0.01, 0, 0.02}},
-        {.position = {0, 0, 1.5}, .twist = pretwist,
-         .stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3}, .mass = 1,
-         .inertia = {0.01, 0.01, 0, 0.02}}};
-    const bough_section_table table = {.name = "strip", .n_station = 2, .station = station};
+static bent table_rod(bough_arena *arena, bough_section_table table, int n) {
     bough_rod_def def;
     bent b;
     bough_status s = bough_section_discretise(arena, &table, n, &def);
@@ -135,6 +127,17 @@ static bent strip_of(bough_arena *arena, int n, double pretwist) {
     bough_rod_static_init(&b.work, arena, b.model);
     bough_rod_rest_state(b.model, at_rest, b.state);
     return b;
+}
+
+// A strip of 1.5 m, bending stiffness 2 and 36, torsional 3, its ends turned by `pretwist`.
+static bent strip_of(bough_arena *arena, int n, double pretwist) {
+    const bough_section_station station[2] = {
+        {.stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3}, .mass = 1,
+         .inertia = {0.01, 0.01, 0, 0.02}},
+        {.position = {0, 0, 1.5}, .twist = pretwist,
+         .stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, 36, 0, 3}, .mass = 1,
+         .inertia = {0.01, 0.01, 0, 0.02}}};
+    return table_rod(arena, (bough_section_table){.name = "strip", .n_station = 2, .station = station}, n);
 }
 
 // A cantilever under (s/L)⁵ per length. Each segment has the line with its resultant and moment, as loads from other
@@ -174,6 +177,46 @@ static void polynomial_line_loads_converge_at_fourth_order(void **context) {
     print_message("4, 8, 16 segments: %.2g, %.2g, %.2g of the tip's way\n", error[0], error[1], error[2]);
     assert_true(error[0] / error[1] > 14 && error[1] / error[2] > 14);
     assert_true(error[2] < 1e-5);
+}
+
+// The tip of a cantilever under force and moment per length that stay in its sections' axes and a force at the tip
+// that does not, EI 2 and `edge`, in lengths.
+static bough_vec3 followed_tip(int n, double edge, const double line[6], bough_vec3 force) {
+    const double always[2] = {0, 0}, length = 1.5;
+    const bough_section_station station = {.stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, edge, 0, 3},
+                                           .mass = 1, .inertia = {0.01, 0.01, 0, 0.02}};
+    bough_arena *arena = bough_arena_create();
+    bent b = table_rod(arena, (bough_section_table){.name = "strip", .n_station = 1, .station = &station, .length = length}, n);
+    bough_rod_ramped_load *load = bough_rod_loads_ramped(&b.loads, arena, b.model, true, always);
+    bough_rod_lump(b.model, (bough_rod_reach){0, length}, line, NULL, load);
+    const double at_tip[3] = {force.x, force.y, force.z};
+    for (int c = 0; c < 3; c++) b.loads.value[c * b.model->stride + n] = at_tip[c];
+    solve(&b, bough_rod_static_options_default());
+    bough_vec3 tip = bough_scale(1 / length, vertex(&b, n));
+    bough_arena_destroy(arena);
+    return tip;
+}
+
+static void check_fourth_order(const double error[3]) {
+    print_message("4, 8, 16 segments: %.2g, %.2g, %.2g of the length\n", error[0], error[1], error[2]);
+    assert_true(error[0] / error[1] > 12 && error[1] / error[2] > 12);
+}
+
+// q L³/EI = 6 and m L²/EI = 2 in a plane, by the elastica integrated from the tip inwards; a load across the plane
+// in which a force at the tip bends the rod, by many segments.
+static void follower_line_loads_converge_at_fourth_order(void **context) {
+    (void)context;
+    const double length = 1.5, across[6] = {0, 4 * 2 / pow(length, 3)};
+    const double plane[6] = {6 * 36 / pow(length, 3), 0, 0, 0, 2 * 36 / pow(length, 2), 0};
+    const bough_vec3 none = {0, 0, 0}, force = {3 * 2 / pow(length, 2), 0, 0};
+    bough_vec3 exact = {0.8319616183, 0, 0.1925964621}, fine = followed_tip(128, 2, across, force);
+    double error[2][3];
+    for (int k = 0; k < 3; k++) {
+        error[0][k] = bough_norm(bough_sub(followed_tip(4 << k, 36, plane, none), exact));
+        error[1][k] = bough_norm(bough_sub(followed_tip(4 << k, 2, across, force), fine));
+    }
+    check_fourth_order(error[0]);
+    check_fourth_order(error[1]);
 }
 
 // A cantilever under a force askew to its two ways of bending twists, to second order in the force, by
@@ -322,6 +365,7 @@ int main(void) {
         cmocka_unit_test(dead_tip_force_gives_the_elastica),
         cmocka_unit_test(load_that_falls_along_the_rod_bends_it_as_beam_theory_says),
         cmocka_unit_test(polynomial_line_loads_converge_at_fourth_order),
+        cmocka_unit_test(follower_line_loads_converge_at_fourth_order),
         cmocka_unit_test(bending_two_ways_twists),
         cmocka_unit_test(follower_force_bends_the_rod_beyond_a_half_turn),
         cmocka_unit_test(turning_bar_stretches),
