@@ -45,14 +45,34 @@ static void insert(const bough_simulation *s, const bough_beam *blade, bough_bla
     group->blade[k] = blade;
 }
 
+// Whether nothing but joints of given motion is between a blade and the rotor.
+static bool hangs_on(const bough_tree *tree, int link, int rotor) {
+    while (link != rotor && link >= 0 && tree->links[link].motion != NULL) link = tree->links[link].parent;
+    return link == rotor;
+}
+
+// How far the blade's pitch is from the first one's: of x and y of its frame about the span.
+static double pitch_between(const bough_simulation *s, const bough_beam *first, const bough_beam *blade,
+                            double angle) {
+    int rotor = s->scene->turbine.rotor;
+    bough_mat3 r = bough_tree_frame_pose(s->view, &s->tree->bodies[rotor]).rotation;
+    const bough_vec3 axes[3] = {r.c1, r.c2, r.c3};
+    bough_vec3 turn = bough_scale(angle, axes[s->scene->body[rotor].joint.axis]);
+    bough_mat3 p = bough_tree_frame_pose(s->view, &s->tree->markers[first->marker]).rotation;
+    bough_mat3 q = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]).rotation;
+    bough_mat3 moved = bough_rotation_matrix(bough_quaternion_exponential(turn));
+    return bough_norm(bough_sub(q.c1, bough_mat3_mul(moved, p.c1)));
+}
+
 static bool is_alike(const bough_simulation *s, const bough_blade_group *group, int k) {
     const bough_beam *first = group->blade[0], *blade = group->blade[k];
     int rotor = s->tree->bodies[s->scene->turbine.rotor].link;
     double angle = azimuth_of(s, blade) - azimuth_of(s, first) - 2 * BOUGH_PI * k / group->n;
     return blade->port >= 0 && blade->body->fidelity == first->body->fidelity &&
            s->rod[blade->port].system.n_state == s->rod[first->port].system.n_state &&
-           s->tree->markers[blade->marker].link == rotor &&
-           same_structure(&first->def, &blade->def) && fabs(angle) < even;
+           hangs_on(s->tree, s->tree->markers[blade->marker].link, rotor) &&
+           same_structure(&first->def, &blade->def) && fabs(angle) < even &&
+           pitch_between(s, first, blade, 2 * BOUGH_PI * k / group->n) < even;
 }
 
 bough_status bough_blade_group_find(bough_arena *arena, const bough_simulation *s,
