@@ -125,21 +125,31 @@ static void respond(const bough_tree *tree, bough_tree_data *d, int row) {
     }
 }
 
+// Whether an equation is one of rotation.
+static bool turns(const bough_tree *tree, int row) {
+    const bough_closure *c = &tree->closures[bough_loops_of_row(tree, row)];
+    return row - c->first_row >= c->constraint.n_translation;
+}
+
+// Of the diagonal, among equations of translation and of rotation
+static void find_largest(const bough_tree *tree, const bough_loops *l, double largest[2]) {
+    int m = tree->n_rows;
+    largest[0] = largest[1] = 0;
+    for (int k = 0; k < m; k++) {
+        double *x = &largest[turns(tree, k)];
+        *x = fmax(*x, l->matrix[k * m + k]);
+    }
+}
+
 // Scales the matrix to a diagonal of one and finds its eigenvectors. Rows that nothing moves drop
 // out.
 bool bough_loops_factor(const bough_tree *tree, bough_loops *l) {
     int m = tree->n_rows;
-    double largest[2] = {0, 0}; // of translations and of rotations
+    double largest[2];
+    find_largest(tree, l, largest);
     for (int k = 0; k < m; k++) {
-        const bough_closure *c = &tree->closures[bough_loops_of_row(tree, k)];
-        bool turns = k - c->first_row >= c->constraint.n_translation;
-        largest[turns] = fmax(largest[turns], l->matrix[k * m + k]);
-    }
-    for (int k = 0; k < m; k++) {
-        const bough_closure *c = &tree->closures[bough_loops_of_row(tree, k)];
-        bool turns = k - c->first_row >= c->constraint.n_translation;
         double diagonal = l->matrix[k * m + k];
-        l->scale[k] = diagonal > rigid * largest[turns] ? 1 / sqrt(diagonal) : 0;
+        l->scale[k] = diagonal > rigid * largest[turns(tree, k)] ? 1 / sqrt(diagonal) : 0;
     }
     for (int j = 0; j < m; j++) {
         for (int k = 0; k < m; k++)
@@ -236,6 +246,28 @@ void bough_loops_correct(const bough_tree *tree, const bough_tree_data *d, const
         for (int k = 0; k < link->n_coordinates; k++)
             rate[link->first_coordinate + k] -= own[k];
     }
+}
+
+double bough_loops_margin(const bough_tree *tree, bough_tree_data *d, int *closure) {
+    bough_loops *l = d->loops;
+    int m = tree->n_rows, smallest = m - tree->closure_rank, row = 0;
+    double largest[2];
+    if (tree->closure_rank == 0) return 1;
+    for (int k = 0; k < m; k++) respond(tree, d, k);
+    find_largest(tree, l, largest);
+    for (int j = 0; j < m; j++) {
+        for (int k = 0; k < m; k++) {
+            double size = sqrt(largest[turns(tree, j)] * largest[turns(tree, k)]);
+            l->matrix[j * m + k] = size > 0 ? l->matrix[j * m + k] / size : 0;
+        }
+    }
+    if (!bough_symmetric_eigen(m, l->matrix, l->value, l->work)) return 1;
+    const double *vector = l->matrix + (size_t)smallest * (size_t)m;
+    for (int k = 1; k < m; k++) {
+        if (fabs(vector[k]) > fabs(vector[row])) row = k;
+    }
+    *closure = bough_loops_of_row(tree, row);
+    return l->value[smallest] / l->value[m - 1];
 }
 
 bough_wrench bough_loops_wrench(const bough_tree *tree, const bough_tree_data *d, int closure) {

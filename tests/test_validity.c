@@ -102,12 +102,26 @@ static void samples_too_seldom_for_a_modal_blade_are_told(void **state) {
     }
 }
 
+// Windows of four bars, whose rods all come to lie on one line at 0.75 s; a loop that stays away from such a position.
+static void singular_positions_are_told(void **state) {
+    (void)state;
+    static const char *const sets[] = {NULL};
+    bough_arena *arena = bough_arena_create();
+    bough_simulation *s = run_scene(arena, "apps/mechanisms/four-bar.yaml", sets, 75);
+    bough_passing first = s->validity->limit[BOUGH_LIMIT_SINGULAR];
+    assert_int_equal(passed(s), 1 << BOUGH_LIMIT_SINGULAR);
+    assert_true(first.time > 0.6 && first.value < 0.01);
+    assert_int_equal(passed(run_scene(arena, "tests/scenes/closed.yaml", sets, 100)), 0);
+    bough_arena_destroy(arena);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(within_the_limits_nothing_is_told),
         cmocka_unit_test(a_fast_section_is_told_once),
         cmocka_unit_test(a_blade_in_the_tower_is_told),
         cmocka_unit_test(a_turned_segment_is_told),
+        cmocka_unit_test(singular_positions_are_told),
         cmocka_unit_test(samples_too_seldom_for_a_modal_blade_are_told),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,7 @@
 #include "apps/simulation/validity.h"
 
 #include "apps/simulation/aero_link.h"
+#include "core/loop.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -12,6 +13,9 @@ static const double most_over_rated = 2;
 static const double most_missed = 0.3;
 // A segment has one strain: what turns by more is a coarse picture of it, and there is none beyond 120°.
 static const double most_turn = 0.25 * BOUGH_PI;
+// Of bough_loops_margin, also relative to the largest so far: on random linkages it stays above 0.02 or above 0.03 of the
+// largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
+static const double least_margin = 0.01, least_share = 0.1;
 static const double small_turn = 0.98; // cosine of a quarter of most_turn
 
 // Each sentence ends with the value in its unit.
@@ -30,6 +34,8 @@ static const struct {
                                            " between two samples: take a higher aero.rate, or fidelity rod"},
     [BOUGH_LIMIT_TURN] = {"segment_turn", "a segment turns its ends against each other by %.3g deg, more"
                                           " than 45 deg: take more segments"},
+    [BOUGH_LIMIT_SINGULAR] = {"singular_position", "its closed loop is near a position from which its bodies can go on in two"
+                                                   " ways, and takes one of them by the smallest difference; margin %.2g"},
 };
 
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
@@ -106,7 +112,22 @@ static void check_turns(bough_simulation *s) {
     }
 }
 
+static void check_closures(bough_simulation *s) {
+    double t = s->master->time;
+    int closure = 0;
+    bough_validity *v = s->validity;
+    if (v->limit[BOUGH_LIMIT_SINGULAR].passed) return;
+    bough_simulation_update(s);
+    if (!bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration)) return;
+    double margin = bough_loops_margin(s->tree, s->view, &closure);
+    v->margin = fmax(v->margin, margin);
+    if (!(margin <= least_margin && margin <= least_share * v->margin)) return;
+    const int *body = s->scene->closure[closure].body;
+    bough_validity_pass(v, BOUGH_LIMIT_SINGULAR, body[body[0] == BOUGH_GROUND], t, margin);
+}
+
 void bough_validity_check(bough_simulation *s) {
+    if (s->tree->n_closures > 0) check_closures(s);
     if (s->aero) check_air(s);
     check_turns(s);
     check_speed(s);

@@ -11,6 +11,7 @@ typedef enum bough_limit {
     BOUGH_LIMIT_TOWER,       // a blade is inside the tower
     BOUGH_LIMIT_SAMPLES,     // the samples of the air are too seldom for the vibrations of a modal blade
     BOUGH_LIMIT_TURN,        // a rod's segment turns its ends against each other by more than 45°
+    BOUGH_LIMIT_SINGULAR,    // a closed loop is near a position in which its bodies can go on in two ways
     BOUGH_LIMITS,
 } bough_limit;
 
@@ -25,6 +26,7 @@ typedef struct bough_passing {
 typedef struct bough_validity {
     bough_passing limit[BOUGH_LIMITS];
     double looked; // time of the last sample of the air seen [s]
+    double margin; // largest of the closed loops so far, see bough_loops_margin
 } bough_validity;
 
 // Notes that a limit is passed, if it is the first time.
