@@ -401,10 +401,11 @@ static void samples_repeat_from_saved(void **context) {
     static const char *const sets[] = {"aero.dynamic_stall=hgm", "aero.induction.inflow=oye", NULL};
     fixture f = open_turbine(sets);
     for (int k = 0; k < 4; k++) sample(&f, k * period, (k + 1) * period);
-    int n = bough_aero_link_size(f.s->aero);
-    double *saved = calloc((size_t)n, sizeof *saved);
+    bough_snapshot room = {BOUGH_SNAPSHOT_MEASURE, NULL, 0};
+    bough_aero_link_snapshot(f.s->aero, &room);
+    char *saved = calloc(1, room.used);
     signal before[2], first[2];
-    bough_aero_link_save(f.s->aero, saved);
+    bough_aero_link_snapshot(f.s->aero, &(bough_snapshot){BOUGH_SNAPSHOT_SAVE, saved, 0});
     for (int b = 0; b < 2; b++) before[b] = signal_of(&f, b);
     for (int round = 0; round < 2; round++) {
         sample(&f, 4 * period, 5 * period);
@@ -415,7 +416,7 @@ static void samples_repeat_from_saved(void **context) {
             assert_memory_equal(now.value, first[b].value, (size_t)now.n * sizeof(double));
             assert_memory_equal(now.rate, first[b].rate, (size_t)now.n * sizeof(double));
         }
-        bough_aero_link_restore(f.s->aero, saved);
+        bough_aero_link_snapshot(f.s->aero, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, saved, 0});
         for (int b = 0; b < 2; b++) {
             signal now = signal_of(&f, b);
             assert_memory_equal(now.value, before[b].value, (size_t)now.n * sizeof(double));

@@ -153,10 +153,14 @@ static void memory_is_saved_and_restored(void **state) {
     double saved[100], speed[2], torque[2], power[2];
     bool jumped;
     bough_sampled_load load = bough_control_link_load(f.s->control);
-    assert_true(bough_control_link_size(f.s->control) <= 100);
-    bough_control_link_save(f.s->control, saved);
+    bough_snapshot copy = {BOUGH_SNAPSHOT_SAVE, (char *)saved, 0}, back = {BOUGH_SNAPSHOT_RESTORE, (char *)saved, 0};
+    bough_snapshot room = {BOUGH_SNAPSHOT_MEASURE, NULL, 0};
+    bough_control_link_snapshot(f.s->control, &room);
+    assert_true(room.used <= sizeof saved);
+    bough_control_link_snapshot(f.s->control, &copy);
     for (int k = 0; k < 2; k++) {
-        bough_control_link_restore(f.s->control, saved);
+        back.used = 0;
+        bough_control_link_snapshot(f.s->control, &back);
         bough_status status = load.sample(load.self, 3, 3.02, &jumped);
         assert_int_equal(status.code, BOUGH_OK);
         bough_control_link_generator(f.s->control, &speed[k], &torque[k], &power[k]);

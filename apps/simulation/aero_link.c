@@ -393,47 +393,30 @@ bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t) {
 
 // -- saving ---------------------------------------------------------------------------------------
 
-// Of the evaluations only what they tell is stored: the shown one and the one at the sample ahead.
-enum { SCALARS = 5 };
-
-int bough_aero_link_size(const bough_aero_link *link) {
-    int n = SCALARS + bough_aero_motion_size(link->motion) + bough_rotor_memory_size(link->rotor) +
-            2 * bough_rotor_told_size(link->rotor);
-    for (int b = 0; b < link->n_blade; b++) n += bough_aero_signal_size(link->signal[b]);
-    return n;
+static void take_told(bough_aero_link *link, int k, bough_snapshot *s) {
+    double *room = bough_snapshot_room(s, (size_t)bough_rotor_told_size(link->rotor) * sizeof *room);
+    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_rotor_told_save(link->rotor, &link->data[k], room);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_rotor_told_restore(link->rotor, room, &link->data[k]);
 }
 
-void bough_aero_link_save(const bough_aero_link *link, double *to) {
-    *to++ = link->started;
+static void take_memory(bough_aero_link *link, bough_snapshot *s) {
+    double *room = bough_snapshot_room(s, (size_t)bough_rotor_memory_size(link->rotor) * sizeof *room);
+    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_aero_link_remember(link, room);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_aero_link_remind(link, room);
+}
+
+// Of the evaluations only what they tell is stored: the shown one and the one at the sample ahead; of the loads
+// nothing.
+void bough_aero_link_snapshot(bough_aero_link *link, bough_snapshot *s) {
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) link->shown = 0, link->found = -1;
+    bough_snapshot_take(s, &link->started, sizeof link->started);
     for (int i = 0; i < 2; i++) {
         int k = i == 0 ? link->shown : 1 - link->shown;
-        *to++ = link->factor[k];
-        *to++ = link->time[k];
-        bough_rotor_told_save(link->rotor, &link->data[k], to);
-        to += bough_rotor_told_size(link->rotor);
+        bough_snapshot_take(s, &link->factor[k], sizeof link->factor[k]);
+        bough_snapshot_take(s, &link->time[k], sizeof link->time[k]);
+        take_told(link, k, s);
     }
-    for (int b = 0; b < link->n_blade; b++) {
-        bough_aero_signal_save(link->signal[b], to);
-        to += bough_aero_signal_size(link->signal[b]);
-    }
-    bough_aero_motion_save(link->motion, to);
-    bough_rotor_save(link->rotor, &link->data[0], to + bough_aero_motion_size(link->motion));
-}
-
-void bough_aero_link_restore(bough_aero_link *link, const double *from) {
-    link->started = *from++ != 0;
-    link->shown = 0;
-    link->found = -1; // loads are not stored
-    for (int k = 0; k < 2; k++) {
-        link->factor[k] = *from++;
-        link->time[k] = *from++;
-        bough_rotor_told_restore(link->rotor, from, &link->data[k]);
-        from += bough_rotor_told_size(link->rotor);
-    }
-    for (int b = 0; b < link->n_blade; b++) {
-        bough_aero_signal_restore(link->signal[b], from);
-        from += bough_aero_signal_size(link->signal[b]);
-    }
-    bough_aero_motion_restore(link->motion, from);
-    bough_rotor_restore(link->rotor, from + bough_aero_motion_size(link->motion), &link->data[0]);
+    for (int b = 0; b < link->n_blade; b++) bough_aero_signal_snapshot(link->signal[b], s);
+    bough_aero_motion_snapshot(link->motion, s);
+    take_memory(link, s);
 }

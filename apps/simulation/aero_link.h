@@ -25,11 +25,9 @@ void bough_aero_link_go_on(bough_aero_link *link, double t);
 void bough_aero_link_remember(const bough_aero_link *link, double *to);
 void bough_aero_link_remind(bough_aero_link *link, const double *from);
 
-// All that the next samples depend on as a row of numbers, and the loads that the bodies have, for
-// schemes that repeat samples: restoring puts the loads back. The results below are not in it.
-int bough_aero_link_size(const bough_aero_link *link);
-void bough_aero_link_save(const bough_aero_link *link, double *to);
-void bough_aero_link_restore(bough_aero_link *link, const double *from);
+// All that the next samples depend on, and the loads that the bodies have, for schemes that repeat samples:
+// restoring puts the loads back.
+void bough_aero_link_snapshot(bough_aero_link *link, bough_snapshot *snapshot);
 
 const bough_rotor *bough_aero_link_rotor(const bough_aero_link *link);
 

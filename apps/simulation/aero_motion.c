@@ -160,24 +160,9 @@ void bough_aero_motion_expect_blade(bough_aero_motion *m, int b) {
 
 // -- saving ---------------------------------------------------------------------------------------
 
-enum { SCALARS = 3 };
-
-int bough_aero_motion_size(const bough_aero_motion *m) {
-    return SCALARS + CALLS * m->n_blade * m->n_state;
-}
-
-void bough_aero_motion_save(const bough_aero_motion *m, double *to) {
-    size_t n = (size_t)m->n_blade * (size_t)m->n_state;
-    *to++ = m->known;
-    *to++ = m->time;
-    *to++ = m->ahead;
-    for (int i = 0; i < CALLS; i++, to += n) memcpy(to, m->state[i], n * sizeof *to);
-}
-
-void bough_aero_motion_restore(bough_aero_motion *m, const double *from) {
-    size_t n = (size_t)m->n_blade * (size_t)m->n_state;
-    m->known = (int)*from++;
-    m->time = *from++;
-    m->ahead = *from++;
-    for (int i = 0; i < CALLS; i++, from += n) memcpy(m->state[i], from, n * sizeof *from);
+void bough_aero_motion_snapshot(bough_aero_motion *m, bough_snapshot *s) {
+    bough_snapshot_take(s, &m->known, sizeof m->known);
+    bough_snapshot_take(s, &m->time, sizeof m->time);
+    bough_snapshot_take(s, &m->ahead, sizeof m->ahead);
+    for (int i = 0; i < CALLS; i++) bough_snapshot_doubles(s, m->state[i], m->n_blade * m->n_state);
 }

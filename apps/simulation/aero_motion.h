@@ -32,9 +32,7 @@ const double *bough_aero_motion_before(const bough_aero_motion *m, int blade);
 // Makes the next call the first.
 void bough_aero_motion_forget(bough_aero_motion *m);
 
-// All that the next calls depend on, as a row of numbers.
-int bough_aero_motion_size(const bough_aero_motion *m);
-void bough_aero_motion_save(const bough_aero_motion *m, double *to);
-void bough_aero_motion_restore(bough_aero_motion *m, const double *from);
+// All that the next calls depend on.
+void bough_aero_motion_snapshot(bough_aero_motion *m, bough_snapshot *snapshot);
 
 #endif

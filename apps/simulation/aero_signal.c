@@ -294,23 +294,11 @@ double bough_aero_signal_missed(const bough_aero_signal *s) { return sqrt(s->mis
 
 // -- saving ---------------------------------------------------------------------------------------
 
-enum { SCALARS = 4 };
-
-int bough_aero_signal_size(const bough_aero_signal *s) { return SCALARS + stored(s); }
-
-void bough_aero_signal_save(const bough_aero_signal *s, double *to) {
-    *to++ = s->start;
-    *to++ = s->span;
-    *to++ = s->damped;
-    *to++ = s->missed;
-    memcpy(to, s->row, (size_t)stored(s) * sizeof *to);
-}
-
-void bough_aero_signal_restore(bough_aero_signal *s, const double *from) {
-    s->start = *from++;
-    s->span = *from++;
-    s->damped = *from++;
-    s->missed = *from++;
-    memcpy(s->row, from, (size_t)stored(s) * sizeof *from);
-    if (s->span > 0) put(s);
+void bough_aero_signal_snapshot(bough_aero_signal *s, bough_snapshot *snapshot) {
+    bough_snapshot_take(snapshot, &s->start, sizeof s->start);
+    bough_snapshot_take(snapshot, &s->span, sizeof s->span);
+    bough_snapshot_take(snapshot, &s->damped, sizeof s->damped);
+    bough_snapshot_take(snapshot, &s->missed, sizeof s->missed);
+    bough_snapshot_doubles(snapshot, s->row, stored(s));
+    if (snapshot->move == BOUGH_SNAPSHOT_RESTORE && s->span > 0) put(s);
 }

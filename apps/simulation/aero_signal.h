@@ -37,9 +37,7 @@ void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh,
 // loads follow its motion. About 1: the samples are too seldom for the body's vibrations, which then grow.
 double bough_aero_signal_missed(const bough_aero_signal *s);
 
-// All that the signal depends on, as a row of numbers; restoring gives it to the body.
-int bough_aero_signal_size(const bough_aero_signal *s);
-void bough_aero_signal_save(const bough_aero_signal *s, double *to);
-void bough_aero_signal_restore(bough_aero_signal *s, const double *from);
+// All that the signal depends on; restoring gives it to the body.
+void bough_aero_signal_snapshot(bough_aero_signal *s, bough_snapshot *snapshot);
 
 #endif

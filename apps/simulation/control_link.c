@@ -237,20 +237,8 @@ void bough_control_link_generator(const bough_control_link *l, double *speed, do
     *power = l->control->efficiency * l->now.speed * l->now.torque;
 }
 
-static size_t event_bytes(const bough_control_link *l) {
-    return l->events ? (size_t)l->control->n_event * sizeof *l->event : 0;
-}
-
-int bough_control_link_size(const bough_control_link *link) {
-    return (int)((sizeof(memory) + event_bytes(link)) / sizeof(double));
-}
-
-void bough_control_link_save(const bough_control_link *link, double *to) {
-    memcpy(to, &link->now, sizeof link->now);
-    memcpy(to + sizeof(memory) / sizeof(double), link->event, event_bytes(link));
-}
-
-void bough_control_link_restore(bough_control_link *link, const double *from) {
-    memcpy(&link->now, from, sizeof link->now);
-    memcpy(link->event, from + sizeof(memory) / sizeof(double), event_bytes(link));
+void bough_control_link_snapshot(bough_control_link *link, bough_snapshot *s) {
+    size_t events = link->events ? (size_t)link->control->n_event : 0;
+    bough_snapshot_take(s, &link->now, sizeof link->now);
+    bough_snapshot_take(s, link->event, events * sizeof *link->event);
 }

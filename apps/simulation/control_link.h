@@ -33,10 +33,7 @@ bough_sampled_load bough_control_link_load(bough_control_link *link);
 void bough_control_link_generator(const bough_control_link *link, double *speed, double *torque,
                                   double *power);
 
-// The memory as a row of numbers, for schemes that repeat a sample. A shared library's own is not
-// in it.
-int bough_control_link_size(const bough_control_link *link);
-void bough_control_link_save(const bough_control_link *link, double *to);
-void bough_control_link_restore(bough_control_link *link, const double *from);
+// The memory, for schemes that repeat a sample. A shared library's own is not in it.
+void bough_control_link_snapshot(bough_control_link *link, bough_snapshot *snapshot);
 
 #endif

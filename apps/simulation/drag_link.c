@@ -145,13 +145,7 @@ void bough_drag_link_hold(bough_drag_link *link, double t) {
     *started = 0;
 }
 
-int bough_drag_link_size(const bough_drag_link *link) { return 2 * link->n + 2; }
-
-void bough_drag_link_save(const bough_drag_link *link, double *to) {
-    memcpy(to, link->memory, (size_t)bough_drag_link_size(link) * sizeof *to);
-}
-
-void bough_drag_link_restore(bough_drag_link *link, const double *from) {
-    memcpy(link->memory, from, (size_t)bough_drag_link_size(link) * sizeof *from);
-    if (link->memory[2 * link->n + 1] != 0) put(link);
+void bough_drag_link_snapshot(bough_drag_link *link, bough_snapshot *s) {
+    bough_snapshot_doubles(s, link->memory, 2 * link->n + 2);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE && link->memory[2 * link->n + 1] != 0) put(link);
 }

@@ -20,9 +20,7 @@ bough_sampled_load bough_drag_link_load(bough_drag_link *link);
 // Sets the drag of the present motion, constant, as bough_aero_link_hold does the rotor's loads.
 void bough_drag_link_hold(bough_drag_link *link, double t);
 
-// The memory as a row of numbers: bough_aero_link_save.
-int bough_drag_link_size(const bough_drag_link *link);
-void bough_drag_link_save(const bough_drag_link *link, double *to);
-void bough_drag_link_restore(bough_drag_link *link, const double *from);
+// The memory, as bough_aero_link_snapshot.
+void bough_drag_link_snapshot(bough_drag_link *link, bough_snapshot *snapshot);
 
 #endif

@@ -97,14 +97,9 @@ bough_sampled_load bough_input_link_load(bough_input_link *link, double macro_st
     return (bough_sampled_load){.period = macro_step, .self = link, .sample = sample};
 }
 
-int bough_input_link_size(const bough_input_link *link) { return 5 * link->n; }
-
-void bough_input_link_save(const bough_input_link *link, double *to) {
-    memcpy(to, link->memory, 5 * (size_t)link->n * sizeof *to);
-}
-
-void bough_input_link_restore(bough_input_link *link, const double *from) {
-    memcpy(link->memory, from, 5 * (size_t)link->n * sizeof *from);
+void bough_input_link_snapshot(bough_input_link *link, bough_snapshot *s) {
+    bough_snapshot_doubles(s, link->memory, 5 * link->n);
+    if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
     for (int k = 0; k < link->n; k++) {
         double value = link->memory[link->n + k];
         if (link->table[k] != NULL) link->table[k][0] = link->table[k][1] = value;

@@ -19,9 +19,7 @@ bool bough_input_link_put(bough_input_link *link, int k, double value);
 // For the macro loop, before all other loads.
 bough_sampled_load bough_input_link_load(bough_input_link *link, double macro_step);
 
-// What the inputs remember as a row of numbers.
-int bough_input_link_size(const bough_input_link *link);
-void bough_input_link_save(const bough_input_link *link, double *to);
-void bough_input_link_restore(bough_input_link *link, const double *from);
+// What the inputs remember; restoring gives it to the model.
+void bough_input_link_snapshot(bough_input_link *link, bough_snapshot *snapshot);
 
 #endif

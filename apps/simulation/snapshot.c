@@ -6,36 +6,12 @@
 #include "apps/simulation/input_link.h"
 #include "apps/simulation/validity.h"
 
-static void take_aero(bough_aero_link *link, bough_snapshot *s) {
-    double *room = bough_snapshot_room(s, (size_t)bough_aero_link_size(link) * sizeof *room);
-    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_aero_link_save(link, room);
-    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_aero_link_restore(link, room);
-}
-
-static void take_drag(bough_drag_link *link, bough_snapshot *s) {
-    double *room = bough_snapshot_room(s, (size_t)bough_drag_link_size(link) * sizeof *room);
-    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_drag_link_save(link, room);
-    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_drag_link_restore(link, room);
-}
-
-static void take_inputs(bough_input_link *link, bough_snapshot *s) {
-    double *room = bough_snapshot_room(s, (size_t)bough_input_link_size(link) * sizeof *room);
-    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_input_link_save(link, room);
-    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_input_link_restore(link, room);
-}
-
-static void take_control(bough_control_link *link, bough_snapshot *s) {
-    double *room = bough_snapshot_room(s, (size_t)bough_control_link_size(link) * sizeof *room);
-    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_control_link_save(link, room);
-    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_control_link_restore(link, room);
-}
-
 void bough_simulation_snapshot(bough_simulation *s, bough_snapshot *snapshot) {
     bough_master_snapshot(s->master, snapshot);
-    if (s->inputs) take_inputs(s->inputs, snapshot);
-    if (s->aero) take_aero(s->aero, snapshot);
-    if (s->drag) take_drag(s->drag, snapshot);
-    if (s->control) take_control(s->control, snapshot);
+    if (s->inputs) bough_input_link_snapshot(s->inputs, snapshot);
+    if (s->aero) bough_aero_link_snapshot(s->aero, snapshot);
+    if (s->drag) bough_drag_link_snapshot(s->drag, snapshot);
+    if (s->control) bough_control_link_snapshot(s->control, snapshot);
     bough_snapshot_take(snapshot, s->validity, sizeof *s->validity);
 }
 
