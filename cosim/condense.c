@@ -88,11 +88,13 @@ bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly
         take_part(k, arena, i);
     size_t n = (size_t)k->n;
     k->gain = bough_arena_doubles(arena, (size_t)k->n_leader_input * n);
+    k->response = bough_arena_doubles(arena, n * n);
     k->loop = bough_arena_doubles(arena, n * n);
     k->matrix = bough_arena_doubles(arena, n * n);
     k->square = bough_arena_doubles(arena, n * n);
     k->pivot = bough_arena_take(arena, n * sizeof(int));
     k->coordinate = bough_arena_doubles(arena, n);
+    k->sum = bough_arena_doubles(arena, n);
     k->moved = bough_arena_doubles(arena, (size_t)assembly->n_output);
     k->right = bough_arena_doubles(arena, (size_t)k->n_leader_input);
     k->unit = bough_arena_doubles(arena, (size_t)assembly->n_input);
@@ -177,24 +179,13 @@ void bough_condensed_add_columns(const bough_condensed *k, int member, double fa
     add_columns(s->n_state, s->n_input, k->part[member].column, factor, weight, sum);
 }
 
-// columns ← (I − γJ)⁻¹ γ columns, by the inverse: there are fewer states than inputs
-static void solve_columns(const bough_condensed *k, int member, double gamma) {
-    const bough_system *s = system_of(k, member);
+static void find_inverse(const bough_condensed *k, int member) {
     const bough_condensed_member *w = &k->part[member];
-    double *right = k->work + k->assembly->state_offset[member], *column = w->column;
-    int n = s->n_state;
-    memset(w->inverse, 0, (size_t)n * (size_t)n * sizeof(double));
-    for (int i = 0; i < n; i++) {
-        w->inverse[i * n + i] = gamma;
-        bough_condensed_solve_member(k, member, w->inverse + (size_t)i * (size_t)n);
-    }
-    for (int j = 0; j < s->n_input; j++, column += n) {
-        memcpy(right, column, (size_t)n * sizeof(double));
-        memset(column, 0, (size_t)n * sizeof(double));
-        for (int i = 0; i < n; i++) {
-            for (int r = 0; r < n; r++)
-                column[r] += right[i] * w->inverse[i * n + r];
-        }
+    size_t n = (size_t)w->n;
+    memset(w->inverse, 0, n * n * sizeof(double));
+    for (size_t i = 0; i < n; i++) {
+        w->inverse[i * n + i] = 1;
+        bough_condensed_solve_member(k, member, w->inverse + i * n);
     }
 }
 
@@ -206,8 +197,6 @@ static void find_input_responses(const bough_condensed *k, int member,
     double *unit = k->unit + k->assembly->input_offset[member];
     double *column = w->column, *response = w->output_change;
     for (int j = 0; j < s->n_input; j++, column += s->n_state, response += s->n_output) {
-        for (int i = 0; i < s->n_state; i++)
-            column[i] *= at->gamma;
         bough_condensed_solve_member(k, member, column);
         unit[j] = 1;
         bough_condensed_output_change(k, member, at, column, unit, response);
@@ -231,13 +220,16 @@ static void find_state_responses(const bough_condensed *k, int member,
 bool bough_condensed_factor_leader(bough_condensed *k, int member,
                                    const bough_operating_point *at) {
     const bough_condensed_member *w = &k->part[member];
+    const bough_system *s = system_of(k, member);
     if (!factor(k, member, at->gamma)) return false;
     find_columns(k, member, at);
+    for (int i = 0; i < s->n_input * s->n_state; i++)
+        w->column[i] *= at->gamma;
     if (!w->by_state) {
         find_input_responses(k, member, at);
         return true;
     }
-    solve_columns(k, member, at->gamma);
+    find_inverse(k, member);
     find_state_responses(k, member, at);
     return true;
 }
@@ -291,67 +283,79 @@ bool bough_condensed_factor_follower(bough_condensed *k, int member,
 
 // -- the interface --------------------------------------------------------------------------------
 
-// Adds to K's row what the leaders' coordinates do to input j through the member that leads.
-static void add_leading(const bough_condensed *k, double factor, int j, double *row) {
+// Adds to row l of K what the leaders' coordinates do to input j through the member that leads.
+static void add_leading(const bough_condensed *k, double factor, int j, int l) {
     int p;
     const bough_condensed_member *w = feeder(k, j, &p);
     int n_output = system_of(k, k->assembly->source_member[j])->n_output;
-    for (int c = 0; c < w->n; c++)
-        row[w->first + c] += factor * w->output_change[c * n_output + p];
+    for (int c = 0; c < w->n; c++) {
+        k->gain[(w->first + c) * k->n_leader_input + l] += factor * w->output_change[c * n_output + p];
+    }
 }
 
 static void find_gain_row(const bough_condensed *k, int l) {
     const bough_assembly *a = k->assembly;
     int p, from = a->source_member[k->leader_input[l]];
     const bough_condensed_member *w = feeder(k, k->leader_input[l], &p);
-    double *row = k->gain + (size_t)l * (size_t)k->n;
-    memset(row, 0, (size_t)k->n * sizeof(double));
     if (w->is_leader) {
-        add_leading(k, 1, k->leader_input[l], row);
+        add_leading(k, 1, k->leader_input[l], l);
         return;
     }
     for (int d = 0; d < w->n; d++) {
         double response = w->output_change[d * a->member[from]->system.n_output + p];
         if (response == 0) continue;
         if (w->leader >= 0) {
-            row[k->part[w->leader].first + d] = response;
+            k->gain[(k->part[w->leader].first + d) * k->n_leader_input + l] = response;
         } else {
-            add_leading(k, response, a->input_offset[from] + d, row);
+            add_leading(k, response, a->input_offset[from] + d, l);
         }
     }
 }
 
-// z += Z u; the leaders' input l is u[l·stride]
-static void add_coordinates(const bough_condensed *k, const double *u, int stride, double *z) {
-    for (int i = 0, l = 0; i < k->assembly->n_member; i++) {
+// z += u of a leader by inputs, γ ∂f/∂u u of one by states; u (n_leader_input)
+static void add_inputs(const bough_condensed *k, const double *u, double *z) {
+    for (int i = 0; i < k->assembly->n_member; i++) {
         const bough_condensed_member *w = &k->part[i];
+        int n_input = system_of(k, i)->n_input;
         if (!w->is_leader) continue;
-        const double *column = w->column;
-        for (int j = 0; j < system_of(k, i)->n_input; j++, l++, column += w->n) {
-            double input = u[(size_t)l * (size_t)stride];
-            if (!w->by_state) {
-                z[w->first + j] += input;
-                continue;
-            }
-            for (int c = 0; c < w->n; c++)
-                z[w->first + c] += input * column[c];
+        if (w->by_state) {
+            add_columns(w->n, n_input, w->column, 1, u, z + w->first);
+        } else {
+            for (int j = 0; j < n_input; j++) z[w->first + j] += u[j];
         }
+        u += n_input;
+    }
+}
+
+// z ← (I − γJ)⁻¹ z of the leaders by states, with `work` (n)
+static void apply_inverses(const bough_condensed *k, double *z) {
+    for (int i = 0; i < k->assembly->n_member; i++) {
+        const bough_condensed_member *w = &k->part[i];
+        if (!w->by_state) continue;
+        memcpy(k->sum, z + w->first, (size_t)w->n * sizeof *z);
+        memset(z + w->first, 0, (size_t)w->n * sizeof *z);
+        add_columns(w->n, w->n, w->inverse, 1, k->sum, z + w->first);
     }
 }
 
 bool bough_condensed_close(bough_condensed *k) {
-    int n = k->n;
-    size_t size = (size_t)n * (size_t)n;
+    size_t n = (size_t)k->n, size = n * n;
+    memset(k->gain, 0, n * (size_t)k->n_leader_input * sizeof(double));
     for (int l = 0; l < k->n_leader_input; l++)
         find_gain_row(k, l);
     memset(k->loop, 0, size * sizeof(double));
-    for (int c = 0; c < n; c++)
-        add_coordinates(k, k->gain + c, n, k->loop + (size_t)c * n);
+    memset(k->response, 0, size * sizeof(double));
+    for (size_t c = 0; c < n; c++) {
+        add_inputs(k, k->gain + c * (size_t)k->n_leader_input, k->loop + c * n);
+        apply_inverses(k, k->loop + c * n);
+        k->response[c * n + c] = 1;
+        apply_inverses(k, k->response + c * n);
+    }
     for (size_t i = 0; i < size; i++)
-        k->matrix[i] = -k->loop[i];
-    for (int c = 0; c < n; c++)
-        k->matrix[(size_t)c * n + c] += 1;
-    return n == 0 || bough_dense_factor(n, k->matrix, k->pivot);
+        k->matrix[i] = (i % (n + 1) == 0) - k->loop[i];
+    if (n > 0 && !bough_dense_factor(k->n, k->matrix, k->pivot)) return false;
+    if (n > 0) bough_dense_solve(k->n, k->n, k->matrix, k->pivot, k->response);
+    return true;
 }
 
 // The leaders' outputs' change with the coordinates.
@@ -368,16 +372,16 @@ static void move_outputs(bough_condensed *k) {
 
 void bough_condensed_solve(bough_condensed *k, double *change) {
     const bough_assembly *a = k->assembly;
-    int n = k->n;
+    size_t bytes = (size_t)k->n * sizeof(double);
     for (int l = 0; l < k->n_leader_input; l++)
         k->right[l] = change[k->leader_input[l]];
-    add_coordinates(k, k->right, 1, k->coordinate);
-    if (n > 0) bough_dense_solve(n, 1, k->matrix, k->pivot, k->coordinate);
-    for (int l = 0; l < k->n_leader_input; l++) {
-        const double *row = k->gain + (size_t)l * (size_t)n;
-        for (int c = 0; c < n; c++)
-            change[k->leader_input[l]] += row[c] * k->coordinate[c];
-    }
+    memcpy(k->sum, k->coordinate, bytes);
+    memset(k->coordinate, 0, bytes);
+    add_inputs(k, k->right, k->sum);
+    add_columns(k->n, k->n, k->response, 1, k->sum, k->coordinate);
+    add_columns(k->n_leader_input, k->n, k->gain, 1, k->coordinate, k->right);
+    for (int l = 0; l < k->n_leader_input; l++)
+        change[k->leader_input[l]] = k->right[l];
     move_outputs(k);
     for (int i = 0; i < a->n_member; i++) {
         if (k->part[i].is_leader) continue;

@@ -21,7 +21,8 @@ typedef struct bough_condensed_member {
     int leader; // follower: its directions are the coordinates of that member; −1: its own inputs
     int first;  // leader: its coordinates begin there among all
     int n;      // coordinates of a leader, directions of a follower
-    double *column; // (n_input × n_state) of a leader (I − γJ)⁻¹ γ ∂f/∂u, of a follower ∂f/∂u
+    double *column; // (n_input × n_state) ∂f/∂u of a follower, γ ∂f/∂u of a leader by states, (I − γJ)⁻¹ γ ∂f/∂u
+                    // of one by inputs
     double *inverse; // leader by states: (n_state × n_state) (I − γJ)⁻¹ by columns
     double *direction; // follower: (n × n_input) change of its inputs along each direction
     double *state_change;  // follower: (n × n_state) response of its states to that
@@ -34,12 +35,14 @@ typedef struct bough_condensed {
     int n_leader_input; // of all leaders
     int *leader_input;  // (n_leader_input) numbered over all inputs
     int n;              // coordinates of all leaders
-    double *gain;       // (n_leader_input × n, row-major) K
-    double *loop;       // (n × n, column-major) Z K
-    double *matrix;     // (n × n, column-major) I − Z K, factored
+    double *gain;       // (n_leader_input × n, column-major, as the next) K
+    double *loop;       // (n × n) Z K
+    double *response;   // (n × n) (I − Z K)⁻¹ with the inverses of the leaders by states
+    double *matrix;     // (n × n) I − Z K, factored
     double *square;     // (n × n) scratch
     int *pivot;         // (n)
     double *coordinate; // (n) w
+    double *sum;        // (n) scratch
     double *moved;      // (n_output) the leaders' outputs' change with it
     double *right;      // (n_leader_input) scratch
     double *unit;         // (n_input) scratch of each member
@@ -78,8 +81,9 @@ void bough_condensed_solve_member(const bough_condensed *k, int member, double *
 // K and the factors of I − Z K. False when that is singular.
 bool bough_condensed_close(bough_condensed *k);
 
-// Solves the interface. `coordinate` holds w and change (n_input) all inputs' changes as far as
-// they come from elsewhere than the leaders' response to their inputs; on return both are complete.
+// Solves the interface. `coordinate` holds the right sides of (I − γJ) x = r of the leaders by states, of others
+// what their coordinates change by themselves; change (n_input) the inputs' changes as far as they come
+// from elsewhere than the leaders' response to their inputs. On return w and changes are complete.
 void bough_condensed_solve(bough_condensed *k, double *change);
 
 // Adds to x (n_state of the member) its response to the coordinates; that of a follower whose directions are

@@ -170,16 +170,16 @@ static void find_output_change(bough_coupled *coupled, int i, const double *x,
 }
 
 // x_i = (I − γJ_i)⁻¹ r_i and the outputs' change with it, the inputs held; where the states are the
-// coordinates they take part in the interface as a whole.
+// coordinates, the interface does that.
 static void solve_leader(bough_coupled *coupled, int i) {
     const bough_assembly *a = coupled->assembly;
     const bough_system *s = &a->member[i]->system;
     const bough_condensed_member *w = &coupled->interface->part[i];
     double *x = coupled->x + a->state_offset[i];
     double *coordinate = coupled->interface->coordinate + w->first;
-    bough_condensed_solve_member(coupled->interface, i, x);
-    memset(coordinate, 0, (size_t)w->n * sizeof(double));
     if (!w->by_state) {
+        memset(coordinate, 0, (size_t)w->n * sizeof(double));
+        bough_condensed_solve_member(coupled->interface, i, x);
         find_output_change(coupled, i, x, NULL);
         return;
     }
