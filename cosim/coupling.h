@@ -84,7 +84,7 @@ typedef struct bough_coupling {
     double *output_drift;     // (n_output)
     double *seen, *seen_rate; // (n_input)
 
-    // by the ramp scheme: the linearised members of its last step and their γ; NULL
+    // by schemes that have them: the linearised members of the last step and their γ; NULL
     bough_condensed *interface;
     double interface_gamma; // [s]
 

@@ -20,7 +20,7 @@ typedef struct alpha_method {
 } alpha_method;
 
 static const double own_radius = 0.6;
-static const double shared_radius = 0.8; // g is then h/2, that of the trapezoidal rule, but for 1 %
+static const double most_radius = 0.8, least_radius = 0.5; // with the factors of a scheme
 
 static alpha_method method_of(double h, double radius) {
     double f = 1 / (1 + radius), m = 0.5 * (3 - radius) * f;
@@ -251,25 +251,26 @@ static bough_signal defect_of(const bough_error_estimate *e, int step) {
                           .coefficient = e->defect + (size_t)step * 4 * (size_t)n};
 }
 
-// Uses the scheme's factors if they are for a step of nearly the length h, with that length: the time scale
-// of ε then has an error of up to 1 %.
-static bool borrow(bough_error_estimate *e, const bough_coupling *c, double h) {
-    if (!c->interface) return false;
-    e->method = method_of(h, shared_radius);
-    double ratio = c->interface_gamma / e->method.factor;
-    if (fabs(ratio - 1) > 0.011) return false;
-    e->method.h *= ratio;
-    e->method.factor *= ratio;
-    bough_coupled_borrow(e->coupled, c->interface, c->t1, e->at, c->input, e->method.factor);
+// Uses the scheme's factors, which fix g, if a number of steps goes with them that is not much larger than
+// `steps`. ρ∞ follows from g/h = 2/((1 + ρ∞)(3 − ρ∞)). The trapezoidal rule's g = h/2 would ask for 1: with
+// most_radius the time scale of ε has an error of 1 %.
+static bool borrow(bough_error_estimate *e, const bough_coupling *c, double span, double *steps) {
+    double g = c->interface_gamma, least = method_of(1, most_radius).factor;
+    double n = fmax(*steps, ceil(least * span / g * (1 - 0.011)));
+    if (!c->interface || !(n <= 3 * *steps)) return false;
+    double ratio = n * g / span, radius = fmin(1 - sqrt(fmax(4 - 2 / ratio, 0)), most_radius);
+    if (!(radius >= least_radius)) return false;
+    e->method = method_of(g / method_of(1, radius).factor, radius);
+    bough_coupled_borrow(e->coupled, c->interface, c->t1, e->at, c->input, g);
+    *steps = n;
     return true;
 }
 
-// Linearises at the members' current states.
-static bool linearise(bough_error_estimate *e, bough_coupling *c, double h) {
-    const bough_assembly *a = e->assembly;
-    bough_assembly_states(a, e->at);
-    if (borrow(e, c, h)) return true;
-    e->method = method_of(h, own_radius);
+// Linearises at the members' current states, for so many steps or more.
+static bool linearise(bough_error_estimate *e, bough_coupling *c, double span, double *steps) {
+    bough_assembly_states(e->assembly, e->at);
+    if (borrow(e, c, span, steps)) return true;
+    e->method = method_of(span / *steps, own_radius);
     bough_status status = bough_coupled_setup(e->coupled, c->t1, e->at, c->input, e->method.factor);
     return bough_is_ok(&status);
 }
@@ -340,8 +341,9 @@ static void advance(bough_error_estimate *e) {
 
 static bool propagate(bough_error_estimate *e, bough_coupling *c) {
     double start = e->start[0], span = e->end[e->n_step - 1] - start;
-    double steps = fmax(e->n_step, ceil(span / longest_step - 1e-6)), h = span / steps;
-    if (!linearise(e, c, h)) return false;
+    double steps = fmax(e->n_step, ceil(span / longest_step - 1e-6));
+    if (!linearise(e, c, span, &steps)) return false;
+    double h = span / steps;
     e->step = 0;
     for (int k = 0; k < (int)steps; k++) {
         find_mean(e, start + k * h, h);
