@@ -56,6 +56,9 @@ typedef struct bough_system_ops {
     bool (*derivative_again)(void *self, double t, const double *state, const double *input,
                              double *rate);
 
+    // h at the time, state and input of the last call of derivative or derivative_again. Cheaper than output.
+    void (*output_again)(void *self, double t, const double *state, const double *input, double *output);
+
     // x ← (I − γJ)⁻¹ r, r made of f in x by `right`: derivative, right and solve for one part after the
     // other. For systems without inputs.
     bool (*stage)(void *self, void *factors, double t, const double *state, bough_right_side right,

@@ -15,6 +15,7 @@ static void take_members(bough_assembly *a, bough_arena *arena, const bough_asse
     a->output_offset = bough_arena_take(arena, (n + 1) * sizeof(int));
     a->feedthrough = bough_arena_take(arena, n * sizeof(bool));
     a->order = bough_arena_take(arena, n * sizeof(int));
+    a->leads = bough_arena_take(arena, n * sizeof(bool));
     for (int i = 0; i < def->n_member; i++) {
         a->member[i] = def->member[i].member;
         const bough_system *s = &a->member[i]->system;
@@ -128,6 +129,23 @@ static bough_status order_outputs(bough_assembly *a, bool *resolved) {
     return bough_ok();
 }
 
+static void find_leaders(bough_assembly *a) {
+    a->followers_last = true;
+    for (int i = 0; i < a->n_member; i++) a->leads[i] = a->stage[i] == 0;
+    for (int i = 0; i < a->n_member; i++) {
+        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+            int from = a->source_member[j];
+            if (a->stage[i] == 0 || a->stage[from] == 0) continue;
+            a->leads[i] = a->leads[from] = true;
+        }
+    }
+    for (int i = 0; i < a->n_member; i++) {
+        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
+            if (a->feedthrough[i] && a->leads[i] && !a->leads[a->source_member[j]]) a->followers_last = false;
+        }
+    }
+}
+
 bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *def,
                                   bough_assembly **assembly) {
     bough_assembly *a = bough_arena_take(arena, sizeof *a);
@@ -147,6 +165,7 @@ bough_status bough_assembly_build(bough_arena *arena, const bough_assembly_def *
     for (int i = 0; i < a->n_member; i++) {
         a->feedthrough[i] = probe_feedthrough(a->member[i], input, output);
     }
+    find_leaders(a);
     bough_status status = order_outputs(a, resolved);
     if (bough_is_ok(&status)) *assembly = a;
     return status;

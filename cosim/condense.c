@@ -18,23 +18,11 @@ static const bough_condensed_member *feeder(const bough_condensed *k, int j, int
 
 // -- shape ----------------------------------------------------------------------------------------
 
-static void choose_leaders(bough_condensed *k) {
-    const bough_assembly *a = k->assembly;
-    for (int i = 0; i < a->n_member; i++)
-        k->part[i].is_leader = a->stage[i] == 0;
-    for (int i = 0; i < a->n_member; i++) {
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-            int from = a->source_member[j];
-            if (a->stage[i] == 0 || a->stage[from] == 0) continue;
-            k->part[i].is_leader = k->part[from].is_leader = true;
-        }
-    }
-}
-
 static void choose_coordinates(bough_condensed *k, int member) {
     const bough_system *s = system_of(k, member);
     bough_condensed_member *w = &k->part[member];
     w->leader = -1;
+    w->is_leader = k->assembly->leads[member];
     w->by_state = w->is_leader && !k->assembly->feedthrough[member] && s->n_state < s->n_input;
     w->n = w->by_state ? s->n_state : s->n_input;
     if (!w->is_leader) return;
@@ -79,7 +67,6 @@ bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly
     k->assembly = assembly;
     k->part = bough_arena_take(arena, n_member * sizeof *k->part);
     k->leader_input = bough_arena_take(arena, (size_t)assembly->n_input * sizeof(int));
-    choose_leaders(k);
     for (int i = 0; i < assembly->n_member; i++)
         choose_coordinates(k, i);
     for (int i = 0; i < assembly->n_member; i++)

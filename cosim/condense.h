@@ -49,7 +49,6 @@ typedef struct bough_condensed {
     double *work;       // (n_state) scratch of each member
 } bough_condensed;
 
-// Leaders are the members of stage 0, and others that are connected with one that is not of it.
 bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly *assembly);
 
 // The point at which a member is linearised.

@@ -20,14 +20,16 @@ static void run_member(void *data, int k) {
     w->work(w->coupled, i);
 }
 
+// Followers first: what a leader gets from one that failed means nothing.
 static bough_status first_failure(const bough_coupled *coupled) {
-    for (int i = 0; i < coupled->assembly->n_member; i++) {
-        if (!bough_is_ok(&coupled->status[i])) return coupled->status[i];
+    for (int k = 0; k < coupled->assembly->n_member; k++) {
+        const bough_status *status = &coupled->status[coupled->order[k]];
+        if (!bough_is_ok(status)) return *status;
     }
     return bough_ok();
 }
 
-// work(coupled, member) for every one of them, in parallel; the first failure in member order.
+// work(coupled, member) for every one of them, in parallel; the first failure.
 static bough_status each(bough_coupled *a, int whom, void (*work)(bough_coupled *a, int member)) {
     int n_member = a->assembly->n_member, n_leader = n_member - a->n_follower;
     int n = whom == ALL ? n_member : whom == LEADERS ? n_leader : a->n_follower;
@@ -38,29 +40,54 @@ static bough_status each(bough_coupled *a, int whom, void (*work)(bough_coupled 
 
 // -- evaluation -----------------------------------------------------------------------------------
 
-void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state) {
+static void find_output(bough_coupled *coupled, int i, bool again) {
+    const bough_assembly *a = coupled->assembly;
+    const bough_system *s = &a->member[i]->system;
+    void (*h)(void *, double, const double *, const double *, double *) = s->ops->output;
+    if (again && s->ops->output_again) h = s->ops->output_again;
+    h(s->self, coupled->time, coupled->at + a->state_offset[i], coupled->input + a->input_offset[i],
+      coupled->output + a->output_offset[i]);
+}
+
+// In an order that needs no iteration: of the leaders only, or of all.
+static void find_outputs(bough_coupled *coupled, bool all) {
     const bough_assembly *a = coupled->assembly;
     for (int n = 0; n < a->n_member; n++) {
         int i = a->order[n];
-        const bough_system *s = &a->member[i]->system;
+        if (!all && !a->leads[i]) continue;
         bough_assembly_gather(a, i, coupled->output, coupled->input);
-        s->ops->output(s->self, t, state + a->state_offset[i], coupled->input + a->input_offset[i],
-                       coupled->output + a->output_offset[i]);
+        find_output(coupled, i, false);
     }
-    for (int i = 0; i < a->n_member; i++)
-        bough_assembly_gather(a, i, coupled->output, coupled->input);
 }
 
+void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state) {
+    coupled->time = t;
+    coupled->at = state;
+    find_outputs(coupled, true);
+    for (int i = 0; i < coupled->assembly->n_member; i++)
+        bough_assembly_gather(coupled->assembly, i, coupled->output, coupled->input);
+}
+
+static void begin_rates(bough_coupled *coupled, double t, const double *state, double *rate) {
+    coupled->time = t;
+    coupled->at = state;
+    coupled->x = rate;
+    find_outputs(coupled, !coupled->assembly->followers_last);
+}
+
+// The member's rate, and a follower's outputs with it, on which the leaders' inputs wait.
 static void evaluate_by(bough_coupled *coupled, int i,
                         bool (*f)(void *self, double t, const double *state, const double *input,
                                   double *rate)) {
     const bough_assembly *a = coupled->assembly;
     const bough_system *s = &a->member[i]->system;
+    bough_assembly_gather(a, i, coupled->output, coupled->input);
     if (!f(s->self, coupled->time, coupled->at + a->state_offset[i],
            coupled->input + a->input_offset[i], coupled->x + a->state_offset[i])) {
         coupled->status[i] =
             bough_fail(BOUGH_FAILED, "%s: no finite rate of change at %.6g s", s->name, a->member[i]->time);
     }
+    if (a->followers_last && !a->leads[i]) find_output(coupled, i, true);
 }
 
 static void evaluate(bough_coupled *coupled, int i) {
@@ -72,17 +99,11 @@ static void evaluate_again(bough_coupled *coupled, int i) {
     evaluate_by(coupled, i, ops->derivative_again ? ops->derivative_again : ops->derivative);
 }
 
-static void begin_rates(bough_coupled *coupled, double t, const double *state, double *rate) {
-    bough_coupled_inputs(coupled, t, state);
-    coupled->time = t;
-    coupled->at = state;
-    coupled->x = rate;
-}
-
 static bough_status rate_by(bough_coupled *coupled, double t, const double *state, double *rate,
                             void (*work)(bough_coupled *a, int member)) {
     begin_rates(coupled, t, state, rate);
-    return each(coupled, ALL, work);
+    bough_status status = each(coupled, FOLLOWERS, work);
+    return bough_is_ok(&status) ? each(coupled, LEADERS, work) : status;
 }
 
 bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state,
@@ -198,17 +219,23 @@ static void solve_follower(bough_coupled *coupled, int i) {
     find_output_change(coupled, i, x, outside);
 }
 
-static void solve_part(void *self, int k, bough_part part) {
+static void prepare(bough_coupled *coupled, int i) {
+    if (coupled->user.before) coupled->user.before(coupled->user.self, i);
+}
+
+// The followers' preparation, their solutions, then the leaders, which may wait for what followers prepare.
+static void prepare_or_solve(void *self, int k) {
     bough_coupled *coupled = self;
-    int i = coupled->order[k];
-    if (part != BOUGH_SECOND_HALF && coupled->user.before) {
-        coupled->user.before(coupled->user.self, i);
-    }
-    if (part == BOUGH_FIRST_HALF) return;
-    if (k < coupled->n_follower) {
-        solve_follower(coupled, i);
+    int n = coupled->n_follower;
+    if (k < n) {
+        prepare(coupled, coupled->order[k]);
+    } else if (k < 2 * n) {
+        bough_pool_await(coupled->pool, k - n);
+        solve_follower(coupled, coupled->order[k - n]);
     } else {
-        solve_leader(coupled, i);
+        for (int j = 0; j < n; j++) bough_pool_await(coupled->pool, j);
+        prepare(coupled, coupled->order[k - n]);
+        solve_leader(coupled, coupled->order[k - n]);
     }
 }
 
@@ -249,11 +276,11 @@ static void solve_free(bough_coupled *coupled, double *x) {
 
 void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
                                 bough_coupled_user user) {
-    int n_follower = coupled->n_follower, n_leader = coupled->assembly->n_member - n_follower;
     coupled->x = x;
     coupled->outside = outside;
     coupled->user = user;
-    bough_pool_run_turns(coupled->pool, n_follower, n_leader, solve_part, coupled);
+    bough_pool_run(coupled->pool, coupled->assembly->n_member + coupled->n_follower, prepare_or_solve,
+                   coupled);
     gather_all_changes(coupled);
     bough_condensed_solve(coupled->interface, coupled->change);
     each(coupled, ALL, finish);
@@ -325,8 +352,12 @@ static void take(bough_coupled *coupled, bough_arena *arena) {
     coupled->order = bough_arena_take(arena, (size_t)a->n_member * sizeof *coupled->order);
     coupled->input = bough_arena_doubles(arena, n_input);
     coupled->output = bough_arena_doubles(arena, n_output);
-    for (int i = 0; i < a->n_member; i++)
-        coupled->order[i] = i;
+    for (int i = 0; i < a->n_member; i++) {
+        if (!a->leads[i]) coupled->order[coupled->n_follower++] = i;
+    }
+    for (int i = 0, n = coupled->n_follower; i < a->n_member; i++) {
+        if (a->leads[i]) coupled->order[n++] = i;
+    }
 }
 
 static void take_solution(bough_coupled *coupled, bough_arena *arena) {
@@ -336,16 +367,6 @@ static void take_solution(bough_coupled *coupled, bough_arena *arena) {
     coupled->change = bough_arena_doubles(arena, (size_t)a->n_input);
     coupled->led = bough_arena_doubles(arena, (size_t)a->n_input);
     coupled->output_change = bough_arena_doubles(arena, (size_t)a->n_output);
-}
-
-static void order_members(bough_coupled *coupled) {
-    int n = 0;
-    for (int pass = 0; pass < 2; pass++) {
-        for (int i = 0; i < coupled->assembly->n_member; i++) {
-            if (coupled->own->part[i].is_leader == (pass > 0)) coupled->order[n++] = i;
-        }
-        if (pass == 0) coupled->n_follower = n;
-    }
 }
 
 bough_coupled *bough_coupled_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
@@ -362,7 +383,6 @@ bough_coupled *bough_coupled_create(bough_arena *arena, const bough_assembly *as
     bough_coupled *a = bough_coupled_create_evaluation(arena, assembly, pool);
     take_solution(a, arena);
     a->interface = a->own = bough_condensed_create(arena, assembly);
-    order_members(a);
     return a;
 }
 

@@ -230,6 +230,12 @@ void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads
                           const double *state, const double *input, bough_rod_scratch *scratch,
                           double *wrench);
 
+// Both where scratch has the forces and loads of a derivative.
+void bough_rod_present_root_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                   double *wrench);
+void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                  double *wrench);
+
 // Loads at time t into scratch, after a gathering.
 void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                     bough_rod_scratch *scratch);

@@ -356,10 +356,15 @@ bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads 
 void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                            const double *state, const double *input, bough_rod_scratch *scratch,
                            double *wrench) {
-    int s = m->stride;
     bough_rod_gather_root(m, state, input, scratch);
     load_end(m, loads, t, 0, 0, scratch);
     bough_rod_forces(m, 0, 1, scratch);
+    bough_rod_present_root_wrench(m, scratch, wrench);
+}
+
+void bough_rod_present_root_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                   double *wrench) {
+    int s = m->stride;
     const double *f = scratch->segment;
     bough_vec3 moment = bough_mat3_mul(m->root, bough_v3(f[3 * s], f[4 * s], f[5 * s]));
     const double inner[6] = {f[0], f[s], f[2 * s], moment.x, moment.y, moment.z};
@@ -369,11 +374,17 @@ void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *load
 void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                           const double *state, const double *input, bough_rod_scratch *scratch,
                           double *wrench) {
-    int s = m->stride, end = m->n_segment;
+    int end = m->n_segment;
     gather_input(m, input, scratch);
     gather_state(m, state, m->n, m->n, scratch->vertex);
     load_end(m, loads, t, end, end - 1, scratch);
     bough_rod_forces(m, end - 1, end, scratch);
+    bough_rod_present_end_wrench(m, scratch, wrench);
+}
+
+void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch,
+                                  double *wrench) {
+    int s = m->stride, end = m->n_segment;
     bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, end).p);
     const double *f = scratch->segment + end - 1, *load = scratch->load + end;
     bough_vec3 force = bough_sub(load3(load, s, 0), load3(f, s, 0));

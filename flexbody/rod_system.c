@@ -36,6 +36,15 @@ static void output(void *self, double t, const double *state, const double *inpu
                          wrench + BOUGH_ROD_OUTPUTS);
 }
 
+static void output_again(void *self, double t, const double *state, const double *input,
+                         double *wrench) {
+    (void)t, (void)state, (void)input;
+    const bough_rod_body *b = self;
+    bough_rod_present_root_wrench(b->model, &b->scratch, wrench);
+    if (!bough_rod_carries(b->model)) return;
+    bough_rod_present_end_wrench(b->model, &b->scratch, wrench + BOUGH_ROD_OUTPUTS);
+}
+
 static void output_tangent(void *self, double t, const double *state, const double *input,
                            const double *state_rate, const double *input_rate, double *rate) {
     bough_rod_body *b = self;
@@ -144,6 +153,7 @@ bough_system bough_rod_body_system(bough_rod_body *body) {
     static const bough_system_ops ops = {
         BOUGH_SYSTEM_REQUIRED,
         .derivative_again = derivative_again,
+        .output_again = output_again,
         .kept_tangent = kept_tangent,
         .constrain = constrain,
         .project = project,
