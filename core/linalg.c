@@ -1,5 +1,4 @@
-// LU by LAPACK; by hand, as Cholesky, for at most six unknowns, where a library call would cost more
-// than the work.
+// LU by LAPACK; by hand, as Cholesky, for few unknowns, where a library call would cost more than the work.
 #include "core/linalg.h"
 
 #include <math.h>
@@ -60,7 +59,7 @@ static bool all_finite(size_t count, const double *a) {
 
 static bool finite_matrix(int n, const double *a) { return all_finite((size_t)n * (size_t)n, a); }
 
-enum { SMALL = 6 };
+enum { SMALL = 32 };
 
 static void swap(double *x, double *y) {
     double kept = *x;
@@ -85,16 +84,17 @@ static bool factor_small(int n, double *a, int *pivot) {
     return true;
 }
 
-static void solve_small(int n, const double *factor, const int *pivot, double *x) {
+static void solve_small(int n, const double *restrict factor, const int *pivot, double *restrict x) {
     for (int k = 0; k < n; k++) {
         if (pivot[k] != k) swap(&x[k], &x[pivot[k]]);
     }
     for (int k = 0; k < n; k++) {
-        for (int i = k + 1; i < n; i++) x[i] -= factor[k * n + i] * x[k];
+        double known = x[k];
+        for (int i = k + 1; i < n; i++) x[i] -= factor[k * n + i] * known;
     }
     for (int k = n - 1; k >= 0; k--) {
-        x[k] /= factor[k * n + k];
-        for (int i = 0; i < k; i++) x[i] -= factor[k * n + i] * x[k];
+        double known = x[k] /= factor[k * n + k];
+        for (int i = 0; i < k; i++) x[i] -= factor[k * n + i] * known;
     }
 }
 

@@ -75,7 +75,6 @@ bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly
         take_part(k, arena, i);
     size_t n = (size_t)k->n;
     k->gain = bough_arena_doubles(arena, (size_t)k->n_leader_input * n);
-    k->response = bough_arena_doubles(arena, n * n);
     k->loop = bough_arena_doubles(arena, n * n);
     k->matrix = bough_arena_doubles(arena, n * n);
     k->square = bough_arena_doubles(arena, n * n);
@@ -314,7 +313,7 @@ static void add_inputs(const bough_condensed *k, const double *u, double *z) {
     }
 }
 
-// z ← (I − γJ)⁻¹ z of the leaders by states, with `work` (n)
+// z ← (I − γJ)⁻¹ z of the leaders by states
 static void apply_inverses(const bough_condensed *k, double *z) {
     for (int i = 0; i < k->assembly->n_member; i++) {
         const bough_condensed_member *w = &k->part[i];
@@ -331,18 +330,13 @@ bool bough_condensed_close(bough_condensed *k) {
     for (int l = 0; l < k->n_leader_input; l++)
         find_gain_row(k, l);
     memset(k->loop, 0, size * sizeof(double));
-    memset(k->response, 0, size * sizeof(double));
     for (size_t c = 0; c < n; c++) {
         add_inputs(k, k->gain + c * (size_t)k->n_leader_input, k->loop + c * n);
         apply_inverses(k, k->loop + c * n);
-        k->response[c * n + c] = 1;
-        apply_inverses(k, k->response + c * n);
     }
     for (size_t i = 0; i < size; i++)
         k->matrix[i] = (i % (n + 1) == 0) - k->loop[i];
-    if (n > 0 && !bough_dense_factor(k->n, k->matrix, k->pivot)) return false;
-    if (n > 0) bough_dense_solve(k->n, k->n, k->matrix, k->pivot, k->response);
-    return true;
+    return n == 0 || bough_dense_factor(k->n, k->matrix, k->pivot);
 }
 
 // The leaders' outputs' change with the coordinates.
@@ -359,13 +353,11 @@ static void move_outputs(bough_condensed *k) {
 
 void bough_condensed_solve(bough_condensed *k, double *change) {
     const bough_assembly *a = k->assembly;
-    size_t bytes = (size_t)k->n * sizeof(double);
     for (int l = 0; l < k->n_leader_input; l++)
         k->right[l] = change[k->leader_input[l]];
-    memcpy(k->sum, k->coordinate, bytes);
-    memset(k->coordinate, 0, bytes);
-    add_inputs(k, k->right, k->sum);
-    add_columns(k->n, k->n, k->response, 1, k->sum, k->coordinate);
+    add_inputs(k, k->right, k->coordinate);
+    apply_inverses(k, k->coordinate);
+    if (k->n > 0) bough_dense_solve(k->n, 1, k->matrix, k->pivot, k->coordinate);
     add_columns(k->n_leader_input, k->n, k->gain, 1, k->coordinate, k->right);
     for (int l = 0; l < k->n_leader_input; l++)
         change[k->leader_input[l]] = k->right[l];

@@ -37,7 +37,6 @@ typedef struct bough_condensed {
     int n;              // coordinates of all leaders
     double *gain;       // (n_leader_input × n, column-major, as the next) K
     double *loop;       // (n × n) Z K
-    double *response;   // (n × n) (I − Z K)⁻¹ with the inverses of the leaders by states
     double *matrix;     // (n × n) I − Z K, factored
     double *square;     // (n × n) scratch
     int *pivot;         // (n)
