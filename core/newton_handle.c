@@ -2,11 +2,18 @@
 
 #include "core/vector.h"
 
+#include <cvode/cvode.h>
 #include <stdio.h>
+#include <string.h>
 
 static SUNMatrix_ID matrix_id(SUNMatrix a) {
     (void)a;
     return SUNMATRIX_CUSTOM;
+}
+
+static int matrix_zero(SUNMatrix a) {
+    (void)a;
+    return 0;
 }
 
 static SUNMatrix matrix_create(bough_newton_handle *handle);
@@ -24,6 +31,7 @@ static SUNMatrix matrix_create(bough_newton_handle *handle) {
     if (a == NULL) return NULL;
     a->content = handle;
     a->ops->getid = matrix_id;
+    a->ops->zero = matrix_zero;
     a->ops->clone = matrix_clone;
     a->ops->destroy = matrix_destroy;
     return a;
@@ -45,7 +53,11 @@ static int solver_solve(SUNLinearSolver s, SUNMatrix a, N_Vector x, N_Vector b, 
     (void)a;
     (void)tol;
     bough_newton_handle *handle = s->content;
-    if (x != b) N_VScale(1.0, b, x);
+    if (handle->scaled) {
+        N_VScale(handle->gamma, b, x);
+    } else if (x != b) {
+        N_VScale(1.0, b, x);
+    }
     handle->ode.solve(handle->ode.self, bough_vector_data(x));
     return 0;
 }
@@ -119,4 +131,111 @@ int bough_newton_handle_system(bough_newton_handle *handle, double t, N_Vector y
     if (jok) return 0;
     handle->jacobians++;
     return handle->ode.linearise(handle->ode.self, t, bough_vector_data(y)) ? 0 : 1;
+}
+
+// -- integrators that take one step a call --------------------------------------------------------
+
+enum { MOST_STEPS = 20000 }; // per macro step
+
+bough_newton_run *bough_newton_run_create(bough_arena *arena, const bough_ode *ode, double rtol,
+                                          const bough_newton_library *library,
+                                          void (*destroy)(void *run)) {
+    bough_newton_run *run = bough_arena_take(arena, sizeof *run);
+    bough_arena_on_destroy(arena, destroy, run);
+    run->library = library;
+    run->own_error = bough_arena_doubles(arena, (size_t)ode->n);
+    if (!bough_newton_handle_create(&run->newton, ode, rtol)) bough_arena_leave(arena);
+    run->step_error = bough_vector_create(ode->n, run->newton.context);
+    if (run->step_error == NULL) bough_arena_leave(arena);
+    return run;
+}
+
+void bough_newton_run_destroy(bough_newton_run *run) {
+    if (run->step_error != NULL) N_VDestroy(run->step_error);
+    bough_newton_handle_destroy(&run->newton);
+}
+
+static bough_status start(bough_newton_run *run, double t) {
+    const bough_newton_handle *newton = &run->newton;
+    if (run->started) run->library->count(run->memory, &run->past); // counters restart from zero
+    if (run->library->restart(run->memory, t, newton->y) != CV_SUCCESS) {
+        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot start: %s", newton->ode.name, t,
+                          run->library->name, newton->text);
+    }
+    if (run->started) run->past.restarts++;
+    run->started = true;
+    return bough_ok();
+}
+
+static const char *reason(const bough_newton_handle *newton, int flag) {
+    // ever smaller steps towards a state without forces end in several ways
+    if (newton->refused) flag = CV_RHSFUNC_FAIL;
+    switch (flag) {
+    case CV_TOO_MUCH_WORK: return "it took 20000 steps in one macro step";
+    case CV_TOO_MUCH_ACC: return "the tolerance is below rounding error";
+    case CV_ERR_FAILURE: return "the error test failed down to the smallest step";
+    case CV_CONV_FAILURE: return "Newton's method did not converge down to the smallest step";
+    case CV_LSETUP_FAIL:
+    case CV_LSOLVE_FAIL: return "the Newton matrix is singular";
+    case CV_RHSFUNC_FAIL:
+    case CV_FIRST_RHSFUNC_ERR:
+    case CV_REPTD_RHSFUNC_ERR:
+    case CV_UNREC_RHSFUNC_ERR:
+        return "the deformation has no finite forces (a segment turned by more than 120°, or a"
+               " value overflowed)";
+    default: return newton->text[0] ? newton->text : "it gave up";
+    }
+}
+
+// All steps to t1, the integrator's to the last bit, with their local errors. One step a call: the
+// interpolant of a call to the end may miss a stiff state there.
+static int cross(bough_newton_run *run, double t1, double *reached) {
+    const bough_newton_library *library = run->library;
+    int flag = CV_SUCCESS;
+    for (int k = 0; flag >= 0 && *reached < t1; k++) {
+        if (k == MOST_STEPS) return CV_TOO_MUCH_WORK;
+        flag = library->evolve(run->memory, t1, run->newton.y, reached, CV_ONE_STEP);
+        if (flag < 0 || library->local_error == NULL) continue;
+        if (library->local_error(run->memory, run->step_error) != 0) break;
+        const double *error = bough_vector_data(run->step_error);
+        for (int i = 0; i < run->newton.ode.n; i++) run->own_error[i] += error[i];
+    }
+    return flag;
+}
+
+bough_status bough_newton_run_advance(void *self, double *t, double pause, double t1, bool restart,
+                                      double *y) {
+    (void)pause;
+    bough_newton_run *run = self;
+    bough_newton_handle *newton = &run->newton;
+    double *own = bough_vector_data(newton->y), reached = *t;
+    memcpy(own, y, (size_t)newton->ode.n * sizeof *own);
+    if (restart || !run->started) {
+        bough_status status = start(run, *t);
+        if (!bough_is_ok(&status)) return status;
+    }
+    newton->refused = false;
+    run->library->stop_at(run->memory, t1);
+    int flag = cross(run, t1, &reached);
+    if (flag < 0) {
+        run->library->current_time(run->memory, &reached);
+        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot go on: %s", newton->ode.name,
+                          reached, run->library->title, reason(newton, flag));
+    }
+    *t = t1;
+    memcpy(y, own, (size_t)newton->ode.n * sizeof *own);
+    return bough_ok();
+}
+
+void bough_newton_run_statistics(const void *self, bough_statistics *sum) {
+    const bough_newton_run *run = self;
+    bough_statistics_add(sum, &run->past);
+    sum->jacobians += run->newton.jacobians;
+    sum->factorisations += run->newton.factorisations;
+    if (run->started) run->library->count(run->memory, sum);
+}
+
+double *bough_newton_run_own_error(void *self) {
+    bough_newton_run *run = self;
+    return run->own_error;
 }

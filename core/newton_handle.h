@@ -1,5 +1,6 @@
 // What SUNDIALS wants of a matrix and a linear solver, for a system that factors and solves its own
-// Newton matrix I − γ ∂f/∂y: handles only. Shared by the methods that are SUNDIALS integrators.
+// Newton matrix I − γ ∂f/∂y: handles only, for IDA, CVODE and ARKODE. The steps of the latter two, which
+// are asked alike.
 #ifndef BOUGH_CORE_NEWTON_HANDLE_H
 #define BOUGH_CORE_NEWTON_HANDLE_H
 
@@ -16,6 +17,7 @@ typedef struct bough_newton_handle {
     SUNMatrix matrix;
     SUNLinearSolver solver;
     double gamma;   // of the next factorisation
+    bool scaled;    // solutions are those of (1/γ − ∂f/∂y) x = b
     bool refused;   // f had no value somewhere since this was cleared
     char text[200]; // the integrator's last complaint
     long jacobians, factorisations;
@@ -34,5 +36,40 @@ void bough_newton_handle_message(int code, const char *module, const char *funct
 // Linearises unless `jok` says that the last tangents serve, and notes γ: 0, or 1 without a value.
 int bough_newton_handle_system(bough_newton_handle *handle, double t, N_Vector y,
                                sunbooleantype jok, sunbooleantype *jcur, double gamma);
+
+// -- integrators that take one step a call --------------------------------------------------------
+
+// CVODE and ARKODE, whose flags are the same numbers.
+typedef struct bough_newton_library {
+    const char *name, *title; // in messages
+    int (*restart)(void *memory, double t, N_Vector y);
+    int (*stop_at)(void *memory, double t);
+    int (*evolve)(void *memory, double t1, N_Vector y, double *reached, int task);
+    int (*current_time)(void *memory, double *t);
+    int (*local_error)(void *memory, N_Vector error); // of the last step; NULL: not told
+    void (*count)(void *memory, bough_statistics *sum); // since the last start, added
+} bough_newton_library;
+
+typedef struct bough_newton_run {
+    bough_newton_handle newton;
+    const bough_newton_library *library;
+    void *memory;
+    bool started;
+    double *own_error;     // (n)
+    N_Vector step_error;   // (n)
+    bough_statistics past; // of the integrations before the last start
+} bough_newton_run;
+
+// A run without the library's memory, which the caller creates and destroys.
+bough_newton_run *bough_newton_run_create(bough_arena *arena, const bough_ode *ode, double rtol,
+                                          const bough_newton_library *library,
+                                          void (*destroy)(void *run));
+void bough_newton_run_destroy(bough_newton_run *run);
+
+// As in bough_integrator_ops.
+bough_status bough_newton_run_advance(void *run, double *t, double pause, double t1, bool restart,
+                                      double *y);
+void bough_newton_run_statistics(const void *run, bough_statistics *sum);
+double *bough_newton_run_own_error(void *run);
 
 #endif
