@@ -3,6 +3,7 @@
 #define BOUGH_CORE_BASE_H
 
 #include <assert.h>
+#include <math.h>
 #include <stdbool.h>
 #include <stddef.h>
 
@@ -13,6 +14,19 @@ enum { BOUGH_LANES = 8 };
 
 static inline int bough_padded(int n) {
     return (n + BOUGH_LANES - 1) / BOUGH_LANES * BOUGH_LANES;
+}
+
+static inline bool bough_all_finite(int n, const double *x) {
+    for (int i = 0; i < n; i++) {
+        if (!isfinite(x[i])) return false;
+    }
+    return true;
+}
+
+static inline double bough_scalar_product(int n, const double *x, const double *y) {
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += x[i] * y[i];
+    return sum;
 }
 
 static inline double bough_clamp(double x, double low, double high) {

@@ -181,19 +181,6 @@ void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, dou
 
 // -- forward dynamics by articulated bodies ------------------------------------------------------
 
-static bough_twist unit_twist(int k) {
-    double e[N] = {0};
-    e[k] = 1;
-    return bough_twist_load(e);
-}
-
-// A column of the motion subspace
-static bough_twist subspace(const bough_joint *joint, int k) {
-    double e[N] = {0};
-    e[k] = 1;
-    return bough_joint_twist(joint, e);
-}
-
 static bough_wrench matrix_mul(const double *a, bough_twist v) {
     double x[N], y[N];
     bough_twist_store(v, x);
@@ -208,7 +195,7 @@ static bough_wrench matrix_mul(const double *a, bough_twist v) {
 // The 6×6 matrix of a rigid inertia; symmetric, so rows are columns.
 static void rigid_matrix(const bough_inertia *inertia, double *a) {
     for (int k = 0; k < N; k++) {
-        bough_wrench_store(bough_inertia_mul(inertia, unit_twist(k)), a + N * k);
+        bough_wrench_store(bough_inertia_mul(inertia, bough_twist_unit(k)), a + N * k);
     }
 }
 
@@ -216,7 +203,7 @@ static void rigid_matrix(const bough_inertia *inertia, double *a) {
 static void add_to_parent(const bough_transform *x, const double *a, double *up) {
     for (int k = 0; k < N; k++) {
         double column[N];
-        bough_wrench w = matrix_mul(a, bough_twist_to_child(x, unit_twist(k)));
+        bough_wrench w = matrix_mul(a, bough_twist_to_child(x, bough_twist_unit(k)));
         bough_wrench_store(bough_wrench_to_parent(x, w), column);
         for (int r = 0; r < N; r++)
             up[N * k + r] += column[r];
@@ -237,7 +224,7 @@ static bool factor_joint(const bough_link *link, const double *articulated, doub
                          double *factor) {
     int n = link->n_speeds;
     for (int k = 0; k < n; k++) {
-        bough_twist column = subspace(&link->joint, k);
+        bough_twist column = bough_joint_column(&link->joint, k);
         bough_wrench u = matrix_mul(articulated, column);
         bough_wrench_store(u, gain + N * k);
         bough_joint_force(&link->joint, u, factor + n * k);

@@ -1,12 +1,12 @@
 // SUNDIALS IDA, variable-order BDF of the DASSL family, on ẏ − f(t, y) = 0. The Newton matrix is the
 // system's: an empty matrix object whose "Jacobian" call linearises, and a linear solver whose setup
 // and solution are the system's. The only user of IDA.
+#include "core/base.h"
 #include "core/newton_handle.h"
 #include "core/vector.h"
 
 #include <ida/ida.h>
 #include <ida/ida_ls.h>
-#include <math.h>
 #include <string.h>
 
 enum { MOST_STEPS = 200000 };
@@ -22,13 +22,6 @@ typedef struct ida_run {
 
 // -- callbacks -------------------------------------------------------------------------------
 
-static bool all_finite(const double *x, int n) {
-    for (int i = 0; i < n; i++) {
-        if (!isfinite(x[i])) return false;
-    }
-    return true;
-}
-
 // ẏ − f; 1 makes IDA try a smaller step
 static int residual(double t, N_Vector y, N_Vector rate, N_Vector out, void *newton) {
     const bough_ode *ode = &((bough_newton_handle *)newton)->ode;
@@ -37,7 +30,7 @@ static int residual(double t, N_Vector y, N_Vector rate, N_Vector out, void *new
     if (!ode->derivative(ode->self, t, bough_vector_data(y), r)) return 1;
     for (int i = 0; i < ode->n; i++)
         r[i] = of[i] - r[i];
-    return all_finite(r, ode->n) ? 0 : 1;
+    return bough_all_finite(ode->n, r) ? 0 : 1;
 }
 
 // NOLINTNEXTLINE(readability-function-size): SUNDIALS fixes the parameters
@@ -119,7 +112,7 @@ static bough_status failure(ida_run *ida, double t, int flag) {
 static bough_status start(ida_run *ida, double t, const double *y) {
     double *rate = bough_vector_data(ida->rate);
     memcpy(bough_vector_data(ida->newton.y), y, (size_t)ida->newton.ode.n * sizeof *y);
-    if (!ida->newton.ode.derivative(ida->newton.ode.self, t, y, rate) || !all_finite(rate, ida->newton.ode.n)) {
+    if (!ida->newton.ode.derivative(ida->newton.ode.self, t, y, rate) || !bough_all_finite(ida->newton.ode.n, rate)) {
         return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: the accelerations are not finite", ida->newton.ode.name, t);
     }
     add_counts(ida, &ida->before);

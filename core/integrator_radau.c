@@ -123,16 +123,9 @@ static double norm(const radau *r, const double *x) {
     return isnan(size) ? HUGE_VAL : size;
 }
 
-static bool all_finite(const double *x, int n) {
-    for (int i = 0; i < n; i++) {
-        if (!isfinite(x[i])) return false;
-    }
-    return true;
-}
-
 static bool evaluate(radau *r, double t, const double *y, double *rate) {
     r->count.derivatives++;
-    return r->ode.derivative(r->ode.self, t, y, rate) && all_finite(rate, r->ode.n);
+    return r->ode.derivative(r->ode.self, t, y, rate) && bough_all_finite(r->ode.n, rate);
 }
 
 // to = m from by stages: to and from (3 × n), different

@@ -71,6 +71,13 @@ bough_transform bough_joint_pose(const bough_joint *joint, const double *q);
 // S v: the relative twist in body axes.
 bough_twist bough_joint_twist(const bough_joint *joint, const double *v);
 
+// Column k of S.
+static inline bough_twist bough_joint_column(const bough_joint *joint, int k) {
+    double e[BOUGH_JOINT_SPEEDS] = {0};
+    e[k] = 1;
+    return bough_joint_twist(joint, e);
+}
+
 // Sᵀ f: the generalised force (n_speeds) of a wrench in body axes at the body's origin.
 void bough_joint_force(const bough_joint *joint, bough_wrench f, double *force);
 

@@ -141,6 +141,13 @@ static inline bough_twist bough_twist_load(const double *in) {
     return (bough_twist){{in[0], in[1], in[2]}, {in[3], in[4], in[5]}};
 }
 
+// 1 in component k, linear before angular.
+static inline bough_twist bough_twist_unit(int k) {
+    double e[6] = {0};
+    e[k] = 1;
+    return bough_twist_load(e);
+}
+
 static inline void bough_wrench_store(bough_wrench w, double *out) {
     out[0] = w.force.x, out[1] = w.force.y, out[2] = w.force.z;
     out[3] = w.moment.x, out[4] = w.moment.y, out[5] = w.moment.z;

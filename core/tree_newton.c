@@ -18,18 +18,6 @@ static const wrench no_wrench;
 
 // -- small algebra ---------------------------------------------------------------------------
 
-static twist unit_twist(int k) {
-    double e[N] = {0};
-    e[k] = 1;
-    return bough_twist_load(e);
-}
-
-static twist joint_column(const bough_joint *joint, int k) {
-    double e[N] = {0};
-    e[k] = 1;
-    return bough_joint_twist(joint, e);
-}
-
 static void store(change z, double *out) {
     bough_twist_store(z.pose, out);
     bough_twist_store(z.speed, out + N);
@@ -91,7 +79,7 @@ static void find_columns(const bough_tree_newton *w, const bough_link *link, nod
         unit[k] = 1;
         bough_joint_change(&link->joint, q, v, w->c, w->zero, unit, dq);
         bough_joint_speed(&link->joint, q, dq, eta);
-        twist own = joint_column(&link->joint, k);
+        twist own = bough_joint_column(&link->joint, k);
         store(move(n, bough_joint_twist(&link->joint, eta), own, scaled(w->c, own)),
               n->column + Z * k);
     }
@@ -131,8 +119,8 @@ static void own_matrix(const bough_inertia *inertia, node *n) {
     memset(n->matrix, 0, sizeof n->matrix);
     for (int k = 0; k < N; k++) {
         double column[N];
-        wrench inertial = bough_inertia_mul(inertia, unit_twist(k));
-        wrench turning = bough_wrench_add(bough_wrench_cross(unit_twist(k), momentum),
+        wrench inertial = bough_inertia_mul(inertia, bough_twist_unit(k));
+        wrench turning = bough_wrench_add(bough_wrench_cross(bough_twist_unit(k), momentum),
                                           bough_wrench_cross(n->speed, inertial));
         bough_wrench_store(turning, column);
         for (int r = 0; r < N; r++)
@@ -150,7 +138,7 @@ static void add_applied(const bough_tree_newton *w, const bough_tree_data *d, do
         if (frame->link < 0) continue;
         for (int k = 0; k < N; k++) {
             double column[N];
-            twist shift = bough_twist_to_child(&frame->placement, unit_twist(k));
+            twist shift = bough_twist_to_child(&frame->placement, bough_twist_unit(k));
             wrench by = bough_applied_change(w->tree, d, a, t, shift);
             bough_wrench_store(bough_wrench_to_parent(&frame->placement, by), column);
             for (int r = 0; r < N; r++)

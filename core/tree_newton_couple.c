@@ -13,12 +13,6 @@ typedef bough_twist twist;
 
 static const twist no_twist;
 
-static twist unit_twist(int k) {
-    double e[N] = {0};
-    e[k] = 1;
-    return bough_twist_load(e);
-}
-
 void bough_newton_list_ends(bough_tree_newton *w) {
     for (int e = 0; e < bough_tree_n_elements(w->tree); e++) {
         for (int side = 0; side < 2; side++) {
@@ -34,7 +28,7 @@ void bough_newton_blocks(const bough_tree_newton *w, const bough_tree_data *d) {
     for (int e = 0; e < bough_tree_n_elements(w->tree); e++) {
         for (int k = 0; k < 24; k++) {
             twist shift[2] = {no_twist, no_twist}, rate[2] = {no_twist, no_twist};
-            (k < 12 ? shift : rate)[(k / N) % 2] = unit_twist(k % N);
+            (k < 12 ? shift : rate)[(k / N) % 2] = bough_twist_unit(k % N);
             bough_force_pair by = bough_element_change(w->tree, d, e, shift, rate);
             double *row = w->block + (size_t)BOUGH_NEWTON_BLOCK * (size_t)e + 12 * k;
             bough_wrench_store(by.on[0], row);

@@ -37,13 +37,6 @@ typedef struct tree_factors {
 
 // -- model exchange --------------------------------------------------------------------------
 
-static bool all_finite(const double *x, int n) {
-    for (int i = 0; i < n; i++) {
-        if (!isfinite(x[i])) return false;
-    }
-    return true;
-}
-
 // The state with the positions of prescribed joints at t. f and h depend on the prescribed motion, not on
 // the states of these joints, so that no integrator causes a drift.
 static const double *place(tree_system *s, double t, const double *state) {
@@ -61,7 +54,7 @@ static bool derivative(void *self, double t, const double *state, const double *
     bough_tree_coordinate_rate(s->tree, state, rate); // q̇ = N(q) v
     bool ok = bough_tree_forward_dynamics(s->tree, s->data, t, input, rate + s->tree->n_q);
     if (ok && s->data->loops != NULL) bough_loops_correct(s->tree, s->data, state, rate);
-    return ok && all_finite(rate, s->n);
+    return ok && bough_all_finite(s->n, rate);
 }
 
 static void store3(bough_vec3 x, double *out) { out[0] = x.x, out[1] = x.y, out[2] = x.z; }

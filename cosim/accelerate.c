@@ -7,6 +7,8 @@
 // Newton's method does the same to u + (I − J)⁻¹ r, so that the differences correct the Jacobian.
 #include "cosim/accelerate.h"
 
+#include "core/base.h"
+
 #include <assert.h>
 #include <math.h>
 #include <string.h>
@@ -69,12 +71,6 @@ void bough_accelerator_start(bough_accelerator *a) {
     a->factor = a->def.relaxation;
 }
 
-static double dot(int n, const double *x, const double *y) {
-    double sum = 0;
-    for (int i = 0; i < n; i++) sum += x[i] * y[i];
-    return sum;
-}
-
 static void add(int n, double factor, const double *x, double *y) {
     for (int i = 0; i < n; i++) y[i] += factor * x[i];
 }
@@ -92,7 +88,7 @@ double bough_accelerator_take(bough_accelerator *a, const double *u, const doubl
     memcpy(a->image, image, (size_t)n * sizeof(double));
     for (int i = 0; i < n; i++) a->residual[i] = image[i] - u[i];
     for (int k = RECENT - 1; k > 0; k--) a->norm[k] = a->norm[k - 1];
-    a->norm[0] = sqrt(dot(n, a->residual, a->residual));
+    a->norm[0] = sqrt(bough_scalar_product(n, a->residual, a->residual));
     a->smallest = fmin(a->smallest, a->norm[0]);
     a->evaluations++;
     if (a->def.kind == BOUGH_ACCELERATE_NEWTON) {
@@ -152,17 +148,17 @@ static void insert_column(bough_accelerator *a) {
 // Column k of V made orthonormal to those before it; false when it depends on them.
 static bool orthonormalise(bough_accelerator *a, int k) {
     int n = a->def.n;
-    double *q = a->q[k], *r = a->r[k], before = sqrt(dot(n, a->v[k], a->v[k]));
+    double *q = a->q[k], *r = a->r[k], before = sqrt(bough_scalar_product(n, a->v[k], a->v[k]));
     memcpy(q, a->v[k], (size_t)n * sizeof(double));
     memset(r, 0, sizeof a->r[k]);
     for (int pass = 0; pass < 2; pass++) {
         for (int j = 0; j < k; j++) {
-            double part = dot(n, a->q[j], q);
+            double part = bough_scalar_product(n, a->q[j], q);
             r[j] += part;
             add(n, -part, a->q[j], q);
         }
     }
-    r[k] = sqrt(dot(n, q, q));
+    r[k] = sqrt(bough_scalar_product(n, q, q));
     if (!(r[k] > dependent * before)) return false;
     for (int i = 0; i < n; i++) q[i] /= r[k];
     return true;
@@ -180,7 +176,7 @@ static void solve_least_squares(bough_accelerator *a, double *u) {
     }
     memcpy(u, a->image, (size_t)n * sizeof(double));
     for (int k = a->n_column - 1; k >= 0; k--) {
-        double right = -dot(n, a->q[k], a->residual);
+        double right = -bough_scalar_product(n, a->q[k], a->residual);
         for (int j = k + 1; j < a->n_column; j++) right -= a->r[j][k] * a->c[j];
         a->c[k] = right / a->r[k][k];
         add(n, a->c[k], a->w[k], u);

@@ -312,6 +312,15 @@ void bough_coupled_close(bough_coupled *coupled, double *outside) {
     bough_condensed_solve(coupled->interface, outside);
 }
 
+void bough_coupled_project(const bough_coupled *coupled, const double *state, double *x) {
+    const bough_assembly *a = coupled->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_system *s = &a->member[i]->system;
+        int at = a->state_offset[i];
+        if (s->ops->project) s->ops->project(s->self, state + at, x + at);
+    }
+}
+
 // The border's multipliers make the held entries of its solutions vanish.
 static bool factor_border(bough_coupled *coupled) {
     int n = coupled->assembly->n_state, held = coupled->n_held;

@@ -95,6 +95,9 @@ void bough_coupled_borrow(bough_coupled *coupled, bough_condensed *interface, do
 // x ← (I − γJ)⁻¹ x, x (n_state); coupled->change is then the change of the inputs with it.
 void bough_coupled_solve(bough_coupled *coupled, double *x);
 
+// Takes changes of quaternions' lengths out of a change x (n_state) of `state`.
+void bough_coupled_project(const bough_coupled *coupled, const double *state, double *x);
+
 // The same with `outside` (n_input) added to the inputs' changes, δu = P δo + outside; NULL: 0.
 void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
                                 bough_coupled_user user);

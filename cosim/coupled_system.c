@@ -75,12 +75,7 @@ static bool constrain(void *self, double t, double *state) {
 }
 
 static void project(void *self, const double *state, double *x) {
-    const bough_assembly *a = ((const bough_coupled *)self)->assembly;
-    for (int i = 0; i < a->n_member; i++) {
-        const bough_system *s = &a->member[i]->system;
-        int first = a->state_offset[i];
-        if (s->ops->project) s->ops->project(s->self, state + first, x + first);
-    }
+    bough_coupled_project(self, state, x);
 }
 
 static void hold_loads(void *self, double t0, double t1) {

@@ -41,15 +41,6 @@ void bough_modes_rate(const bough_modes_def *def, double *rate) {
     }
 }
 
-void bough_modes_project(const bough_coupled *coupled, const double *state, double *x) {
-    const bough_assembly *a = coupled->assembly;
-    for (int i = 0; i < a->n_member; i++) {
-        const bough_system *s = &a->member[i]->system;
-        int at = a->state_offset[i];
-        if (s->ops->project) s->ops->project(s->self, state + at, x + at);
-    }
-}
-
 // turned = −γ S x
 static void turn(const modes *m, const double *x, double *turned) {
     const bough_modes_def *def = m->def;
@@ -76,7 +67,7 @@ static void apply(void *self, const double *z, double *image) {
     int n = m->coupled->assembly->n_state;
     memcpy(image, z, (size_t)n * sizeof *image);
     bough_coupled_solve(m->coupled, image);
-    bough_modes_project(m->coupled, m->def->state, image);
+    bough_coupled_project(m->coupled, m->def->state, image);
     if (m->def->spin == 0) return;
     double size = largest(image, n);
     memcpy(m->term, image, (size_t)n * sizeof *image);
@@ -84,7 +75,7 @@ static void apply(void *self, const double *z, double *image) {
         turn(m, m->term, m->turned);
         memcpy(m->term, m->turned, (size_t)n * sizeof *m->term);
         bough_coupled_solve(m->coupled, m->term);
-        bough_modes_project(m->coupled, m->def->state, m->term);
+        bough_coupled_project(m->coupled, m->def->state, m->term);
         for (int i = 0; i < n; i++) image[i] += m->term[i];
         if (largest(m->term, n) <= series * size) return;
     }

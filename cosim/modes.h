@@ -32,9 +32,6 @@ void bough_modes_harmonic(int n, int h, const double *real, const double *imagin
 // S of the parts, rate (n_part × n_part), row-major.
 void bough_modes_rate(const bough_modes_def *def, double *rate);
 
-// Takes changes of quaternions' lengths out of a change x (n_state) of `state`.
-void bough_modes_project(const bough_coupled *coupled, const double *state, double *x);
-
 // Finds `wanted` pairs as bough_eigen_nearest does, shapes (n_state). BOUGH_FAILED also where the
 // spin is too fast for the point: it should be several times the largest h Ω.
 bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled,

@@ -104,12 +104,6 @@ static bough_status apply_repeated(void *self, const double *z, double *image) {
     return apply(m, m->repeat, z, image);
 }
 
-static double norm(int n, const double *x) {
-    double sum = 0;
-    for (int k = 0; k < n; k++) sum += x[k] * x[k];
-    return sqrt(sum);
-}
-
 // Squares of what makes the components comparable. Inputs weigh what they do to the whole against the
 // states: each member's as its largest.
 static void choose_weights(map *m, const double *z) {
@@ -150,7 +144,7 @@ static bough_status start(map *m) {
     for (int k = 0; k < WARM_UP; k++) {
         bough_status status = apply(m, m->repeat, x, image);
         if (!bough_is_ok(&status)) return status;
-        double length = norm(a->n_state, image);
+        double length = sqrt(bough_scalar_product(a->n_state, image, image));
         for (int i = 0; i < m->n; i++) x[i] = image[i] / length;
     }
     m->arnoldi.apply = apply_repeated;

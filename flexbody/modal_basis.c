@@ -1,5 +1,6 @@
 // The shapes of a modal piece: clamped modes, rigid motions and static answers, from the rod's own
 // tangents at rest, orthonormalised in the mass and by Rayleigh and Ritz in the stiffness.
+#include "core/base.h"
 #include "core/linalg.h"
 #include "core/spatial.h"
 #include "flexbody/modal.h"
@@ -16,7 +17,7 @@ typedef struct basis {
     bough_arena *arena;
     const bough_rod_model *rod;
     int size; // 6 n
-    bough_rod_blocks blocks;
+    bough_rod_tangent tangent;         // at rest
     bough_block_tridiagonal stiffness; // K; factored by solve()
     bool factored;
     double *vector;  // (count × size)
@@ -28,18 +29,15 @@ static bool linearise(basis *b) {
     const bough_rod_model *rod = b->rod;
     const double still[BOUGH_ROD_INPUTS] = {0};
     bough_rod_scratch scratch;
-    bough_rod_tangent tangent;
     bough_rod_loads none;
     double *state = bough_arena_doubles(b->arena, (size_t)BOUGH_ROD_STATES * rod->n);
     bough_rod_scratch_init(&scratch, b->arena, rod);
-    bough_rod_tangent_init(&tangent, b->arena, rod);
+    bough_rod_tangent_init(&b->tangent, b->arena, rod);
     bough_rod_loads_init(&none, b->arena, rod);
-    bough_rod_blocks_init(&b->blocks, b->arena, rod);
     bough_block_tridiagonal_init(&b->stiffness, b->arena, rod->n);
     bough_rod_rest_state(rod, still, state);
-    if (!bough_rod_linearise(rod, &none, 0, state, still, &scratch, &tangent)) return false;
-    bough_rod_assemble(rod, &tangent, &b->blocks);
-    bough_rod_linear_stiffness(rod, &b->blocks, still, state, &b->stiffness);
+    if (!bough_rod_linearise(rod, &none, 0, state, still, &scratch, &b->tangent)) return false;
+    bough_rod_linear_stiffness(rod, &b->tangent.blocks, still, state, &b->stiffness);
     return true;
 }
 
@@ -63,14 +61,8 @@ static void tridiagonal_times(const bough_block_tridiagonal *a, const double *x,
 static void mass_times(const basis *b, const double *x, double *y) {
     memset(y, 0, (size_t)b->size * sizeof *y);
     for (int i = 0; i < b->rod->n; i++) {
-        add_block(b->blocks.mass + (size_t)i * BOUGH_BLOCK, x + 6 * i, y + 6 * i);
+        add_block(b->tangent.blocks.mass + (size_t)i * BOUGH_BLOCK, x + 6 * i, y + 6 * i);
     }
-}
-
-static double dot(int n, const double *x, const double *y) {
-    double sum = 0;
-    for (int i = 0; i < n; i++) sum += x[i] * y[i];
-    return sum;
 }
 
 // Adds x made orthonormal in the mass to those already there, unless nothing of it is left.
@@ -78,16 +70,16 @@ static void add_vector(basis *b, double *x) {
     size_t at = (size_t)b->count * b->size;
     double *p = b->product + at;
     mass_times(b, x, p);
-    double before = sqrt(dot(b->size, x, p));
+    double before = sqrt(bough_scalar_product(b->size, x, p));
     for (int sweep = 0; sweep < 2; sweep++) { // twice is enough
         for (int k = 0; k < b->count; k++) {
-            double share = dot(b->size, x, b->product + (size_t)k * b->size);
+            double share = bough_scalar_product(b->size, x, b->product + (size_t)k * b->size);
             const double *v = b->vector + (size_t)k * b->size;
             for (int i = 0; i < b->size; i++) x[i] -= share * v[i];
         }
     }
     mass_times(b, x, p);
-    double left = sqrt(dot(b->size, x, p));
+    double left = sqrt(bough_scalar_product(b->size, x, p));
     if (!(left > dependent * before)) return;
     for (int i = 0; i < b->size; i++) {
         b->vector[at + i] = x[i] / left;
@@ -133,7 +125,7 @@ static void put_whitened(const basis *b, const double *factor, const double *blo
 static bool factor_mass(const basis *b, double *factor) {
     for (int i = 0; i < b->rod->n; i++) {
         for (int k = 0; k < 36; k++) {
-            factor[36 * i + k] = b->blocks.mass[(size_t)i * BOUGH_BLOCK + W8 * (k / 6) + k % 6];
+            factor[36 * i + k] = b->tangent.blocks.mass[(size_t)i * BOUGH_BLOCK + W8 * (k / 6) + k % 6];
         }
         if (!bough_cholesky_factor(6, factor + 36 * i)) return false;
     }
@@ -223,7 +215,7 @@ static void project(const basis *b, const bough_block_tridiagonal *a, double sig
     for (int l = 0; l < b->count; l++) {
         tridiagonal_times(a, b->vector + (size_t)l * b->size, work);
         for (int k = 0; k < b->count; k++) {
-            to[l * b->count + k] = sign * dot(b->size, b->vector + (size_t)k * b->size, work);
+            to[l * b->count + k] = sign * bough_scalar_product(b->size, b->vector + (size_t)k * b->size, work);
         }
     }
 }
@@ -294,7 +286,7 @@ static bool diagonalise(basis *b, const bough_block_tridiagonal *stiffness, doub
     }
     rotate(b, eigen, rotated);
     b->vector = rotated;
-    project(b, &b->blocks.velocity, -1, work, damping);
+    project(b, &b->tangent.blocks.velocity, -1, work, damping);
     return true;
 }
 
@@ -308,7 +300,7 @@ bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options,
         double *value = bough_arena_doubles(b.arena, (size_t)b.count);
         double *damping = bough_arena_doubles(b.arena, (size_t)b.count * (size_t)b.count);
         take_memory(arena, b.count, piece);
-        if (diagonalise(&b, &b.blocks.position, value, damping)) {
+        if (diagonalise(&b, &b.tangent.blocks.position, value, damping)) {
             store(&b, value, damping, piece);
             status = bough_ok();
         }

@@ -89,6 +89,13 @@ typedef struct bough_rod_model {
 
 static inline bool bough_rod_carries(const bough_rod_model *m) { return m->n_segment > m->n; }
 
+// R of moving vertex i + 1 in a state, whatever the length of its quaternion.
+static inline bough_mat3 bough_rod_rotation(const double *state, int n, int i) {
+    const double *p = state + (size_t)BOUGH_ROD_P * (size_t)n + i;
+    bough_quaternion q = {p[0], p[n], p[2 * n], p[3 * n]};
+    return bough_rotation_matrix(bough_quaternion_normalised(q));
+}
+
 static inline int bough_rod_n_inputs(const bough_rod_model *m) {
     return bough_rod_carries(m) ? BOUGH_ROD_MOST_INPUTS : BOUGH_ROD_INPUTS;
 }

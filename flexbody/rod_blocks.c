@@ -14,19 +14,6 @@ void bough_rod_blocks_init(bough_rod_blocks *b, bough_arena *arena, const bough_
     bough_block_tridiagonal_init(&b->velocity, arena, m->n);
 }
 
-static void copy_blocks(const bough_block_tridiagonal *from, bough_block_tridiagonal *to) {
-    size_t bytes = (size_t)from->n * BOUGH_BLOCK * sizeof(double);
-    memcpy(to->lower, from->lower, bytes);
-    memcpy(to->diagonal, from->diagonal, bytes);
-    memcpy(to->upper, from->upper, bytes);
-}
-
-void bough_rod_assemble(const bough_rod_model *m, const bough_rod_tangent *k, bough_rod_blocks *b) {
-    copy_blocks(&k->blocks.position, &b->position);
-    copy_blocks(&k->blocks.velocity, &b->velocity);
-    memcpy(b->mass, k->blocks.mass, (size_t)m->n * BOUGH_BLOCK * sizeof(double));
-}
-
 // Vertices v, v + 1 … in lanes, of which begin..end − 1 are moving ones.
 typedef struct lanes {
     int v, begin, end;

@@ -4,18 +4,13 @@
 
 enum { W8 = 8 };
 
-static bough_quaternion rotation_of(const double *state, int n, int i) {
-    return bough_quaternion_normalised((bough_quaternion){state[3 * n + i], state[4 * n + i],
-                                                          state[5 * n + i], state[6 * n + i]});
-}
-
 void bough_rod_ride(const bough_rod_model *m, const double *input, double *state) {
     int n = m->n;
     bough_vec3 u0 = {input[0], input[1], input[2]}, omega = {input[3], input[4], input[5]};
     for (int i = 0; i < n; i++) {
         bough_vec3 x = {state[i], state[n + i], state[2 * n + i]};
         bough_vec3 u = bough_add(u0, bough_cross(omega, x));
-        bough_vec3 w = bough_mat3_tmul(bough_rotation_matrix(rotation_of(state, n, i)), omega);
+        bough_vec3 w = bough_mat3_tmul(bough_rod_rotation(state, n, i), omega);
         const double values[6] = {u.x, u.y, u.z, w.x, w.y, w.z};
         for (int c = 0; c < 6; c++) state[(BOUGH_ROD_U + c) * n + i] = values[c];
     }
@@ -33,7 +28,7 @@ static void put_cross(bough_vec3 a, double *block, int at) {
 // B of vertex i + 1
 static void slide(const double *input, const double *state, int n, int i, double *block) {
     bough_vec3 omega = {input[3], input[4], input[5]};
-    bough_mat3 r = bough_rotation_matrix(rotation_of(state, n, i));
+    bough_mat3 r = bough_rod_rotation(state, n, i);
     memset(block, 0, BOUGH_BLOCK * sizeof *block);
     put_cross(omega, block, 0);
     put_cross(bough_mat3_tmul(r, omega), block, 3);

@@ -7,11 +7,6 @@ enum { W8 = 8 };
 
 static const double rounding = 1e-11; // damping ratios below it are none
 
-static bough_mat3 rotation_of(const double *state, int n, int i) {
-    bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]};
-    return bough_rotation_matrix(bough_quaternion_normalised(p));
-}
-
 static double square_of(const bough_eigen_pair *pair, int k) {
     return pair->shape_real[k] * pair->shape_real[k] + pair->shape_imag[k] * pair->shape_imag[k];
 }
@@ -52,7 +47,7 @@ static void set_shape(const bough_rod_model *m, const bough_eigen_pair *pair, co
     double cosine = pair->shape_real[reference] / square;
     double sine = -pair->shape_imag[reference] / square;
     for (int i = 0; i < n; i++) {
-        bough_mat3 r = rotation_of(state, n, i);
+        bough_mat3 r = bough_rod_rotation(state, n, i);
         const double *a = pair->shape_real + (size_t)W8 * i, *b = pair->shape_imag + (size_t)W8 * i;
         double real[6], imaginary[6];
         for (int c = 0; c < 6; c++) {
@@ -90,9 +85,9 @@ static bough_status linearise(const bough_rod_model *m, bough_rod_static *work,
     if (!bough_rod_linearise(m, &work->scaled, 0, state, input, &work->scratch, &work->tangent)) {
         return bough_fail(BOUGH_FAILED, "rod %s: no linearisation at its equilibrium", m->name);
     }
-    bough_rod_assemble(m, &work->tangent, &work->blocks);
-    bough_rod_linear_damping(m, &work->blocks, input, state, damping);
-    bough_rod_linear_stiffness(m, &work->blocks, input, state, &work->tangent.matrix);
+    const bough_rod_blocks *blocks = &work->tangent.blocks;
+    bough_rod_linear_damping(m, blocks, input, state, damping);
+    bough_rod_linear_stiffness(m, blocks, input, state, &work->tangent.matrix);
     return bough_ok();
 }
 
@@ -105,7 +100,7 @@ bough_status bough_rod_modes(bough_arena *arena, const bough_rod_model *m, bough
     bough_block_tridiagonal_init(&damping, arena, m->n);
     bough_status status = linearise(m, work, input, state, &damping);
     if (!bough_is_ok(&status)) return status;
-    bough_eigen_problem problem = {m->name, work->blocks.mass, &damping, &work->tangent.matrix};
+    bough_eigen_problem problem = {m->name, work->tangent.blocks.mass, &damping, &work->tangent.matrix};
     status = bough_eigen_smallest(arena, &problem, list->wanted, pair, &list->found);
     if (!bough_is_ok(&status)) return status;
     for (int k = 0; k < list->found; k++) {

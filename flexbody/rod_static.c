@@ -42,7 +42,6 @@ void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
     size_t states = (size_t)BOUGH_ROD_STATES * m->n;
     bough_rod_scratch_init(&work->scratch, arena, m);
     bough_rod_tangent_init(&work->tangent, arena, m);
-    bough_rod_blocks_init(&work->blocks, arena, m);
     bough_rod_loads_init(&work->scaled, arena, m);
     work->rate = bough_arena_doubles(arena, states);
     work->trial = bough_arena_doubles(arena, states);
@@ -66,7 +65,7 @@ static double residual(const bough_rod_model *m, bough_rod_static *w, double ref
         const double minus[W8] = {-a[i],         -a[n + i],     -a[2 * n + i], -a[3 * n + i],
                                   -a[4 * n + i], -a[5 * n + i], 0,             0};
         memset(row, 0, W8 * sizeof *row);
-        bough_block_subtract(w->blocks.mass + (size_t)i * BOUGH_BLOCK, minus, row);
+        bough_block_subtract(w->tangent.blocks.mass + (size_t)i * BOUGH_BLOCK, minus, row);
         for (int c = 0; c < 6; c++) largest = fmax(largest, fabs(row[c]));
     }
     return largest / reference;
@@ -103,7 +102,7 @@ static double update(const bough_rod_model *m, const double *step, double *state
 static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const double *input,
                         const double *state) {
     bough_block_tridiagonal *a = &w->tangent.matrix;
-    bough_rod_linear_stiffness(m, &w->blocks, input, state, a);
+    bough_rod_linear_stiffness(m, &w->tangent.blocks, input, state, a);
     if (!bough_block_tridiagonal_factor(a)) return false;
     bough_block_tridiagonal_solve(a, w->step);
     return true;
@@ -119,7 +118,6 @@ static bool converge(const bough_rod_model *m, const double *input,
         if (!bough_rod_linearise(m, &w->scaled, 0, state, input, &w->scratch, &w->tangent)) {
             return false;
         }
-        bough_rod_assemble(m, &w->tangent, &w->blocks);
         bough_rod_derivative(m, &w->scaled, 0, state, input, &w->scratch, w->rate);
         if (residual(m, w, magnitude(m, w)) < options->tolerance) return true;
         if (!newton_step(m, w, input, state)) return false;

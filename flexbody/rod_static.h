@@ -22,7 +22,6 @@ bough_rod_static_options bough_rod_static_options_default(void);
 typedef struct bough_rod_static {
     bough_rod_scratch scratch;
     bough_rod_tangent tangent;
-    bough_rod_blocks blocks;
     bough_rod_loads scaled; // the loads of the present increment
     bough_rod_ramped_load follower, dead; // its ramped ones
     double *rate;           // (13 n)

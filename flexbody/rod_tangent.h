@@ -48,9 +48,6 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
                          const double *state, const double *input, bough_rod_scratch *scratch,
                          bough_rod_tangent *k);
 
-// A copy of the blocks of the last linearisation.
-void bough_rod_assemble(const bough_rod_model *m, const bough_rod_tangent *k, bough_rod_blocks *b);
-
 // What goes into the blocks of eight segments and the vertices at their right ends only, rows of 8.
 typedef struct bough_rod_eight {
     int first;                               // segment

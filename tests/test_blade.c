@@ -119,7 +119,7 @@ static void mass_times(const blade *b, const double *x, double *y) {
         double minus[8];
         for (int c = 0; c < 8; c++) minus[c] = -x[8 * i + c];
         memset(y + 8 * i, 0, 8 * sizeof *y);
-        bough_block_subtract(b->work.blocks.mass + (size_t)i * BOUGH_BLOCK, minus, y + 8 * i);
+        bough_block_subtract(b->work.tangent.blocks.mass + (size_t)i * BOUGH_BLOCK, minus, y + 8 * i);
     }
 }
 
@@ -136,10 +136,9 @@ static void frequencies(blade *b, double hertz[MODES]) {
     double *shape = calloc((size_t)MODES * size, sizeof *shape);
     double *image = calloc((size_t)MODES * size, sizeof *image);
     double *x = calloc((size_t)size, sizeof *x), *mx = calloc((size_t)size, sizeof *mx);
-    bough_block_tridiagonal *k = &b->work.blocks.position, *a = &b->work.tangent.matrix;
+    bough_block_tridiagonal *k = &b->work.tangent.blocks.position, *a = &b->work.tangent.matrix;
     assert_true(bough_rod_linearise(b->model, &b->loads, 0, b->state, at_rest, &b->work.scratch,
                                     &b->work.tangent));
-    bough_rod_assemble(b->model, &b->work.tangent, &b->work.blocks);
     for (int j = 0; j < n * BOUGH_BLOCK; j++) {
         a->lower[j] = -k->lower[j];
         a->diagonal[j] = -k->diagonal[j];

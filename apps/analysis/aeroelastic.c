@@ -51,7 +51,7 @@ static void invert(work *w) {
         memset(column, 0, n * sizeof *column);
         column[j] = 1;
         bough_coupled_solve(w->coupled, column);
-        bough_modes_project(w->coupled, w->def->state, column);
+        bough_coupled_project(w->coupled, w->def->state, column);
     }
 }
 

@@ -36,11 +36,6 @@ static void add_links(const bough_mode_shape *x, int part, double *share) {
     }
 }
 
-static bough_mat3 rotation_of(const double *y, int n, int i) {
-    bough_quaternion p = {y[3 * n + i], y[4 * n + i], y[5 * n + i], y[6 * n + i]};
-    return bough_rotation_matrix(bough_quaternion_normalised(p));
-}
-
 static double vertex_energy(const bough_vertex_inertia *v, bough_vec3 u, bough_vec3 w) {
     const double *j = v->inertia;
     bough_inertia inertia = {
@@ -57,7 +52,7 @@ static double rod_energy(const bough_mode_shape *x, const bough_beam *beam, int 
     int n = m->n;
     for (int i = 0; i < n; i++) {
         bough_vec3 u =
-            bough_mat3_tmul(rotation_of(b->state, n, i), bough_v3(d[i], d[n + i], d[2 * n + i]));
+            bough_mat3_tmul(bough_rod_rotation(b->state, n, i), bough_v3(d[i], d[n + i], d[2 * n + i]));
         bough_vec3 w = {d[3 * n + i], d[4 * n + i], d[5 * n + i]};
         sum += vertex_energy(&m->vertex[i + 1], u, w);
     }
