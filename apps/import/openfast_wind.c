@@ -115,6 +115,7 @@ static void put_hawc(bough_openfast *o, const char *path) {
 }
 
 static void put_type(bough_openfast *o, int type) {
+    if (!bough_is_ok(o->draft.status)) return; // no such type
     if (type == STEADY) {
         double speed = bough_deck_number(o->inflow, "HWindSpeed");
         put_steady(o, speed);
