@@ -1,6 +1,6 @@
 """The promise, tested on random scenes: within its bound, or stopped with a diagnosis, and what is told is true.
 
-    random_scenes.py BOUGH SOURCE [--hard] [--seed N] [--count M] [--jobs J] [--only FAMILY] [--keep DIR] [--list FILE]
+    random_scenes.py BOUGH SOURCE [--hard | --machines] [--seed N] [--count M] [--jobs J] [--only FAMILY] [--keep DIR] [--list FILE]
 
 Every scene runs as a user runs it, and against the monolithic solution at two tolerances. Only where these two
 agree the reference is taken for true; the others are counted as unsettled (chaos, for the most part). The table
@@ -203,7 +203,7 @@ MONOLITHIC = ("simulation.coupling={scheme: monolithic}", "simulation.step_contr
 
 def one(arguments, index):
     rng = random.Random("%d/%d" % (arguments.seed, index))
-    chosen = settings.HARD if arguments.hard else settings.FAMILIES
+    chosen = settings.HARD if arguments.hard else settings.MACHINES if arguments.machines else settings.FAMILIES
     family = chosen[index % len(chosen)]
     defaults = rng.random() < 1 / 3
     schemes = (arguments.scheme,) if arguments.scheme else SCHEMES
@@ -261,6 +261,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--only", help="families, with commas between")
     parser.add_argument("--hard", action="store_true", help="of families_hard.py")
+    parser.add_argument("--machines", action="store_true", help="of families_machines.py")
     parser.add_argument("--scheme", help="this one for all scenes")
     parser.add_argument("--defaults", action="store_true", help="only scenes that leave all solver settings out")
     parser.add_argument("--stages", action="store_true", help="with stage-coupled steps among the schemes")

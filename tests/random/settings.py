@@ -1,9 +1,10 @@
 """The settings of a random scene, and its text."""
 import families
 import families_hard
+import families_machines
 from families import decades, digits
 
-FAMILIES, HARD = families.FAMILIES, families_hard.FAMILIES
+FAMILIES, HARD, MACHINES = families.FAMILIES, families_hard.FAMILIES, families_machines.FAMILIES
 # with loads sampled at 50 or 100 Hz, which the macro step must divide
 AERODYNAMIC = (families.turbine, families.gale) + families_hard.AERODYNAMIC
 STEADY = (families.driven, families.spin_up, families_hard.rods_loop) + AERODYNAMIC  # not from equilibrium
