@@ -44,27 +44,62 @@ enum {
     RECORDS_SIZE = 129,
 };
 
-static bough_status find_function(const char *library, call **function) {
+// A copy of a library: the loader takes another file for another library, with variables of its own.
+typedef struct library_copy {
+    FILE *file; // open as long as the library, because its number is the library's name
+    void *handle;
+} library_copy;
+
+static bool copy_bytes(FILE *from, FILE *to) {
+    char part[1 << 14];
+    size_t n;
+    while ((n = fread(part, 1, sizeof part, from)) > 0) {
+        if (fwrite(part, 1, n, to) != n) return false;
+    }
+    return !ferror(from) && fflush(to) == 0;
+}
+
+static void let_go(void *self) {
+    library_copy *c = self;
+    if (c->handle) dlclose(c->handle);
+    if (c->file) fclose(c->file);
+}
+
+static void *load_copy(bough_arena *arena, const char *library) {
+    char path[64], why[BOUGH_INPUT_REASON];
+    library_copy *c = bough_arena_take(arena, sizeof *c);
+    bough_arena_on_destroy(arena, let_go, c);
+    FILE *from = bough_input_open(library, BOUGH_INPUT_DATA, why);
+    c->file = from ? tmpfile() : NULL;
+    bool good = c->file && copy_bytes(from, c->file);
+    if (from) fclose(from);
+    if (!good) return NULL;
+    snprintf(path, sizeof path, "/proc/self/fd/%d", fileno(c->file));
+    return c->handle = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+}
+
+static bough_status find_function(bough_arena *arena, const char *library, bool copy, call **function) {
     char why[BOUGH_INPUT_REASON];
     FILE *file = strchr(library, '/') ? bough_input_open(library, BOUGH_INPUT_DATA, why) : NULL;
     if (!file && strchr(library, '/')) {
         return bough_fail(BOUGH_INVALID, "the controller cannot be loaded: %.200s: %s", library, why);
     }
     if (file) fclose(file);
-    void *handle = dlopen(library, RTLD_NOW | RTLD_LOCAL);
+    void *handle = copy ? load_copy(arena, library) : dlopen(library, RTLD_NOW | RTLD_LOCAL);
     if (!handle) {
-        return bough_fail(BOUGH_INVALID, "the controller cannot be loaded: %.200s", dlerror());
+        const char *reason = dlerror();
+        return bough_fail(BOUGH_INVALID, "the controller cannot be loaded: %.200s", reason ? reason : "it cannot be copied");
     }
     void *symbol = dlsym(handle, "DISCON");
     if (!symbol) {
-        dlclose(handle);
+        if (!copy) dlclose(handle);
         return bough_fail(BOUGH_INVALID, "the controller %s has no function DISCON", library);
     }
     memcpy(function, &symbol, sizeof symbol); // of an object pointer: as POSIX has it
     return bough_ok();
 }
 
-bough_status bough_discon_open(bough_arena *arena, const char *library, const char *input,
+bough_status bough_discon_open(bough_arena *arena, const char *library, const char *input, bool copy,
                                bough_discon **discon) {
     bough_discon *d = bough_arena_take(arena, sizeof *d);
     size_t size = strlen(library) + 3;
@@ -75,9 +110,9 @@ bough_status bough_discon_open(bough_arena *arena, const char *library, const ch
         return bough_fail(BOUGH_INVALID, "the controller's input file has too long a name");
     }
     snprintf(d->input, TEXT, "%s", input);
-    snprintf(d->output, TEXT, "discon");
+    snprintf(d->output, TEXT, copy ? "discon-second" : "discon");
     d->library = path;
-    bough_status status = find_function(path, &d->function);
+    bough_status status = find_function(arena, path, copy, &d->function);
     if (bough_is_ok(&status)) *discon = d;
     return status;
 }

@@ -45,9 +45,10 @@ typedef struct bough_discon_demand {
 
 typedef struct bough_discon bough_discon;
 
-// Loads the library; `input` is the controller's own input file, "" for none. BOUGH_INVALID says
-// whether the file is missing, is no library, or has no such function.
-bough_status bough_discon_open(bough_arena *arena, const char *library, const char *input,
+// Loads the library; `input` is the controller's own input file, "" for none; `copy`: a copy of the library, which has
+// variables of its own beside those of the library itself. BOUGH_INVALID says whether the file is missing, is no library, or has
+// no such function.
+bough_status bough_discon_open(bough_arena *arena, const char *library, const char *input, bool copy,
                                bough_discon **discon);
 
 // Calls the controller. BOUGH_FAILED with its own message when it reports a failure or demands what

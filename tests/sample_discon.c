@@ -15,6 +15,9 @@ void DISCON(float *swap, int *fail, char *input, char *output, char *message) {
     swap[44] = 0.1f + 0.001f * swap[1];
     for (int b = 0; b < 3; b++)
         swap[41 + b] = 0.2f + 0.1f * (float)b;
+    static float before; // of which a library has one
+    if (strcmp(input, "memory") == 0) swap[46] = 50 * (swap[19] + before);
+    before = swap[19];
     if (n != (int)strlen(input)) *fail = -1;
     if (strcmp(input, "individual") == 0) swap[27] = 1;
     if (strcmp(input, "count") == 0) swap[46] = swap[0];

@@ -11,7 +11,7 @@ typedef struct fixture {
 
 static fixture open_controller(const char *input) {
     fixture f = {.arena = bough_arena_create()};
-    bough_status status = bough_discon_open(f.arena, BOUGH_SAMPLE_DISCON, input, &f.discon);
+    bough_status status = bough_discon_open(f.arena, BOUGH_SAMPLE_DISCON, input, false, &f.discon);
     if (!bough_is_ok(&status)) print_error("%s\n", status.message);
     assert_int_equal(status.code, BOUGH_OK);
     return f;
@@ -116,7 +116,7 @@ static void what_is_no_controller_is_refused(void **state) {
     for (int i = 0; i < 3; i++) {
         bough_arena *arena = bough_arena_create();
         bough_discon *discon;
-        bough_status status = bough_discon_open(arena, bad[i][0], "", &discon);
+        bough_status status = bough_discon_open(arena, bad[i][0], "", false, &discon);
         assert_int_equal(status.code, BOUGH_INVALID);
         assert_non_null(strstr(status.message, bad[i][1]));
         bough_arena_destroy(arena);

@@ -14,8 +14,8 @@ typedef struct series {
 } series;
 
 static series run(const char *coupling, const char *master, const char *control) {
-    const char *const sets[] = {coupling, master, control, "simulation.duration=3 s", "simulation.threads=1",
-                                "simulation.error_estimate=auto", "bodies[3-5].rod.segments=4",
+    const char *const sets[] = {"simulation.error_estimate=auto", coupling, master, control, "simulation.duration=3 s", "simulation.threads=1",
+                                "bodies[3-5].rod.segments=4",
                                 "bodies[2].joint.speed=13.5 rpm", "aero.wind.speed=14", NULL};
     series s = {0};
     bough_arena *arena = bough_arena_create();
@@ -63,20 +63,30 @@ static void errors_of_controlled_steps(void **state) {
     errors_contain_the_reaction_of_loads("simulation.step_control={tolerance: 1e-2}");
 }
 
-// A library keeps a memory that a second model would change.
-static void a_library_has_no_second_model(void **state) {
+#define LIBRARY "control={kind: bladed, rate: 50, gear_ratio: 97, input: memory, library: " BOUGH_SAMPLE_DISCON "}"
+
+// A library has a memory, and the second model one of its own: the run's values are those without it.
+static void a_library_is_copied(void **state) {
     (void)state;
-    series coupled = run("simulation.coupling={scheme: gauss-seidel}", "simulation.master={rtol: 1e-6}",
-                         "control={kind: bladed, rate: 50, gear_ratio: 97, library: " BOUGH_SAMPLE_DISCON "}");
-    assert_false(coupled.beside);
-    assert_true(isnan(coupled.told[0]));
+    series coupled = run("simulation.coupling={scheme: gauss-seidel}", "simulation.error_estimate=auto", LIBRARY);
+    assert_true(coupled.beside);
+    series alone = run("simulation.coupling={scheme: gauss-seidel}", "simulation.error_estimate=none", LIBRARY);
+    assert_false(alone.beside);
+    series truth = run("simulation.coupling={scheme: monolithic}", "simulation.master={solver: ida, rtol: 1e-7}", LIBRARY);
+    for (int i = 0; i < WATCHED; i++) {
+        double error = 0;
+        for (int k = 0; k < STEPS; k++) error = fmax(error, fabs(coupled.value[k][i] - truth.value[k][i]));
+        print_message("%s: true %.2g, told %.2g\n", watched[i], error, coupled.told[i]);
+        check_near(coupled.told[i], 1.25 * error, 0.2, 1e-12);
+        for (int k = 0; k < STEPS; k++) assert_true(coupled.value[k][i] == alone.value[k][i]);
+    }
 }
 
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(errors_of_equal_steps),
         cmocka_unit_test(errors_of_controlled_steps),
-        cmocka_unit_test(a_library_has_no_second_model),
+        cmocka_unit_test(a_library_is_copied),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

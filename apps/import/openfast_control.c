@@ -63,7 +63,7 @@ static void lack(bough_openfast *o, const char *format, ...) {
 
 static bool take_library(bough_openfast *o, const char *path, char why[200]) {
     bough_discon *discon;
-    bough_status status = bough_discon_open(o->draft.arena, path, "", &discon);
+    bough_status status = bough_discon_open(o->draft.arena, path, "", false, &discon);
     snprintf(why, 200, "%.190s", status.message);
     if (!bough_is_ok(&status)) return false;
     o->library = path;

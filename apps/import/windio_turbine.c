@@ -316,7 +316,7 @@ static void put_library(bough_windio *w) {
     bough_draft *d = &w->draft;
     FILE *file = d->file[BOUGH_IMPORT_SCENE];
     bough_discon *discon;
-    bough_status status = bough_discon_open(d->arena, w->options->controller, "", &discon);
+    bough_status status = bough_discon_open(d->arena, w->options->controller, "", false, &discon);
     if (!bough_is_ok(&status)) {
         *d->status = bough_fail(status.code, "--controller: %.200s", status.message);
         return;

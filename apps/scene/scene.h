@@ -472,6 +472,7 @@ typedef struct bough_scene_control {
     bool pitch;             // of the blades too
     bool individual;        // BLADED: each blade follows its own demand
     const char *library, *input; // BLADED: paths; no input: ""
+    bool copied;                 // BLADED: the library is loaded as a copy, for a second model; not in a file
     int n_event;
     bough_scene_event *event; // (n_event)
     bough_controller_def law;    // BLADED: only the pitch rate is used

@@ -57,7 +57,7 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
     if (l->control->kind == BOUGH_SCENE_VARIABLE_SPEED) {
         return bough_controller_check(&l->control->law);
     }
-    return bough_discon_open(arena, l->control->library, l->control->input, &l->discon);
+    return bough_discon_open(arena, l->control->library, l->control->input, l->control->copied, &l->discon);
 }
 
 bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *link) {

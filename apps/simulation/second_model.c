@@ -6,10 +6,10 @@
 
 static bool loads_react(const bough_scene *scene) { return scene->aero.node || scene->control.node; }
 
-static bool can_follow(const bough_simulation *s) {
-    const bough_scene_control *control = &s->scene->control;
-    bool library = control->node && control->kind == BOUGH_SCENE_BLADED;
-    return !library && !s->inputs && !s->master->assembly->opaque;
+static bool can_follow(const bough_simulation *s) { return !s->inputs && !s->master->assembly->opaque; }
+
+static bool has_library(const bough_scene *scene) {
+    return scene->control.node && scene->control.kind == BOUGH_SCENE_BLADED;
 }
 
 static int monolithic(void) {
@@ -32,5 +32,9 @@ bough_status bough_second_model_build(bough_arena *arena, const bough_simulation
     simulation->master.step = def.step;
     simulation->error_estimate = BOUGH_ERROR_NOT_TOLD;
     simulation->threads = 1;
-    return bough_simulation_build(arena, scene, second);
+    scene->control.copied = true;
+    bough_status status = bough_simulation_build(arena, scene, second);
+    if (status.code != BOUGH_INVALID || !has_library(scene)) return status;
+    *second = NULL; // a library that cannot be copied
+    return bough_ok();
 }

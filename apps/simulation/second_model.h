@@ -6,8 +6,8 @@
 #include "apps/simulation/simulation.h"
 
 // In the arena, at time 0. *second is NULL where the run measures no error so, where no load reacts, or where a
-// second model cannot follow: a controller in a library and an FMU keep a memory of their own, other programs set inputs
-// of the first only, and steps controlled by errors have other ends.
+// second model cannot follow: an FMU keeps a memory of its own, and other programs set inputs of the first only. A
+// controller in a library is loaded again, as a copy with variables of its own, if it can be.
 bough_status bough_second_model_build(bough_arena *arena, const bough_simulation *s, bough_simulation **second);
 
 #endif
