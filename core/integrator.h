@@ -51,7 +51,7 @@ typedef struct bough_ode {
     bool (*factor)(void *self, double gamma);                 // I − γ ∂f/∂y of the last tangents
     void (*solve)(void *self, double *x);                     // in place
     // x ← (I − γ ∂f/∂y)⁻¹ r, r made of f in x by `right`. NULL: by the three of them.
-    bool (*stage)(void *self, double t, const double *y, bough_right_side right, double *x);
+    bool (*stage)(void *self, double t, const double *y, bough_stage_terms terms, double *x);
 } bough_ode;
 
 typedef enum bough_integrator_kind {

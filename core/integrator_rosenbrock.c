@@ -55,6 +55,7 @@ typedef struct rosenbrock {
     double *stage[STAGES];      // u_i (n)
     double *at;                 // argument of f, then y₁ (n)
     int now;                    // the stage in progress
+    const double *from;         // (n) y of the step in progress
     double now_step;            // of the step in progress [s]
     double *own_error;          // (n)
     bough_statistics sum;
@@ -135,11 +136,11 @@ static inline double stages_before(const rosenbrock *m, int i, const double weig
 }
 
 // at = y + Σ_j a_ij u_j
-static inline void set_argument(rosenbrock *m, int i, const double *restrict y) {
+static inline void set_argument(rosenbrock *m, int i, int first, int last) {
     double *restrict at = m->at;
-    int n = m->ode.n;
+    const double *restrict y = m->from;
 #pragma omp simd
-    for (int k = 0; k < n; k++) at[k] = y[k] + stages_before(m, i, a[i], k);
+    for (int k = first; k < last; k++) at[k] = y[k] + stages_before(m, i, a[i], k);
 }
 
 // u_i = γh [f + γ_i h ∂f/∂t] + Σ_j c_ij u_j, f standing in u_i
@@ -152,7 +153,16 @@ static inline void set_right_side(rosenbrock *m, int i, int first, int last) {
 }
 
 // Inlined with the stage known, each has a loop of its own.
-static void set_present(void *self, int first, int last) {
+static void set_present_argument(void *self, int first, int last) {
+    rosenbrock *m = self;
+    switch (m->now) {
+    case 1: set_argument(m, 1, first, last); break;
+    case 2: set_argument(m, 2, first, last); break;
+    default: set_argument(m, 3, first, last);
+    }
+}
+
+static void set_present_right_side(void *self, int first, int last) {
     rosenbrock *m = self;
     switch (m->now) {
     case 1: set_right_side(m, 1, first, last); break;
@@ -161,28 +171,26 @@ static void set_present(void *self, int first, int last) {
     }
 }
 
-static bool solve_stage(rosenbrock *m, double t, double *u) {
+// Stage i after the first.
+static bool find_stage(rosenbrock *m, int i, double t) {
     const bough_ode *ode = &m->ode;
+    const bough_stage_terms terms = {m, set_present_argument, set_present_right_side};
+    double at = t + alpha[i] * m->now_step;
+    m->now = i;
     m->sum.derivatives++;
-    if (ode->stage) return ode->stage(ode->self, t, m->at, (bough_right_side){m, set_present}, u);
-    if (!ode->derivative(ode->self, t, m->at, u)) return false;
-    set_present(m, 0, ode->n);
-    ode->solve(ode->self, u);
+    if (ode->stage) return ode->stage(ode->self, at, m->at, terms, m->stage[i]);
+    set_present_argument(m, 0, ode->n);
+    if (!ode->derivative(ode->self, at, m->at, m->stage[i])) return false;
+    set_present_right_side(m, 0, ode->n);
+    ode->solve(ode->self, m->stage[i]);
     return true;
 }
 
-// Stage i after the first.
-static inline bool find_stage(rosenbrock *m, int i, double t, double h,
-                              const double *y) {
-    set_argument(m, i, y);
-    m->now = i;
-    m->now_step = h;
-    return solve_stage(m, t + alpha[i] * h, m->stage[i]);
-}
-
 static bool find_stages(rosenbrock *m, double t, double h, const double *y) {
+    m->from = y;
+    m->now_step = h;
     m->ode.solve(m->ode.self, m->stage[0]);
-    return find_stage(m, 1, t, h, y) && find_stage(m, 2, t, h, y) && find_stage(m, 3, t, h, y);
+    return find_stage(m, 1, t) && find_stage(m, 2, t) && find_stage(m, 3, t);
 }
 
 // y₁ into `at`, whose last argument lacks the last stage only; the error against the tolerance, root

@@ -12,11 +12,12 @@
 
 #include <stdbool.h>
 
-// Makes the right side of a stage's equations of the rates that stand in its place, entries first … last − 1.
-typedef struct bough_right_side {
+// A stage's state and right side, entries first … last − 1 at a time.
+typedef struct bough_stage_terms {
     void *self;
-    void (*set)(void *self, int first, int last);
-} bough_right_side;
+    void (*set_state)(void *self, int first, int last); // before it is used
+    void (*set_right)(void *self, int first, int last); // of the rates that stand in its place
+} bough_stage_terms;
 
 typedef struct bough_system_ops {
     // f: rate (n_state). False when the value is not finite.
@@ -59,9 +60,9 @@ typedef struct bough_system_ops {
     // h at the time, state and input of the last call of derivative or derivative_again. Cheaper than output.
     void (*output_again)(void *self, double t, const double *state, const double *input, double *output);
 
-    // x ← (I − γJ)⁻¹ r, r made of f in x by `right`: derivative, right and solve for one part after the
-    // other. For systems without inputs.
-    bool (*stage)(void *self, void *factors, double t, const double *state, bough_right_side right,
+    // x ← (I − γJ)⁻¹ r, r made of f in x by `terms`, as is the state: derivative, right side and solve for one
+    // part after the other. For systems without inputs.
+    bool (*stage)(void *self, void *factors, double t, const double *state, bough_stage_terms terms,
                   double *x);
 
     // ∂h/∂t: drift (n_output). NULL: 0.

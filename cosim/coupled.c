@@ -288,20 +288,31 @@ void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, d
 
 typedef struct stage_work {
     bough_coupled *evaluation;
-    bough_right_side right;
+    bough_stage_terms terms;
 } stage_work;
+
+static void set_state(const stage_work *w, int i) {
+    const int *offset = w->evaluation->assembly->state_offset + i;
+    w->terms.set_state(w->terms.self, offset[0], offset[1]);
+}
+
+// Whether a member's state is set with its rate; else it is needed earlier, for the first outputs.
+static bool comes_late(const bough_assembly *a, int i) { return a->followers_last && !a->leads[i]; }
 
 static void find_right_side(void *self, int i) {
     const stage_work *w = self;
     const int *offset = w->evaluation->assembly->state_offset + i;
     w->evaluation->status[i].code = BOUGH_OK;
+    if (comes_late(w->evaluation->assembly, i)) set_state(w, i);
     evaluate(w->evaluation, i);
-    w->right.set(w->right.self, offset[0], offset[1]);
+    w->terms.set_right(w->terms.self, offset[0], offset[1]);
 }
 
 bough_status bough_coupled_stage(bough_coupled *evaluation, bough_coupled *coupled, double t,
-                                 const double *state, bough_right_side right, double *x) {
-    stage_work w = {evaluation, right};
+                                 const double *state, bough_stage_terms terms, double *x) {
+    stage_work w = {evaluation, terms};
+    for (int i = 0; i < evaluation->assembly->n_member; i++)
+        if (!comes_late(evaluation->assembly, i)) set_state(&w, i);
     begin_rates(evaluation, t, state, x);
     bough_coupled_solve_driven(coupled, NULL, x, (bough_coupled_user){&w, find_right_side, NULL});
     return first_failure(evaluation);

@@ -102,10 +102,11 @@ void bough_coupled_project(const bough_coupled *coupled, const double *state, do
 void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
                                 bough_coupled_user user);
 
-// x ← (I − γJ)⁻¹ r by the factors of `coupled`, r made of F, as `evaluation` finds it, by `right`.
+// x ← (I − γJ)⁻¹ r by the factors of `coupled`, r made of F, as `evaluation` finds it, by `terms`,
+// as is the state.
 // BOUGH_FAILED names the member whose rate is not finite.
 bough_status bough_coupled_stage(bough_coupled *evaluation, bough_coupled *coupled, double t,
-                                 const double *state, bough_right_side right, double *x);
+                                 const double *state, bough_stage_terms terms, double *x);
 
 // δu for x = 0 and `outside` (n_input) at the leaders' inputs, in place.
 void bough_coupled_close(bough_coupled *coupled, double *outside);

@@ -57,9 +57,9 @@ static void solve(void *self, void *factors, double *x) {
     bough_coupled_solve(factors, x);
 }
 
-static bool stage(void *self, void *factors, double t, const double *state, bough_right_side right,
+static bool stage(void *self, void *factors, double t, const double *state, bough_stage_terms terms,
                   double *x) {
-    bough_status status = bough_coupled_stage(self, factors, t, state, right, x);
+    bough_status status = bough_coupled_stage(self, factors, t, state, terms, x);
     return bough_is_ok(&status);
 }
 

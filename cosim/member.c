@@ -37,10 +37,10 @@ static void solve(void *self, double *x) {
     m->system.ops->solve(m->system.self, m->factors, x);
 }
 
-static bool stage(void *self, double t, const double *y, bough_right_side right, double *x) {
+static bool stage(void *self, double t, const double *y, bough_stage_terms terms, double *x) {
     const bough_member *m = self;
     if (m->stop && m->stop()) return false;
-    return m->system.ops->stage(m->system.self, m->factors, t, y, right, x);
+    return m->system.ops->stage(m->system.self, m->factors, t, y, terms, x);
 }
 
 bough_status bough_member_create(bough_arena *arena, const bough_system *system, double start,

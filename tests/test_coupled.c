@@ -47,6 +47,8 @@ static void halve_and_add_one(void *self, int first, int last) {
     for (int k = first; k < last; k++) x[k] = .5 * x[k] + 1;
 }
 
+static void keep(void *self, int first, int last) { (void)self, (void)first, (void)last; }
+
 // A stage is rate, right side and solution, to the bit.
 static void stages_are_rate_and_solution(void **state) {
     (void)state;
@@ -64,7 +66,7 @@ static void stages_are_rate_and_solution(void **state) {
     halve_and_add_one(expected, 0, N);
     bough_coupled_solve(coupled, expected);
     status = bough_coupled_stage(evaluation, coupled, 0, y,
-                                 (bough_right_side){x, halve_and_add_one}, x);
+                                 (bough_stage_terms){x, keep, halve_and_add_one}, x);
     assert_true(bough_is_ok(&status));
     assert_memory_equal(x, expected, sizeof x);
     bough_two_mass_destroy(&m);

@@ -23,6 +23,10 @@ static long double scaled(double x, int e) {
 static bool nine_digits(double x, uint32_t *digits, int *exponent) {
     const long double doubtful = 4e9L * LDBL_EPSILON;
     int binary, e;
+    if (x == 0) {
+        *digits = *exponent = 0;
+        return true;
+    }
     if (!(x >= 1e-13 && x < 1e29)) return false;
     frexp(x, &binary);
     e = (int)floor((binary - 1) * 0.30102999566398120);
@@ -52,7 +56,7 @@ void bough_number_write(char *to, int width, double x) {
     }
     memset(to, ' ', (size_t)(width - LENGTH));
     char *out = to + width - LENGTH;
-    if (x < 0) out[-1] = '-';
+    if (signbit(x)) out[-1] = '-';
     for (int k = DIGITS + 1; k > 1; k--, digits /= 10) out[k] = (char)('0' + digits % 10);
     out[0] = (char)('0' + digits);
     out[1] = '.';
