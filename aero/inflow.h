@@ -34,8 +34,8 @@ double bough_inflow_time(const bough_inflow_def *def, double axial, double radiu
 // Equilibrium with q [m/s].
 void bough_inflow_start(bough_inflow_state *state, const double sought[2]);
 
-// Goes on by `step` [s], during which q changes linearly to `sought`: the exact solution, with any
-// step. `share`: the station's radius over the rotor's, which tells τ₂ from τ₁.
+// Advances by `step` [s], during which q changes linearly to `sought`: the exact solution for any step.
+// `share`: the station's radius divided by the rotor's, which gives τ₂ from τ₁.
 void bough_inflow_advance(bough_inflow_state *state, const double sought[2], double step,
                           double tau1, double share);
 
@@ -51,8 +51,8 @@ typedef struct bough_inflow_station {
     double share; // radius over the rotor's
 } bough_inflow_station;
 
-// Puts what Øye's delay leaves of them in place of the momentum balance's inductions, a `step` after
-// the last sample; the first sample is in equilibrium. `inflow`: normal and tangential [m/s].
+// Replaces the inductions of the momentum balance by the delayed ones, a `step` [s] after the last sample; the
+// first sample is in equilibrium. `inflow`: normal and tangential [m/s].
 void bough_inflow_follow(const bough_inflow_clock *clock, double step, const double inflow[2],
                          double *axial, double *tangential, bough_inflow_station *station);
 

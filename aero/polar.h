@@ -30,7 +30,7 @@ typedef struct bough_polar {
     double bin_per_rad;
     const int *bin; // (n_bin): last knot at or below the bin's start
     int most;       // knots within a bin
-    double low, high; // the angles its rows tell, high up to a turn above low [rad]
+    double low, high; // range of its rows, high at most a turn above low [rad]
     // Of attached flow; slope 0: no lift to speak of.
     double slope;     // the steepest line through zero lift that touches the polar [1/rad]
     double zero_lift; // where the lift grows through zero, nearest to no angle [rad]
@@ -47,8 +47,8 @@ void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_pol
 // F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984).
 void bough_polar_smoothen(bough_arena *arena, bough_polar *polar);
 
-// The last knot at or below an angle; `alpha` moves into the table's turn. No branch depends on it
-// but that into the turn, for the next is not to be foretold. A NaN stays one and takes the first knot.
+// The last knot at or below an angle; `alpha` is moved into the table's turn. Besides that move there is no
+// branch, because the processor could not predict it. A NaN remains and takes the first knot.
 static inline int bough_polar_knot(const bough_polar *polar, double *alpha) {
     const double turn = 2 * BOUGH_PI;
     double x = *alpha - polar->row[0];

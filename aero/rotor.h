@@ -162,15 +162,15 @@ void bough_rotor_conclude(const bough_rotor *rotor, const bough_rotor_motion *mo
 // What a station of a blade reports of the last sample.
 bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int station);
 
-// What a sample tells, as numbers: of every station, thrust, torque and wind; not the loads.
+// The results of a sample as a row of numbers: those of every station, thrust, torque and wind; not the loads.
 int bough_rotor_told_size(const bough_rotor *rotor);
 void bough_rotor_told_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to);
 void bough_rotor_told_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data);
 
-// What of a blade's last sample is furthest from what the tables and the model hold for.
+// The extreme values of a blade's last sample, to be compared with the range of tables and model.
 typedef struct bough_rotor_extremes {
-    bool outside_table;     // some angle of attack lies where its polar has no rows, …
-    double alpha;    // … this one [rad]
+    bool outside_table; // an angle of attack is outside the rows of its polar …
+    double alpha;       // … this one [rad]
     double speed;    // the largest relative speed [m/s]
     double distance; // the least from the tower's axis, in radii there [-]
 } bough_rotor_extremes;

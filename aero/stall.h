@@ -46,9 +46,9 @@ typedef struct bough_stall_state {
     double separation_sought, separation; // f of the lagged angle: input and state [-]
 } bough_stall_state;
 
-// Goes on by `step` [s], during which U α changes linearly: exact for the wake and the pressure,
-// for the separation with its input linear in between. Returns the coefficients there; those of
-// the static polar in equilibrium. `chord` [m].
+// Advances by `step` [s], during which U α changes linearly: exact for the wake and the pressure, for the
+// separation with a linear input. Returns the coefficients at the end; in equilibrium those of the static polar.
+// `chord` [m].
 bough_coefficients bough_stall_advance(const bough_stall_airfoil *airfoil, double chord,
                                        bough_stall_inflow inflow, double step,
                                        bough_stall_state *state);

@@ -46,7 +46,7 @@ typedef struct bough_tower {
 void bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tower *tower);
 
 // The drag on the tower at a place of its axis, unit vector `axis`, in air of that density [kg/m³]
-// and velocity against the tower [m/s]; only what blows across counts [N/m].
+// and velocity relative to the tower [m/s]; only its component normal to the axis counts [N/m].
 bough_vec3 bough_tower_drag(const bough_tower *tower, double density, bough_vec3 position,
                             bough_vec3 axis, bough_vec3 inflow);
 
@@ -59,7 +59,7 @@ static inline bool bough_tower_reaches(const bough_tower *tower, bough_vec3 posi
 // How far a point is from the axis, in radii there [-]; infinite where there is no tower.
 double bough_tower_distance(const bough_tower *tower, bough_vec3 position);
 
-// The undisturbed wind at a point, as the tower leaves it.
+// The wind at a point with the tower's influence; `wind` is the undisturbed wind there [m/s].
 bough_vec3 bough_tower_disturbed(const bough_tower *tower, bough_vec3 position, bough_vec3 wind);
 
 #endif

@@ -3,8 +3,8 @@
 // acceleration crosses an interface, so rates go by two sweeps: motions outwards, wrenches
 // inwards. One piece is the classic modal body.
 //
-// State: per piece q (m), then η (m). Input and output as those of a rod (rod.h), so are the loads;
-// followers are none of them.
+// State: per piece q (m), then η (m). Input, output and loads are as those of a rod (rod.h), but there are no
+// follower loads.
 #ifndef BOUGH_FLEXBODY_MODAL_CHAIN_H
 #define BOUGH_FLEXBODY_MODAL_CHAIN_H
 
@@ -32,7 +32,7 @@ typedef struct bough_modal_chain {
     bough_modal_frame_change *change; // of each piece's frame and the last tip's (n_piece + 1)
 } bough_modal_chain;
 
-// Cuts the rod into `pieces` of equally many segments, as far as they go.
+// Cuts the rod into `pieces` of equally many segments, or of one more or less.
 bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, int pieces,
                                 bough_modal_options options, bough_modal_model **model);
 
@@ -52,7 +52,7 @@ void bough_modal_hold_loads(const bough_modal_model *m, const bough_rod_loads *l
                             double t1, bough_modal_chain *chain);
 void bough_modal_release_loads(bough_modal_chain *chain);
 
-// rate (n_state); false when a value is not finite. Loads are dead ones.
+// rate (n_state); false when a value is not finite.
 bool bough_modal_derivative(const bough_modal_model *m, const bough_rod_loads *loads, double t,
                             const double *state, const double *input, bough_modal_chain *chain,
                             double *rate);

@@ -1,9 +1,9 @@
-// One modal piece at an instant: its rates and the wrench at its root, given the motion of its
-// frame and the wrench that the next piece puts on its tip, and their tangents.
+// One modal piece at an instant: its rates, the wrench at its root, and their tangents. Given are the motion of
+// its frame and the wrench of the next piece on its tip.
 //
 // The root wrench is the balance of momentum, P = C_tη and L_a = (C_a + G_a q)ᵀη about the frame's
-// origin: external loads at the displaced vertices less the rate of P and L. So the piece neither
-// makes nor loses momentum, whatever the number of shapes.
+// origin: external loads at the displaced vertices less the rate of P and L. So momentum is conserved with any
+// number of shapes.
 #ifndef BOUGH_FLEXBODY_MODAL_PIECE_H
 #define BOUGH_FLEXBODY_MODAL_PIECE_H
 
@@ -67,7 +67,7 @@ void bough_modal_project(const bough_modal_piece *piece, const double *load, int
 // η̇ under point->force; no piece follows.
 void bough_modal_backward_loaded(bough_modal_point *point);
 
-// What the tangents need, after both (with the root).
+// Prepares the tangents; after forward and backward (with the root).
 void bough_modal_slopes(bough_modal_point *point, const double *load, int load_stride);
 
 // Derivatives along dq, deta (m; both NULL for none) and a change of the frame: of q̇ to rate (m),

@@ -16,7 +16,7 @@ bough_modal_body *bough_modal_body_create(bough_arena *arena, const bough_modal_
 // The contract's view; valid as long as the arena.
 bough_system bough_modal_body_system(bough_modal_body *body);
 
-// The loads, to be changed between steps only; no followers.
+// The loads, to be changed between steps only; follower loads are not possible.
 bough_rod_loads *bough_modal_body_loads(bough_modal_body *body);
 
 // bough_modal_ride with the body's scratch.

@@ -68,16 +68,10 @@ fmi3_status fmi3SetDebugLogging(fmi3_instance self, bool on, size_t n, const fmi
 
 // -- life -----------------------------------------------------------------------------------------
 
-static char *copy_text(const char *text) {
-    char *copy = malloc(strlen(text) + 1);
-    if (copy) strcpy(copy, text);
-    return copy;
-}
-
 static char *join(const char *a, const char *b) {
     char text[2 * LINE];
     snprintf(text, sizeof text, "%s/%s", a, b);
-    return copy_text(text);
+    return strdup(text);
 }
 
 // Reads resources/scene.txt; false when it is not there or of another FMU.
@@ -93,8 +87,8 @@ static bool read_resources(instance *x, const char *resources, const char *token
         line[strcspn(line, "\r\n")] = '\0';
         if (number == 0) good = strcmp(line, token) == 0;
         if (number == 1) x->scene = join(resources, line);
-        if (number == 2 && line[0]) x->body = copy_text(line);
-        if (number > 2 && x->n_set < MOST_SETTINGS) x->set[x->n_set++] = copy_text(line);
+        if (number == 2 && line[0]) x->body = strdup(line);
+        if (number > 2 && x->n_set < MOST_SETTINGS) x->set[x->n_set++] = strdup(line);
         number++;
     }
     fclose(file);
@@ -150,7 +144,7 @@ static fmi3_status prolong(instance *x, double stop) {
     snprintf(text, sizeof text, "simulation.duration=%.17g", stop);
     if (!value) return FMI3_ERROR;
     for (int k = 0; k < n; k++) value[k] = bough_session_input_value(x->session, k);
-    x->set[n_set] = copy_text(text);
+    x->set[n_set] = strdup(text);
     x->n_set = n_set + 1;
     bool good = x->set[n_set] && open_session(x);
     for (int k = 0; good && k < n; k++) bough_session_set(x->session, k, value[k]);

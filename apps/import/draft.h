@@ -1,5 +1,5 @@
-// What every reader of foreign models writes: the texts of a scene's files and of the list, which
-// become files only when the whole model could be read.
+// The texts of an imported scene's files and of its list. They become files only when the whole model could
+// be read.
 #ifndef BOUGH_IMPORT_DRAFT_H
 #define BOUGH_IMPORT_DRAFT_H
 
@@ -58,9 +58,8 @@ bough_status bough_draft_import(const bough_draft_def *def);
 void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-// The scene's first lines: title and comment, time, solvers; of duration [s], rounded up to whole
-// macro steps, which are as short as a rotor of that speed [rad/s] needs. `origin`: "an OpenFAST
-// model".
+// Writes the scene's first lines: comment, title, time, solvers. The macro step follows from the rotor's speed
+// [rad/s]; the duration [s] is rounded up to whole macro steps. `origin`: "an OpenFAST model".
 void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity,
                       double duration, double rotor_speed);
 
@@ -72,7 +71,8 @@ void bough_draft_turbine(bough_draft *d, const char *rotor, int n_blade);
 // "[1, 2, 3]" in the scene's spelling.
 void bough_import_list(FILE *file, const double *value, int n);
 
-// A text in double quotes; a path as an absolute one, so, for what the scene leaves in its place.
+// Writes a text in double quotes; a path as an absolute path in double quotes, for files that stay where they
+// are.
 void bough_import_quoted(FILE *file, const char *text);
 void bough_import_path(FILE *file, const char *path);
 

@@ -1,4 +1,4 @@
-// Sections of slender bodies in the spelling of a scene's table of structure.
+// Writes sections of slender bodies as rows of a scene's table of structure.
 #ifndef BOUGH_IMPORT_SECTION_H
 #define BOUGH_IMPORT_SECTION_H
 
@@ -18,8 +18,8 @@ void bough_section_mass(FILE *file, const double m[BOUGH_IMPORT_MATRIX]);
 bool bough_section_possible(const double k[BOUGH_IMPORT_MATRIX],
                             const double m[BOUGH_IMPORT_MATRIX]);
 
-// What m has beyond a mass, its centre and inertias about it: the largest entry that it should not
-// have or have otherwise, relative to its neighbours.
+// How far m is from the matrix of a mass with centre and inertias: the largest wrong entry, relative to the
+// entries beside it.
 double bough_section_strangeness(const double m[BOUGH_IMPORT_MATRIX]);
 
 // The first bending frequency [rad/s] of a clamped beam without twist and shear, given at n

@@ -1,6 +1,6 @@
 // Stiffness and mass of a thin-walled section of laminates with any number of cells: bending and
 // tension by Euler-Bernoulli's plane sections, shear and torsion by the shear flow that follows from
-// them, each wall with the stiffness of its plies where the hoop force is nothing.
+// them. The stiffness of a wall is that of its plies without hoop force.
 //
 // A. Kollár, G. S. Springer, Mechanics of Composite Structures (Cambridge 2003), chapter 6. Warping u
 // at the nodes and twist rate θ are found from the balance of shear flows q = (G t/L)(Δu + θ h), h
@@ -28,8 +28,8 @@ typedef struct bough_wall {
 } bough_wall;
 
 // Stiffness and mass (6 × 6 each, rows) about the origin, of strains in the order shear x, shear y,
-// axial, bend x, bend y, twist, of a section with nodes at x, y (n_node) [m] that walls connect to
-// one piece. BOUGH_INVALID where a wall has no thickness or no length.
+// axial, bend x, bend y, twist, of a section with nodes at x, y (n_node) [m]. The walls must connect all
+// nodes. BOUGH_INVALID: a wall has no thickness or no length.
 bough_status bough_wall_section(bough_arena *arena, int n_node, const double *x, const double *y,
                                 int n_wall, const bough_wall *wall, double stiffness[36],
                                 double mass[36]);

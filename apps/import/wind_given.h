@@ -13,13 +13,13 @@ typedef enum bough_wind_form {
 // The form of a file by how it begins.
 bough_wind_form bough_wind_form_of(const char *path);
 
-// Reads the file, so that only what can be used is named, and writes the beginning of the scene's
-// `wind`, its brace left open; what is read of rows is of a rotor at that height and of that diameter
-// [m]. BOUGH_INVALID says what is wrong with the file; nothing is then written.
+// Reads the file to check it and writes the beginning of the scene's `wind` without the closing brace. Height
+// of the hub and diameter of the rotor [m] are used for files of rows. BOUGH_INVALID says what is wrong with the
+// file; nothing is then written.
 bough_status bough_wind_given(bough_draft *d, bough_wind_form form, const char *path, double height,
                               double diameter);
 
-// The same of a box that was made of other files, `path` the first of them.
+// The same for a box that was converted from other files; `path` is the first of them.
 void bough_wind_made(bough_draft *d, const bough_wind_box *box, const char *path);
 
 #endif

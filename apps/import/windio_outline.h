@@ -1,5 +1,5 @@
-// A blade's section as its outline: the airfoils that stand next to it, each side drawn at equal
-// shares of its arc, mixed and scaled.
+// The outline of a blade's section: interpolated between the two nearest airfoils, whose sides have points at
+// equal shares of their arcs, and scaled.
 #ifndef BOUGH_IMPORT_WINDIO_OUTLINE_H
 #define BOUGH_IMPORT_WINDIO_OUTLINE_H
 
@@ -24,9 +24,9 @@ const double *bough_windio_airfoils(bough_windio *w);
 void bough_windio_outline_at(const bough_windio *w, const double *airfoils, double share,
                              bough_outline *to);
 
-// The arc where a line crosses a side (0 suction, 1 pressure): the line stands across the direction that
-// is turned from the chord towards the suction side by `turn` [rad], so far from the reference line in
-// that direction [m]. Where it crosses nothing, the nearest point.
+// The arc where a straight line crosses a side (0 suction, 1 pressure). The line is normal to the direction
+// that is turned from the chord towards the suction side by `turn` [rad]; `offset` is its distance from the
+// reference line in that direction [m]. Without a crossing: the nearest point.
 double bough_outline_crossing(const bough_outline *o, int side, double turn, double offset);
 
 #endif

@@ -15,13 +15,14 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
 // The sampled load for the master's loop.
 bough_sampled_load bough_aero_link_load(bough_aero_link *link);
 
-// Samples the blades as they are and holds the loads from t on; the next sample starts anew.
+// Samples the blades at their present motion and keeps the loads constant from t on. Dynamic inflow and stall
+// are in equilibrium, at the next sample again.
 void bough_aero_link_hold(bough_aero_link *link, double t);
 
-// The same, but the air goes on from what it remembers of the last sample, and will from this one.
+// The same, but dynamic inflow and stall continue from the last sample, and the next sample from this one.
 void bough_aero_link_go_on(bough_aero_link *link, double t);
 
-// What the air remembers, as bough_rotor_save has it.
+// The memory of dynamic inflow and stall, as bough_rotor_save stores it.
 void bough_aero_link_remember(const bough_aero_link *link, double *to);
 void bough_aero_link_remind(bough_aero_link *link, const double *from);
 
@@ -40,7 +41,7 @@ void bough_aero_link_set_wind(bough_aero_link *link, double speed);
 // The time of that evaluation [s]; NAN: none that is up to date.
 double bough_aero_link_evaluated(const bough_aero_link *link);
 
-// Says that what the next sample meets has changed at its time: a restored state, another wind.
+// To be called when state or wind have been changed from outside: the next sample is evaluated in any case.
 void bough_aero_link_renew(bough_aero_link *link);
 
 // Results of the last evaluation, at the last multiple of the period, with the ramp's factor at its time.

@@ -16,13 +16,13 @@ bough_aero_motion *bough_aero_motion_build(bough_arena *arena, bough_simulation 
 void bough_aero_motion_rotor(bough_aero_motion *m, double t);
 void bough_aero_motion_blade(bough_aero_motion *m, int blade);
 
-// The same as expected at t + ahead, the time of the next such call: what is seen in each blade's frame
-// goes on by the parabola through this call and the last two, and the frame by its velocity, integrated
-// by Adams' formula of third order; by lower orders where these would have foretold this call better.
+// The motion expected at t + ahead, the time of the next such call. Within each blade's frame the rows are
+// extrapolated by the parabola through this call and the last two. The frame moves on by its velocity with
+// Adams' formula of third order. Lower orders are used where they would have predicted this call better.
 void bough_aero_motion_expect_rotor(bough_aero_motion *m, double t, double ahead);
 void bough_aero_motion_expect_blade(bough_aero_motion *m, int blade);
 
-// What was found last; its blades are filled by the calls above.
+// The result of the last calls above.
 const bough_rotor_motion *bough_aero_motion_found(const bough_aero_motion *m);
 
 // A blade's rows, BOUGH_BLADE_ROWS × n_vertex, at this call and the one before (this, if there is none).

@@ -1,12 +1,12 @@
-// The loads of the air on one blade as a signal that its body has between two samples.
+// The aerodynamic loads on one blade as functions of time between two samples.
 #ifndef BOUGH_APPS_SIMULATION_AERO_SIGNAL_H
 #define BOUGH_APPS_SIMULATION_AERO_SIGNAL_H
 
 #include "apps/simulation/build.h"
 
-// Of a rod per vertex force and moment in the body's axes (6 × vertices), then the same per length
-// along each segment in the axes of its middle, mean and slope (12 × segments); of a modal body the
-// former, on a rigid body the resultant (6).
+// For a rod: force and moment on each vertex in the body's axes (6 × vertices), then force and moment per
+// length along each segment in the axes of its middle, mean and slope (12 × segments). For a modal body:
+// the first of these. For a rigid body: the resultant (6).
 typedef struct bough_aero_signal bough_aero_signal;
 
 // A rotor's loads on the blade: on vertices (6 × n), mean and slope per length of segments
@@ -33,8 +33,9 @@ void bough_aero_signal_hold(bough_aero_signal *s, bough_aero_fresh fresh, bough_
 void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh,
                               bough_aero_course course, double start, double span);
 
-// By how much of their size the loads have lately missed what the body's motion makes of them, 0 for a rod: its
-// loads follow its motion. About 1: the samples are too seldom for the body's vibrations, which then grow.
+// The recent difference between the loads and those at the body's actual motion, relative to the loads; 0 for
+// a rod, whose loads follow its motion. About 1: the sampling rate is too low for the body's vibrations, which
+// then grow.
 double bough_aero_signal_missed(const bough_aero_signal *s);
 
 // All that the signal depends on; restoring gives it to the body.

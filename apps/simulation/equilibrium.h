@@ -2,8 +2,8 @@
 // at one time and the air's forces, which are sampled anew where the bodies come to rest.
 //
 // A joint of prescribed motion is where it is then; one with an initial speed keeps coordinate and
-// speed. What they carry turns steadily, at the azimuth where it is (frozen azimuth: gravity does
-// not go round). All other joints come to rest.
+// speed. The bodies on them turn steadily at their present azimuth, and gravity keeps its direction in
+// the rotating frame (frozen azimuth). All other joints come to rest.
 #ifndef BOUGH_APPS_SIMULATION_EQUILIBRIUM_H
 #define BOUGH_APPS_SIMULATION_EQUILIBRIUM_H
 
@@ -19,8 +19,8 @@ typedef struct bough_equilibrium_work {
 // with `turning`, of those with an initial speed. Returns their number.
 int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row);
 
-// Whether the rods do not know of each other: each is held by the ground, without air. Then each
-// has its own equilibrium and modes.
+// Whether the rods are independent: each is held by the ground, without air. Then each has its own
+// equilibrium and modes.
 bool bough_equilibrium_apart(const bough_simulation *s);
 
 // The time after which no load grows any more [s].
@@ -31,8 +31,8 @@ double bough_equilibrium_time(const bough_simulation *s);
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                           bough_equilibrium_work *work);
 
-// What is told of each point of a path: the members and the simulation's view are there; `limit`: the
-// loads are at their largest or smallest there for now. A failure ends the path.
+// Called at each point of a path, where the members and the simulation's view then are. `limit`: the loads
+// have a local maximum or minimum there. A failure ends the path.
 typedef struct bough_path_listener {
     void *self;
     bough_status (*point)(void *self, double share, bool limit);

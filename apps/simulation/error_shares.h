@@ -1,7 +1,7 @@
-// The shares of mesh and air in what the channels of a run err by, measured: the scene is run again
-// with twice the segments in each rod, and with twice the samples of the air; a known part of the
-// difference is the error, by the order at which each converges. It is the difference to a run with steps as
-// short as theirs, because the errors in time of two runs do not cancel.
+// The errors of mesh and air in the channels of a run. The scene is run again with twice the segments in each
+// rod, and with twice the sampling rate of the air. A part of the difference is the error; the part follows
+// from the order of convergence. All these runs have short time steps, because the errors in time of two runs
+// do not cancel.
 #ifndef BOUGH_APPS_SIMULATION_ERROR_SHARES_H
 #define BOUGH_APPS_SIMULATION_ERROR_SHARES_H
 
@@ -34,8 +34,8 @@ const char *bough_error_share_name(bough_error_share_kind kind);
 // controllers that cannot be run twice.
 bool bough_error_share_refine(bough_arena *arena, bough_scene *scene, int times, bough_error_share *share);
 
-// For the rows that the run records every `interval` [s]; with memory from the arena only if the scene
-// asks for the shares.
+// Prepares for the rows that the run records every `interval` [s]. Takes memory only if the scene asks for
+// the shares.
 bough_status bough_error_shares_create(bough_arena *arena, const bough_run *run, double interval,
                                        bough_error_shares *shares);
 

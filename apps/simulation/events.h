@@ -26,11 +26,11 @@ bough_status bough_events_build(bough_arena *arena, bough_simulation *simulation
 // Whether the turbine idles at t because its start is yet to come.
 bool bough_events_idle(const bough_events *events, const bough_event_state *state);
 
-// Looks which events have happened by the time of what is sensed.
+// Marks the events that have happened up to the time of `sensed`.
 void bough_events_look(bough_events *events, const bough_discon_sensed *sensed,
                        bough_event_state *state);
 
-// What they make of the controller's demand for the next step.
+// Changes the controller's demand for the next step by the events that have happened.
 void bough_events_change(const bough_events *events, const bough_discon_sensed *sensed,
                          bough_event_state *state, bough_discon_demand *demand);
 

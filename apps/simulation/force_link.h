@@ -5,7 +5,8 @@
 #include "apps/scene/scene.h"
 #include "core/tree.h"
 
-// The markers (n) with what hangs on them; `marker` has room for those of the beams before.
+// The markers of the tree and the elements between them. The first markers are those of the beams, which the
+// caller fills.
 typedef struct bough_force_link {
     int n_marker;   // of the tree, those of the beams included
     int first_own;  // the first of those that the scene names

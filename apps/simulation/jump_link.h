@@ -1,5 +1,5 @@
-// Loads that jump at a time: ramps without length. A step that ends at the jump is integrated without
-// the load and the step that begins there with it, which no function of time alone can say.
+// Loads that jump at a time: ramps without length. The step that ends at the jump is integrated without the
+// load, the step that begins there with it; a function of time alone could not distinguish the two.
 #ifndef BOUGH_APPS_SIMULATION_JUMP_LINK_H
 #define BOUGH_APPS_SIMULATION_JUMP_LINK_H
 

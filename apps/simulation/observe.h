@@ -7,7 +7,7 @@
 // Motion and section loads of rods at the places of the scene's sensors.
 void bough_observe_sections(bough_simulation *s, bough_channels *list);
 
-// What the rotor does to its shaft; what the tower carries, to the tower's top.
+// Torque and power in the rotor's shaft; the wrench of the nacelle on the tower's top.
 void bough_observe_shaft(bough_simulation *s, bough_channels *list);
 void bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list);
 

@@ -1,4 +1,4 @@
-// Frames and joints as the scene says them, in the tree's terms.
+// Placements and axes of a scene as transforms and vectors.
 #ifndef BOUGH_APPS_SIMULATION_PLACEMENT_H
 #define BOUGH_APPS_SIMULATION_PLACEMENT_H
 

@@ -1,5 +1,6 @@
-// A second model of a scene whose loads react to its motion, air and controllers: it takes the same macro steps as
-// the run, as one system, and measures the run's error with all that loads make of it (second_solution.h).
+// A second model of a scene whose loads depend on its motion (air, controllers). It takes the same macro steps as
+// the run, as one system. Its difference to the run is the run's error, the reaction of the loads included
+// (second_solution.h).
 #ifndef BOUGH_APPS_SIMULATION_SECOND_MODEL_H
 #define BOUGH_APPS_SIMULATION_SECOND_MODEL_H
 

@@ -42,7 +42,7 @@ static bough_status start(bough_arena *arena, work *w) {
     bough_status status = bough_folder_make(w->options->folder);
     if (bough_is_ok(&status)) status = remove_results(w->options->folder);
     if (!bough_is_ok(&status)) return status;
-    return bough_study_store_open(arena, w->options->folder, s, &w->results.reference,
+    return bough_study_store_open(arena, w->options->folder, "cells.csv", s, &w->results.reference,
                                   w->results.result, &w->store);
 }
 

@@ -126,7 +126,7 @@ static bough_status start(bough_arena *arena, stability *x) {
     }
     bough_status status = bough_folder_make(x->options->folder);
     if (!bough_is_ok(&status)) return status;
-    status = bough_study_store_open_part(arena, x->options->folder, name, s, x->reference,
+    status = bough_study_store_open(arena, x->options->folder, name, s, x->reference,
                                          x->result, &x->store);
     for (int g = 0; g < s->n_reference; g++) {
         int missing = is_mine(x, g) ? count_missing(x, g) : 0;

@@ -168,9 +168,9 @@ static void read_parts(const char *folder, const bough_study *study, bough_study
     closedir(directory);
 }
 
-bough_status bough_study_store_open_part(bough_arena *arena, const char *folder, const char *name,
-                                         const bough_study *study, bough_study_result *reference,
-                                         bough_study_result *result, bough_study_store *store) {
+bough_status bough_study_store_open(bough_arena *arena, const char *folder, const char *name,
+                                    const bough_study *study, bough_study_result *reference,
+                                    bough_study_result *result, bough_study_store *store) {
     char path[BOUGH_PATH_MAX];
     bough_status status = bough_folder_path(folder, name, path);
     if (!bough_is_ok(&status)) return status;
@@ -193,12 +193,6 @@ bough_status bough_study_store_open_part(bough_arena *arena, const char *folder,
     if (good && !complete) good = fputc('\n', store->file) != EOF;
     if (good && ftell(store->file) == 0) good = fputs(head, store->file) >= 0;
     return good ? status : io_error(store, "write");
-}
-
-bough_status bough_study_store_open(bough_arena *arena, const char *folder,
-                                    const bough_study *study, bough_study_result *reference,
-                                    bough_study_result *result, bough_study_store *store) {
-    return bough_study_store_open_part(arena, folder, all_cells, study, reference, result, store);
 }
 
 void bough_study_store_close(bough_study_store *store) {

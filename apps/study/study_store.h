@@ -16,15 +16,11 @@ typedef struct bough_study_store {
 // Writes a field of a CSV file, in quotes where it needs them; line ends become blanks.
 void bough_csv_text(FILE *file, const char *text);
 
-// Reads what is in folder/cells*.csv into reference (n_reference) and result (n_cell), then opens it for more.
-bough_status bough_study_store_open(bough_arena *arena, const char *folder,
+// Reads folder/cells*.csv into reference (n_reference) and result (n_cell), then opens folder/NAME for more:
+// "cells.csv", or "cells-….csv" where several programs fill one folder.
+bough_status bough_study_store_open(bough_arena *arena, const char *folder, const char *name,
                                     const bough_study *study, bough_study_result *reference,
                                     bough_study_result *result, bough_study_store *store);
-
-// The same, but writes to folder/NAME, "cells-….csv", so that several programs may fill one folder.
-bough_status bough_study_store_open_part(bough_arena *arena, const char *folder, const char *name,
-                                         const bough_study *study, bough_study_result *reference,
-                                         bough_study_result *result, bough_study_store *store);
 
 // Appends a run that has ended, and sees it to the disk.
 bough_status bough_study_store_add(const bough_study_store *store, const bough_study_cell *cell,
