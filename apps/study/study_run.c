@@ -1,5 +1,6 @@
 #include "apps/study/study_run.h"
 
+#include "apps/output/recorder.h"
 #include "apps/scene/fingerprint.h"
 #include "apps/simulation/run.h"
 
@@ -18,6 +19,7 @@ typedef struct cell_run {
     bough_run run;
     int *column; // (n_channel) of the study's channels among the run's
     bough_study_series *series;
+    bough_recorder *recorder; // of all channels; NULL: none
     long batches;            // of the estimate, seen so far
     double *gathered, *zero; // (n_channel) scratch
     double *estimate;        // (n_measure)
@@ -36,11 +38,14 @@ static bough_status sample(void *self, double t) {
     cell_run *r = self;
     bough_study_series *s = r->series;
     assert(s->filled < s->n_row);
-    bough_channels_sample(&r->run.channels, t, r->run.value);
+    bough_status status = bough_ok();
+    if (r->recorder) status = bough_recorder_sample(r->recorder, t);
+    if (!r->recorder) bough_channels_sample(&r->run.channels, t, r->run.value);
+    const double *value = r->recorder ? bough_recorder_values(r->recorder) : r->run.value;
     double *row = s->value + (size_t)s->filled++ * (size_t)s->n_channel;
     for (int i = 0; i < s->n_channel; i++)
-        row[i] = r->run.value[r->column[i]];
-    return bough_ok();
+        row[i] = value[r->column[i]];
+    return status;
 }
 
 // -- norms ----------------------------------------------------------------------------------------
@@ -118,7 +123,9 @@ static bough_status read_scene(bough_arena *arena, const bough_study *study,
                       errors.n > 0 ? ": " : "", errors.n > 0 ? errors.item[0].text : "");
 }
 
-void bough_study_estimate_cheaply(bough_scene *scene) {
+// Chooses the cheapest error estimate for the cells, whose true error against the reference is known: by
+// linearised members where the scene names no other, and none where all bodies are one system.
+static void estimate_cheaply(bough_scene *scene) {
     int *estimate = &scene->simulation.error_estimate;
     if (*estimate != BOUGH_ERROR_BY_BEST) return;
     int scheme = scene->simulation.coupling.scheme;
@@ -132,13 +139,17 @@ static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell
     if (!bough_is_ok(&status)) return status;
     if (r->study->kind == BOUGH_STUDY_STABILITY) scene->simulation.threads = 1;
     else if (r->study->threads > 0) scene->simulation.threads = r->study->threads;
-    bough_study_estimate_cheaply(scene);
+    estimate_cheaply(scene);
     status = bough_run_create(arena, scene, &r->run);
     if (!bough_is_ok(&status)) return status;
     const bough_study *s = r->study;
     r->gathered = bough_arena_doubles(arena, (size_t)s->n_channel);
     r->zero = bough_arena_doubles(arena, (size_t)s->n_channel);
-    return bough_study_columns(arena, &r->run.channels, s->n_channel, s->channel, &r->column);
+    status = bough_study_columns(arena, &r->run.channels, s->n_channel, s->channel, &r->column);
+    bough_recorder_def def = {
+        .folder = r->drive->folder, .title = cell->settings, .channels = &r->run.channels};
+    if (!def.folder || !bough_is_ok(&status)) return status;
+    return bough_recorder_open(arena, &def, &r->recorder);
 }
 
 static bough_status run_in(bough_arena *arena, void *self) {
@@ -166,7 +177,8 @@ static bough_status run_in(bough_arena *arena, void *self) {
     result->warned = m->verdict[0] != '\0';
     result->coupling = bough_monitor_report(m->monitor, m->coupling);
     assert(!bough_is_ok(&run->outcome) || r->series->filled == r->series->n_row);
-    return run->outcome;
+    if (r->recorder) status = bough_recorder_finish(r->recorder, &run->outcome);
+    return bough_is_ok(&run->outcome) ? status : run->outcome;
 }
 
 // -- repeats --------------------------------------------------------------------------------------

@@ -30,11 +30,8 @@ typedef struct bough_study_result {
 typedef struct bough_study_drive {
     bool (*stop)(void);      // asked before each step; NULL: never stops
     bough_progress progress; // of the terminal's line, labelled by what runs
+    const char *folder;      // where every run writes all its channels; NULL: nowhere
 } bough_study_drive;
-
-// Chooses the cheapest error estimate for the cells, whose true error against the reference is known: by
-// linearised members where the scene names no other, and none where all bodies are one system.
-void bough_study_estimate_cheaply(bough_scene *scene);
 
 bough_study_series bough_study_series_take(bough_arena *arena, const bough_study *study);
 

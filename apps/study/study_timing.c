@@ -16,8 +16,7 @@ typedef struct spread {
 
 typedef struct cell_times {
     double wall[MAX_REPEAT], cpu[MAX_REPEAT], ratio[MAX_REPEAT]; // per turn
-    double build;               // of the first turn [s]
-    bough_study_result result;  // errors against the reference
+    double error[BOUGH_STUDY_MEASURES]; // against the reference
 } cell_times;
 
 typedef struct timing {
@@ -50,34 +49,23 @@ static int partner(const bough_study *s, int cell) {
 
 // -- runs -----------------------------------------------------------------------------------------
 
-// Errors do not depend on the turn: bits are the same in all.
-static bough_status find_errors(timing *t) {
-    bough_study_result reference;
-    t->drive.progress.label = "reference";
-    bough_status status = bough_study_run(t->study, t->study->reference_cell, 1, &t->drive,
-                                          &t->reference, &reference);
-    if (!bough_is_ok(&status)) return status;
-    if (!bough_is_ok(&reference.outcome)) return reference.outcome;
-    for (int i = 0; i < t->study->n_cell; i++) {
-        bough_study_result *result = &t->cell[i].result;
-        t->drive.progress.label = t->study->cell[i].settings;
-        status = bough_study_run(t->study, &t->study->cell[i], 1, &t->drive, &t->series, result);
-        if (!bough_is_ok(&status)) return status;
-        if (!bough_is_ok(&result->outcome)) return result->outcome;
-        bough_study_compare(t->study, &t->series, &t->reference, result->error);
-    }
-    return status;
+static bough_status run(timing *t, const bough_study_cell *cell, bough_study_drive *drive,
+                        bough_study_series *series, bough_study_result *result) {
+    bough_status status = bough_study_run(t->study, cell, 1, drive, series, result);
+    return bough_is_ok(&status) ? result->outcome : status;
 }
 
+// Every run writes all channels, as `bough run` does. Errors do not depend on the turn: the bits of all turns
+// are the same.
 static bough_status take_turn(timing *t, int turn) {
+    bough_study_drive drive = {.stop = t->options->stop, .folder = t->options->folder};
     for (int i = 0; i < t->study->n_cell; i++) {
-        bough_timing_run run;
-        bough_status status =
-            bough_timing_run_cell(t->study, &t->study->cell[i], t->options, &run);
+        bough_study_result result;
+        bough_status status = run(t, &t->study->cell[i], &drive, &t->series, &result);
         if (!bough_is_ok(&status)) return status;
-        t->cell[i].wall[turn] = run.wall;
-        t->cell[i].cpu[turn] = run.cpu;
-        if (turn == 0) t->cell[i].build = run.build;
+        t->cell[i].wall[turn] = result.wall;
+        t->cell[i].cpu[turn] = result.cpu;
+        if (turn == 0) bough_study_compare(t->study, &t->series, &t->reference, t->cell[i].error);
     }
     for (int i = 0; i < t->study->n_cell; i++) {
         t->cell[i].ratio[turn] =
@@ -87,10 +75,12 @@ static bough_status take_turn(timing *t, int turn) {
 }
 
 static bough_status run_all(timing *t) {
-    bough_status status = find_errors(t);
+    bough_study_result reference;
+    t->drive.progress.label = "reference";
+    bough_status status = run(t, t->study->reference_cell, &t->drive, &t->reference, &reference);
+    bough_progress_clear(&t->drive.progress);
     for (int turn = 0; turn < t->study->repeat && bough_is_ok(&status); turn++)
         status = take_turn(t, turn);
-    bough_progress_clear(&t->drive.progress);
     return status;
 }
 
@@ -117,7 +107,7 @@ static void print_times(const void *self, FILE *f) {
                 ratio.median, ratio.low, ratio.high);
         for (int m = 0; m < s->n_measure; m++) {
             int width = (int)(strlen(s->measure[m].name) + strlen(s->measure[m].unit)) + 3;
-            fprintf(f, "  %*.1e", width, c->result.error[m]);
+            fprintf(f, "  %*.1e", width, c->error[m]);
         }
         fprintf(f, "\n");
     }

@@ -5,16 +5,6 @@
 
 #include "apps/study/study_options.h"
 
-// One run of a cell with all channels written.
-typedef struct bough_timing_run {
-    double wall, cpu; // of the stepping and recording [s]
-    double build;     // reading and building [s]
-} bough_timing_run;
-
-// Runs a cell, the channels going to the folder.
-bough_status bough_timing_run_cell(const bough_study *study, const bough_study_cell *cell,
-                                   const bough_study_options *options, bough_timing_run *run);
-
 // Runs all, prints the table and writes timing.csv into the folder.
 bough_status bough_timing_perform(bough_arena *arena, const bough_study *study,
                                   const bough_study_options *options);
