@@ -89,8 +89,7 @@ void bough_schema_help_units(FILE *stream) {
     }
 }
 
-// -- units
-// ------------------------------------------------------------------------------------------
+// -- units ----------------------------------------------------------------------------------------
 
 // A unit by its symbol without exponent: factor and exponents, NULL when there is none.
 static const unit *find_unit(const char *symbol, double *factor) {
@@ -170,8 +169,7 @@ bool bough_unit_fits(const char *text, bough_dimension dimension, char why[160])
     return unit_factor(text, dimension, &factor, why);
 }
 
-// -- numbers
-// ----------------------------------------------------------------------------------------
+// -- numbers --------------------------------------------------------------------------------------
 
 static size_t digits(const char *text) { return strspn(text, "0123456789"); }
 

@@ -52,8 +52,7 @@ typedef struct reader {
     bough_node *root;
 } reader;
 
-// -- errors
-// -----------------------------------------------------------------------------------------
+// -- errors ---------------------------------------------------------------------------------------
 
 static void grow_errors(bough_errors *errors) {
     if (errors->n < errors->capacity) return;
@@ -129,8 +128,7 @@ void bough_errors_print(const bough_errors *errors, FILE *stream) {
     if (errors->dropped > 0) fprintf(stream, "%d more errors\n", errors->dropped);
 }
 
-// -- memory
-// -----------------------------------------------------------------------------------------
+// -- memory ---------------------------------------------------------------------------------------
 
 static void *take(reader *r, size_t size) {
     size = (size + 15) / 16 * 16;
@@ -155,8 +153,7 @@ static void make_room(reader *r, int more) {
     r->stack_capacity = capacity;
 }
 
-// -- refusals
-// ---------------------------------------------------------------------------------------
+// -- refusals -------------------------------------------------------------------------------------
 
 static bool refuse(reader *r, yaml_mark_t at, const char *text) {
     bough_node where = {.file = r->file, .line = (int)at.line + 1, .column = (int)at.column + 1};
@@ -211,8 +208,7 @@ static bool syntax_error(reader *r) {
                   control ? "a control character is not allowed" : "this is not UTF-8 text");
 }
 
-// -- nodes
-// ------------------------------------------------------------------------------------------
+// -- nodes ----------------------------------------------------------------------------------------
 
 static bough_node *new_node(reader *r, bough_node_kind kind, yaml_mark_t at) {
     if (++r->n_node > MAX_NODES) {
@@ -389,8 +385,7 @@ static bool parse_events(reader *r) {
     return refuse(r, (yaml_mark_t){0}, "the file is empty");
 }
 
-// -- reading
-// ----------------------------------------------------------------------------------------
+// -- reading --------------------------------------------------------------------------------------
 
 static void release(void *self) {
     reader *r = self;

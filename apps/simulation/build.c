@@ -166,7 +166,6 @@ static bough_status build_tree(bough_builder *b) {
     return bough_member_create(b->arena, &tree, 0, &master, &s->leader);
 }
 
-
 static bough_status build_rods(bough_builder *b) {
     bough_simulation *s = b->s;
     double *motion = bough_arena_doubles(b->arena, (size_t)bough_tree_n_outputs(s->tree) + 1);
