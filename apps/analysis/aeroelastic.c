@@ -335,7 +335,44 @@ static void turn_air(bough_arena *arena, const work *w, const bough_simulation *
     }
 }
 
-static void add_air(bough_arena *arena, const work *w, const bough_simulation *s,
+// What forces (n × columns) move beyond the kept motion, which they lose: γ (I − γ(J − S))⁻¹ (E − U L), the
+// static response of the modes left out. `share` (n_motion × columns) is work.
+static void follow(work *w, const bough_aeroelastic *to, int columns, double *force, double *share,
+                   double *moved) {
+    int n = w->n, k = to->n_motion;
+    bough_dense_product((bough_product){k, columns, n, false, 1, 0}, to->left, force, share);
+    bough_dense_product((bough_product){n, columns, k, false, -1, 1}, to->shape, share, force);
+    w->k = columns;
+    apply(w, force, moved);
+    for (size_t i = 0; i < (size_t)n * (size_t)columns; i++) moved[i] /= w->def->point;
+}
+
+// The air's forces by that response of theirs, `moved` (n × columns), on the motion and on the air's states.
+static void add_followed(const bough_air_tangent *t, int columns, const double *moved, int first_column,
+                         double *image, double *block, bough_aeroelastic *to) {
+    int n = to->n, k = to->n_motion, m = t->n_air;
+    bough_dense_product((bough_product){n, columns, n, false, 1, 0}, t->motion, moved, image);
+    bough_dense_product((bough_product){k, columns, n, false, 1, 0}, to->left, image, block);
+    add_block(block, k, columns, 0, first_column, to);
+    bough_dense_product((bough_product){m, columns, n, false, 1, 0}, t->drive, moved, block);
+    add_block(block, m, columns, k, first_column, to);
+}
+
+static void add_response(bough_arena *arena, work *w, const bough_air_tangent *t, bough_aeroelastic *to) {
+    int n = w->n, k = to->n_motion, m = t->n_air;
+    size_t most = (size_t)(k > m ? k : m);
+    double *force = bough_arena_doubles(arena, (size_t)n * most), *moved = bough_arena_doubles(arena, (size_t)n * most);
+    double *block = bough_arena_doubles(arena, most * most);
+    bough_dense_product((bough_product){n, k, n, false, 1, 0}, t->motion, to->shape, force);
+    follow(w, to, k, force, block, moved);
+    add_followed(t, k, moved, 0, force, block, to);
+    if (m == 0) return;
+    memcpy(force, t->lift, (size_t)n * (size_t)m * sizeof *force);
+    follow(w, to, m, force, block, moved);
+    add_followed(t, m, moved, k, force, block, to);
+}
+
+static void add_air(bough_arena *arena, work *w, const bough_simulation *s,
                     const bough_blade_group *group, const bough_air_tangent *t,
                     bough_aeroelastic *to) {
     int n = w->n, k = to->n_motion, m = t->n_air;
@@ -350,6 +387,7 @@ static void add_air(bough_arena *arena, const work *w, const bough_simulation *s
     bough_dense_product((bough_product){m, k, n, false, 1, 0}, t->drive, to->shape, block);
     add_block(block, m, k, k, 0, to);
     add_block(t->lag, m, m, k, k, to);
+    add_response(arena, w, t, to);
     turn_air(arena, w, s, group, t->n_per_blade, to);
 }
 

@@ -4,7 +4,7 @@
 // u the motion in the invariant subspace of the bodies' lowest modes, m the states of the air, whose
 // forces couple all (air_tangent.h). Right and left subspace by simultaneous iteration on
 // (I − γ(J − S))⁻¹, so that forces are shared out to the modes as the full system does; modes left out
-// neither follow nor resist.
+// follow the air's forces at once.
 #ifndef BOUGH_APPS_ANALYSIS_AEROELASTIC_H
 #define BOUGH_APPS_ANALYSIS_AEROELASTIC_H
 

@@ -15,7 +15,7 @@ static const double least_point = 1, spins = 4;
 static const double free_motion = 1e-3;
 
 enum { FREE_MOTIONS = 8 }; // that may be found before the modes
-enum { PER_MODE = 3 };     // states of motion kept for each mode in the air that is wanted
+enum { PER_MODE = 5 };     // states of motion kept for each mode in the air that is wanted
 
 static const double rounding = 1e-10;   // damping ratios below it are none
 
