@@ -11,6 +11,8 @@ extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *
 extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
                     const int *lda, const int *pivot, double *b, const int *ldb, int *info,
                     size_t trans_length);
+extern void dgbsv_(const int *n, const int *below, const int *above, const int *nrhs, double *a, const int *lda,
+                   int *pivot, double *b, const int *ldb, int *info);
 extern void dgemm_(const char *transa, const char *transb, const int *m, const int *n, const int *k,
                    const double *alpha, const double *a, const int *lda, const double *b,
                    const int *ldb, const double *beta, double *c, const int *ldc,
@@ -154,6 +156,15 @@ bool bough_dense_factor(int n, double *a, int *pivot) {
     prepare();
     int info = 0;
     dgetrf_(&n, &n, a, &n, pivot, &info);
+    return info == 0;
+}
+
+bool bough_band_solve(int n, int width, double *a, int *pivot, double *b) {
+    const int rows = 3 * width + 1, one = 1;
+    int info;
+    prepare();
+    if (!all_finite((size_t)rows * (size_t)n, a)) return false;
+    dgbsv_(&n, &width, &width, &one, a, &rows, pivot, b, &n, &info);
     return info == 0;
 }
 

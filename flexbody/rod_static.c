@@ -1,14 +1,16 @@
 #include "flexbody/rod_static.h"
 
+#include "core/linalg.h"
 #include "flexbody/rod_linear.h"
 #include "flexbody/rod_move.h"
 
-#include <float.h>
 #include <string.h>
 
 enum { W8 = 8 };
 
 static const double most_turn = 0.5; // of a vertex in one Newton step [rad]
+
+enum { BAND = 11, BAND_ROWS = 3 * BAND + 1 }; // of the stiffness, on either side of its diagonal
 
 enum { SHORTENED = 8 }; // steps of an increment; more end in other equilibria
 
@@ -18,8 +20,8 @@ bough_rod_static_options bough_rod_static_options_default(void) {
     return (bough_rod_static_options){1e-10, 1, 12, 30};
 }
 
-// Beyond this slenderness the rounding of positions can keep Newton's method from converging.
-static const double slender = 3e9;
+// Beyond this slenderness rounding can keep Newton's method from converging.
+static const double slender = 1e12;
 
 // EA L²/EI.
 static double slenderness(const bough_rod_model *m) {
@@ -46,8 +48,9 @@ void bough_rod_static_init(bough_rod_static *work, bough_arena *arena, const bou
     work->rate = bough_arena_doubles(arena, states);
     work->trial = bough_arena_doubles(arena, states);
     work->step = bough_arena_doubles(arena, (size_t)W8 * m->n);
-    // what rounding of positions leaves of a step: their strain times the axial stiffness bends
-    work->rounding = DBL_EPSILON * slenderness(m);
+    work->force = bough_arena_doubles(arena, (size_t)6 * m->n);
+    work->band = bough_arena_doubles(arena, (size_t)BAND_ROWS * 6 * m->n);
+    work->pivot = bough_arena_take(arena, (size_t)6 * m->n * sizeof *work->pivot);
     work->follower = (bough_rod_ramped_load){.follower = true};
     work->dead = (bough_rod_ramped_load){.follower = false};
     take_ramped(arena, m, &work->follower);
@@ -98,13 +101,30 @@ static double update(const bough_rod_model *m, const double *step, double *state
     return fmax(turn, shift);
 }
 
-// K δq = residual, in place in step.
+// The block that couples vertex i to j.
+static void put_in_band(const double *block, int i, int j, double *band) {
+    for (int column = 0; column < 6; column++) {
+        double *to = band + (size_t)BAND_ROWS * (6 * j + column) + 2 * BAND + 6 * (i - j) - column;
+        for (int row = 0; row < 6; row++) to[row] = block[W8 * column + row];
+    }
+}
+
+// K δq = residual, in place in step. With pivoting: blocks eliminated in their order leave of the residual what
+// would strain a slender rod.
 static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const double *input,
                         const double *state) {
-    bough_block_tridiagonal *a = &w->tangent.matrix;
-    bough_rod_linear_stiffness(m, &w->tangent.blocks, input, state, a);
-    if (!bough_block_tridiagonal_factor(a)) return false;
-    bough_block_tridiagonal_solve(a, w->step);
+    const bough_block_tridiagonal *a = &w->tangent.matrix;
+    bough_rod_linear_stiffness(m, &w->tangent.blocks, input, state, &w->tangent.matrix);
+    memset(w->band, 0, (size_t)BAND_ROWS * 6 * m->n * sizeof(double));
+    for (int i = 0; i < m->n; i++) {
+        size_t at = (size_t)i * BOUGH_BLOCK;
+        put_in_band(a->diagonal + at, i, i, w->band);
+        if (i > 0) put_in_band(a->lower + at, i, i - 1, w->band);
+        if (i < m->n - 1) put_in_band(a->upper + at, i, i + 1, w->band);
+        memcpy(w->force + 6 * i, w->step + W8 * i, 6 * sizeof(double));
+    }
+    if (!bough_band_solve(6 * m->n, BAND, w->band, w->pivot, w->force)) return false;
+    for (int i = 0; i < m->n; i++) memcpy(w->step + W8 * i, w->force + 6 * i, 6 * sizeof(double));
     return true;
 }
 
@@ -125,7 +145,7 @@ static bool converge(const bough_rod_model *m, const double *input,
         shortened += change > most_turn;
         if (shortened > SHORTENED) return false;
         // rounding in a stiff rod keeps the residual up; then the steps tell
-        if (change < fmax(options->tolerance, w->rounding)) {
+        if (change < options->tolerance) {
             bough_rod_ride(m, input, state);
             return true;
         }

@@ -27,7 +27,8 @@ typedef struct bough_rod_static {
     double *rate;           // (13 n)
     double *step;           // (n × 8)
     double *trial;          // (13 n)
-    double rounding;        // left of a step in a slender rod [rad, lengths]
+    double *force, *band;   // (6 n), (34 × 6 n) K in LAPACK's band storage
+    int *pivot;             // (6 n)
     int iterations;         // of the last solution, all increments together
 } bough_rod_static;
 

@@ -3,6 +3,7 @@
 
 #include "core/linalg.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static void lu_solves_with_interchanges(void **state) {
@@ -22,6 +23,26 @@ static void lu_solves_with_interchanges(void **state) {
     bough_dense_solve(3, 2, a, pivot, b);
     for (int i = 0; i < 6; i++)
         check_near(b[i], x[i], 1e-14, 0);
+}
+
+// Zeros on the diagonal: rows are exchanged within the band.
+static void band_is_solved_with_interchanges(void **state) {
+    (void)state;
+    enum { UNKNOWNS = 12, WIDTH = 2, ROWS = 3 * WIDTH + 1 };
+    double a[ROWS * UNKNOWNS] = {0}, b[UNKNOWNS] = {0};
+    int pivot[UNKNOWNS];
+    for (int i = 0; i < UNKNOWNS; i++) {
+        for (int j = 0; j < UNKNOWNS; j++) {
+            if (abs(i - j) > WIDTH || i == j) continue;
+            double entry = sin(1.7 * i * i + 3 * j) + 1.2;
+            a[ROWS * j + 2 * WIDTH + i - j] = entry;
+            b[i] += entry * (j - 2.5);
+        }
+    }
+    assert_true(bough_band_solve(UNKNOWNS, WIDTH, a, pivot, b));
+    for (int i = 0; i < UNKNOWNS; i++) check_near(b[i], i - 2.5, 0, 1e-11);
+    memset(a, 0, sizeof a);
+    assert_false(bough_band_solve(UNKNOWNS, WIDTH, a, pivot, b));
 }
 
 // By hand up to six unknowns, by a library beyond; diagonals are small, so that rows are exchanged.
@@ -200,6 +221,7 @@ static void cholesky_refuses_indefinite_and_nearly_singular(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lu_solves_with_interchanges),
+        cmocka_unit_test(band_is_solved_with_interchanges),
         cmocka_unit_test(lu_solves_systems_of_any_size),
         cmocka_unit_test(product_of_matrices),
         cmocka_unit_test(lu_refuses_singular_and_nan),
