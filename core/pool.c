@@ -187,21 +187,19 @@ static void take_turn(void *self, int k) {
         w->work(w->data, split + k - w->before, BOUGH_FIRST_HALF);
     } else if (k < w->n) {
         w->work(w->data, k - w->rest, BOUGH_WHOLE);
-    } else if (k < w->n + w->rest) {
+    } else {
         bough_pool_await(w->pool, w->before + k - w->n);
         w->work(w->data, split + k - w->n, BOUGH_SECOND_HALF);
-    } else {
-        w->work(w->data, k - w->rest, BOUGH_WHOLE);
     }
 }
 
-void bough_pool_run_turns(bough_pool *pool, int n, int short_items,
-                          void (*work)(void *data, int item, bough_part part), void *data) {
+void bough_pool_run_turns(bough_pool *pool, int n, void (*work)(void *data, int item, bough_part part),
+                          void *data) {
     int threads = bough_pool_threads(pool);
     turns w = {.pool = pool, .n = n, .work = work, .data = data};
     if (n > threads) w.rest = n % threads;
     if (w.rest > 0) w.before = threads - w.rest;
-    bough_pool_run(pool, n + w.rest + short_items, take_turn, &w);
+    bough_pool_run(pool, n + w.rest, take_turn, &w);
 }
 
 void bough_pool_await(bough_pool *pool, int earlier) {

@@ -46,9 +46,9 @@ typedef enum bough_part { BOUGH_WHOLE, BOUGH_FIRST_HALF, BOUGH_SECOND_HALF } bou
 
 // Does items 0 … n − 1 of about equal work. The last of them, which fill no whole turn of all
 // threads, are done in two halves: the first ones in the first turn, the second ones last, so that
-// three items keep two threads busy. Then `short_items` more, which take less time.
-void bough_pool_run_turns(bough_pool *pool, int n, int short_items,
-                          void (*work)(void *data, int item, bough_part part), void *data);
+// three items keep two threads busy.
+void bough_pool_run_turns(bough_pool *pool, int n, void (*work)(void *data, int item, bough_part part),
+                          void *data);
 
 // Inside a task: returns when the task `earlier` of the list, which comes before it, is done.
 void bough_pool_await(bough_pool *pool, int earlier);

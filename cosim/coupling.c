@@ -199,7 +199,7 @@ static void advance_turn(void *data, int k, bough_part part) {
 
 bough_status bough_coupling_advance(bough_coupling *c, int stage, bool restart) {
     stage_work w = {c, restart};
-    bough_pool_run_turns(c->pool, list_stage(c, stage), 0, advance_turn, &w);
+    bough_pool_run_turns(c->pool, list_stage(c, stage), advance_turn, &w);
     return first_failure(c);
 }
 
