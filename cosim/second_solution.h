@@ -3,9 +3,9 @@
 // coupling, sub-solvers or too long a macro step cause the error, and however the mechanics amplifies it.
 //
 // Either it is far finer than the run, and the difference is the run's error; or the run is itself such
-// a solution, and the second takes steps of twice the length to eight times the tolerance: of a method
-// of order p the run then errs by 1/(2ᵖ − 1) of the difference (Richardson). The order is 3 for smooth
-// motion and 2 or less where stiff members reduce it; a third is told.
+// a solution, and the second takes steps of half the length to an eighth of the tolerance: of a method
+// of order p the run then errs by 2ᵖ/(2ᵖ − 1) of the difference (Richardson): 8/7 at order 3, and 4/3 at order 2, to which stiff
+// members reduce it.
 //
 // Under the loads of the run, the reaction of loads to the error, such as that of the air or a controller, is
 // missing. Where there are such loads, a second model of the scene with loads of its own takes the same macro

@@ -97,6 +97,7 @@ def vector_of(name, unit):
     for ending in ("X", "Y", "Z", "Xi", "Yi", "Zi"):
         if name.endswith(ending):
             stem = name[:-len(ending)]
+    stem = re.sub("(Dir[XYZ])[xyz]$", r"\1", stem)
     for count in "123":
         stem = stem.replace(count + "Pos", "Pos").replace(count + "Vel", "Vel")
     return stem + " " + unit
