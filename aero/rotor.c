@@ -87,7 +87,7 @@ static void ask_polars(const bough_rotor *rotor, double time, int blade, bough_r
     for (int j = 0; j < rotor->n_station; j++) {
         bough_coefficients k;
         if (data->memory.stall) {
-            k = bough_stall_advance(rotor->airfoil + j, rotor->station.chord[j], stall_inflow(r, j),
+            k = bough_stall_advance(rotor->station.polar[j], rotor->station.chord[j], stall_inflow(r, j),
                                     time - data->memory.clock->time,
                                     data->memory.stall + blade * rotor->n_station + j);
         } else {
@@ -106,7 +106,7 @@ static void ask_slopes(const bough_rotor *rotor, double time, int blade, bough_r
         bough_stall_slopes k = {.angle = bough_polar_slope(rotor->station.polar[j], r->alpha[j])};
         r->static_slope[j] = k.angle.lift;
         if (data->memory.stall) {
-            k = bough_stall_slopes_of(rotor->airfoil + j, rotor->station.chord[j], stall_inflow(r, j),
+            k = bough_stall_slopes_of(rotor->station.polar[j], rotor->station.chord[j], stall_inflow(r, j),
                                       time - data->memory.clock->time,
                                       data->memory.stall + blade * rotor->n_station + j);
         }

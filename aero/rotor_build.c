@@ -170,14 +170,6 @@ static const bough_polar *build_polars(bough_arena *arena, const bough_rotor_def
     return polar;
 }
 
-static void prepare_stall(bough_arena *arena, bough_rotor *rotor) {
-    size_t n = (size_t)rotor->n_station;
-    bough_stall_airfoil *airfoil = bough_arena_take(arena, n * sizeof *airfoil);
-    for (size_t j = 0; j < n; j++)
-        airfoil[j] = bough_stall_airfoil_of(rotor->station.polar[j]);
-    rotor->airfoil = airfoil;
-}
-
 bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                                const bough_rotor **result) {
     *result = NULL;
@@ -201,6 +193,7 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
                            .pitching_moment = def->pitching_moment,
                            .skew = def->skew,
                            .slopes = def->slopes,
+                           .stalls = def->stall != BOUGH_STALL_NONE,
                            .induction = def->induction,
                            .inflow = def->inflow,
                            .undeformed = undeformed,
@@ -216,7 +209,6 @@ bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
     compress_rows(def->n_vertex, def->n_station, map.vertex, rotor->row);
     compress_rows(def->n_vertex - 1, def->n_station, map.mean, rotor->mean);
     compress_rows(def->n_vertex - 1, def->n_station, map.slope, rotor->slope);
-    if (def->stall != BOUGH_STALL_NONE) prepare_stall(arena, rotor);
     *result = rotor;
     return bough_ok();
 }
@@ -235,10 +227,10 @@ static void take_inflow(bough_arena *arena, const bough_rotor *rotor, bough_roto
 static void take_memory(bough_arena *arena, const bough_rotor *rotor, bough_rotor_memory *memory) {
     size_t n = (size_t)rotor->n_blade * rotor->n_station;
     bool delayed = rotor->inflow.kind != BOUGH_INFLOW_EQUILIBRIUM;
-    if (!delayed && !rotor->airfoil) return;
+    if (!delayed && !rotor->stalls) return;
     memory->clock = bough_arena_take(arena, sizeof *memory->clock);
     if (delayed) take_inflow(arena, rotor, memory);
-    if (rotor->airfoil) memory->stall = bough_arena_take(arena, n * sizeof *memory->stall);
+    if (rotor->stalls) memory->stall = bough_arena_take(arena, n * sizeof *memory->stall);
 }
 
 static void take_rows(bough_arena *arena, const bough_rotor *rotor, blade_rows *rows) {

@@ -59,7 +59,7 @@ static bool has_inflow(const bough_rotor *rotor) {
 
 int bough_rotor_memory_size(const bough_rotor *rotor) {
     int per_section =
-        (has_inflow(rotor) ? INFLOW : 0) + (rotor->airfoil ? STALL : 0);
+        (has_inflow(rotor) ? INFLOW : 0) + (rotor->stalls ? STALL : 0);
     return per_section == 0 ? 0 : SCALARS + per_section * n_section(rotor);
 }
 
@@ -68,7 +68,7 @@ int bough_rotor_memory_states(const bough_rotor *rotor, int *row) {
     int n = 0, first = has_inflow(rotor) ? SCALARS + INFLOW * n_section(rotor) : SCALARS;
     for (int k = 0; k < n_section(rotor); k++) {
         for (int i = 0; i < 4 && has_inflow(rotor); i++) row[n++] = SCALARS + INFLOW * k + inflow[i];
-        for (int i = 0; i < 4 && rotor->airfoil; i++) row[n++] = first + STALL * k + stall[i];
+        for (int i = 0; i < 4 && rotor->stalls; i++) row[n++] = first + STALL * k + stall[i];
     }
     return n;
 }

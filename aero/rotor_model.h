@@ -28,7 +28,7 @@ typedef struct vertex_row {
 struct bough_rotor {
     int n_blade, n_station, n_vertex, stride;
     double density;
-    bool pitching_moment, skew, slopes;
+    bool pitching_moment, skew, slopes, stalls; // stalls: dynamically
     bough_induction_options induction;
     bough_inflow_def inflow;
     bough_wind wind;
@@ -37,7 +37,6 @@ struct bough_rotor {
     const bough_quaternion *undeformed; // section axes of the vertices (n_vertex)
     vertex_row *row;                    // (n_vertex)
     vertex_row *mean, *slope; // (n_vertex − 1) over a segment, weights [-], [1/m]
-    const bough_stall_airfoil *airfoil; // (n_station); NULL: static polars
 };
 
 enum { LOAD = 8 }; // force, moment per length and two zeros: one vector

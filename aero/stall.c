@@ -24,24 +24,20 @@ static double lift_at(const bough_polar *polar, double alpha) {
     return bough_polar_at(polar, alpha).lift;
 }
 
-bough_stall_airfoil bough_stall_airfoil_of(const bough_polar *polar) {
-    return (bough_stall_airfoil){polar, polar->slope, polar->zero_lift};
-}
-
 // With r = Cl/(slope·(α − α₀)) Kirchhoff's f = (2√r − 1)² leaves the separated lift
 // slope·(α − α₀)(3√r − 1)/(4√r), which is all of it at f = 0 and half of it at f = 1.
-void bough_stall_split(const bough_stall_airfoil *airfoil, double alpha, double *f,
+void bough_stall_split(const bough_polar *polar, double alpha, double *f,
                        double *separated) {
-    double lift = lift_at(airfoil->polar, alpha), d = remainder(alpha - airfoil->zero_lift, turn);
+    double lift = lift_at(polar, alpha), d = remainder(alpha - polar->zero_lift, turn);
     *f = 0;
     *separated = lift;
     if (fabs(d) > BOUGH_PI / 2) return;
-    double linear = airfoil->slope * d, at = lift;
+    double linear = polar->slope * d, at = lift;
     if (fabs(d) < near_zero) {
         d = copysign(near_zero, d);
-        at = lift_at(airfoil->polar, airfoil->zero_lift + d);
+        at = lift_at(polar, polar->zero_lift + d);
     }
-    double q = sqrt(fmin(fmax(at / (airfoil->slope * d), 0), 1));
+    double q = sqrt(fmin(fmax(at / (polar->slope * d), 0), 1));
     if (q <= 0.5) return;
     *f = (2 * q - 1) * (2 * q - 1);
     *separated = linear * (3 * q - 1) / (4 * q);
@@ -66,15 +62,15 @@ static void unwind(bough_stall_state *s) {
         s->wake[i] -= wake_share[i] * shift * s->speed;
 }
 
-static double separation_at(const bough_stall_airfoil *airfoil, double alpha) {
+static double separation_at(const bough_polar *polar, double alpha) {
     double f, separated;
-    bough_stall_split(airfoil, alpha, &f, &separated);
+    bough_stall_split(polar, alpha, &f, &separated);
     return f;
 }
 
-static void start(const bough_stall_airfoil *airfoil, double alpha, double speed,
+static void start(const bough_polar *polar, double alpha, double speed,
                   bough_stall_state *s) {
-    double f = separation_at(airfoil, alpha);
+    double f = separation_at(polar, alpha);
     *s = (bough_stall_state){.started = 1,
                              .speed = speed,
                              .alpha = alpha,
@@ -91,7 +87,7 @@ static double effective(const bough_stall_state *s) {
     return own * s->alpha + (s->wake[0] + s->wake[1]) / s->speed;
 }
 
-static void advance(const bough_stall_airfoil *airfoil, double semi_chords, double alpha,
+static void advance(const bough_polar *polar, double semi_chords, double alpha,
                     double speed, double mass_angle, bough_stall_state *s) {
     double next = s->alpha + remainder(alpha - s->alpha, turn);
     double before = s->speed * s->alpha, after = speed * next;
@@ -104,7 +100,7 @@ static void advance(const bough_stall_airfoil *airfoil, double semi_chords, doub
     double sought = effective(s) + mass_angle;
     s->pressure = lagged(s->pressure, s->pressure_sought, sought, semi_chords / pressure_time);
     s->pressure_sought = sought;
-    double f = separation_at(airfoil, s->pressure);
+    double f = separation_at(polar, s->pressure);
     s->separation = lagged(s->separation, s->separation_sought, f, semi_chords / separation_time);
     s->separation_sought = f;
     unwind(s);
@@ -115,14 +111,14 @@ static void advance(const bough_stall_airfoil *airfoil, double semi_chords, doub
 // `x`: the lagging f, `angle`: the effective one, `late`: that at three quarters of the chord, `turning`
 // the rotation's part of it. The circulation's lift leans back by what the wake withholds and by the
 // rotation once more.
-static bough_coefficients dynamic(const bough_stall_airfoil *airfoil, double x, double angle,
+static bough_coefficients dynamic(const bough_polar *polar, double x, double angle,
                                   double late, double turning) {
     double f, separated;
-    bough_stall_split(airfoil, angle, &f, &separated);
-    bough_coefficients k = bough_polar_at(airfoil->polar, angle);
-    double linear = airfoil->slope * remainder(angle - airfoil->zero_lift, turn);
+    bough_stall_split(polar, angle, &f, &separated);
+    bough_coefficients k = bough_polar_at(polar, angle);
+    double linear = polar->slope * remainder(angle - polar->zero_lift, turn);
     double lift = x * linear + (1 - x) * separated, mass_lift = BOUGH_PI * turning;
-    double least = bough_polar_at(airfoil->polar, airfoil->zero_lift).drag;
+    double least = bough_polar_at(polar, polar->zero_lift).drag;
     double separating = (sqrt(f) - sqrt(fmax(x, 0))) / 2 - (f - x) / 4;
     double leaning = remainder(late - angle, turn) + turning;
     double drag = k.drag + leaning * lift + (k.drag - least) * separating;
@@ -146,25 +142,25 @@ static double downwash(double chord, bough_stall_inflow inflow) {
     return bough_clamp(chord * inflow.rate / (2 * inflow.speed), -0.5, 0.5);
 }
 
-bough_coefficients bough_stall_advance(const bough_stall_airfoil *airfoil, double chord,
+bough_coefficients bough_stall_advance(const bough_polar *polar, double chord,
                                        bough_stall_inflow inflow, double step,
                                        bough_stall_state *state) {
     double alpha = remainder(inflow.alpha, turn), speed = inflow.speed;
-    bough_coefficients fixed = bough_polar_at(airfoil->polar, alpha);
-    if (airfoil->slope == 0 || !(speed > slow)) {
+    bough_coefficients fixed = bough_polar_at(polar, alpha);
+    if (polar->slope == 0 || !(speed > slow)) {
         state->started = 0;
         return fixed;
     }
     double turning = downwash(chord, inflow), late = alpha + turning;
     if (state->started == 0) {
-        start(airfoil, late, speed, state);
+        start(polar, late, speed, state);
     } else if (step > 0) {
         double semi_chords = step * (state->speed + speed) / chord;
-        advance(airfoil, semi_chords, late, speed, BOUGH_PI * turning / airfoil->slope, state);
+        advance(polar, semi_chords, late, speed, BOUGH_PI * turning / polar->slope, state);
     }
     double share = dynamic_share(alpha);
     if (share == 0) return fixed;
-    bough_coefficients k = dynamic(airfoil, state->separation, effective(state), late, turning);
+    bough_coefficients k = dynamic(polar, state->separation, effective(state), late, turning);
     return mixture(fixed, k, share);
 }
 
@@ -185,21 +181,21 @@ static bough_coefficients quotient(bough_coefficients a, bough_coefficients b, d
                                 (a.moment - b.moment) / step};
 }
 
-bough_stall_slopes bough_stall_slopes_of(const bough_stall_airfoil *airfoil, double chord,
+bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord,
                                          bough_stall_inflow inflow, double step,
                                          const bough_stall_state *state) {
     const double d = 1e-4; // [rad]
     double alpha = remainder(inflow.alpha, turn), share = dynamic_share(alpha);
-    bough_stall_slopes slopes = {.angle = bough_polar_slope(airfoil->polar, alpha)};
+    bough_stall_slopes slopes = {.angle = bough_polar_slope(polar, alpha)};
     if (state->started == 0 || share == 0) return slopes;
     double turning = downwash(chord, inflow), late = alpha + turning, x = state->separation;
     double angle = effective(state), prompt = prompt_share(2 * step * inflow.speed / chord);
-    bough_coefficients k = dynamic(airfoil, x, angle, late, turning);
-    bough_coefficients more = dynamic(airfoil, x, angle + prompt * d, late + d, turning);
-    bough_coefficients turned = dynamic(airfoil, x, angle + prompt * d, late + d, turning + d);
+    bough_coefficients k = dynamic(polar, x, angle, late, turning);
+    bough_coefficients more = dynamic(polar, x, angle + prompt * d, late + d, turning);
+    bough_coefficients turned = dynamic(polar, x, angle + prompt * d, late + d, turning + d);
     slopes.angle = mixture(slopes.angle, quotient(more, k, d), share);
     if (share < 1) { // the share changes, too
-        bough_coefficients fixed = bough_polar_at(airfoil->polar, alpha);
+        bough_coefficients fixed = bough_polar_at(polar, alpha);
         double fading_rate = -copysign(1 / (faded - fading), alpha);
         bough_coefficients by_share = quotient(k, fixed, 1 / fading_rate);
         slopes.angle.lift += by_share.lift;

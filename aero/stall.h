@@ -15,18 +15,10 @@ typedef enum bough_stall_kind {
     BOUGH_STALL_HGM,
 } bough_stall_kind;
 
-// What the model takes from a polar.
-typedef struct bough_stall_airfoil {
-    const bough_polar *polar;
-    double slope;     // of the attached lift [1/rad]; 0: no lift to speak of, always static
-    double zero_lift; // angle of attack without lift [rad]
-} bough_stall_airfoil;
-
-bough_stall_airfoil bough_stall_airfoil_of(const bough_polar *polar);
-
 // Trailing-edge separation point in [0, 1], 1 attached, and the lift of fully separated flow, of
-// which the static lift is made: Cl = f·slope·(α − α₀) + (1 − f)·separated.
-void bough_stall_split(const bough_stall_airfoil *airfoil, double alpha, double *f,
+// which the static lift is made: Cl = f·slope·(α − α₀) + (1 − f)·separated. A polar of slope 0
+// has no lift to speak of and is always static.
+void bough_stall_split(const bough_polar *polar, double alpha, double *f,
                        double *separated);
 
 // The flow at a section.
@@ -49,7 +41,7 @@ typedef struct bough_stall_state {
 // Advances by `step` [s], during which U α changes linearly: exact for the wake and the pressure, for the
 // separation with a linear input. Returns the coefficients at the end; in equilibrium those of the static polar.
 // `chord` [m].
-bough_coefficients bough_stall_advance(const bough_stall_airfoil *airfoil, double chord,
+bough_coefficients bough_stall_advance(const bough_polar *polar, double chord,
                                        bough_stall_inflow inflow, double step,
                                        bough_stall_state *state);
 
@@ -59,7 +51,7 @@ typedef struct bough_stall_slopes {
     bough_coefficients angle, rate;
 } bough_stall_slopes;
 
-bough_stall_slopes bough_stall_slopes_of(const bough_stall_airfoil *airfoil, double chord,
+bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord,
                                          bough_stall_inflow inflow, double step,
                                          const bough_stall_state *state);
 

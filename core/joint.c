@@ -35,8 +35,6 @@ static bough_quaternion load(const double *p) { return (bough_quaternion){p[0], 
 
 static bough_vec3 load3(const double *x) { return bough_v3(x[0], x[1], x[2]); }
 
-static void store3(bough_vec3 x, double *out) { out[0] = x.x, out[1] = x.y, out[2] = x.z; }
-
 static bough_mat3 rotation_at(const double *p) {
     return bough_rotation_matrix(bough_quaternion_normalised(load(p)));
 }
@@ -106,7 +104,7 @@ void bough_joint_force(const bough_joint *joint, bough_wrench f, double *force) 
     case BOUGH_JOINT_FIXED: break;
     case BOUGH_JOINT_REVOLUTE: force[0] = bough_dot(joint->axis, f.moment); break;
     case BOUGH_JOINT_PRISMATIC: force[0] = bough_dot(joint->axis, f.force); break;
-    case BOUGH_JOINT_SPHERICAL: store3(f.moment, force); break;
+    case BOUGH_JOINT_SPHERICAL: bough_v3_store(f.moment, force); break;
     case BOUGH_JOINT_FREE: bough_wrench_store(f, force); break;
     case BOUGH_JOINT_CYLINDRICAL:
         force[0] = bough_dot(joint->axis, f.force);
@@ -132,7 +130,7 @@ static void quaternion_speed(const double *p, const double *change, double *omeg
     bough_quaternion c =
         bough_quaternion_product(bough_quaternion_conjugate(load(p)), load(change));
     double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3];
-    store3(bough_scale(2 / square, bough_v3(c.x, c.y, c.z)), omega);
+    bough_v3_store(bough_scale(2 / square, bough_v3(c.x, c.y, c.z)), omega);
 }
 
 // Turns (x, y) by an angle; the third is the angle's own.
@@ -151,7 +149,7 @@ void bough_joint_rate(const bough_joint *joint, const double *q, const double *v
     case BOUGH_JOINT_PRISMATIC: rate[0] = v[0]; break;
     case BOUGH_JOINT_SPHERICAL: quaternion_rate(q, v, rate); break;
     case BOUGH_JOINT_FREE:
-        store3(bough_mat3_mul(rotation_at(q + 3), load3(v)), rate);
+        bough_v3_store(bough_mat3_mul(rotation_at(q + 3), load3(v)), rate);
         quaternion_rate(q + 3, v + 3, rate + 3);
         break;
     case BOUGH_JOINT_CYLINDRICAL: rate[0] = v[0], rate[1] = v[1]; break;
@@ -167,7 +165,7 @@ void bough_joint_speed(const bough_joint *joint, const double *q, const double *
     case BOUGH_JOINT_PRISMATIC: v[0] = change[0]; break;
     case BOUGH_JOINT_SPHERICAL: quaternion_speed(q, change, v); break;
     case BOUGH_JOINT_FREE:
-        store3(bough_mat3_tmul(rotation_at(q + 3), load3(change)), v);
+        bough_v3_store(bough_mat3_tmul(rotation_at(q + 3), load3(change)), v);
         quaternion_speed(q + 3, change + 3, v + 3);
         break;
     case BOUGH_JOINT_CYLINDRICAL: v[0] = change[0], v[1] = change[1]; break;
@@ -197,7 +195,7 @@ static void free_change(const double *q, const double *v, double c, const double
     quaternion_speed(q + 3, change + 3, eta);
     bough_vec3 own = bough_add(load3(speed_change), bough_cross(load3(eta), load3(v)));
     bough_vec3 sum = bough_add(load3(r), bough_mat3_mul(rotation_at(q + 3), own));
-    store3(bough_scale(1 / c, sum), change);
+    bough_v3_store(bough_scale(1 / c, sum), change);
 }
 
 // The same in the plane, where δη × v is the angle's change times v turned by a right angle.

@@ -57,8 +57,6 @@ static bool derivative(void *self, double t, const double *state, const double *
     return ok && bough_all_finite(s->n, rate);
 }
 
-static void store3(bough_vec3 x, double *out) { out[0] = x.x, out[1] = x.y, out[2] = x.z; }
-
 // The part of an end's velocity that is the link's, R u: from link to joint axes.
 static bough_vec3 in_joint_axes(const tree_system *s, int link, bough_vec3 u) {
     bough_mat3 placement = s->tree->links[link].joint.placement.rotation;
@@ -70,8 +68,8 @@ static void end_outputs(const tree_system *s, const double *state, double *out) 
     for (int e = 0; e < s->tree->n_ends; e++, out += BOUGH_END_OUTPUTS) {
         int i = s->tree->ends[e].link;
         bough_twist twist = s->data->twist[i];
-        store3(in_joint_axes(s, i, twist.linear), out);
-        store3(twist.angular, out + 3);
+        bough_v3_store(in_joint_axes(s, i, twist.linear), out);
+        bough_v3_store(twist.angular, out + 3);
         memcpy(out + 6, state + s->tree->links[i].first_coordinate, 7 * sizeof *out);
     }
 }
@@ -87,8 +85,8 @@ static void end_tangents(const tree_system *s, const double *state, const double
         bough_joint_speed(&link->joint, state + link->first_coordinate, own, eta);
         bough_twist d = s->data->acceleration[i];
         bough_vec3 turned = bough_cross(bough_v3(eta[3], eta[4], eta[5]), s->data->twist[i].linear);
-        store3(in_joint_axes(s, i, bough_add(d.linear, turned)), out);
-        store3(d.angular, out + 3);
+        bough_v3_store(in_joint_axes(s, i, bough_add(d.linear, turned)), out);
+        bough_v3_store(d.angular, out + 3);
         memcpy(out + 6, own, 7 * sizeof *out);
     }
 }
@@ -102,9 +100,9 @@ static bough_mat3 axes_at(const tree_system *s, int a) {
 static void axes_outputs(const tree_system *s, double *out) {
     for (int a = 0; a < s->tree->n_axes; a++, out += BOUGH_AXES_OUTPUTS) {
         bough_mat3 e = axes_at(s, a);
-        store3(e.c1, out);
-        store3(e.c2, out + 3);
-        store3(e.c3, out + 6);
+        bough_v3_store(e.c1, out);
+        bough_v3_store(e.c2, out + 3);
+        bough_v3_store(e.c3, out + 6);
     }
 }
 
@@ -114,9 +112,9 @@ static void axes_tangents(const tree_system *s, double *out) {
         if (port->link < 0) continue;
         bough_mat3 e = axes_at(s, a);
         bough_vec3 turn = bough_mat3_tmul(port->placement.rotation, s->data->turn[port->link]);
-        store3(bough_cross(e.c1, turn), out);
-        store3(bough_cross(e.c2, turn), out + 3);
-        store3(bough_cross(e.c3, turn), out + 6);
+        bough_v3_store(bough_cross(e.c1, turn), out);
+        bough_v3_store(bough_cross(e.c2, turn), out + 3);
+        bough_v3_store(bough_cross(e.c3, turn), out + 6);
     }
 }
 
@@ -129,7 +127,7 @@ static void output(void *self, double t, const double *state, const double *inpu
         const bough_frame *port = &s->tree->ports[p];
         bough_vec3 g = port->link < 0 ? s->tree->gravity : s->data->gravity[port->link];
         bough_twist_store(bough_tree_frame_twist(s->data, port), out);
-        store3(bough_mat3_tmul(port->placement.rotation, g), out + 6);
+        bough_v3_store(bough_mat3_tmul(port->placement.rotation, g), out + 6);
     }
     end_outputs(s, state, out);
     axes_outputs(s, out + BOUGH_END_OUTPUTS * s->tree->n_ends);
@@ -147,7 +145,7 @@ static void outputs_change(tree_system *s, const double *state, const double *ch
         bough_twist_store(bough_twist_to_child(&port->placement, s->data->acceleration[port->link]),
                           out);
         bough_vec3 g = bough_cross(s->data->gravity[port->link], s->data->turn[port->link]);
-        store3(bough_mat3_tmul(port->placement.rotation, g), out + 6);
+        bough_v3_store(bough_mat3_tmul(port->placement.rotation, g), out + 6);
     }
     end_tangents(s, state, change, out);
     axes_tangents(s, out + BOUGH_END_OUTPUTS * s->tree->n_ends);

@@ -16,6 +16,12 @@ typedef struct bough_mat3 {
 static inline bough_vec3 bough_v3(double x, double y, double z) {
     return (bough_vec3){x, y, z};
 }
+static inline void bough_v3_store(bough_vec3 v, double *out) {
+    out[0] = v.x;
+    out[1] = v.y;
+    out[2] = v.z;
+}
+
 static inline bough_vec3 bough_add(bough_vec3 a, bough_vec3 b) {
     return (bough_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
 }

@@ -178,6 +178,13 @@ void bough_assembly_states(const bough_assembly *a, double *state) {
     }
 }
 
+void bough_assembly_scales(const bough_assembly *a, double *scale) {
+    for (int i = 0; i < a->n_member; i++) {
+        const bough_system *s = &a->member[i]->system;
+        memcpy(scale + a->state_offset[i], s->scale, (size_t)s->n_state * sizeof *scale);
+    }
+}
+
 void bough_assembly_gather(const bough_assembly *a, int member, const double *output,
                            double *input) {
     for (int j = a->input_offset[member]; j < a->input_offset[member + 1]; j++) {

@@ -69,6 +69,9 @@ void bough_assembly_outputs(const bough_assembly *a, double t, double *output, d
 // All members' current states: state (n_state).
 void bough_assembly_states(const bough_assembly *a, double *state);
 
+// All members' error scales: scale (n_state).
+void bough_assembly_scales(const bough_assembly *a, double *scale);
+
 // input[j] = output[source[j]] for the inputs of one member.
 void bough_assembly_gather(const bough_assembly *a, int member, const double *output,
                            double *input);

@@ -1,8 +1,6 @@
 // The coupled members behind the contract of core/system.h. It has no ports.
 #include "cosim/coupled.h"
 
-#include <string.h>
-
 static bool derivative(void *self, double t, const double *state, const double *input,
                        double *rate) {
     (void)input;
@@ -100,10 +98,7 @@ bough_system bough_coupled_system(bough_arena *arena, const bough_assembly *a, b
     bough_coupled *evaluation = bough_coupled_create_evaluation(arena, a, pool);
     double *scale = bough_arena_doubles(arena, (size_t)a->n_state);
     double *initial = bough_arena_doubles(arena, (size_t)a->n_state);
-    for (int i = 0; i < a->n_member; i++) {
-        const bough_system *s = &a->member[i]->system;
-        memcpy(scale + a->state_offset[i], s->scale, (size_t)s->n_state * sizeof *scale);
-    }
+    bough_assembly_scales(a, scale);
     bough_assembly_states(a, initial);
     return (bough_system){.name = name,
                           .kind = "coupled",

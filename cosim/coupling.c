@@ -214,14 +214,14 @@ static bool signal_rate(bough_coupling *c, int member, double t, double *output_
                                       output_rate + a->output_offset[member]);
 }
 
-static void advance_leader(bough_coupling *c, int member, bool restart) {
+static void advance_leader(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const bough_system *s = &a->member[member]->system;
     if (!signal_rate(c, member, c->t0, c->start_rate)) {
         c->status[member] = bough_coupling_not_finite(c, member);
         return;
     }
-    advance(c, member, restart);
+    advance(c, member, c->leaders_restart);
     if (!bough_is_ok(&c->status[member])) return;
     if (!signal_rate(c, member, c->t1, c->end_rate)) {
         c->status[member] = bough_coupling_not_finite(c, member);
@@ -231,16 +231,9 @@ static void advance_leader(bough_coupling *c, int member, bool restart) {
                    c->end_output + a->output_offset[member]);
 }
 
-static void advance_leader_kept(bough_coupling *c, int member) {
-    advance_leader(c, member, false);
-}
-
-static void advance_leader_restarted(bough_coupling *c, int member) {
-    advance_leader(c, member, true);
-}
-
 bough_status bough_coupling_advance_leaders(bough_coupling *c, int stage, bool restart) {
-    return bough_coupling_each(c, stage, restart ? advance_leader_restarted : advance_leader_kept);
+    c->leaders_restart = restart;
+    return bough_coupling_each(c, stage, advance_leader);
 }
 
 static void interpolate_polynomial(bough_coupling *c, bough_signal *s, int local, int j) {

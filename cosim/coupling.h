@@ -72,6 +72,7 @@ typedef struct bough_coupling {
     double *end_rate;      // (n_output)
     bough_status *status;  // (n_member) of the last move
     int *turn;             // (n_member) the members of the stage in progress
+    bool leaders_restart;  // integrators of the stage in progress start anew
     int failed_member;     // −1, or the member whose move failed
 
     // by schemes that exchange within the step: outputs obtained at these times, the last of which is t1

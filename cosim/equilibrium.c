@@ -85,10 +85,7 @@ bough_status bough_equilibrium_find(bough_arena *arena, bough_coupled *coupled,
     search s = {.coupled = coupled, .def = def, .n = a->n_state, .gamma = def->step};
     *report = (bough_equilibrium_report){0};
     take(&s, arena);
-    for (int i = 0; i < a->n_member; i++) {
-        size_t size = (size_t)a->member[i]->system.n_state * sizeof(double);
-        memcpy(s.scale + a->state_offset[i], a->member[i]->system.scale, size);
-    }
+    bough_assembly_scales(a, s.scale);
     double most = growth, before = INFINITY;
     while (report->steps < def->steps && s.gamma > shortest && find_rate(&s, state)) {
         double contraction = step(&s, state, report);

@@ -89,12 +89,8 @@ static void take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
     m->turned = bough_arena_doubles(arena, n);
     m->rate = bough_arena_doubles(arena, parts * parts + 1);
     op->weight = bough_arena_doubles(arena, n);
-    for (int i = 0; i < a->n_member; i++) {
-        for (int k = 0; k < a->member[i]->system.n_state; k++) {
-            double scale = a->member[i]->system.scale[k];
-            op->weight[a->state_offset[i] + k] = 1 / (scale * scale);
-        }
-    }
+    bough_assembly_scales(a, op->weight);
+    for (size_t k = 0; k < n; k++) op->weight[k] = 1 / (op->weight[k] * op->weight[k]);
 }
 
 bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled,

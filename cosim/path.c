@@ -265,10 +265,7 @@ bough_status bough_path_follow(bough_arena *arena, bough_coupled *coupled, const
     path p = {.coupled = coupled, .def = def, .n = a->n_state};
     *report = (bough_path_report){0};
     take(&p, arena);
-    for (int i = 0; i < a->n_member; i++) {
-        size_t size = (size_t)a->member[i]->system.n_state * sizeof(double);
-        memcpy(p.scale + a->state_offset[i], a->member[i]->system.scale, size);
-    }
+    bough_assembly_scales(a, p.scale);
     memcpy(p.here.state, state, (size_t)p.n * sizeof *state);
     if (!choose_gamma(&p, &p.here)) {
         return bough_fail(BOUGH_FAILED, "the equilibrium without load is unstable or not unique");

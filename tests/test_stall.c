@@ -50,7 +50,7 @@ static void check_static(const bough_polar *polar, double alpha, bough_coefficie
 static void parts_make_the_static_polar(void **state) {
     foils *a = *state;
     for (int p = 2; p < 8; p++) {
-        bough_stall_airfoil foil = bough_stall_airfoil_of(&a->polar[p]);
+        bough_polar foil = a->polar[p];
         double most = 0, f, separated;
         assert_true(foil.slope > 5 && foil.slope < 9);
         check_near(bough_polar_at(&a->polar[p], foil.zero_lift).lift, 0, 0, 1e-12);
@@ -64,14 +64,14 @@ static void parts_make_the_static_polar(void **state) {
         }
         assert_true(most > 0.95);
     }
-    check_near(bough_stall_airfoil_of(&a->polar[0]).slope, 0, 0, 0); // a cylinder
+    check_near(a->polar[0].slope, 0, 0, 0); // a cylinder
 }
 
 // From wherever it comes, steady flow ends on the static polar, with steps of any length.
 static void steady_limit_is_the_static_polar(void **state) {
     foils *a = *state;
     for (int p = 0; p < 8; p++) {
-        bough_stall_airfoil foil = bough_stall_airfoil_of(&a->polar[p]);
+        bough_polar foil = a->polar[p];
         for (double angle = -178; angle < 180; angle += 7.3) {
             bough_stall_state s = {0};
             bough_coefficients k = bough_stall_advance(
@@ -104,7 +104,7 @@ static void a_run_settles_on_the_static_polar(void **state) {
     }
     double worst = 0;
     for (int p = 0; p < 3 * N - 1; p++) {
-        bough_stall_airfoil foil = bough_stall_airfoil_of(polar + p);
+        bough_polar foil = *(polar + p);
         for (double angle = -10; angle <= 15; angle += 0.25) {
             bough_stall_state s = {0};
             bough_coefficients k = bough_stall_advance(
@@ -125,7 +125,7 @@ static void a_run_settles_on_the_static_polar(void **state) {
 // Theodorsen's function, C = 1 − Σ A ik/(ik + b).
 static void attached_lift_is_indicial(void **state) {
     foils *a = *state;
-    bough_stall_airfoil foil = bough_stall_airfoil_of(&a->plate);
+    bough_polar foil = a->plate;
     check_near(foil.slope, 2 * BOUGH_PI, 1e-9, 0);
     check_near(foil.zero_lift, degree, 1e-9, 0);
     const double speed = 40, chord = 2, amplitude = degree;
@@ -152,7 +152,7 @@ static void attached_lift_is_indicial(void **state) {
 // the rotation leans it back by x more.
 static void rotation_lifts(void **state) {
     foils *a = *state;
-    bough_stall_airfoil foil = bough_stall_airfoil_of(&a->plate);
+    bough_polar foil = a->plate;
     bough_stall_state s = {0};
     bough_coefficients k = {0};
     for (int i = 0; i < 3; i++)
@@ -167,7 +167,7 @@ static void rotation_lifts(void **state) {
 // the effective one: drag (α − α_E) Cl of the circulation.
 static void withheld_lift_leans_back(void **state) {
     foils *a = *state;
-    bough_stall_airfoil foil = bough_stall_airfoil_of(&a->plate);
+    bough_polar foil = a->plate;
     bough_stall_state s = {0};
     bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 0, &s);
     bough_stall_advance(&foil, 2, (bough_stall_inflow){40, 4 * degree, 0}, 100, &s);
@@ -185,7 +185,7 @@ typedef struct loop {
     double highest;
 } loop;
 
-static loop run_loop(const bough_stall_airfoil *foil, double mean, double amplitude, int cycles,
+static loop run_loop(const bough_polar *foil, double mean, double amplitude, int cycles,
                      int per_cycle) {
     const double speed = 50, chord = 3, k = 0.08, omega = 2 * k * speed / chord;
     double step = 2 * BOUGH_PI / omega / per_cycle, before = 0, angle = mean, first = 0;
@@ -212,7 +212,7 @@ static loop run_loop(const bough_stall_airfoil *foil, double mean, double amplit
 // second order.
 static void stall_loop_is_closed(void **state) {
     foils *a = *state;
-    bough_stall_airfoil foil = bough_stall_airfoil_of(&a->polar[7]);
+    bough_polar foil = a->polar[7];
     loop coarse = run_loop(&foil, 12 * degree, 5 * degree, 6, 200);
     loop middle = run_loop(&foil, 12 * degree, 5 * degree, 6, 400);
     loop fine = run_loop(&foil, 12 * degree, 5 * degree, 6, 800);
@@ -235,7 +235,7 @@ static void slopes_are_those_of_an_advance(void **state) {
     const double chord = 3, step = 6e-4, d = 1e-3, turning = 0.2;
     static const double angle[] = {4.03, 13.03, 24.03, 43.03, -45.03, 75.03};
     for (int p = 0; p < 8; p++) {
-        bough_stall_airfoil foil = bough_stall_airfoil_of(&a->polar[p]);
+        bough_polar foil = a->polar[p];
         for (int i = 0; i < 6; i++) {
             double alpha = angle[i] * degree;
             bough_stall_state before = {0};
@@ -268,7 +268,7 @@ static void odd_flow_is_finite(void **state) {
     foils *a = *state;
     uint64_t seed = 3;
     for (int p = 0; p < 8; p++) {
-        bough_stall_airfoil foil = bough_stall_airfoil_of(&a->polar[p]);
+        bough_polar foil = a->polar[p];
         bough_stall_state s = {0};
         for (int i = 0; i < 20000; i++) {
             double r[4];

@@ -67,12 +67,6 @@ static bough_status check_carries_none(const bough_simulation *s, const bough_be
     return bough_ok();
 }
 
-static void set3(double *to, bough_vec3 v) {
-    to[0] = v.x;
-    to[1] = v.y;
-    to[2] = v.z;
-}
-
 // Twist and gravity of the body's frame.
 static void set_input(const bough_simulation *s, const bough_turning *turning, bough_steady *x) {
     const bough_frame *frame = &s->tree->markers[x->beam->marker];
@@ -83,9 +77,9 @@ static void set_input(const bough_simulation *s, const bough_turning *turning, b
     if (turning->speed != 0) {
         gravity = bough_scale(bough_dot(gravity, turning->axis), turning->axis);
     }
-    set3(x->input, bough_mat3_tmul(pose.rotation, bough_cross(omega, arm)));
-    set3(x->input + 3, bough_mat3_tmul(pose.rotation, omega));
-    set3(x->input + 6, bough_mat3_tmul(pose.rotation, gravity));
+    bough_v3_store(bough_mat3_tmul(pose.rotation, bough_cross(omega, arm)), x->input);
+    bough_v3_store(bough_mat3_tmul(pose.rotation, omega), x->input + 3);
+    bough_v3_store(bough_mat3_tmul(pose.rotation, gravity), x->input + 6);
 }
 
 bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,

@@ -217,32 +217,40 @@ static void set_up(bough_arena *arena, bough_simulation *s, const bough_assembly
     b->rests = turns(b->coupled, s->tree, b->state) || s->tree->n_closures == 0;
 }
 
-typedef struct balancing {
+static bough_equilibrium_def equilibrium_def(balance_setup *b) {
+    bough_equilibrium_def def = bough_equilibrium_def_default();
+    def.time = b->self.time;
+    def.self = &b->self;
+    def.move = move;
+    if (b->rests) def.rest = bring_to_rest;
+    return def;
+}
+
+// What bough_arena_use passes on.
+typedef struct task {
     bough_simulation *simulation;
     const bough_assembly *assembly;
     double time;
-    bough_equilibrium_work *work;
-} balancing;
+    bough_equilibrium_work *work; // of an equilibrium
+    bough_path_listener listener; // of a path
+    bough_path_report *report;
+} task;
 
 static bough_status balance_members(bough_arena *arena, void *data) {
-    const balancing *x = data;
+    const task *x = data;
     bough_simulation *s = x->simulation;
-    bough_equilibrium_def def = bough_equilibrium_def_default();
     balance_setup b;
     set_up(arena, s, x->assembly, x->time, &b);
-    def.time = x->time;
-    def.self = &b.self;
-    def.move = move;
-    if (b.rests) def.rest = bring_to_rest;
+    bough_equilibrium_def def = equilibrium_def(&b);
     return s->aero ? balance_in_air(arena, s, b.coupled, &def, b.state, x->work)
                    : balance(arena, s, b.coupled, &def, b.state, x->work);
 }
 
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                           bough_equilibrium_work *work) {
-    balancing b = {s, assembly, time, work};
+    task x = {.simulation = s, .assembly = assembly, .time = time, .work = work};
     *work = (bough_equilibrium_work){0};
-    return bough_arena_use(balance_members, &b);
+    return bough_arena_use(balance_members, &x);
 }
 
 // -- paths ----------------------------------------------------------------------------------------
@@ -283,24 +291,14 @@ static bough_status refuse_path(const bough_simulation *s) {
                       "followed over the ramp", file);
 }
 
-typedef struct walking {
-    bough_simulation *simulation;
-    const bough_assembly *assembly;
-    bough_path_listener listener;
-    bough_path_report *report;
-} walking;
-
 static bough_status walk_path(bough_arena *arena, void *data) {
-    const walking *x = data;
+    const task *x = data;
     bough_simulation *s = x->simulation;
     balance_setup b;
     bough_path_def def = bough_path_def_default();
-    bough_equilibrium_def start = bough_equilibrium_def_default();
     bough_equilibrium_work work = {0};
     set_up(arena, s, x->assembly, 0, &b);
-    start.self = &b.self;
-    start.move = move;
-    if (b.rests) start.rest = bring_to_rest;
+    bough_equilibrium_def start = equilibrium_def(&b);
     bough_status status = balance(arena, s, b.coupled, &start, b.state, &work);
     if (!bough_is_ok(&status)) return status;
     walk w = {b.self, x->assembly, s, x->listener};
@@ -314,7 +312,7 @@ static bough_status walk_path(bough_arena *arena, void *data) {
 
 bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
                                    bough_path_listener listener, bough_path_report *report) {
-    walking x = {s, assembly, listener, report};
+    task x = {.simulation = s, .assembly = assembly, .listener = listener, .report = report};
     *report = (bough_path_report){0};
     bough_status status = refuse_path(s);
     return bough_is_ok(&status) ? bough_arena_use(walk_path, &x) : status;
