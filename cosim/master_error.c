@@ -101,11 +101,16 @@ bough_status bough_master_watch(bough_master *m, bough_arena *arena, bough_maste
 
 // -- answers --------------------------------------------------------------------------------------
 
+// What tells the error where no second solution does. One that broke down leaves its place to the linearised members
+// where they are known to be reliable; elsewhere they told a hundredth of errors, and 57 times others.
+static const bough_error_estimate *told_by(const bough_master *m) {
+    return !m->second || m->suits_linearised ? m->estimate : NULL;
+}
+
 bool bough_master_measures(const bough_master *m) {
     return m->second && bough_second_solution_error(m->second);
 }
 
-// A second solution that broke down leaves its place to the linearised members.
 long bough_master_errors(const bough_master *m) {
     if (bough_master_measures(m)) return bough_second_solution_compared(m->second);
     if (m->second) return m->steps;
@@ -114,7 +119,7 @@ long bough_master_errors(const bough_master *m) {
 
 const double *bough_master_state_error(const bough_master *m) {
     if (bough_master_measures(m)) return bough_second_solution_error(m->second);
-    return m->estimate ? bough_error_estimate_states(m->estimate) : NULL;
+    return told_by(m) ? bough_error_estimate_states(m->estimate) : NULL;
 }
 
 const double *bough_master_inputs_error(const bough_master *m) {
@@ -127,7 +132,7 @@ double bough_master_error_safety(const bough_master *m) {
 
 double bough_master_input_error(const bough_master *m, int j) {
     if (bough_master_measures(m)) return bough_second_solution_input(m->second, j);
-    return m->estimate ? bough_error_estimate_input(m->estimate, j) : (double)NAN;
+    return told_by(m) ? bough_error_estimate_input(m->estimate, j) : (double)NAN;
 }
 
 static bool samples_loads(const bough_master *m) {
@@ -142,7 +147,7 @@ const char *bough_master_error_source(const bough_master *m) {
         bool same = samples_loads(m) && !bough_second_solution_has_loads(m->second);
         return same ? "second solution under the same air and control" : "second solution";
     }
-    return m->estimate ? "linearised members" : "not estimated";
+    return told_by(m) ? "linearised members" : "not estimated";
 }
 
 // The sub-solvers are named when their own figures make up half of the error.
