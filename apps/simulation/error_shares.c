@@ -127,11 +127,10 @@ static bool refine_air(bough_scene *scene, bough_error_share *share) {
 static double tighter(double rtol) { return fmin(rtol, fmax(rtol / 30, 1e-8)); }
 
 // Steps with small errors, and macro steps into which twice the samples of the air fit.
-static bool refine_time(bough_arena *arena, bough_scene *scene) {
+static void refine_time(bough_arena *arena, bough_scene *scene) {
     bough_scene_simulation *simulation = &scene->simulation;
     size_t n = (size_t)scene->n_body;
     bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
-    if (!body) return false;
     memcpy(body, scene->body, n * sizeof *body);
     simulation->master.rtol = tighter(simulation->master.rtol);
     simulation->micro.rtol = tighter(simulation->micro.rtol);
@@ -143,7 +142,6 @@ static bool refine_time(bough_arena *arena, bough_scene *scene) {
         simulation->micro.step = fmin(simulation->micro.step, simulation->macro_step);
         simulation->master.step = fmin(simulation->master.step, simulation->macro_step);
     }
-    return true;
 }
 
 typedef struct finding {
@@ -195,12 +193,10 @@ static bough_status find(bough_arena *arena, void *self) {
     base.simulation.error_estimate = BOUGH_ERROR_NOT_TOLD;
     base.simulation.error_bound = 0;
     base.simulation.error_shares = false;
-    if (!refine_time(arena, &base)) {
-        unknown(share, "out of memory");
-        return bough_ok();
-    }
+    refine_time(arena, &base);
     bough_scene scene = base;
-    bool mesh = x->kind == BOUGH_SHARE_MESH; // twice the segments: half of them may be too few for the order to hold
+    // Twice the segments: half of them may be too few for the order to hold.
+    bool mesh = x->kind == BOUGH_SHARE_MESH;
     bool ready = mesh ? bough_error_share_refine(arena, &scene, 2, share) : refine_air(&scene, share);
     if (ready && pass_base(arena, x, &base)) pass(arena, x, &scene, false);
     return bough_ok();

@@ -18,12 +18,13 @@ static int monolithic(void) {
     return k;
 }
 
-bough_status bough_second_model_build(bough_arena *arena, const bough_simulation *s, bough_simulation **second) {
+bough_status bough_second_model_build(bough_arena *arena, const bough_simulation *s,
+                                      bough_simulation **second) {
     bough_second_solution_def def;
     *second = NULL;
-    if (!loads_react(s->scene) || !can_follow(s) || !bough_master_wants_second(s->master, &def)) return bough_ok();
+    if (!loads_react(s->scene) || !can_follow(s) || !bough_master_wants_second(s->master, &def))
+        return bough_ok();
     bough_scene *scene = bough_arena_take(arena, sizeof *scene);
-    if (!scene) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
     *scene = *s->scene;
     bough_scene_simulation *simulation = &scene->simulation;
     simulation->coupling.scheme = monolithic();
