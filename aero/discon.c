@@ -88,7 +88,8 @@ static bough_status find_function(bough_arena *arena, const char *library, bool 
     void *handle = copy ? load_copy(arena, library) : dlopen(library, RTLD_NOW | RTLD_LOCAL);
     if (!handle) {
         const char *reason = dlerror();
-        return bough_fail(BOUGH_INVALID, "the controller cannot be loaded: %.200s", reason ? reason : "it cannot be copied");
+        return bough_fail(BOUGH_INVALID, "the controller cannot be loaded: %.200s",
+                          reason ? reason : "it cannot be copied");
     }
     void *symbol = dlsym(handle, "DISCON");
     if (!symbol) {

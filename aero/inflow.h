@@ -51,9 +51,9 @@ typedef struct bough_inflow_station {
     double share; // radius over the rotor's
 } bough_inflow_station;
 
-// Replaces the inductions of the momentum balance by the delayed ones, a `step` [s] after the last sample; the
-// first sample is in equilibrium. `inflow`: normal and tangential [m/s].
-void bough_inflow_follow(const bough_inflow_clock *clock, double step, const double inflow[2],
-                         double *axial, double *tangential, bough_inflow_station *station);
+// Replaces the inductions of the momentum balance by the delayed ones, a `step` [s] after the last sample;
+// the first sample is in equilibrium. `inflow`: normal and tangential [m/s].
+void bough_inflow_follow(const bough_inflow_clock *clock, double step, const double inflow[2], double *axial,
+                         double *tangential, bough_inflow_station *station);
 
 #endif

@@ -160,7 +160,8 @@ static inline double loss_decline(double factor, sine_cosine phi) {
 }
 
 // `normal`, `slope`: Cn and its slope by α.
-static inline response in_balance(const bough_rotor *rotor, blade_rows r, int j, double normal, double slope) {
+static inline response in_balance(const bough_rotor *rotor, blade_rows r, int j, double normal,
+                                  double slope) {
     double wind = fabs(r.inflow_x[j]), v = wind > 1 ? wind : 1, w = r.speed[j] > 1 ? r.speed[j] : 1;
     double loss = r.loss[j] > 1e-3 ? r.loss[j] : 1e-3, share = r.solidity[j] / (4 * loss * v), a = r.axial[j];
     sine_cosine phi = lane_sine_cosine(r.phi[j]);

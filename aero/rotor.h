@@ -162,7 +162,8 @@ void bough_rotor_conclude(const bough_rotor *rotor, const bough_rotor_motion *mo
 // What a station of a blade reports of the last sample.
 bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int station);
 
-// The results of a sample as a row of numbers: those of every station, thrust, torque and wind; not the loads.
+// The results of a sample as a row of numbers: those of every station, thrust, torque and wind; not the
+// loads.
 int bough_rotor_told_size(const bough_rotor *rotor);
 void bough_rotor_told_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to);
 void bough_rotor_told_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data);

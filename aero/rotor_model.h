@@ -96,8 +96,8 @@ static inline bough_quaternion unit_quaternion(double w, double x, double y, dou
 static inline bough_mat3 rotation_between(bough_quaternion p, bough_quaternion q, double weight) {
     double side = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
     double wp = 1 - weight, wq = side < 0 ? -weight : weight;
-    return bough_rotation_matrix(unit_quaternion(wp * p.w + wq * q.w, wp * p.x + wq * q.x, wp * p.y + wq * q.y,
-                                     wp * p.z + wq * q.z));
+    return bough_rotation_matrix(
+        unit_quaternion(wp * p.w + wq * q.w, wp * p.x + wq * q.x, wp * p.y + wq * q.y, wp * p.z + wq * q.z));
 }
 
 static inline bough_vec3 vector_between(bough_vec3 a, bough_vec3 b, double weight) {

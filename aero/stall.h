@@ -39,11 +39,10 @@ typedef struct bough_stall_state {
 } bough_stall_state;
 
 // Advances by `step` [s], during which U α changes linearly: exact for the wake and the pressure, for the
-// separation with a linear input. Returns the coefficients at the end; in equilibrium those of the static polar.
-// `chord` [m].
-bough_coefficients bough_stall_advance(const bough_polar *polar, double chord,
-                                       bough_stall_inflow inflow, double step,
-                                       bough_stall_state *state);
+// separation with a linear input. Returns the coefficients at the end; in equilibrium those of the static
+// polar. `chord` [m].
+bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, bough_stall_inflow inflow,
+                                       double step, bough_stall_state *state);
 
 // How the coefficients that the last advance by `step` told follow its angle of attack [1/rad] and its
 // rotation [s/rad], with the separation as it is: that follows later.

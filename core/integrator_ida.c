@@ -112,8 +112,10 @@ static bough_status failure(ida_run *ida, double t, int flag) {
 static bough_status start(ida_run *ida, double t, const double *y) {
     double *rate = bough_vector_data(ida->rate);
     memcpy(bough_vector_data(ida->newton.y), y, (size_t)ida->newton.ode.n * sizeof *y);
-    if (!ida->newton.ode.derivative(ida->newton.ode.self, t, y, rate) || !bough_all_finite(ida->newton.ode.n, rate)) {
-        return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: the accelerations are not finite", ida->newton.ode.name, t);
+    if (!ida->newton.ode.derivative(ida->newton.ode.self, t, y, rate) ||
+        !bough_all_finite(ida->newton.ode.n, rate)) {
+        return bough_fail(BOUGH_FAILED, "%s at t = %.9g s: the accelerations are not finite",
+                          ida->newton.ode.name, t);
     }
     add_counts(ida, &ida->before);
     ida->before.restarts++;

@@ -8,11 +8,10 @@
 #include <threads.h>
 
 extern void dgetrf_(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
-extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
-                    const int *lda, const int *pivot, double *b, const int *ldb, int *info,
-                    size_t trans_length);
-extern void dgbsv_(const int *n, const int *below, const int *above, const int *nrhs, double *a, const int *lda,
-                   int *pivot, double *b, const int *ldb, int *info);
+extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const double *a, const int *lda,
+                    const int *pivot, double *b, const int *ldb, int *info, size_t trans_length);
+extern void dgbsv_(const int *n, const int *below, const int *above, const int *nrhs, double *a,
+                   const int *lda, int *pivot, double *b, const int *ldb, int *info);
 extern void dgemm_(const char *transa, const char *transb, const int *m, const int *n, const int *k,
                    const double *alpha, const double *a, const int *lda, const double *b,
                    const int *ldb, const double *beta, double *c, const int *ldc,

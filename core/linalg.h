@@ -16,9 +16,9 @@ void bough_linalg_room(bough_arena *arena, int threads);
 // is singular or not finite.
 bool bough_dense_factor(int n, double *a, int *pivot);
 
-// Solves A x = b with pivoting, in place in b, for a matrix with `width` entries on either side of the diagonal.
-// a is destroyed: (3 width + 1) × n by columns, entry (i, j) at [(3 width + 1) j + 2 width + i − j], the first
-// `width` of a column free; pivot (n). False when A is singular or not finite.
+// Solves A x = b with pivoting, in place in b, for a matrix with `width` entries on either side of the
+// diagonal. a is destroyed: (3 width + 1) × n by columns, entry (i, j) at [(3 width + 1) j + 2 width + i −
+// j], the first `width` of a column free; pivot (n). False when A is singular or not finite.
 bool bough_band_solve(int n, int width, double *a, int *pivot, double *b);
 
 // Solves a x = b in place with those factors: b (n × n_right, column-major).

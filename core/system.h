@@ -60,8 +60,8 @@ typedef struct bough_system_ops {
     // h at the time, state and input of the last call of derivative or derivative_again. Cheaper than output.
     void (*output_again)(void *self, double t, const double *state, const double *input, double *output);
 
-    // x ← (I − γJ)⁻¹ r, r made of f in x by `terms`, as is the state: derivative, right side and solve for one
-    // part after the other. For systems without inputs.
+    // x ← (I − γJ)⁻¹ r, r made of f in x by `terms`, as is the state: derivative, right side and solve for
+    // one part after the other. For systems without inputs.
     bool (*stage)(void *self, void *factors, double t, const double *state, bough_stage_terms terms,
                   double *x);
 

@@ -48,10 +48,10 @@ typedef struct bough_assembly {
     int *source;                    // (n_input) the output that feeds each input
     int *source_member;             // (n_input) the member it belongs to
     bool *kinematic;                // (n_input)
-    int *vector; // (n_input) first of the up to three inputs that form a vector with this one
-    bool *feedthrough;              // (n_member) whether outputs depend on inputs directly
-    int *order;                     // (n_member) outputs evaluated in this order need no iteration
-    bool *leads; // (n_member) the members of stage 0, and others that are connected with one that is not of it
+    int *vector;       // (n_input) first of the up to three inputs that form a vector with this one
+    bool *feedthrough; // (n_member) whether outputs depend on inputs directly
+    int *order;        // (n_member) outputs evaluated in this order need no iteration
+    bool *leads;       // (n_member) those of stage 0, and others connected with one that is not of it
     bool followers_last; // no outputs of leaders depend on those of followers directly
     int n_interface;
     bough_interface *interface; // (n_interface)

@@ -54,8 +54,8 @@ static void advise(const bough_coupling *c, const bough_stability_advice *advice
     bough_scheme_advise(c->scheme, other);
     if (!advice->unstable) { // of an opaque member nothing is known, and no other scheme suits it
         bool one = c->scheme->one_system;
-        snprintf(text, ADVICE, "; try a smaller macro step%s%s", one ? " or another master.rtol" : ", another micro.rtol",
-                 c->assembly->opaque ? "" : other);
+        snprintf(text, ADVICE, "; try a smaller macro step%s%s",
+                 one ? " or another master.rtol" : ", another micro.rtol", c->assembly->opaque ? "" : other);
         return;
     }
     int n = snprintf(text, ADVICE, ": the coupling grows by a factor of %.3g in each macro step; ",

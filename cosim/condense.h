@@ -18,13 +18,13 @@ typedef struct bough_condensed_member {
     bool is_leader;
     bool by_state; // leader: its coordinates are its states, else its inputs
     void *factors; // of its I − γJ
-    int leader; // follower: its directions are the coordinates of that member; −1: its own inputs
-    int first;  // leader: its coordinates begin there among all
-    int n;      // coordinates of a leader, directions of a follower
-    double *column; // (n_input × n_state) ∂f/∂u of a follower, γ ∂f/∂u of a leader by states, (I − γJ)⁻¹ γ ∂f/∂u
-                    // of one by inputs
-    double *inverse; // leader by states: (n_state × n_state) (I − γJ)⁻¹ by columns
-    double *direction; // follower: (n × n_input) change of its inputs along each direction
+    int leader;    // follower: its directions are the coordinates of that member; −1: its own inputs
+    int first;     // leader: its coordinates begin there among all
+    int n;         // coordinates of a leader, directions of a follower
+    double *column; // (n_input × n_state) ∂f/∂u of a follower, γ ∂f/∂u of a leader by states, (I − γJ)⁻¹ γ
+                    // ∂f/∂u of one by inputs
+    double *inverse;       // leader by states: (n_state × n_state) (I − γJ)⁻¹ by columns
+    double *direction;     // follower: (n × n_input) change of its inputs along each direction
     double *state_change;  // follower: (n × n_state) response of its states to that
     double *output_change; // (n × n_output) of its outputs to each coordinate or direction
 } bough_condensed_member;
@@ -79,9 +79,9 @@ void bough_condensed_solve_member(const bough_condensed *k, int member, double *
 // K and the factors of I − Z K. False when that is singular.
 bool bough_condensed_close(bough_condensed *k);
 
-// Solves the interface. `coordinate` holds the right sides of (I − γJ) x = r of the leaders by states, of others
-// what their coordinates change by themselves; change (n_input) the inputs' changes as far as they come
-// from elsewhere than the leaders' response to their inputs. On return w and changes are complete.
+// Solves the interface. `coordinate` holds the right sides of (I − γJ) x = r of the leaders by states, of
+// others what their coordinates change by themselves; change (n_input) the inputs' changes as far as they
+// come from elsewhere than the leaders' response to their inputs. On return w and changes are complete.
 void bough_condensed_solve(bough_condensed *k, double *change);
 
 // Adds to x (n_state of the member) its response to the coordinates; that of a follower whose directions are

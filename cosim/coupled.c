@@ -390,7 +390,7 @@ static void take_solution(bough_coupled *coupled, bough_arena *arena) {
 }
 
 bough_coupled *bough_coupled_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
-                                             bough_pool *pool) {
+                                               bough_pool *pool) {
     bough_coupled *a = bough_arena_take(arena, sizeof *a);
     a->assembly = assembly;
     a->pool = pool;

@@ -54,7 +54,7 @@ bough_coupled *bough_coupled_create(bough_arena *arena, const bough_assembly *as
 
 // The same without factors: for bough_coupled_inputs and the rates only.
 bough_coupled *bough_coupled_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
-                                             bough_pool *pool);
+                                               bough_pool *pool);
 
 // The assembly as a system without ports, from the members' current states on; `name` is borrowed. Its
 // self is a bough_coupled for evaluations. All members' systems are in use while it is asked.

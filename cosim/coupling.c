@@ -32,7 +32,7 @@ static void take(bough_coupling *c, bough_arena *arena) {
 }
 
 bough_coupling *bough_coupling_create(bough_arena *arena, const bough_assembly *assembly,
-                                   const bough_scheme_options *options, bough_pool *pool) {
+                                      const bough_scheme_options *options, bough_pool *pool) {
     bough_coupling *c = bough_arena_take(arena, sizeof *c);
     c->assembly = assembly;
     c->options = *options;
@@ -139,7 +139,8 @@ bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const d
     const bough_system *s = &c->assembly->member[member]->system;
     double *state_rate = c->state_rate + c->assembly->state_offset[member];
     if (!s->ops->derivative(s->self, t, c->assembly->member[member]->state, input, state_rate)) return false;
-    s->ops->output_tangent(s->self, t, c->assembly->member[member]->state, input, state_rate, input_rate, rate);
+    s->ops->output_tangent(s->self, t, c->assembly->member[member]->state, input, state_rate, input_rate,
+                           rate);
     if (s->ops->output_drift == NULL) return true;
     double *drift = c->output_drift + c->assembly->output_offset[member];
     s->ops->output_drift(s->self, t, c->assembly->member[member]->state, input, drift);
@@ -150,7 +151,8 @@ bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const d
 
 bough_status bough_coupling_not_finite(const bough_coupling *c, int member) {
     const bough_system *s = &c->assembly->member[member]->system;
-    return bough_fail(BOUGH_RETRY, "%s: no finite rate of change at %.6g s", s->name, c->assembly->member[member]->time);
+    return bough_fail(BOUGH_RETRY, "%s: no finite rate of change at %.6g s", s->name,
+                      c->assembly->member[member]->time);
 }
 
 // A failure of the integrator may be due to the signal; a shorter macro step gives another signal.

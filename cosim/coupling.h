@@ -105,7 +105,7 @@ typedef struct bough_coupling {
 // Builds the working data and evaluates the outputs at the members' current states; the scheme's own
 // memory is bough_scheme_couple's.
 bough_coupling *bough_coupling_create(bough_arena *arena, const bough_assembly *assembly,
-                                   const bough_scheme_options *options, bough_pool *pool);
+                                      const bough_scheme_options *options, bough_pool *pool);
 
 // -- moves --------------------------------------------------------------------------------------
 

@@ -6,7 +6,8 @@
 
 // What the second correction of a step, with tangents of its own, may be of the first, and what it
 // should be: it goes with the square of γ, or worse. With the tangents of the first a slender body
-// that has turned would answer with its axial stiffness. γ grows and shrinks by these factors at most, after a refusal by `cautious`.
+// that has turned would answer with its axial stiffness. γ grows and shrinks by these factors at most, after
+// a refusal by `cautious`.
 static const double contracting = 0.5, aim = 0.2, growth = 8, shrink = 0.1, cautious = 1.5;
 
 static const double shortest = 1e-9;  // γ below which there is no hope [s]

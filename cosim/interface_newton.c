@@ -15,7 +15,8 @@ struct bough_interface_newton {
     int age;             // steps since
 };
 
-bough_interface_newton *bough_interface_newton_create(bough_arena *arena, const bough_coupling *c, int n_span) {
+bough_interface_newton *bough_interface_newton_create(bough_arena *arena, const bough_coupling *c,
+                                                      int n_span) {
     bough_interface_newton *n = bough_arena_take(arena, sizeof *n);
     n->n_span = n_span;
     n->coupled = bough_arena_take(arena, (size_t)n_span * sizeof *n->coupled);

@@ -9,7 +9,8 @@
 typedef struct bough_interface_newton bough_interface_newton;
 
 // `n_span` Jacobians, of spans (γ over the macro step) given to bough_interface_newton_update.
-bough_interface_newton *bough_interface_newton_create(bough_arena *arena, const bough_coupling *c, int n_span);
+bough_interface_newton *bough_interface_newton_create(bough_arena *arena, const bough_coupling *c,
+                                                      int n_span);
 
 // Makes the Jacobians for a step: anew when the macro step changes, loads jump, and every few steps.
 // Members must be at t0.

@@ -40,8 +40,9 @@ typedef struct bough_master_def {
     double macro_step; // H, the longest [s]
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
     bough_error_source error;
-    bool suits_linearised; // linearised members tell the errors of such a scene, as far as its coupling lets them
-    double duration;   // [s]; the run starts at time 0
+    bool suits_linearised; // linearised members tell the errors of such a scene, as far as its coupling lets
+                           // them
+    double duration;       // [s]; the run starts at time 0
     int n_load;
     const bough_sampled_load *load; // (n_load), copied
     int n_event;
@@ -91,8 +92,8 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
 // takes many steps should do so within one bough_pool_region; otherwise each step opens its own.
 bough_status bough_step(bough_master *m);
 
-// Steps ask stop() at each evaluation and, once it is true, end with BOUGH_INTERRUPTED and with time and states
-// of the start of the macro step in progress. They must not go on then. NULL: never.
+// Steps ask stop() at each evaluation and, once it is true, end with BOUGH_INTERRUPTED and with time and
+// states of the start of the macro step in progress. They must not go on then. NULL: never.
 void bough_master_stop_by(bough_master *m, bool (*stop)(void));
 
 // The memory that later steps and the reports depend on, without that of the loads, at a time when all
@@ -139,7 +140,8 @@ bool bough_master_wants_second(const bough_master *m, bough_second_solution_def 
 // Builds the error estimate in the arena; called at time 0. `beside`: see bough_second_solution_def, or NULL.
 bough_status bough_master_watch(bough_master *m, bough_arena *arena, bough_master *beside);
 
-// The next synchronisation point without step control: grid point, event or the end, whichever comes first [s].
+// The next synchronisation point without step control: grid point, event or the end, whichever comes first
+// [s].
 double bough_master_next(const bough_master *m);
 
 // Whether the duration is reached.

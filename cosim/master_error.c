@@ -10,8 +10,8 @@ static const double fine_share = 1.25;      // of the difference to it: its own 
 static const double halved_share = 8.0 / 6; // of that to steps of half the length: 8/7 at order 3
 static const double tight = 1e-7; // tolerance of other monolithic methods from which on it is a reference
 
-// Above so many states a second solution costs what people notice. On a heavy interface, under sub-solvers that tell
-// their errors, ramp is told well by the linearised members (0.5 to 3 of the error).
+// Above so many states a second solution costs what people notice. On a heavy interface, under sub-solvers
+// that tell their errors, ramp is told well by the linearised members (0.5 to 3 of the error).
 static const int many_states = 600;
 static const double heavy_interface = 0.25;
 
@@ -30,7 +30,8 @@ static bough_second_solution_def choose(const bough_master *m) {
         return (bough_second_solution_def){BOUGH_AUTOMATIC, second_rtol, most, fine_share, {0}};
     }
     if (!has_order_three(own)) {
-        return (bough_second_solution_def){BOUGH_AUTOMATIC, fmin(second_rtol, own->rtol), most, fine_share, {0}};
+        return (bough_second_solution_def){
+            BOUGH_AUTOMATIC, fmin(second_rtol, own->rtol), most, fine_share, {0}};
     }
     return (bough_second_solution_def){own->kind, own->rtol / 8, step / 2, halved_share, {0}};
 }
@@ -58,7 +59,8 @@ static bool linearised_serves(const bough_master *m) {
 }
 
 void bough_master_choose_estimate(bough_master *m) {
-    if (m->error == BOUGH_ERROR_BY_LINEARISED_MEMBERS && !linearised_serves(m)) m->error = BOUGH_ERROR_BY_SECOND_SOLUTION;
+    if (m->error == BOUGH_ERROR_BY_LINEARISED_MEMBERS && !linearised_serves(m))
+        m->error = BOUGH_ERROR_BY_SECOND_SOLUTION;
 }
 
 static bool wants_second(const bough_master *m) {
@@ -87,7 +89,9 @@ bough_status bough_master_watch(bough_master *m, bough_arena *arena, bough_maste
     bough_status status = bough_ok();
     bough_second_solution_def chosen;
     if (bough_master_wants_second(m, &chosen)) {
-        if (beside) chosen.beside = (bough_second_model){beside, beside->coupling, step_second, end_of_second, stop_second};
+        if (beside)
+            chosen.beside =
+                (bough_second_model){beside, beside->coupling, step_second, end_of_second, stop_second};
         status = bough_second_solution_create(arena, m->coupling, &chosen, &m->second);
     }
     bool one_system = m->coupling->scheme->one_system;
@@ -101,8 +105,9 @@ bough_status bough_master_watch(bough_master *m, bough_arena *arena, bough_maste
 
 // -- answers --------------------------------------------------------------------------------------
 
-// What tells the error where no second solution does. One that broke down leaves its place to the linearised members
-// where they are known to be reliable; elsewhere they told a hundredth of errors, and 57 times others.
+// What tells the error where no second solution does. One that broke down leaves its place to the linearised
+// members where they are known to be reliable; elsewhere they told a hundredth of errors, and 57 times
+// others.
 static const bough_error_estimate *told_by(const bough_master *m) {
     return !m->second || m->suits_linearised ? m->estimate : NULL;
 }

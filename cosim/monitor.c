@@ -1,10 +1,11 @@
-// Two watches serve where no second solution measures the error; what each finds on random scenes is in docs/verification.md.
+// Two watches serve where no second solution measures the error; what each finds on random scenes is in
+// docs/verification.md.
 //
-// A force that has grown by a factor of 100 since its first steps is analysed, and again after each further factor of 100: the
-// coupling is the cause if its eigenvalues about the current state explain that growth and those of a shorter macro step, or of
-// ramp there, do not.
-// So growth that belongs to the mechanics, such as a fall or flutter, goes on. Members whose equations are not known have no
-// eigenvalues; of these the coupling is the cause if the force obtained and the force applied have nothing in common.
+// A force that has grown by a factor of 100 since its first steps is analysed, and again after each further
+// factor of 100: the coupling is the cause if its eigenvalues about the current state explain that growth and
+// those of a shorter macro step, or of ramp there, do not. So growth that belongs to the mechanics, such as a
+// fall or flutter, goes on. Members whose equations are not known have no eigenvalues; of these the coupling
+// is the cause if the force obtained and the force applied have nothing in common.
 //
 // The energy that the interfaces add or remove tells an implicit coupling that is stable but wrong.
 #include "cosim/monitor.h"
@@ -141,7 +142,8 @@ static bool coupling_grows(const bough_coupling *c, const group *g, double defec
     return own < *growth / 2;
 }
 
-static bough_status look_into(const bough_monitor *m, const bough_coupling *c, const group *g, double defect) {
+static bough_status look_into(const bough_monitor *m, const bough_coupling *c, const group *g,
+                              double defect) {
     double growth;
     if (!coupling_grows(c, g, defect, &growth)) return bough_ok();
     const bough_assembly *a = c->assembly;
@@ -149,11 +151,12 @@ static bough_status look_into(const bough_monitor *m, const bough_coupling *c, c
                       "coupling of %s and %s is unstable at %.6g s: scheme %s, macro step %.6g s, "
                       "their force has grown by more than a factor of 100, by %.3g per "
                       "second; try a smaller macro step%s",
-                      a->member[g->from]->system.name, a->member[g->to]->system.name, c->t1, c->scheme->name, c->t1 - c->t0,
-                      growth, m->advice);
+                      a->member[g->from]->system.name, a->member[g->to]->system.name, c->t1, c->scheme->name,
+                      c->t1 - c->t0, growth, m->advice);
 }
 
-static bough_status watch_size(const bough_monitor *m, const bough_coupling *c, group *g, double size, double defect) {
+static bough_status watch_size(const bough_monitor *m, const bough_coupling *c, group *g, double size,
+                               double defect) {
     if (g->first_steps < FIRST_STEPS) {
         g->first_steps += size > 0;
         g->small = fmax(g->small, size);

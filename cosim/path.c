@@ -236,7 +236,8 @@ static bough_status follow(path *p, bough_path_report *report) {
         bool over = fabs(p->next.share) >= 1;
         double last = copysign(1, p->next.share);
         if (corrections == 0 || turned < smooth || (over && !finish(p, last))) {
-            if (corrections == 0) p->gamma = fmax(p->gamma / longer, BOUGH_EQUILIBRIUM_LONGEST); // less rounding
+            if (corrections == 0)
+                p->gamma = fmax(p->gamma / longer, BOUGH_EQUILIBRIUM_LONGEST); // less rounding
             step *= shrink;
             continue;
         }
@@ -255,8 +256,8 @@ static bough_status follow(path *p, bough_path_report *report) {
     }
     if (bough_is_ok(&status)) status = tell(p, &p->here, false, report);
     if (!bough_is_ok(&status)) return status;
-    return bough_fail(BOUGH_FAILED, "the path of equilibria ends at %.6g of the loads after %d steps", p->here.share,
-                      report->steps);
+    return bough_fail(BOUGH_FAILED, "the path of equilibria ends at %.6g of the loads after %d steps",
+                      p->here.share, report->steps);
 }
 
 bough_status bough_path_follow(bough_arena *arena, bough_coupled *coupled, const bough_path_def *def,

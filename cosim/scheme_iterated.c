@@ -32,8 +32,9 @@
 #include <math.h>
 #include <string.h>
 
-// The largest residual with which a step goes on where the run tells what it errs by: the noise of adaptive sub-solvers,
-// or an accelerator that no longer gains, leaves 1e-5 to 1e-3, and an iteration that diverges more than 1.
+// The largest residual with which a step goes on where the run tells what it errs by: the noise of adaptive
+// sub-solvers, or an accelerator that no longer gains, leaves 1e-5 to 1e-3, and an iteration that diverges
+// more than 1.
 static const double tolerable = 0.01;
 
 // Ports below this share of the largest one hold rounding only.
@@ -51,18 +52,19 @@ struct bough_iteration {
     int n_node;
     const double *node; // (n_node) in (0, 1], the last is 1
     size_t n_prescribed; // n_node × n_input
-    double *prescribed, *best; // (n_prescribed) values of the inputs in use, and those with the smallest residual
-    double *obtained;   // (n_node × n_output) outputs in the last sweep; of end values the coupling's
-    int n_input;        // of all members
-    int n;              // feedback inputs
-    int *input;         // (n) their numbers over all inputs
-    int *group;         // (n) first feedback of the vector that each belongs to, up to 3 long
-    bool *is_feedback;  // (n_input)
-    double *size;       // (n) of a group's first: its largest norm so far
-    double *scale;      // (n)
-    double *guess;      // (n_node × n) scaled values prescribed
-    double *image;      // (n_node × n) the values obtained
-    double *change;     // (n_input) scratch
+    double *prescribed,
+        *best;         // (n_prescribed) values of the inputs in use, and those with the smallest residual
+    double *obtained;  // (n_node × n_output) outputs in the last sweep; of end values the coupling's
+    int n_input;       // of all members
+    int n;             // feedback inputs
+    int *input;        // (n) their numbers over all inputs
+    int *group;        // (n) first feedback of the vector that each belongs to, up to 3 long
+    bool *is_feedback; // (n_input)
+    double *size;      // (n) of a group's first: its largest norm so far
+    double *scale;     // (n)
+    double *guess;     // (n_node × n) scaled values prescribed
+    double *image;     // (n_node × n) the values obtained
+    double *change;    // (n_input) scratch
 };
 
 // -- building -------------------------------------------------------------------------------------

@@ -132,8 +132,8 @@ static void solve(bough_coupling *c, int member, const double *change) {
     double *increment = r->increment + a->state_offset[member];
     if (change) bough_condensed_add_columns(r->interface, member, r->gamma, change, increment);
     bough_condensed_solve_member(r->interface, member, increment);
-    s->ops->output_tangent(s->self, c->t1, a->member[member]->state, r->input + a->input_offset[member], increment,
-                           change, r->output + a->output_offset[member]);
+    s->ops->output_tangent(s->self, c->t1, a->member[member]->state, r->input + a->input_offset[member],
+                           increment, change, r->output + a->output_offset[member]);
 }
 
 static bough_operating_point operating_point(const bough_coupling *c, int member) {

@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// Largest number of evaluations, so that the second solution ends in an acceptable time. A step of the Rosenbrock method takes
-// four, a step of IDA little more than one.
+// Largest number of evaluations, so that the second solution ends in an acceptable time. A step of the
+// Rosenbrock method takes four, a step of IDA little more than one.
 static const double most_evaluations = 80000;
 static const double most_work = 4e7; // evaluations times states that small systems may take instead
 static const double most_ratio = 16; // besides, for each step of the run

@@ -4,8 +4,8 @@
 //
 // Either it is far finer than the run, and the difference is the run's error; or the run is itself such
 // a solution, and the second takes steps of half the length to an eighth of the tolerance: of a method
-// of order p the run then errs by 2ᵖ/(2ᵖ − 1) of the difference (Richardson): 8/7 at order 3, and 4/3 at order 2, to which stiff
-// members reduce it.
+// of order p the run then errs by 2ᵖ/(2ᵖ − 1) of the difference (Richardson): 8/7 at order 3, and 4/3 at
+// order 2, to which stiff members reduce it.
 //
 // Under the loads of the run, the reaction of loads to the error, such as that of the air or a controller, is
 // missing. Where there are such loads, a second model of the scene with loads of its own takes the same macro
@@ -42,8 +42,8 @@ bough_status bough_second_solution_create(bough_arena *arena, const bough_coupli
                                           const bough_second_solution_def *def,
                                           bough_second_solution **second);
 
-// Advances the second solution over the last macro step of the run, or, under step control, when a whole one is over.
-// False: it was stopped on the way, and must not go on.
+// Advances the second solution over the last macro step of the run, or, under step control, when a whole one
+// is over. False: it was stopped on the way, and must not go on.
 bool bough_second_solution_step(bough_second_solution *s, const bough_coupling *c);
 
 // Asks stop() at each of its evaluations; NULL: never.

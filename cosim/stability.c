@@ -13,7 +13,7 @@
 enum { DIMENSION = 48, WARM_UP = 2, MOST_REPEATED = 24 };
 static const double span = 0.06;      // this time passes per Arnoldi vector [s]
 static const double sub_step = 5e-3;  // of the linear members at most [s]; a quarter of a macro
-                                     // step, so that their own damping does not hide what rings
+                                      // step, so that their own damping does not hide what rings
 static const double exact = 1e-4;     // share of an eigenvalue
 static const double threshold = 1e-2; // growth below is rounding or drift [1/s]
 

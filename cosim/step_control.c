@@ -3,8 +3,8 @@
 #include <math.h>
 
 bough_step_control *bough_step_control_create(bough_arena *arena, bough_coupling *c,
-                                       const bough_step_control_def *def, double macro_step,
-                                       int order) {
+                                              const bough_step_control_def *def, double macro_step,
+                                              int order) {
     bough_step_control *s = bough_arena_take(arena, sizeof *s);
     s->tolerance = def->tolerance;
     s->easy = 0.5 * def->tolerance * pow(0.5, order);

@@ -26,8 +26,8 @@ typedef struct bough_step_control {
 
 // `order`: of the defects in the macro step. Takes the memory for the copy from the arena.
 bough_step_control *bough_step_control_create(bough_arena *arena, bough_coupling *c,
-                                       const bough_step_control_def *def, double macro_step,
-                                       int order);
+                                              const bough_step_control_def *def, double macro_step,
+                                              int order);
 
 // End of the next step of a span that ends at `to` and, for its first step, begins at `from` [s].
 double bough_step_control_end(bough_step_control *s, double from, double to);

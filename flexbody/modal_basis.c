@@ -215,7 +215,8 @@ static void project(const basis *b, const bough_block_tridiagonal *a, double sig
     for (int l = 0; l < b->count; l++) {
         tridiagonal_times(a, b->vector + (size_t)l * b->size, work);
         for (int k = 0; k < b->count; k++) {
-            to[l * b->count + k] = sign * bough_scalar_product(b->size, b->vector + (size_t)k * b->size, work);
+            to[l * b->count + k] =
+                sign * bough_scalar_product(b->size, b->vector + (size_t)k * b->size, work);
         }
     }
 }

@@ -1,9 +1,9 @@
-// One modal piece at an instant: its rates, the wrench at its root, and their tangents. Given are the motion of
-// its frame and the wrench of the next piece on its tip.
+// One modal piece at an instant: its rates, the wrench at its root, and their tangents. Given are the motion
+// of its frame and the wrench of the next piece on its tip.
 //
 // The root wrench is the balance of momentum, P = C_tη and L_a = (C_a + G_a q)ᵀη about the frame's
-// origin: external loads at the displaced vertices less the rate of P and L. So momentum is conserved with any
-// number of shapes.
+// origin: external loads at the displaced vertices less the rate of P and L. So momentum is conserved with
+// any number of shapes.
 #ifndef BOUGH_FLEXBODY_MODAL_PIECE_H
 #define BOUGH_FLEXBODY_MODAL_PIECE_H
 

@@ -101,7 +101,7 @@ static void set_scale(bough_modal_body *b) {
 }
 
 bough_modal_body *bough_modal_body_create(bough_arena *arena, const bough_modal_model *model,
-                                     const double *input) {
+                                          const double *input) {
     bough_modal_body *b = bough_arena_take(arena, sizeof *b);
     b->model = model;
     take_memory(b, arena);

@@ -11,7 +11,7 @@ typedef struct bough_modal_body bough_modal_body;
 // Builds the body in the arena. It starts at rest relative to its frame, which moves with `input` (9);
 // tolerances are those of a rod for the vertex that a shape moves most.
 bough_modal_body *bough_modal_body_create(bough_arena *arena, const bough_modal_model *model,
-                                     const double *input);
+                                          const double *input);
 
 // The contract's view; valid as long as the arena.
 bough_system bough_modal_body_system(bough_modal_body *body);

@@ -187,9 +187,9 @@ bough_rod_ramped_load *bough_rod_loads_tabled(bough_rod_loads *loads, bough_aren
 double bough_rod_ramp_factor(const bough_rod_ramped_load *load, double t);
 
 // Sets the strains for loads along the segments, given per length (12 × n_segment: force and moment
-// [N/m, N], then their slopes) in the axes of a segment's middle (bough_rod_take_line), and at which rate they change;
-// their vertex loads and loads->start are the caller's. They should be continuous from one call to
-// the next: a jump is a jump of stress, which every integrator then resolves.
+// [N/m, N], then their slopes) in the axes of a segment's middle (bough_rod_take_line), and at which rate
+// they change; their vertex loads and loads->start are the caller's. They should be continuous from one call
+// to the next: a jump is a jump of stress, which every integrator then resolves.
 void bough_rod_loads_along(const bough_rod_model *m, const double *line, const double *rate,
                            bough_rod_loads *loads);
 

@@ -139,8 +139,8 @@ static void add_chord_moments_of(const bough_rod_model *m, int n, bough_rod_scra
     }
 }
 
-// Adds D q of the ramped loads along the segments, the dead ones turned into their middles, and the moments beside
-// the chords.
+// Adds D q of the ramped loads along the segments, the dead ones turned into their middles, and the moments
+// beside the chords.
 static void add_along(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                       bough_rod_scratch *scratch) {
     int s = m->stride;

@@ -124,8 +124,8 @@ static inline segment_force segment_tangent(const bough_rod_model *m,
                                 symmetric_times(m->damping, s, n, drate));
     segment_force f = force_variation(shape, d, stress, dstress, h);
     if (!scratch->turning) return f;
-    return add_chord_moments(f, shape, d, bough_rotation_matrix(l.p), bough_rotation_matrix(r.p), dl->phi, dr->phi,
-                             load3(m->bend0, s, n), load3(m->strain0 + 3 * s, s, n),
+    return add_chord_moments(f, shape, d, bough_rotation_matrix(l.p), bough_rotation_matrix(r.p), dl->phi,
+                             dr->phi, load3(m->bend0, s, n), load3(m->strain0 + 3 * s, s, n),
                              load3(scratch->along, s, n), load3(scratch->following, s, n), h);
 }
 

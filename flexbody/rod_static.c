@@ -109,8 +109,8 @@ static void put_in_band(const double *block, int i, int j, double *band) {
     }
 }
 
-// K δq = residual, in place in step. With pivoting: blocks eliminated in their order leave of the residual what
-// would strain a slender rod.
+// K δq = residual, in place in step. With pivoting: blocks eliminated in their order leave of the residual
+// what would strain a slender rod.
 static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const double *input,
                         const double *state) {
     const bough_block_tridiagonal *a = &w->tangent.matrix;
@@ -198,7 +198,8 @@ static void scale_input(const double *input, double share, double *scaled) {
 static bough_status not_found(const bough_rod_model *m, double reached) {
     double ratio = slenderness(m);
     if (ratio > slender) {
-        return bough_fail(BOUGH_FAILED, "rod %s: no static equilibrium found: EA L²/EI is %.2g, and beyond %.0e"
+        return bough_fail(BOUGH_FAILED,
+                          "rod %s: no static equilibrium found: EA L²/EI is %.2g, and beyond %.0e"
                           " the rounding of positions bends the rod; with EA = %.0e EI/L² it bends the same",
                           m->name, ratio, slender, 1e8);
     }

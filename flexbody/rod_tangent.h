@@ -1,5 +1,6 @@
 // The rod's Newton matrix (docs/theory.md, "Newton matrix"): analytic tangents, elimination of the
-// kinematic rows, and solution of (I − γ ∂f/∂y) x = b through the 6×6 block-tridiagonal system in the velocities
+// kinematic rows, and solution of (I − γ ∂f/∂y) x = b through the 6×6 block-tridiagonal system in the
+// velocities
 //     (M − γ(Dᵥ + γ K A)) δv = M r_v + γ K A r_q,
 // K, Dᵥ the tangents of force with respect to configuration and velocity, A the elimination of the
 // configuration increments. Tangents are found per segment and per vertex as structures of arrays and

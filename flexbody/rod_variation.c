@@ -117,7 +117,8 @@ static inline void position_direction(const bough_rod_model *m, const bough_rod_
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict along = scratch->along + first;
     const double *restrict line = m->line + first, *restrict bend = m->bend0 + first;
-    const double *restrict turn = m->strain0 + 3 * s + first, *restrict following = scratch->following + first;
+    const double *restrict turn = m->strain0 + 3 * s + first, *restrict following =
+                                                                  scratch->following + first;
     const double *restrict c = m->stiffness + first, *restrict gradient = m->gradient + first;
     const double *restrict damping = m->damping + first;
     const double *restrict inverse = m->inverse_length + first, *restrict h = m->length + first;

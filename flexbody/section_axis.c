@@ -140,8 +140,8 @@ static int halvings(const bough_section_axis *a, double soft, double stiff) {
 }
 
 // A stretch without a station inside.
-static void integrate_stretch(const bough_section_axis *a, double from, double to, bough_section_visitor visit,
-                              void *context) {
+static void integrate_stretch(const bough_section_axis *a, double from, double to,
+                              bough_section_visitor visit, void *context) {
     double middle = 0.5 * (from + to), inside = to - 1e-9 * (to - from); // before a station
     int below = halvings(a, from, inside), above = halvings(a, inside, from);
     if (below == 0 && above == 0) {

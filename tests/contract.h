@@ -1,5 +1,5 @@
-// What every system and every member must fulfil, checked at a time, state and input where f is smooth. `tolerance`
-// is relative to the largest entry of what is compared; 1e-5 suits central differences.
+// What every system and every member must fulfil, checked at a time, state and input where f is smooth.
+// `tolerance` is relative to the largest entry of what is compared; 1e-5 suits central differences.
 #ifndef BOUGH_TESTS_CONTRACT_H
 #define BOUGH_TESTS_CONTRACT_H
 
@@ -80,7 +80,8 @@ static inline void contract_difference(const bough_system *s, contract_point at,
     free(y), free(u), free(back);
 }
 
-// output_tangent against differences of output, along state and input, together and apart; what factors keep of it.
+// output_tangent against differences of output, along state and input, together and apart; what factors keep
+// of it.
 static inline void contract_output_tangent(const bough_system *s, contract_point at) {
     double *dy = contract_doubles(s->n_state), *du = contract_doubles(s->n_input);
     double *slope = contract_doubles(s->n_output), *tangent = contract_doubles(s->n_output);

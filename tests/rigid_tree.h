@@ -70,7 +70,7 @@ static inline bough_vec3 next3(unsigned *seed) {
 }
 
 static inline bough_body_def random_body(unsigned *seed, const char *name, int parent,
-                                  bough_joint_kind kind) {
+                                         bough_joint_kind kind) {
     bough_body_def b = bough_body_def_default();
     bough_vec3 turn = next3(seed);
     b.name = name;

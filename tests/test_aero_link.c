@@ -37,8 +37,8 @@ static bool sample(fixture *f, double t, double t_next) {
     return jumped;
 }
 
-// A blade's load signal: value, rate and curve by time since the start, LOADS of a rod or 6 of a rigid blade, in the
-// order that bodies keep them.
+// A blade's load signal: value, rate and curve by time since the start, LOADS of a rod or 6 of a rigid blade,
+// in the order that bodies keep them.
 typedef struct signal {
     int n;
     double start, value[LOADS], rate[LOADS], curve[LOADS];

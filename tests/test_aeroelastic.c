@@ -142,9 +142,16 @@ static void thin_air_leaves_the_modes_as_they_are(void **state) {
 static void modes_do_not_depend_on_how_many_are_wanted(void **state) {
     (void)state;
     enum { FEW = 6, MANY = 30 };
-    const char *sets[] = {"bodies[2].joint.speed=12.1 rpm", "bodies[3-5].rod.segments=10", "gravity=[0, 0, 0]",
-                          "aero.ramp=[0 s, 0 s]", "aero.wind.speed=9 m/s", "bodies[3-5].pitch=0 deg",
-                          "modes.air=quasi-steady", "simulation.threads=1", "loads[0].torque=0", NULL};
+    const char *sets[] = {"bodies[2].joint.speed=12.1 rpm",
+                          "bodies[3-5].rod.segments=10",
+                          "gravity=[0, 0, 0]",
+                          "aero.ramp=[0 s, 0 s]",
+                          "aero.wind.speed=9 m/s",
+                          "bodies[3-5].pitch=0 deg",
+                          "modes.air=quasi-steady",
+                          "simulation.threads=1",
+                          "loads[0].torque=0",
+                          NULL};
     bough_arena *arena = bough_arena_create();
     bough_vibration v[2];
     for (int k = 0; k < 2; k++) {
@@ -184,15 +191,16 @@ static void held_blades_come_to_rest_in_stall(void **state) {
                                         "bodies[3-5].pitch=20 deg"};
     for (int k = 0; k < 3; k++) {
         bough_arena *arena = bough_arena_create();
-        bough_simulation *s = scene_build(
-            arena, "apps/turbine/runup.yaml",
-            (const char *const[]){"bodies[2].joint={kind: revolute, parent: nacelle, axis: x, motion: {angle: 0}, "
-                                  "placement: [move z 2 m, move x -5 m]}",
-                                  "bodies[3-5].rod.segments=10", pitch[k], "loads=[]", "aero.wind.speed=24 m/s",
-                                  "aero.dynamic_stall=hgm", "aero.rate=25 Hz", "simulation.macro_step=40 ms",
-                                  "simulation.coupling.scheme=monolithic", "simulation.master.step=20 ms",
-                                  "simulation.master.rtol=3e-3", "simulation.error_estimate=none",
-                                  "simulation.threads=1", NULL});
+        bough_simulation *s =
+            scene_build(arena, "apps/turbine/runup.yaml",
+                        (const char *const[]){
+                            "bodies[2].joint={kind: revolute, parent: nacelle, axis: x, motion: {angle: 0}, "
+                            "placement: [move z 2 m, move x -5 m]}",
+                            "bodies[3-5].rod.segments=10", pitch[k], "loads=[]", "aero.wind.speed=24 m/s",
+                            "aero.dynamic_stall=hgm", "aero.rate=25 Hz", "simulation.macro_step=40 ms",
+                            "simulation.coupling.scheme=monolithic", "simulation.master.step=20 ms",
+                            "simulation.master.rtol=3e-3", "simulation.error_estimate=none",
+                            "simulation.threads=1", NULL});
         fastest(s, &s->beam[0], 50);
         double early = fastest(s, &s->beam[0], 50);
         fastest(s, &s->beam[0], 100);

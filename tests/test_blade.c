@@ -183,8 +183,9 @@ static void frequencies_are_those_of_the_exact_beam(void **context) {
     }
 }
 
-// The first ten against those extrapolated from 96 and 192 segments: with 48 nine within 0.1 % and the tenth within
-// 0.12 %, with 24 eight within 0.3 %. What is left is the diagonal mass' error of waves of torsion and shear.
+// The first ten against those extrapolated from 96 and 192 segments: with 48 nine within 0.1 % and the tenth
+// within 0.12 %, with 24 eight within 0.3 %. What is left is the diagonal mass' error of waves of torsion and
+// shear.
 static void ten_frequencies_converge_with_the_mesh(void **context) {
     (void)context;
     static const int segments[4] = {24, 48, 96, 192};

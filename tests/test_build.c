@@ -123,7 +123,8 @@ static void modal_blades_move_as_rods(void **context) {
         for (int i = 0; i < 50; i++) scene_step(s);
         bough_simulation_update(s);
         speed[k] = s->leader.state[1];
-        tip[k] = bough_simulation_beam_tip(s, &s->beam[0], &turn).x - s->beam[0].def.position[s->beam[0].def.n_segment].x;
+        tip[k] = bough_simulation_beam_tip(s, &s->beam[0], &turn).x -
+                 s->beam[0].def.position[s->beam[0].def.n_segment].x;
         bough_arena_destroy(arena);
     }
     for (int k = 1; k < 3; k++) {

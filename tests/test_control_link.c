@@ -153,7 +153,8 @@ static void memory_is_saved_and_restored(void **state) {
     double saved[100], speed[2], torque[2], power[2];
     bool jumped;
     bough_sampled_load load = bough_control_link_load(f.s->control);
-    bough_snapshot copy = {BOUGH_SNAPSHOT_SAVE, (char *)saved, 0}, back = {BOUGH_SNAPSHOT_RESTORE, (char *)saved, 0};
+    bough_snapshot copy = {BOUGH_SNAPSHOT_SAVE, (char *)saved, 0},
+                   back = {BOUGH_SNAPSHOT_RESTORE, (char *)saved, 0};
     bough_snapshot room = {BOUGH_SNAPSHOT_MEASURE, NULL, 0};
     bough_control_link_snapshot(f.s->control, &room);
     assert_true(room.used <= sizeof saved);

@@ -105,7 +105,8 @@ static void errors_of_sub_solvers_are_told(void **state) {
     free(reference);
 }
 
-// What a second solution cannot follow, vibrations of an undamped beam in steps of 5 ms, is given up and said.
+// What a second solution cannot follow, vibrations of an undamped beam in steps of 5 ms, is given up and
+// said.
 static void a_lost_second_solution_is_said(void **state) {
     (void)state;
     const char *const sets[] = {"simulation.coupling={scheme: ramp}", "simulation.duration=0.5 s",
@@ -130,13 +131,14 @@ static void a_lost_second_solution_is_said(void **state) {
     bough_arena_destroy(arena);
 }
 
-// Forces, and the torque that a prescribed motion needs, err as the rods' wrenches do: a second solution measures that, the
-// linearised members leave them unknown, not too small.
+// Forces, and the torque that a prescribed motion needs, err as the rods' wrenches do: a second solution
+// measures that, the linearised members leave them unknown, not too small.
 static void torques_of_motions_are_measured_or_unknown(void **state) {
     (void)state;
     for (int k = 0; k < 2; k++) {
-        const char *const sets[] = {"simulation.coupling.scheme=gauss-seidel", "simulation.error_estimate=second-solution",
-                                    "bodies[hub].joint={kind: revolute, parent: ground, axis: x, motion: {speed: 2 rad/s}}", NULL};
+        const char *const sets[] = {
+            "simulation.coupling.scheme=gauss-seidel", "simulation.error_estimate=second-solution",
+            "bodies[hub].joint={kind: revolute, parent: ground, axis: x, motion: {speed: 2 rad/s}}", NULL};
         bough_arena *arena = bough_arena_create();
         bough_simulation *s = scene_build(arena, scene_path, sets);
         if (k == 1) s->master->error = BOUGH_ERROR_BY_LINEARISED_MEMBERS;
@@ -158,8 +160,8 @@ static void torques_of_motions_are_measured_or_unknown(void **state) {
     }
 }
 
-// The values without the error are known at few times only. Their range must not be too small because of that, and not
-// too large where the recorded motion has run away.
+// The values without the error are known at few times only. Their range must not be too small because of
+// that, and not too large where the recorded motion has run away.
 static void a_range_seen_at_few_times_is_not_too_small(void **state) {
     (void)state;
     static const struct {

@@ -93,7 +93,8 @@ static void old_decks_name_heights_alike(void **context) {
     (void)context;
     const edit height = {"parts/wind.dat", "   0.2    PLexp          - (-)",
                          "0.2 PLexp\n== Parameters for Uniform wind file ==\n"
-                         "\"" BOUGH_SOURCE_DIR "/tests/fuzz/corpus/wind/hub.wnd\" Filename\n 33 RefHt\n 44 RefLength\n"
+                         "\"" BOUGH_SOURCE_DIR
+                         "/tests/fuzz/corpus/wind/hub.wnd\" Filename\n 33 RefHt\n 44 RefLength\n"
                          "== Parameters for Binary TurbSim Full-Field files ==\n\"box.bts\"  Filename\n"
                          "== Parameters for HAWC-format binary files ==\n\"u.bin\" FileName_u\n\"v.bin\" "
                          "FileName_v\n\"w.bin\" FileName_w\n8 nx\n8 ny\n8 nz\n3 dx\n3 dy\n3 dz\n55 RefHt\n"
@@ -208,7 +209,8 @@ static void polars_go_round(void **context) {
 // Nothing damps the modes of such a deck, but ElastoDyn's blade has no shear, stretch and twist to ring.
 static void undamped_blades_are_damped_where_elastodyn_is_rigid(void **context) {
     (void)context;
-    trial t = import_with(&by_modes, &(edit){"parts/blade.dat", "1.5   BldFlDmp(1) - (%)\n   0.5", "0 BldFlDmp(1)\n 0"});
+    trial t = import_with(&by_modes,
+                          &(edit){"parts/blade.dat", "1.5   BldFlDmp(1) - (%)\n   0.5", "0 BldFlDmp(1)\n 0"});
     assert_string_equal(t.status.message, "");
     const bough_node *s = read_file(&t, "blade-structure.yaml");
     assert_true(number(s, "damping.0") > 0 && number(s, "damping.2") > 0 && number(s, "damping.5") > 0);
@@ -221,9 +223,10 @@ static void undamped_blades_are_damped_where_elastodyn_is_rigid(void **context) 
 // The line below the headings is that of the units, however they are written.
 static void units_may_be_written_anyhow(void **context) {
     (void)context;
-    static const edit units[] = {{"parts/tower.dat", "  (-)     (kg/m)    (Nm^2)    (Nm^2)", "-  kg/m  Nm^2  Nm^2"},
-                                 {"parts/aero-blade.dat", "   (m)    (m)", "   [m]    [m]"},
-                                 {"parts/blade.dat", "  (-)      (-)       (deg)", "---- ---- deg"}};
+    static const edit units[] = {
+        {"parts/tower.dat", "  (-)     (kg/m)    (Nm^2)    (Nm^2)", "-  kg/m  Nm^2  Nm^2"},
+        {"parts/aero-blade.dat", "   (m)    (m)", "   [m]    [m]"},
+        {"parts/blade.dat", "  (-)      (-)       (deg)", "---- ---- deg"}};
     for (int i = 0; i < 3; i++) {
         trial t = import_with(i == 2 ? &by_modes : NULL, &units[i]);
         assert_string_equal(t.status.message, "");
@@ -384,7 +387,8 @@ static void induction_generators_are_lines(void **context) {
 // What ServoDyn also steers is on the list.
 static void structural_control_is_on_the_list(void **context) {
     (void)context;
-    trial t = import(&(edit){"parts/servo.dat", "1   VSContrl", "2 NumTStC\nTrue CompNTMD\n1 AfCmode\n0 NumBStC\n1   VSContrl"});
+    trial t = import(&(edit){"parts/servo.dat", "1   VSContrl",
+                             "2 NumTStC\nTrue CompNTMD\n1 AfCmode\n0 NumBStC\n1   VSContrl"});
     assert_string_equal(t.status.message, "");
     assert_true(list_says(&t, "NumTStC: structural control"));
     assert_true(list_says(&t, "CompNTMD: structural control"));

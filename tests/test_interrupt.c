@@ -35,8 +35,8 @@ static void stop_within(const char *scheme, long left) {
 static void a_macro_step_is_left_as_it_began(void **state) {
     (void)state;
     static const char *const schemes[] = {
-        "simulation.coupling.scheme=frozen", "simulation.coupling.scheme=ramp", "simulation.coupling.scheme=iterated",
-        "simulation.coupling.scheme=monolithic"};
+        "simulation.coupling.scheme=frozen", "simulation.coupling.scheme=ramp",
+        "simulation.coupling.scheme=iterated", "simulation.coupling.scheme=monolithic"};
     for (int k = 0; k < 4; k++) {
         for (long left = 0; left < 20; left += 6) stop_within(schemes[k], left);
     }

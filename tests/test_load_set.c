@@ -7,18 +7,19 @@
 #include <math.h>
 #include <string.h>
 
-static const char text[] = "kind: load-set\n"
-                           "scene: scene.yaml\n"
-                           "slopes: [4, 10]\n"
-                           "equivalent_cycles: 1e6\n"
-                           "lifetime: 25\n"
-                           "wind: {average: 8, shape: 2}\n"
-                           "channels: [bobPos]\n"
-                           "cases:\n"
-                           "  - {name: A, weibull: 0.9, grid: {aero.wind.speed: [6, 8, 12 m/s], x.seed: [1, 2]}}\n"
-                           "  - {name: B, hours: 50, factor: 1.1, grid: {y: [1, 2, 3, 4]}}\n"
-                           "  - {name: C, events: 1000, extremes: false, grid: {y: [1, 2]}}\n"
-                           "  - {name: D, factor: 2}\n";
+static const char text[] =
+    "kind: load-set\n"
+    "scene: scene.yaml\n"
+    "slopes: [4, 10]\n"
+    "equivalent_cycles: 1e6\n"
+    "lifetime: 25\n"
+    "wind: {average: 8, shape: 2}\n"
+    "channels: [bobPos]\n"
+    "cases:\n"
+    "  - {name: A, weibull: 0.9, grid: {aero.wind.speed: [6, 8, 12 m/s], x.seed: [1, 2]}}\n"
+    "  - {name: B, hours: 50, factor: 1.1, grid: {y: [1, 2, 3, 4]}}\n"
+    "  - {name: C, events: 1000, extremes: false, grid: {y: [1, 2]}}\n"
+    "  - {name: D, factor: 2}\n";
 
 enum { CASES = 13 };
 

@@ -140,10 +140,12 @@ static bent strip_of(bough_arena *arena, int n, double pretwist) {
     return table_rod(arena, (bough_section_table){.name = "strip", .n_station = 2, .station = station}, n);
 }
 
-// A cantilever under (s/L)⁵ per length. Each segment has the line with its resultant and moment, as loads from other
-// meshes come to it; beam theory with shear, to the fourth order of the segments' length at every vertex.
+// A cantilever under (s/L)⁵ per length. Each segment has the line with its resultant and moment, as loads
+// from other meshes come to it; beam theory with shear, to the fourth order of the segments' length at every
+// vertex.
 static double polynomial_error(int n) {
-    static const double place[3] = {-0.7745966692414834, 0, 0.7745966692414834}, weight[3] = {5. / 18, 4. / 9, 5. / 18};
+    static const double place[3] = {-0.7745966692414834, 0, 0.7745966692414834},
+                        weight[3] = {5. / 18, 4. / 9, 5. / 18};
     const double length = 1.5, scale = 1e-4, always[2] = {0, 0};
     bough_arena *arena = bough_arena_create();
     bent b = strip_of(arena, n, 0);
@@ -179,14 +181,18 @@ static void polynomial_line_loads_converge_at_fourth_order(void **context) {
     assert_true(error[2] < 1e-5);
 }
 
-// The tip of a cantilever under force and moment per length that stay in its sections' axes and a force at the tip
-// that does not, EI 2 and `edge`, in lengths.
+// The tip of a cantilever under force and moment per length that stay in its sections' axes and a force at
+// the tip that does not, EI 2 and `edge`, in lengths.
 static bough_vec3 followed_tip(int n, double edge, const double line[6], bough_vec3 force) {
     const double always[2] = {0, 0}, length = 1.5;
-    const bough_section_station station = {.stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, edge, 0, 3},
-                                           .mass = 1, .inertia = {0.01, 0.01, 0, 0.02}};
+    const bough_section_station station = {
+        .stiffness = {1e8, 0, 0, 0, 0, 0, 1e8, 0, 0, 0, 0, 1e8, 0, 0, 0, 2, 0, 0, edge, 0, 3},
+        .mass = 1,
+        .inertia = {0.01, 0.01, 0, 0.02}};
     bough_arena *arena = bough_arena_create();
-    bent b = table_rod(arena, (bough_section_table){.name = "strip", .n_station = 1, .station = &station, .length = length}, n);
+    bent b = table_rod(
+        arena, (bough_section_table){.name = "strip", .n_station = 1, .station = &station, .length = length},
+        n);
     bough_rod_ramped_load *load = bough_rod_loads_ramped(&b.loads, arena, b.model, true, always);
     bough_rod_lump(b.model, (bough_rod_reach){0, length}, line, NULL, load);
     const double at_tip[3] = {force.x, force.y, force.z};
@@ -202,8 +208,8 @@ static void check_fourth_order(const double error[3]) {
     assert_true(error[0] / error[1] > 12 && error[1] / error[2] > 12);
 }
 
-// q L³/EI = 6 and m L²/EI = 2 in a plane, by the elastica integrated from the tip inwards; a load across the plane
-// in which a force at the tip bends the rod, by many segments.
+// q L³/EI = 6 and m L²/EI = 2 in a plane, by the elastica integrated from the tip inwards; a load across the
+// plane in which a force at the tip bends the rod, by many segments.
 static void follower_line_loads_converge_at_fourth_order(void **context) {
     (void)context;
     const double length = 1.5, across[6] = {0, 4 * 2 / pow(length, 3)};
@@ -333,8 +339,8 @@ static bough_status bend_slender(double slenderness, int n) {
     return s;
 }
 
-// A slender rod bends as the elastica on every mesh; one for which a double is too short ends with a diagnosis that does
-// not depend on the mesh.
+// A slender rod bends as the elastica on every mesh; one for which a double is too short ends with a
+// diagnosis that does not depend on the mesh.
 static void slender_rods_bend_on_every_mesh(void **context) {
     (void)context;
     const double slenderness[4] = {1e9, 1e10, 1.6e11, 1e12};

@@ -218,7 +218,7 @@ static void stops_need_a_stiffness_and_an_order(void **state) {
                "      {kind: revolute, parent: ground, axis: x, " more "}\n"
     accepts(HINGE("rest: 5 deg, stiffness: 3, stop: [-10 deg, 10 deg], stop_stiffness: 4"));
     refuses(HINGE("stop: [0, 1 rad]"), "s.yaml:7:55: error: bodies[0].joint.stop: 'stop' and "
-                                   "'stop_stiffness' go together\n");
+                                       "'stop_stiffness' go together\n");
     refuses(HINGE("stop: [1 rad, 1 rad], stop_stiffness: 4"),
             "s.yaml:7:55: error: bodies[0].joint.stop: the second must be greater than the "
             "first\n");

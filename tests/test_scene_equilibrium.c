@@ -9,7 +9,8 @@ static const char runup[] = "apps/turbine/runup.yaml";
 
 static bough_equilibrium_work equilibrium_of(bough_simulation *s) {
     bough_equilibrium_work work;
-    bough_status status = bough_simulation_equilibrium(s, s->master->assembly, bough_equilibrium_time(s), &work);
+    bough_status status =
+        bough_simulation_equilibrium(s, s->master->assembly, bough_equilibrium_time(s), &work);
     if (!bough_is_ok(&status)) fail_msg("%s", status.message);
     return work;
 }
@@ -81,7 +82,8 @@ static void dead_line_load_bends_the_rod_at_fourth_order(void **context) {
     shoot(20, exact);
     for (int k = 0; k < 2; k++) {
         const char *sets[] = {k == 0 ? "bodies[0].rod.segments=8" : "bodies[0].rod.segments=16",
-                              "loads=[{body: beam, along: [0 m, 1 m], force: [20, 0, 0], frame: body}]", NULL};
+                              "loads=[{body: beam, along: [0 m, 1 m], force: [20, 0, 0], frame: body}]",
+                              NULL};
         bough_arena *arena = bough_arena_create();
         bough_simulation *s = scene_build(arena, "apps/beams/elastica.yaml", sets);
         equilibrium_of(s);

@@ -62,23 +62,23 @@ static void bad_replacements_are_refused(void **state) {
                                 "bodies[3].pitch=5 kg",
                                 "simulation.macro_step=0"};
     fixture f = read_scene(SCENES "example-turbine.yaml", sets, 15);
-    assert_string_equal(f.printed,
-                        "--set: error: abc: expected KEY=VALUE\n"
-                        "--set: error: =1: expected KEY=VALUE\n"
-                        "--set: error: title: expected a value after '='\n"
-                        "--set: error: bodies[7].pitch: index [7].pitch is beyond the last, [4]\n"
-                        "--set: error: bodies[x].pitch: there is no item with 'name: x' in that list\n"
-                        "--set: error: bodies[0: expected an index such as [0] or [0-2], or a name as [blade1]\n"
-                        "--set: error: title.x: key 'x' is looked for in 'Two-bladed example'\n"
-                        "--set: error: title[0]: this key has no list, so it takes no index\n"
-                        "--set: error: bodies.x: key 'x' is looked for in a list\n"
-                        "--set: error: a..b: expected a key\n"
-                        "--set: error: bodies[0]x: expected '.' or '['\n"
-                        "--set: error: title: expected ',' or ']' to end the list\n"
-                        "--set: error: simulation.macro_step: must be in [1e-7, 1e4] s, got '0'\n"
-                        "--set: error: simulation: unknown key 'thread' (did you mean 'threads'?)\n"
-                        "--set: error: bodies[3].pitch: expected an angle with its unit, as '5 deg', "
-                        "got '5 kg': the unit 'kg' does not fit\n");
+    assert_string_equal(
+        f.printed, "--set: error: abc: expected KEY=VALUE\n"
+                   "--set: error: =1: expected KEY=VALUE\n"
+                   "--set: error: title: expected a value after '='\n"
+                   "--set: error: bodies[7].pitch: index [7].pitch is beyond the last, [4]\n"
+                   "--set: error: bodies[x].pitch: there is no item with 'name: x' in that list\n"
+                   "--set: error: bodies[0: expected an index such as [0] or [0-2], or a name as [blade1]\n"
+                   "--set: error: title.x: key 'x' is looked for in 'Two-bladed example'\n"
+                   "--set: error: title[0]: this key has no list, so it takes no index\n"
+                   "--set: error: bodies.x: key 'x' is looked for in a list\n"
+                   "--set: error: a..b: expected a key\n"
+                   "--set: error: bodies[0]x: expected '.' or '['\n"
+                   "--set: error: title: expected ',' or ']' to end the list\n"
+                   "--set: error: simulation.macro_step: must be in [1e-7, 1e4] s, got '0'\n"
+                   "--set: error: simulation: unknown key 'thread' (did you mean 'threads'?)\n"
+                   "--set: error: bodies[3].pitch: expected an angle with its unit, as '5 deg', "
+                   "got '5 kg': the unit 'kg' does not fit\n");
     assert_int_equal(f.status.code, BOUGH_INVALID);
     assert_null(f.scene);
     stop(&f);

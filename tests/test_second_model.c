@@ -1,5 +1,5 @@
-// Errors of a turbine under a controller: what is told contains the reaction of air and controller, so that the
-// pitch that the controller demands has an error, too.
+// Errors of a turbine under a controller: what is told contains the reaction of air and controller, so that
+// the pitch that the controller demands has an error, too.
 #include "apps/simulation/run.h"
 #include "tests/built_scene.h"
 
@@ -14,7 +14,12 @@ typedef struct series {
 } series;
 
 static series run(const char *coupling, const char *master, const char *control) {
-    const char *const sets[] = {"simulation.error_estimate=auto", coupling, master, control, "simulation.duration=3 s", "simulation.threads=1",
+    const char *const sets[] = {"simulation.error_estimate=auto",
+                                coupling,
+                                master,
+                                control,
+                                "simulation.duration=3 s",
+                                "simulation.threads=1",
                                 "bodies[3-5].rod.segments=4",
                                 "bodies[2].joint.speed=13.5 rpm", "aero.wind.speed=14", NULL};
     series s = {0};
@@ -39,8 +44,8 @@ static series run(const char *coupling, const char *master, const char *control)
 
 static void errors_contain_the_reaction_of_loads(const char *steps) {
     series coupled = run("simulation.coupling={scheme: gauss-seidel}", steps, "control.rate=50");
-    series truth = run("simulation.coupling={scheme: monolithic}", "simulation.master={solver: ida, rtol: 1e-7}",
-                       "control.rate=50");
+    series truth = run("simulation.coupling={scheme: monolithic}",
+                       "simulation.master={solver: ida, rtol: 1e-7}", "control.rate=50");
     assert_true(coupled.beside);
     assert_false(truth.beside);
     for (int i = 0; i < WATCHED; i++) {
@@ -63,16 +68,20 @@ static void errors_of_controlled_steps(void **state) {
     errors_contain_the_reaction_of_loads("simulation.step_control={tolerance: 1e-2}");
 }
 
-#define LIBRARY "control={kind: bladed, rate: 50, gear_ratio: 97, input: memory, library: " BOUGH_SAMPLE_DISCON "}"
+#define LIBRARY                                                                                              \
+    "control={kind: bladed, rate: 50, gear_ratio: 97, input: memory, library: " BOUGH_SAMPLE_DISCON "}"
 
 // A library has a memory, and the second model one of its own: the run's values are those without it.
 static void a_library_is_copied(void **state) {
     (void)state;
-    series coupled = run("simulation.coupling={scheme: gauss-seidel}", "simulation.error_estimate=auto", LIBRARY);
+    series coupled =
+        run("simulation.coupling={scheme: gauss-seidel}", "simulation.error_estimate=auto", LIBRARY);
     assert_true(coupled.beside);
-    series alone = run("simulation.coupling={scheme: gauss-seidel}", "simulation.error_estimate=none", LIBRARY);
+    series alone =
+        run("simulation.coupling={scheme: gauss-seidel}", "simulation.error_estimate=none", LIBRARY);
     assert_false(alone.beside);
-    series truth = run("simulation.coupling={scheme: monolithic}", "simulation.master={solver: ida, rtol: 1e-7}", LIBRARY);
+    series truth = run("simulation.coupling={scheme: monolithic}",
+                       "simulation.master={solver: ida, rtol: 1e-7}", LIBRARY);
     for (int i = 0; i < WATCHED; i++) {
         double error = 0;
         for (int k = 0; k < STEPS; k++) error = fmax(error, fabs(coupled.value[k][i] - truth.value[k][i]));

@@ -228,8 +228,8 @@ static void stall_loop_is_closed(void **state) {
     assert_true(ratio > 3 && ratio < 5);
 }
 
-// The slopes are those of an advance from the same state whose angle or rotation differs, in attached, stalled and
-// partly static flow. A step of a hundredth of a chord leaves the separation as it is.
+// The slopes are those of an advance from the same state whose angle or rotation differs, in attached,
+// stalled and partly static flow. A step of a hundredth of a chord leaves the separation as it is.
 static void slopes_are_those_of_an_advance(void **state) {
     foils *a = *state;
     const double chord = 3, step = 6e-4, d = 1e-3, turning = 0.2;
@@ -257,7 +257,8 @@ static void slopes_are_those_of_an_advance(void **state) {
                 double by = j == 0 ? d : 20 * d, whole = j == 0 ? 1 : chord / 100;
                 check_near(told[j].lift, (change[j][1].lift - change[j][0].lift) / by, 1e-2, 2e-2 * whole);
                 check_near(told[j].drag, (change[j][1].drag - change[j][0].drag) / by, 1e-2, 2e-2 * whole);
-                check_near(told[j].moment, (change[j][1].moment - change[j][0].moment) / by, 1e-2, 2e-2 * whole);
+                check_near(told[j].moment, (change[j][1].moment - change[j][0].moment) / by, 1e-2,
+                           2e-2 * whole);
             }
         }
     }

@@ -30,8 +30,9 @@ static double entry(const double *a, int rows, int i, int j) { return a[(size_t)
 static void pendulum_by_hand(void **state) {
     (void)state;
     bough_arena *arena = bough_arena_create();
-    const char *sets[] = {"bodies[0].joint={kind: revolute, parent: ground, axis: y, angle: -30 deg, damping: 0.4}",
-                          "loads=[{joint: bob, torque: 0.25, input: push}]", NULL};
+    const char *sets[] = {
+        "bodies[0].joint={kind: revolute, parent: ground, axis: y, angle: -30 deg, damping: 0.4}",
+        "loads=[{joint: bob, torque: 0.25, input: push}]", NULL};
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
     bough_state_space x = linear(arena, s);
     double g = 9.81, q = -30 * BOUGH_PI / 180;
@@ -65,7 +66,9 @@ static void drive_takes_the_load_at_once(void **state) {
     bough_simulation *s = scene_build(arena, "apps/mechanisms/pendulum.yaml", sets);
     bough_state_space x = linear(arena, s);
     assert_int_equal(x.n_input, 6);
-    check_near(entry(x.d, x.n_output, find(x.output, x.n_output, "bobTrq"), find(x.input, x.n_input, "pushMy")), -1, 1e-8, 0);
+    check_near(
+        entry(x.d, x.n_output, find(x.output, x.n_output, "bobTrq"), find(x.input, x.n_input, "pushMy")), -1,
+        1e-8, 0);
     bough_arena_destroy(arena);
 }
 
@@ -126,10 +129,12 @@ static void rotor_follows_torque_pitch_and_wind(void **state) {
     static const char rigid[] = "bodies[3-5].fidelity=rigid", ramp[] = "aero.ramp=[0 s, 0 s]",
                       quiet[] = "gravity=[0, 0, 0]";
     bough_arena *arena = bough_arena_create();
-    bough_simulation *s = scene_build(arena, "apps/turbine/power.yaml",
-                                      (const char *const[]){rigid, ramp, quiet, "modes.air=quasi-steady", NULL});
+    bough_simulation *s =
+        scene_build(arena, "apps/turbine/power.yaml",
+                    (const char *const[]){rigid, ramp, quiet, "modes.air=quasi-steady", NULL});
     bough_state_space x = linear(arena, s);
-    int speed = find(x.state, x.n, "hub speed 1"), torque = find(x.input, x.n_input, "generator torque, fast shaft");
+    int speed = find(x.state, x.n, "hub speed 1"),
+        torque = find(x.input, x.n_input, "generator torque, fast shaft");
     int pitch = find(x.input, x.n_input, "collective pitch"), wind = find(x.input, x.n_input, "wind speed");
     double inertia = -97 / entry(x.b, x.n, speed, torque);
     check_near(inertia, 5.1414e6 + 3 * 11.776e6, 0.05, 0); // hub, and blades about their roots
@@ -137,7 +142,8 @@ static void rotor_follows_torque_pitch_and_wind(void **state) {
     const char *const more[4] = {"aero.wind.speed=8.0001 m/s", "aero.wind.speed=7.9999 m/s",
                                  "bodies[3-5].pitch=1e-5 rad", "bodies[3-5].pitch=-1e-5 rad"};
     double value[4];
-    for (int k = 0; k < 4; k++) value[k] = air_of((const char *const[]){rigid, ramp, quiet, more[k], NULL}).torque;
+    for (int k = 0; k < 4; k++)
+        value[k] = air_of((const char *const[]){rigid, ramp, quiet, more[k], NULL}).torque;
     check_near(inertia * entry(x.b, x.n, speed, wind), (value[0] - value[1]) / 2e-4, 1e-4, 0);
     // the inertia turns with the blades, too
     check_near(inertia * entry(x.b, x.n, speed, pitch), (value[2] - value[3]) / 2e-5, 1e-3, 0);

@@ -7,7 +7,8 @@
 
 static const char turbine[] = "tests/scenes/example-turbine.yaml";
 
-static bough_simulation *run_scene(bough_arena *arena, const char *scene, const char *const *sets, int steps) {
+static bough_simulation *run_scene(bough_arena *arena, const char *scene, const char *const *sets,
+                                   int steps) {
     bough_simulation *s = scene_build(arena, scene, sets);
     for (int k = 0; k < steps; k++) {
         scene_step(s);
@@ -102,7 +103,8 @@ static void samples_too_seldom_for_a_modal_blade_are_told(void **state) {
     }
 }
 
-// Windows of four bars, whose rods all come to lie on one line at 0.75 s; a loop that stays away from such a position.
+// Windows of four bars, whose rods all come to lie on one line at 0.75 s; a loop that stays away from such a
+// position.
 static void singular_positions_are_told(void **state) {
     (void)state;
     static const char *const sets[] = {NULL};

@@ -283,7 +283,8 @@ static void bad_files_are_told_where(void **context) {
         {"material: steel", "material: wood", "material: no material is named 'wood'"},
         {"values: [0.02, 0.01]", "values: [1.02, 0.01]", "thickness: expected a value from 0 to the"},
         {"diameter: 2.0", "diameter: 0", "diameter: expected a positive value"},
-        {"number_of_blades: 3", "number_of_blades: 2.5", "number_of_blades: expected a whole number from 1 to 16, got 2.5"},
+        {"number_of_blades: 3", "number_of_blades: 2.5",
+         "number_of_blades: expected a whole number from 1 to 16, got 2.5"},
         {"gear_ratio: 10", "gear_ratio: 10\n      gear_ratio: 10", "is given twice"},
         {"gear_ratio: 10", "gear_ratio: -1", "gear_ratio: expected a positive value"},
     };

@@ -361,7 +361,8 @@ static void add_followed(const bough_air_tangent *t, int columns, const double *
 static void add_response(bough_arena *arena, work *w, const bough_air_tangent *t, bough_aeroelastic *to) {
     int n = w->n, k = to->n_motion, m = t->n_air;
     size_t most = (size_t)(k > m ? k : m);
-    double *force = bough_arena_doubles(arena, (size_t)n * most), *moved = bough_arena_doubles(arena, (size_t)n * most);
+    double *force = bough_arena_doubles(arena, (size_t)n * most),
+           *moved = bough_arena_doubles(arena, (size_t)n * most);
     double *block = bough_arena_doubles(arena, most * most);
     bough_dense_product((bough_product){n, k, n, false, 1, 0}, t->motion, to->shape, force);
     follow(w, to, k, force, block, moved);

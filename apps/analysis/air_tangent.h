@@ -37,9 +37,9 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
 void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group,
                             int n_per_blade, int *row);
 
-// Makes what blades do to blades that of the mean over as many azimuths as there are blades, at which gravity,
-// tilt, shear and tower differ.
-void bough_air_tangent_average(bough_arena *arena, const bough_simulation *s,
-                               const bough_blade_group *group, bough_air_tangent *tangent);
+// Makes what blades do to blades that of the mean over as many azimuths as there are blades, at which
+// gravity, tilt, shear and tower differ.
+void bough_air_tangent_average(bough_arena *arena, const bough_simulation *s, const bough_blade_group *group,
+                               bough_air_tangent *tangent);
 
 #endif

@@ -79,7 +79,8 @@ static void find_inputs(work *w, bough_state_space *to) {
         const bough_scene_input *x = &s->scene->input[k];
         double value = bough_input_link_values(s->inputs)[k];
         if (x->kind == BOUGH_INPUT_LOAD)
-            add_input(w, SCENE_LOAD, k, value, x->name, bough_dimension_unit((bough_dimension)x->dimension), to);
+            add_input(w, SCENE_LOAD, k, value, x->name, bough_dimension_unit((bough_dimension)x->dimension),
+                      to);
     }
     if (s->control != NULL) {
         double speed, torque, power;

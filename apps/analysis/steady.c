@@ -61,8 +61,10 @@ static bough_status check_carries_none(const bough_simulation *s, const bough_be
         const bough_scene_body *body = &s->scene->body[i];
         int parent = body->joint.parent;
         if (parent < 0 || &s->scene->body[parent] != beam->body) continue;
-        return bough_fail(BOUGH_INVALID, "rod %s carries the body %s; there is no equilibrium in "
-                                        "steady rotation for rods that carry bodies", beam->body->name, body->name);
+        return bough_fail(BOUGH_INVALID,
+                          "rod %s carries the body %s; there is no equilibrium in "
+                          "steady rotation for rods that carry bodies",
+                          beam->body->name, body->name);
     }
     return bough_ok();
 }

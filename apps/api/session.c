@@ -293,8 +293,8 @@ int bough_session_set_text(bough_session *s, int input, const char *text) {
     char why[160] = "";
     if (is_input(s, input) && !bough_quantity(text, input_dimension(s, input), &value, why)) {
         return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a value in %s, got '%.80s'%s%s",
-                                      bough_session_input_name(s, input), bough_session_input_unit(s, input), text,
-                                      why[0] ? ": " : "", why));
+                                      bough_session_input_name(s, input), bough_session_input_unit(s, input),
+                                      text, why[0] ? ": " : "", why));
     }
     return bough_session_set(s, input, value);
 }

@@ -227,7 +227,8 @@ static bough_status list_body(export *x) {
     x->n_output = BOUGH_BODY_OUTPUTS;
     for (int k = 0; k < x->n_input; k++) {
         const bough_body_variable *from = &bough_body_inputs[k];
-        x->input[k] = (variable){from->name, bough_dimension_unit(from->dimension), bough_body_motion(body)[k]};
+        x->input[k] =
+            (variable){from->name, bough_dimension_unit(from->dimension), bough_body_motion(body)[k]};
     }
     for (int k = 0; k < x->n_output; k++)
         x->output[k] = (variable){bough_body_outputs[k].name, bough_body_outputs[k].unit, 0};

@@ -47,8 +47,8 @@ static double least_step_time(const bough_run *run) {
         double began = bough_wall_clock();
         for (int i = 0; i < a->n_member; i++) {
             const bough_system *s = &a->member[i]->system;
-            s->ops->derivative(s->self, a->member[i]->time, a->member[i]->state, c->input + a->input_offset[i],
-                               c->state_rate + a->state_offset[i]);
+            s->ops->derivative(s->self, a->member[i]->time, a->member[i]->state,
+                               c->input + a->input_offset[i], c->state_rate + a->state_offset[i]);
         }
         shortest = fmin(shortest, bough_wall_clock() - began);
     }
@@ -58,7 +58,8 @@ static double least_step_time(const bough_run *run) {
 bough_status bough_run_forecast(const bough_job *job, FILE *stream) {
     const bough_run *run = &job->run;
     const bough_master *m = run->simulation->master;
-    bough_forecast results = bough_run_results(run->simulation, &job->recorded, bough_forecast_points(&job->shape));
+    bough_forecast results =
+        bough_run_results(run->simulation, &job->recorded, bough_forecast_points(&job->shape));
     double steps = m->duration / m->macro_step, bytes = results.bytes;
     struct statvfs disk;
     double room = statvfs(job->folder, &disk) == 0

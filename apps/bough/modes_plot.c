@@ -95,7 +95,8 @@ void bough_modes_plot(const void *self, FILE *svg) {
     p.at.y.high = 1.05 * fmax(frequency, 1e-3);
     draw_panel(&p, "frequency [Hz]", NULL);
     p.damping = true;
-    p.at.y = (bough_axis){1.05 * least, fmax(1.05 * damping, 0.1), TOP + 2 * HEIGHT + GAP, TOP + HEIGHT + GAP, false};
+    p.at.y = (bough_axis){1.05 * least, fmax(1.05 * damping, 0.1), TOP + 2 * HEIGHT + GAP, TOP + HEIGHT + GAP,
+                          false};
     draw_panel(&p, "damping ratio [%]", p.by_speed ? "rotor speed [rpm]" : s->key[0]);
     fputs("</svg>\n", svg);
 }

@@ -73,11 +73,12 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
         if (m->growth <= unstable * 2 * BOUGH_PI * m->frequency) continue;
-        printf("unstable: mode %d grows at %.6g /s%s\n", k + 1, m->growth,
-               m->damped_frequency == 0 && s->aero && rotor_is_free(s)
-                   ? " without swinging: the speed of the rotor, if the air's torque grows with it or, at a frozen "
-                     "azimuth, by its weight; the generator's torque and the pitch are held"
-                   : "");
+        printf(
+            "unstable: mode %d grows at %.6g /s%s\n", k + 1, m->growth,
+            m->damped_frequency == 0 && s->aero && rotor_is_free(s)
+                ? " without swinging: the speed of the rotor, if the air's torque grows with it or, at a frozen "
+                  "azimuth, by its weight; the generator's torque and the pitch are held"
+                : "");
     }
 }
 

@@ -326,8 +326,11 @@ static void tell_energy(const bough_run *run, FILE *stream) {
 static void tell_warnings(const bough_run *run, FILE *stream) {
     const bough_master *m = run->simulation->master;
     if (m->coupling->unfinished > 0) {
-        fprintf(stream, "warning: %ld of %ld macro steps went on before they had converged; the error contains what this "
-                "changes\n", m->coupling->unfinished, m->steps);
+        fprintf(
+            stream,
+            "warning: %ld of %ld macro steps went on before they had converged; the error contains what this "
+            "changes\n",
+            m->coupling->unfinished, m->steps);
     }
     for (int k = 0; k < BOUGH_LIMITS; k++) {
         char text[LINE];
@@ -341,7 +344,8 @@ void bough_run_report(bough_job *job, FILE *stream) {
     bough_run *run = &job->run;
     fprintf(stream, "status: %s\n", outcome_name(run));
     fprintf(stream, "time: %.9g s\n", run->simulation->master->time);
-    if (!bough_is_ok(&run->outcome)) fprintf(stream, "recorded: %ld rows\n", bough_recorder_rows(job->recorder));
+    if (!bough_is_ok(&run->outcome))
+        fprintf(stream, "recorded: %ld rows\n", bough_recorder_rows(job->recorder));
     fprintf(stream, "real_time_factor: %.3g\n", real_time_factor(run));
     fprintf(stream, "wall_s: %.3g\n", run->wall_s);
     fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);

@@ -44,7 +44,8 @@ void bough_static_results(bough_steady *rod, bough_vec3 result[BOUGH_STATIC_RESU
     double wrench[6];
     bough_steady_displacement(rod, rod->model->n_segment, &result[BOUGH_STATIC_DISPLACEMENT],
                               &result[BOUGH_STATIC_ROTATION]);
-    bough_rod_root_wrench(rod->model, &rod->work.scaled, rod->time, rod->state, rod->input, &rod->work.scratch, wrench);
+    bough_rod_root_wrench(rod->model, &rod->work.scaled, rod->time, rod->state, rod->input,
+                          &rod->work.scratch, wrench);
     result[BOUGH_STATIC_FORCE] = bough_v3(wrench[0], wrench[1], wrench[2]);
     result[BOUGH_STATIC_MOMENT] = bough_v3(wrench[3], wrench[4], wrench[5]);
 }
@@ -63,7 +64,8 @@ static void compare(const comparison *c, bough_static *fine) {
         bough_static_results(&c->coarse->rod[k], here);
         bough_static_results(&fine->rod[k], there);
         for (int i = 0; i < BOUGH_STATIC_RESULTS; i++) {
-            c->error[BOUGH_STATIC_RESULTS * k + i] = c->share->part * bough_norm(bough_sub(here[i], there[i]));
+            c->error[BOUGH_STATIC_RESULTS * k + i] =
+                c->share->part * bough_norm(bough_sub(here[i], there[i]));
         }
     }
     for (int i = 0; !fine->apart && i < fine->simulation->n_motion_channel; i++) {
@@ -92,7 +94,8 @@ double *bough_static_mesh_error(bough_arena *arena, bough_static *x, bough_error
     comparison c = {x, share, bough_arena_doubles(arena, BOUGH_STATIC_RESULTS * ((size_t)x->n + 1))};
     bough_status status = bough_arena_use(find_finer, &c);
     if (!bough_is_ok(&status)) {
-        snprintf(share->unknown, sizeof share->unknown, "with %d times the segments: %.120s", TIMES, status.message);
+        snprintf(share->unknown, sizeof share->unknown, "with %d times the segments: %.120s", TIMES,
+                 status.message);
     }
     return c.error;
 }

@@ -48,7 +48,8 @@ bough_status bough_static_path(bough_arena *arena, bough_simulation *s, const ch
     if (bough_is_ok(&status)) status = bough_folder_open(folder, "static-path.csv", path, &t.file);
     if (!bough_is_ok(&status)) return status;
     write_head(&t);
-    bough_status followed = bough_simulation_path(s, s->master->assembly, (bough_path_listener){&t, write_point}, &report);
+    bough_status followed =
+        bough_simulation_path(s, s->master->assembly, (bough_path_listener){&t, write_point}, &report);
     if (report.points == 0) {
         bough_folder_discard(path, t.file);
         return followed;

@@ -386,9 +386,9 @@ const double *bough_deck_table(const bough_deck *deck, const char *const *column
         do
             line++;
         while (line < deck->n && skipped(deck->line[line]));
-        if (i == 0 && line < deck->n && !begins_with_number(deck->line[line])) line++; // units, in any spelling
-        if (line >= deck->n)
-            bough_deck_fail(deck, deck->n - 1, "%s: %d rows, expected %d", column[0], i, n);
+        if (i == 0 && line < deck->n && !begins_with_number(deck->line[line]))
+            line++; // units, in any spelling
+        if (line >= deck->n) bough_deck_fail(deck, deck->n - 1, "%s: %d rows, expected %d", column[0], i, n);
         read_row(deck, line, column, n_column, place, &table[i * n_column]);
     }
     return bough_is_ok(deck->status) ? table : NULL;

@@ -81,13 +81,14 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
             "title: ",
             origin);
     bough_import_quoted(file, title);
-    fprintf(file,
-            "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
-            "  macro_step: %g s\n"
-            "  coupling: {scheme: monolithic} # all bodies coupled at the stages of the steps\n"
-            "  master: {solver: rosenbrock, step: %g ms, rtol: 4.5e-4}\n"
-            "  error_estimate: linearised # with a controller: second-solution, at three times the cost\n  threads: 2\n",
-            -gravity, steps * step, step, 500 * step);
+    fprintf(
+        file,
+        "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
+        "  macro_step: %g s\n"
+        "  coupling: {scheme: monolithic} # all bodies coupled at the stages of the steps\n"
+        "  master: {solver: rosenbrock, step: %g ms, rtol: 4.5e-4}\n"
+        "  error_estimate: linearised # with a controller: second-solution, at three times the cost\n  threads: 2\n",
+        -gravity, steps * step, step, 500 * step);
 }
 
 // -- files ----------------------------------------------------------------------------------------

@@ -58,10 +58,10 @@ bough_status bough_draft_import(const bough_draft_def *def);
 void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-// Writes the scene's first lines: comment, title, time, solvers. The macro step follows from the rotor's speed
-// [rad/s]; the duration [s] is rounded up to whole macro steps. `origin`: "an OpenFAST model".
-void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity,
-                      double duration, double rotor_speed);
+// Writes the scene's first lines: comment, title, time, solvers. The macro step follows from the rotor's
+// speed [rad/s]; the duration [s] is rounded up to whole macro steps. `origin`: "an OpenFAST model".
+void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity, double duration,
+                      double rotor_speed);
 
 enum { BOUGH_IMPORT_BLADES = 16 }; // at most
 

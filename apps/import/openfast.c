@@ -54,7 +54,8 @@ static void refuse_other_files(const bough_openfast *o) {
     if (bough_deck_line(o->main, "CompElast") >= 0) return;
     for (int i = 0; i < 3; i++) {
         int line = bough_deck_line(o->main, key[i]);
-        if (line >= 0) bough_deck_fail(o->main, line, "expected a turbine's main file of OpenFAST, got %s", what[i]);
+        if (line >= 0)
+            bough_deck_fail(o->main, line, "expected a turbine's main file of OpenFAST, got %s", what[i]);
     }
 }
 
@@ -77,9 +78,11 @@ static void open_modules(bough_openfast *o) {
     if (air == 2 || air == 1) o->aero = bough_openfast_open(o, o->main, "AeroFile");
     o->old_aero = o->aero && bough_deck_line(o->aero, "StallMod") >= 0;
     if (air == 3 || (air == 1 && o->aero && !o->old_aero)) {
-        bough_deck_fail(o->main, bough_deck_line(o->main, "CompAero"),
-                        "CompAero: expected 0, 2 (AeroDyn 15 and later) or, before version 4, 1 (AeroDyn 14), got "
-                        "%d: AeroDisk and external loads are not supported", air);
+        bough_deck_fail(
+            o->main, bough_deck_line(o->main, "CompAero"),
+            "CompAero: expected 0, 2 (AeroDyn 15 and later) or, before version 4, 1 (AeroDyn 14), got "
+            "%d: AeroDisk and external loads are not supported",
+            air);
     }
     if (bough_deck_whole_or(o->main, "CompServo", 0) == 1) {
         o->servo = bough_openfast_open(o, o->main, "ServoFile");

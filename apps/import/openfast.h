@@ -72,12 +72,13 @@ enum { // span [m], curve, sweep [m], angle of the curve [deg], twist [deg], cho
     BOUGH_ELEMENT_AIRFOIL,
     BOUGH_N_ELEMENT_COLUMN
 };
-// Opens the airfoil file named at or, behind comments, below *line, which moves behind it; the name that the scene gives to
-// its polar. NULL: not opened, the draft's status says why.
-bough_deck *bough_openfast_open_airfoil(bough_openfast *o, int *line, int number, char name[BOUGH_AIRFOIL_NAME]);
+// Opens the airfoil file named at or, behind comments, below *line, which moves behind it; the name that the
+// scene gives to its polar. NULL: not opened, the draft's status says why.
+bough_deck *bough_openfast_open_airfoil(bough_openfast *o, int *line, int number,
+                                        char name[BOUGH_AIRFOIL_NAME]);
 void bough_openfast_put_polar(bough_openfast *o, const char *name, const double *table, int n);
-void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, const char *count, const double *row,
-                                 int n, char (*name)[BOUGH_AIRFOIL_NAME], int n_name);
+void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, const char *count,
+                                 const double *row, int n, char (*name)[BOUGH_AIRFOIL_NAME], int n_name);
 
 // The same of AeroDyn 14 (openfast_aero14.c).
 void bough_openfast_aero14_tables(bough_openfast *o);

@@ -76,8 +76,8 @@ void bough_openfast_put_polar(bough_openfast *o, const char *name, const double 
     put_row(file, 180, end);
     if (!whole || gap > 1e-6) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "%s: from %g to %g deg; the value at 180 deg is the mean of its ends", name, first[0],
-                         last[0]);
+                         "%s: from %g to %g deg; the value at 180 deg is the mean of its ends", name,
+                         first[0], last[0]);
     }
 }
 
@@ -170,11 +170,12 @@ static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)
     const char *const column[] = {"BlSpn",   "BlCrvAC", "BlSwpAC", "?BlCrvAng",
                                   "BlTwist", "BlChord", "BlAFID"};
     int n = bough_deck_whole(deck, "NumBlNds", 1, MOST_ROWS);
-    bough_openfast_put_elements(o, deck, "NumBlNds", bough_deck_table(deck, column, N_COLUMN, n), n, name, n_name);
+    bough_openfast_put_elements(o, deck, "NumBlNds", bough_deck_table(deck, column, N_COLUMN, n), n, name,
+                                n_name);
 }
 
-void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, const char *count, const double *row,
-                                 int n, char (*name)[NAME], int n_name) {
+void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, const char *count,
+                                 const double *row, int n, char (*name)[NAME], int n_name) {
     fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar]\n  rows:\n",
           o->draft.file[BOUGH_IMPORT_AERO]);
     double angle = 0, last = -1;

@@ -23,7 +23,8 @@ static double *read_polar(bough_openfast *o, const bough_deck *deck, bool moment
         row[0] = value[0], row[1] = value[1], row[2] = value[2];
         row[3] = moments && count > 3 ? value[3] : 0;
         if (fabs(row[0]) > 180 + 1e-3 || (*n > 0 && row[0] <= row[-POLAR])) {
-            bough_deck_fail(deck, line, "expected increasing angles of attack from -180 to 180 deg, got %g", row[0]);
+            bough_deck_fail(deck, line, "expected increasing angles of attack from -180 to 180 deg, got %g",
+                            row[0]);
         }
         ++*n;
     }
@@ -68,8 +69,9 @@ void bough_openfast_aero14_tables(bough_openfast *o) {
         to[BOUGH_ELEMENT_AIRFOIL] = from[FOIL];
     }
     bough_openfast_put_elements(o, o->aero, "BldNodes", row, n, name, n_name);
-    bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "elements of constant twist, chord and airfoil: linear between their "
-                                                    "middles");
+    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                     "elements of constant twist, chord and airfoil: linear between their "
+                     "middles");
 }
 
 // -- theory ---------------------------------------------------------------------------------------
@@ -87,15 +89,18 @@ void bough_openfast_aero14(bough_openfast *o) {
             says(o, "IndModel", "SWIRL") ? "true" : "false", dynamic ? ", inflow: oye" : "");
     if (stall) fputs("  dynamic_stall: hgm\n", file);
     if (says(o, "UseCm", "NO")) fputs("  pitching_moment: false\n", file);
-    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                     "AeroDyn 14: momentum balance with smooth high-thrust correction, without drag in the induction");
+    bough_draft_note(
+        &o->draft, BOUGH_APPROXIMATED,
+        "AeroDyn 14: momentum balance with smooth high-thrust correction, without drag in the induction");
     if (dynamic) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "InfModel DYNIN: Oye's dynamic inflow for the generalised "
-                                                        "dynamic wake");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "InfModel DYNIN: Oye's dynamic inflow for the generalised "
+                         "dynamic wake");
     }
     if (stall) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "StallMod BEDDOES: dynamic stall by Hansen, Gaunaa and Madsen's "
-                                                        "model, its constants from the polars");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "StallMod BEDDOES: dynamic stall by Hansen, Gaunaa and Madsen's "
+                         "model, its constants from the polars");
     }
     if (says(o, "IndModel", "NONE")) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "IndModel NONE: axial induction is computed");

@@ -150,9 +150,10 @@ static torque_line read_variable_speed(const bough_openfast *o) {
         l.gain = fmin(l.gain, l.most / (l.full_speed * l.full_speed));
         return l;
     }
-    bough_deck_fail(s, bough_deck_line(s, "VS_RtGnSp"),
-                    "VS_RtGnSp, VS_RtTq, VS_Rgn2K, VS_SlPc: expected positive values, VS_RtTq at most 1e9 N m, "
-                    "VS_SlPc at most 100 %%, and VS_Rgn2K VS_RtGnSp^2 at most VS_RtTq");
+    bough_deck_fail(
+        s, bough_deck_line(s, "VS_RtGnSp"),
+        "VS_RtGnSp, VS_RtTq, VS_Rgn2K, VS_SlPc: expected positive values, VS_RtTq at most 1e9 N m, "
+        "VS_SlPc at most 100 %%, and VS_Rgn2K VS_RtGnSp^2 at most VS_RtTq");
     return l;
 }
 

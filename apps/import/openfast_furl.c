@@ -70,13 +70,17 @@ static void put_furl(bough_openfast *o, const furl *a, bool turns, double mass, 
     if (turns && bough_deck_whole_or(f, a->letter[0] == 'T' ? "TFrlMod" : "RFrlMod", 0) == 1) {
         double down = value(f, a, "DSSP"), up = value(f, a, "USSP");
         double stiffness = fmax(value(f, a, "USSpr"), value(f, a, "DSSpr"));
-        fprintf(file, "      stiffness: %.10g\n      damping: %.10g\n", value(f, a, "Spr"), value(f, a, "Dmp"));
+        fprintf(file, "      stiffness: %.10g\n      damping: %.10g\n", value(f, a, "Spr"),
+                value(f, a, "Dmp"));
         if (stiffness > 0 && up > down) {
-            fprintf(file, "      stop: [%.10g deg, %.10g deg]\n      stop_stiffness: %.10g\n", down, up, stiffness);
+            fprintf(file, "      stop: [%.10g deg, %.10g deg]\n      stop_stiffness: %.10g\n", down, up,
+                    stiffness);
         }
     }
-    fprintf(file, "    mass: %.10g kg\n    centre_of_mass: [%.10g, %.10g, %.10g]\n    inertia: [%.10g, %.10g, %.10g]\n",
-            mass, c.x, c.y, c.z, fmax(about, 0), fmax(about, 0), fmax(about, 0));
+    fprintf(
+        file,
+        "    mass: %.10g kg\n    centre_of_mass: [%.10g, %.10g, %.10g]\n    inertia: [%.10g, %.10g, %.10g]\n",
+        mass, c.x, c.y, c.z, fmax(about, 0), fmax(about, 0), fmax(about, 0));
     bough_draft_note(&o->draft, BOUGH_TAKEN, "%s: %g kg%s", a->name, mass,
                      turns ? ", furls about its axis with spring, damper and stops" : "");
 }
@@ -88,15 +92,18 @@ void bough_openfast_furl(bough_openfast *o) {
     const bough_deck *f = o->furl;
     furl rotor = read_furl(f, "furl", "R"), tail = read_furl(f, "tail", "T");
     bough_vec3 boom = read_point(f, "BoomCM_n", "BoomCM"), fin = read_point(f, "TFinCM_n", "TFinCM");
-    double light = bough_deck_number(f, "BoomMass"), end = bough_deck_number(f, "TFinMass"), mass = light + end;
-    bough_vec3 centre = bough_scale(mass > 0 ? 1 / mass : 0, bough_add(bough_scale(light, boom), bough_scale(end, fin)));
+    double light = bough_deck_number(f, "BoomMass"), end = bough_deck_number(f, "TFinMass"),
+           mass = light + end;
+    bough_vec3 centre =
+        bough_scale(mass > 0 ? 1 / mass : 0, bough_add(bough_scale(light, boom), bough_scale(end, fin)));
     bool turns = bough_deck_flag_or(f, "RFrlDOF", false), wags = bough_deck_flag_or(f, "TFrlDOF", false);
     double carried = bough_deck_number(f, "RFrlMass");
     if (!bough_is_ok(o->draft.status)) return;
     o->rotor_furls = turns || carried > 0 || bough_deck_number(f, "RotFurl") != 0;
     if (o->rotor_furls) put_furl(o, &rotor, turns, carried, read_point(f, "RFrlCM_n", "RFrlCM"));
     if (wags || mass > 0) put_furl(o, &tail, wags, mass, mass > 0 ? centre : tail.point);
-    bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "furling: dampers of the stops, the air's forces on the tail fin");
+    bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
+                     "furling: dampers of the stops, the air's forces on the tail fin");
 }
 
 // From the body that carries the shaft to the axes of the nacelle, and the rotor's offset.
@@ -105,8 +112,9 @@ void bough_openfast_put_shaft_offset(const bough_openfast *o) {
     if (!o->furl) return;
     if (o->rotor_furls) {
         furl a = read_furl(o->furl, "furl", "R");
-        fprintf(file, "rotate y %.10g deg, rotate z %.10g deg, move x %.10g m, move y %.10g m, move z %.10g m, ", a.tilt,
-                -a.skew, -a.point.x, -a.point.y, -a.point.z);
+        fprintf(file,
+                "rotate y %.10g deg, rotate z %.10g deg, move x %.10g m, move y %.10g m, move z %.10g m, ",
+                a.tilt, -a.skew, -a.point.x, -a.point.y, -a.point.z);
     }
     fprintf(file, "move y %.10g m, ", bough_deck_number(o->furl, "Yaw2Shft"));
 }

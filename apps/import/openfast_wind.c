@@ -12,15 +12,19 @@ enum { STEADY = 1, UNIFORM, TURBSIM, BLADED, HAWC, NATIVE_BLADED = 7 };
 
 // The section of a type: before version 3.1 sections share the names of their lines.
 static bough_deck section_of(const bough_deck *w, int type) {
-    static const char *const title[] = {[UNIFORM] = "Parameters for Uniform", [TURBSIM] = "Parameters for Binary Turb",
-                                        [BLADED] = "Parameters for Binary Bladed", [HAWC] = "Parameters for HAWC"};
+    static const char *const title[] = {[UNIFORM] = "Parameters for Uniform",
+                                        [TURBSIM] = "Parameters for Binary Turb",
+                                        [BLADED] = "Parameters for Binary Bladed",
+                                        [HAWC] = "Parameters for HAWC"};
     return bough_deck_part(w, title[type]);
 }
 
 // The line that names the file of a type; -1: none.
 static int file_line(const bough_deck *w, int type) {
-    static const char *const name[] = {[UNIFORM] = "FileName_Uni|Filename", [TURBSIM] = "FileName_BTS|Filename",
-                                       [BLADED] = "FileNameRoot|FilenameRoot", [HAWC] = "FileName_u"};
+    static const char *const name[] = {[UNIFORM] = "FileName_Uni|Filename",
+                                       [TURBSIM] = "FileName_BTS|Filename",
+                                       [BLADED] = "FileNameRoot|FilenameRoot",
+                                       [HAWC] = "FileName_u"};
     bough_deck section = section_of(w, type);
     return bough_deck_line(&section, name[type]);
 }

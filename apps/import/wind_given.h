@@ -14,8 +14,8 @@ typedef enum bough_wind_form {
 bough_wind_form bough_wind_form_of(const char *path);
 
 // Reads the file to check it and writes the beginning of the scene's `wind` without the closing brace. Height
-// of the hub and diameter of the rotor [m] are used for files of rows. BOUGH_INVALID says what is wrong with the
-// file; nothing is then written.
+// of the hub and diameter of the rotor [m] are used for files of rows. BOUGH_INVALID says what is wrong with
+// the file; nothing is then written.
 bough_status bough_wind_given(bough_draft *d, bough_wind_form form, const char *path, double height,
                               double diameter);
 

@@ -100,7 +100,8 @@ void bough_windio_check_angles(bough_windio *w, const bough_curve *angles, const
     const double most = 90; // [deg]
     for (int i = 0; i < angles->n && bough_is_ok(w->draft.status); i++) {
         if (fabs(angles->y[i] * w->degree) <= most) continue;
-        bough_entry_fail(&w->draft, angles->node, "%s: expected angles up to %g %s, as version %d has them, got %g", name,
+        bough_entry_fail(&w->draft, angles->node,
+                         "%s: expected angles up to %g %s, as version %d has them, got %g", name,
                          most / w->degree, w->second ? "deg" : "rad", w->second ? 2 : 1, angles->y[i]);
     }
 }
@@ -112,7 +113,8 @@ void bough_windio_shape_read(bough_windio *w) {
     a->chord = bough_entry_curve(d, w->shape, "chord");
     a->twist = bough_entry_curve(d, w->shape, "twist");
     bough_windio_check_angles(w, &a->twist, "twist");
-    bool by_length = bough_entry(w->shape, "section_offset_y") || (w->second && !bough_entry(w->shape, "pitch_axis"));
+    bool by_length =
+        bough_entry(w->shape, "section_offset_y") || (w->second && !bough_entry(w->shape, "pitch_axis"));
     if (by_length) a->offset_y = bough_entry_curve(d, w->shape, "section_offset_y");
     if (!by_length) a->pitch_axis = bough_entry_curve(d, w->shape, "pitch_axis");
     if (bough_entry(w->shape, "section_offset_x"))

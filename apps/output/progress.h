@@ -20,10 +20,9 @@ void bough_progress_show(bough_progress *p, double t);
 // Clears the line, so that what is printed next starts at the margin.
 void bough_progress_clear(const bough_progress *p);
 
-// The text of a line with room for so many characters, at simulated time t after `wall` seconds: the speed and
-// the time that is left, or the label, shortened to leave room for the time.
-void bough_progress_text(const bough_progress *p, double t, double wall, int room, char *text,
-                         size_t size);
+// The text of a line with room for so many characters, at simulated time t after `wall` seconds: the speed
+// and the time that is left, or the label, shortened to leave room for the time.
+void bough_progress_text(const bough_progress *p, double t, double wall, int room, char *text, size_t size);
 
 // Monotonic wall clock [s], from an arbitrary origin.
 double bough_wall_clock(void);

@@ -32,7 +32,8 @@ static bough_status finish(const char *path, bough_errors *errors) {
 static bool is_study(const char *path, const bough_node *root, bough_errors *errors) {
     const bough_node *kind = bough_node_find(root, "kind");
     if (kind == NULL || bough_node_find(root, "bodies") != NULL) return false;
-    bough_errors_add(errors, kind, "kind", "this is a study, not a scene: 'bough study %.200s' runs it", path);
+    bough_errors_add(errors, kind, "kind", "this is a study, not a scene: 'bough study %.200s' runs it",
+                     path);
     return true;
 }
 

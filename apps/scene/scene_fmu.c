@@ -88,7 +88,8 @@ void bough_scene_check_fmu(bough_schema_reader *r, void *item) {
 // A scheme that only steps its members; one that repeats steps where the FMU restores its state.
 static void check_scheme(bough_schema_reader *r, const bough_scene *s, const bough_scene_body *b) {
     const bough_scene_coupling *coupling = &s->simulation.coupling;
-    const bough_node *place = coupling->node ? bough_link_value(coupling->node, "scheme") : s->simulation.node;
+    const bough_node *place =
+        coupling->node ? bough_link_value(coupling->node, "scheme") : s->simulation.node;
     const char *scheme = coupling->scheme < 0 ? "" : bough_scheme_name(coupling->scheme);
     bool steps = strcmp(scheme, "gauss-seidel") == 0 || strcmp(scheme, "extrapolated") == 0;
     bool repeats = strcmp(scheme, "iterated") == 0;

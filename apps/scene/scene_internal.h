@@ -9,10 +9,10 @@
 extern const bough_schema bough_scene_schema;
 
 // Those of its parts.
-extern const bough_schema bough_scene_micro_schema, bough_scene_body_schema,
-    bough_scene_load_schema, bough_scene_spring_schema, bough_scene_bushing_schema,
-    bough_scene_closure_schema, bough_scene_marker_schema, bough_scene_sensor_schema, bough_scene_turbine_schema,
-    bough_scene_aero_schema, bough_scene_control_schema;
+extern const bough_schema bough_scene_micro_schema, bough_scene_body_schema, bough_scene_load_schema,
+    bough_scene_spring_schema, bough_scene_bushing_schema, bough_scene_closure_schema,
+    bough_scene_marker_schema, bough_scene_sensor_schema, bough_scene_turbine_schema, bough_scene_aero_schema,
+    bough_scene_control_schema;
 
 // Readers of values that are lists of their own kind. `field` is named in the body.
 void bough_scene_read_placement(bough_schema_reader *r, const bough_node *node, void *field);

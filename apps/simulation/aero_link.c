@@ -405,8 +405,8 @@ static void take_memory(bough_aero_link *link, bough_snapshot *s) {
     if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_aero_link_remind(link, room);
 }
 
-// Of the evaluations only what they tell is stored: the shown one and the one at the sample ahead; of the loads
-// nothing.
+// Of the evaluations only what they tell is stored: the shown one and the one at the sample ahead; of the
+// loads nothing.
 void bough_aero_link_snapshot(bough_aero_link *link, bough_snapshot *s) {
     if (s->move == BOUGH_SNAPSHOT_RESTORE) link->shown = 0, link->found = -1;
     bough_snapshot_take(s, &link->started, sizeof link->started);

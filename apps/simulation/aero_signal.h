@@ -10,7 +10,8 @@
 typedef struct bough_aero_signal bough_aero_signal;
 
 // A rotor's loads on the blade: on vertices (6 × n), mean and slope per length of segments
-// (12 × (n − 1)), both in the axes of the blade's frame; their slopes (bough_rotor_data.slope; NULL: none); all by a factor.
+// (12 × (n − 1)), both in the axes of the blade's frame; their slopes (bough_rotor_data.slope; NULL: none);
+// all by a factor.
 typedef struct bough_aero_fresh {
     const double *load, *line, *slope;
     double factor;
@@ -34,8 +35,8 @@ void bough_aero_signal_follow(bough_aero_signal *s, bough_aero_fresh fresh,
                               bough_aero_course course, double start, double span);
 
 // The recent difference between the loads and those at the body's actual motion, relative to the loads; 0 for
-// a rod, whose loads follow its motion. About 1: the sampling rate is too low for the body's vibrations, which
-// then grow.
+// a rod, whose loads follow its motion. About 1: the sampling rate is too low for the body's vibrations,
+// which then grow.
 double bough_aero_signal_missed(const bough_aero_signal *s);
 
 // All that the signal depends on; restoring gives it to the body.

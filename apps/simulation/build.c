@@ -77,8 +77,8 @@ static bough_integrator_options solver_options(const bough_scene_solver *solver)
                                       .rho = solver->rho};
 }
 
-// Where rods are damped by less, the linearised members tell a third of what a second solution tells: measured on
-// the run-up with 1e-4 to 4e-3 s.
+// Where rods are damped by less, the linearised members tell a third of what a second solution tells:
+// measured on the run-up with 1e-4 to 4e-3 s.
 static const double damped = 5e-4; // stress over rate of bending [s]
 
 static bool lightly_damped(const bough_scene *scene) {
@@ -92,14 +92,17 @@ static bool lightly_damped(const bough_scene *scene) {
 // A corner of the load within less than a macro step of another: the force jumps, as seen by the coupling.
 static bool jumps(const bough_scene_load *load, double macro_step) {
     bool sudden = load->ramp[1] > 0 && load->ramp[1] - load->ramp[0] < macro_step;
-    for (int i = 1; i < load->n_time; i++) sudden = sudden || load->times[i] - load->times[i - 1] < macro_step;
+    for (int i = 1; i < load->n_time; i++)
+        sudden = sudden || load->times[i] - load->times[i - 1] < macro_step;
     return sudden;
 }
 
-// The linearised members are measured on turbines with damped blades. On other random scenes and after jumps of loads
-// they tell a third to a hundredth of the error; where a controller holds the speed, which they let drift, too much.
+// The linearised members are measured on turbines with damped blades. On other random scenes and after jumps
+// of loads they tell a third to a hundredth of the error; where a controller holds the speed, which they let
+// drift, too much.
 static bool suits_linearised(const bough_scene *scene) {
-    if (!scene->turbine.node || !scene->aero.node || scene->control.node || lightly_damped(scene)) return false;
+    if (!scene->turbine.node || !scene->aero.node || scene->control.node || lightly_damped(scene))
+        return false;
     for (int i = 0; i < scene->n_load; i++) {
         if (jumps(&scene->load[i], scene->simulation.macro_step)) return false;
     }
@@ -174,9 +177,9 @@ static bough_status build_rods(bough_builder *b) {
     for (int k = 0; k < s->n_beam; k++) {
         bough_beam *beam = &s->beam[k];
         if (beam->port < 0) continue;
-        bough_status status = bough_beam_build(b->arena, beam, solver_options(bough_scene_micro(b->scene, beam->body)),
-                                               motion + BOUGH_PORT_OUTPUTS * beam->port,
-                                               &s->rod[beam->port]);
+        bough_status status =
+            bough_beam_build(b->arena, beam, solver_options(bough_scene_micro(b->scene, beam->body)),
+                             motion + BOUGH_PORT_OUTPUTS * beam->port, &s->rod[beam->port]);
         if (!bough_is_ok(&status)) return status;
     }
     for (int k = s->n_rod, i = 0; k < s->n_rod + s->n_fmu; i++) {

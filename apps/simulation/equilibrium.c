@@ -88,7 +88,7 @@ static double change_of(const bough_assembly *assembly, const double *a, const d
 
 // The states in equilibrium under the air's forces as sampled last.
 static bough_status balance(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
-                           bough_equilibrium_def *def, double *state, bough_equilibrium_work *work) {
+                            bough_equilibrium_def *def, double *state, bough_equilibrium_work *work) {
     bough_equilibrium_report report;
     bough_status status = bough_equilibrium_find(arena, coupled, def, state, &report);
     work->steps += report.steps;
@@ -154,9 +154,9 @@ static double move(void *self, const double *state, const double *change, double
     return turn;
 }
 
-// All joints but the held ones are at rest, and the rods move with them. Each step then starts at rest: it goes
-// downhill and makes no vibration. A closed loop is not brought to rest unless something turns: it
-// may have to close, which takes velocities.
+// All joints but the held ones are at rest, and the rods move with them. Each step then starts at rest: it
+// goes downhill and makes no vibration. A closed loop is not brought to rest unless something turns: it may
+// have to close, which takes velocities.
 static void bring_to_rest(void *self, double *state) {
     const search *x = self;
     const bough_simulation *s = x->simulation;
@@ -247,7 +247,7 @@ static bough_status balance_members(bough_arena *arena, void *data) {
 }
 
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
-                          bough_equilibrium_work *work) {
+                                          bough_equilibrium_work *work) {
     task x = {.simulation = s, .assembly = assembly, .time = time, .work = work};
     *work = (bough_equilibrium_work){0};
     return bough_arena_use(balance_members, &x);
@@ -281,14 +281,19 @@ static bough_status refuse_path(const bough_simulation *s) {
     for (int i = 0; i < s->tree->n_links; i++) {
         const bough_link *link = &s->tree->links[i];
         if (link->motion == NULL) continue;
-        return bough_fail(BOUGH_INVALID, "%.200s: body '%s': a path of equilibria knows no prescribed motions: give its "
-                          "joint a load", file, s->tree->bodies[link->body].name);
+        return bough_fail(BOUGH_INVALID,
+                          "%.200s: body '%s': a path of equilibria knows no prescribed motions: give its "
+                          "joint a load",
+                          file, s->tree->bodies[link->body].name);
     }
     if (s->aero != NULL) return bough_fail(BOUGH_INVALID, "%.200s: a path of equilibria knows no air", file);
-    if (s->jump != NULL) return bough_fail(BOUGH_INVALID, "%.200s: loads: a path of equilibria knows no jumps", file);
+    if (s->jump != NULL)
+        return bough_fail(BOUGH_INVALID, "%.200s: loads: a path of equilibria knows no jumps", file);
     if (bough_equilibrium_time(s) > 0) return bough_ok();
-    return bough_fail(BOUGH_INVALID, "%.200s: loads: expected one that grows, as 'ramp: [0 s, 1 s]': its path is "
-                      "followed over the ramp", file);
+    return bough_fail(BOUGH_INVALID,
+                      "%.200s: loads: expected one that grows, as 'ramp: [0 s, 1 s]': its path is "
+                      "followed over the ramp",
+                      file);
 }
 
 static bough_status walk_path(bough_arena *arena, void *data) {

@@ -29,7 +29,7 @@ double bough_equilibrium_time(const bough_simulation *s);
 // Brings the members of the assembly, the simulation's, to equilibrium under the loads at `time`;
 // their clocks stay at 0. BOUGH_FAILED names the body that finds none.
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
-                          bough_equilibrium_work *work);
+                                          bough_equilibrium_work *work);
 
 // Called at each point of a path, where the members and the simulation's view then are. `limit`: the loads
 // have a local maximum or minimum there. A failure ends the path.
@@ -39,8 +39,8 @@ typedef struct bough_path_listener {
 } bough_path_listener;
 
 // Follows the equilibria of the assembly as the loads grow from those at time 0 to those at
-// bough_equilibrium_time, in proportion, through limit points (cosim/path.h). BOUGH_INVALID for scenes with air, prescribed motions, jumps of loads, or
-// loads that do not grow. BOUGH_FAILED when the path ends before.
+// bough_equilibrium_time, in proportion, through limit points (cosim/path.h). BOUGH_INVALID for scenes with
+// air, prescribed motions, jumps of loads, or loads that do not grow. BOUGH_FAILED when the path ends before.
 bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *assembly,
                                    bough_path_listener listener, bough_path_report *report);
 

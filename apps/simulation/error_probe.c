@@ -4,8 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-// A controller moves its joints by what the run does. Without a model beside it their errors are not known, and
-// what the motion needs also depends on the demanded acceleration.
+// A controller moves its joints by what the run does. Without a model beside it their errors are not known,
+// and what the motion needs also depends on the demanded acceleration.
 static void leave_steered_joints(bough_error_probe *p, bool beside) {
     static const char *const parts[] = {"Trq", "Pos", "Vel"};
     const bough_scene *scene = p->simulation->scene;
@@ -87,12 +87,14 @@ static double unturned(const char *unit, double difference) {
 
 static bool is_force(const char *unit) { return unit[0] && unit[strlen(unit) - 1] == 'N'; }
 
-// Only a second solution tells the errors of the rods' wrenches, on which forces of driven joints, closures and the nacelle
-// depend, and of forces at all: vibrations along a blade, which the linearised members damp, make up theirs.
+// Only a second solution tells the errors of the rods' wrenches, on which forces of driven joints, closures
+// and the nacelle depend, and of forces at all: vibrations along a blade, which the linearised members damp,
+// make up theirs.
 static bool is_told(const bough_error_probe *p, int channel) {
     const bough_simulation *s = p->simulation;
     if (bough_master_inputs_error(s->master)) return true;
-    return !is_force(p->channels->channel[channel].unit) && (channel < s->first_drive || channel >= s->first_drive + s->n_drive) &&
+    return !is_force(p->channels->channel[channel].unit) &&
+           (channel < s->first_drive || channel >= s->first_drive + s->n_drive) &&
            (channel < s->first_closure || channel >= s->first_closure + s->n_closure) &&
            (channel < s->first_bearing || channel >= s->first_bearing + s->n_bearing);
 }

@@ -33,7 +33,8 @@ typedef struct bough_error_probe {
     double *value;      // (channels.count) scratch
 } bough_error_probe;
 
-// Takes its memory from the arena. The channels are the simulation's own. `second` is the model beside it, or NULL.
+// Takes its memory from the arena. The channels are the simulation's own. `second` is the model beside it, or
+// NULL.
 bough_status bough_error_probe_create(bough_arena *arena, bough_simulation *s, bough_simulation *second,
                                       const bough_channels *channels, bough_error_probe *probe);
 
@@ -73,10 +74,11 @@ enum { BOUGH_ERROR_WARNING = 600 };
 void bough_error_probe_warn(const bough_error_probe *probe, double bound, char text[BOUGH_ERROR_WARNING]);
 
 // A warning about a force or moment with an error above the bound [1], or ""; 0: no bound.
-void bough_error_probe_warn_of_force(const bough_error_probe *probe, double bound, char text[BOUGH_ERROR_WARNING]);
+void bough_error_probe_warn_of_force(const bough_error_probe *probe, double bound,
+                                     char text[BOUGH_ERROR_WARNING]);
 
-// BOUGH_FAILED, with channel, time, cause and settings to try, when the relative error of a motion exceeds the
-// bound [1], or did so when it was last known; 0: no bound.
+// BOUGH_FAILED, with channel, time, cause and settings to try, when the relative error of a motion exceeds
+// the bound [1], or did so when it was last known; 0: no bound.
 bough_status bough_error_probe_judge(const bough_error_probe *probe, double bound);
 
 #endif

@@ -30,8 +30,8 @@ typedef struct bough_error_shares {
 const char *bough_error_share_name(bough_error_share_kind kind);
 
 // Gives each rod of the scene `times` as many segments, in arrays of their own, and sets the part of the
-// difference that is the error. False, with the reason in the share, for modal bodies, scenes without rods and
-// controllers that cannot be run twice.
+// difference that is the error. False, with the reason in the share, for modal bodies, scenes without rods
+// and controllers that cannot be run twice.
 bool bough_error_share_refine(bough_arena *arena, bough_scene *scene, int times, bough_error_share *share);
 
 // Prepares for the rows that the run records every `interval` [s]. Takes memory only if the scene asks for

@@ -34,8 +34,8 @@ void bough_error_probe_find_vectors(const bough_channels *channels, int *vector)
 }
 
 // Of what is recorded or, when that is less, of what it would be without the error: where one of the
-// two has run away, the other still has a size. Few values are known without the error; the range of all of them is
-// at least the recorded one less twice the error.
+// two has run away, the other still has a size. Few values are known without the error; the range of all of
+// them is at least the recorded one less twice the error.
 static double own_range(const bough_error_probe *p, int i) {
     double range = p->high[i] - p->low[i], corrected = p->true_high[i] - p->true_low[i];
     if (p->batches <= 1 || !(corrected < range)) return fmax(range, 0);
@@ -111,7 +111,8 @@ static bool has_say(const bough_error_probe *p, int i) {
     const bough_channel *channel = &p->channels->channel[i];
     double moves = fmax(range_of(p, i), p->largest[i]);
     double size = fmax(fabs(p->high[i]), fabs(p->low[i]));
-    bool moving = is_motion(channel) ? in_si(channel, moves) > rounding * largest_value(p) : moves > least_share * size;
+    bool moving =
+        is_motion(channel) ? in_si(channel, moves) > rounding * largest_value(p) : moves > least_share * size;
     return moving && moves >= least_share * largest_range(p, channel->unit);
 }
 
@@ -132,7 +133,9 @@ static bough_error_verdict verdict_of(const bough_error_probe *p, bool motion) {
 
 bough_error_verdict bough_error_probe_verdict(const bough_error_probe *p) { return verdict_of(p, true); }
 
-bough_error_verdict bough_error_probe_force_verdict(const bough_error_probe *p) { return verdict_of(p, false); }
+bough_error_verdict bough_error_probe_force_verdict(const bough_error_probe *p) {
+    return verdict_of(p, false);
+}
 
 static const double hopeless = 3; // times the range
 enum { HOPELESS_FOR = 8 };
@@ -149,7 +152,8 @@ void bough_error_probe_watch(bough_error_probe *p) {
     p->last_error = p->largest[v.channel];
 }
 
-static void describe(const bough_error_probe *p, const bough_error_verdict *v, double error, char *text, size_t size) {
+static void describe(const bough_error_probe *p, const bough_error_verdict *v, double error, char *text,
+                     size_t size) {
     const bough_channel *channel = &p->channels->channel[v->channel];
     const bough_master *m = p->simulation->master;
     snprintf(text, size, "%s errs by %.2g %s, %.2g of its range, noticeably from %.6g s on; cause: %s",
@@ -162,10 +166,13 @@ void bough_error_probe_warn(const bough_error_probe *p, double bound, char text[
     const bough_second_solution *second = p->simulation->master->second;
     const char *reason = second ? bough_second_solution_reason(second) : NULL;
     if (reason) {
-        int n = snprintf(text, BOUGH_ERROR_WARNING, "the second solution, by which errors are measured, was given "
-                         "up %s; errors since then: %s", reason, bough_master_error_source(p->simulation->master));
+        int n = snprintf(text, BOUGH_ERROR_WARNING,
+                         "the second solution, by which errors are measured, was given "
+                         "up %s; errors since then: %s",
+                         reason, bough_master_error_source(p->simulation->master));
         if (v.channel >= 0 || p->last.channel < 0) return;
-        snprintf(text + n, (size_t)(BOUGH_ERROR_WARNING - n), "; until then the largest was that of %s, %.2g of its range",
+        snprintf(text + n, (size_t)(BOUGH_ERROR_WARNING - n),
+                 "; until then the largest was that of %s, %.2g of its range",
                  p->channels->channel[p->last.channel].name, p->last.relative);
         return;
     }
@@ -173,7 +180,8 @@ void bough_error_probe_warn(const bough_error_probe *p, double bound, char text[
     describe(p, &v, p->largest[v.channel], text, BOUGH_ERROR_WARNING);
 }
 
-void bough_error_probe_warn_of_force(const bough_error_probe *p, double bound, char text[BOUGH_ERROR_WARNING]) {
+void bough_error_probe_warn_of_force(const bough_error_probe *p, double bound,
+                                     char text[BOUGH_ERROR_WARNING]) {
     bough_error_verdict v = bough_error_probe_force_verdict(p);
     text[0] = '\0';
     if (v.channel < 0 || !(bound > 0) || v.relative <= bound) return;

@@ -103,6 +103,7 @@ void bough_input_link_snapshot(bough_input_link *link, bough_snapshot *s) {
     for (int k = 0; k < link->n; k++) {
         double value = link->memory[link->n + k];
         if (link->table[k] != NULL) link->table[k][0] = link->table[k][1] = value;
-        if (link->simulation->scene->input[k].kind == BOUGH_INPUT_WIND) bough_aero_link_set_wind(link->simulation->aero, value);
+        if (link->simulation->scene->input[k].kind == BOUGH_INPUT_WIND)
+            bough_aero_link_set_wind(link->simulation->aero, value);
     }
 }

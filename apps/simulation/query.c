@@ -46,7 +46,8 @@ bough_rotor_place bough_simulation_rotor(const bough_simulation *s) {
     bough_transform hub = bough_tree_frame_pose(s->view, &s->tree->bodies[body]);
     double along[3] = {0};
     along[scene->body[body].joint.axis] = 1; // unchanged by the joint's own turn
-    bough_rotor_place r = {hub.position, bough_mat3_mul(hub.rotation, bough_v3(along[0], along[1], along[2])), 0};
+    bough_rotor_place r = {hub.position, bough_mat3_mul(hub.rotation, bough_v3(along[0], along[1], along[2])),
+                           0};
     for (int k = 0; k < scene->turbine.n_blade; k++) {
         const bough_beam *blade = bough_simulation_beam(s, scene->turbine.blade[k]);
         bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[blade->marker]);

@@ -78,8 +78,10 @@ static void seek_pitch(search *x, double speed, double f) {
         }
         low = high, f = g;
     }
-    x->status = bough_fail(BOUGH_FAILED, "no steady operation: at a pitch of %.4g degrees the "
-                                        "rotor still accelerates at %.4g rpm", low * 180 / BOUGH_PI, speed * 30 / BOUGH_PI);
+    x->status = bough_fail(BOUGH_FAILED,
+                           "no steady operation: at a pitch of %.4g degrees the "
+                           "rotor still accelerates at %.4g rpm",
+                           low * 180 / BOUGH_PI, speed * 30 / BOUGH_PI);
 }
 
 // From a speed with a surplus (f > 0) upwards, or without one downwards.

@@ -13,8 +13,8 @@ static const double most_over_rated = 2;
 static const double most_missed = 0.3;
 // A segment has one strain: what turns by more is a coarse picture of it, and there is none beyond 120°.
 static const double most_turn = 0.25 * BOUGH_PI;
-// Of bough_loops_margin, also relative to the largest so far: on random linkages it stays above 0.02 or above 0.03 of the
-// largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
+// Of bough_loops_margin, also relative to the largest so far: on random linkages it stays above 0.02 or above
+// 0.03 of the largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
 static const double least_margin = 0.01, least_share = 0.1;
 static const double small_turn = 0.98; // cosine of a quarter of most_turn
 
@@ -29,13 +29,14 @@ static const struct {
     [BOUGH_LIMIT_ROTOR_SPEED] = {"rotor_speed", "the rotor turns at %.4g rpm, more than twice the"
                                                 " rated speed"},
     [BOUGH_LIMIT_TOWER] = {"tower_strike", "the blade is inside the tower, %.3g of its radius"
-                                        " from the axis: nothing stops it there"},
+                                           " from the axis: nothing stops it there"},
     [BOUGH_LIMIT_SAMPLES] = {"air_samples", "the loads of the air miss its vibrations by %.2g of their size"
-                                           " between two samples: take a higher aero.rate, or fidelity rod"},
+                                            " between two samples: take a higher aero.rate, or fidelity rod"},
     [BOUGH_LIMIT_TURN] = {"segment_turn", "a segment turns its ends against each other by %.3g deg, more"
                                           " than 45 deg: take more segments"},
-    [BOUGH_LIMIT_SINGULAR] = {"singular_position", "its closed loop is near a position from which its bodies can go on in two"
-                                                   " ways, and takes one of them by the smallest difference; margin %.2g"},
+    [BOUGH_LIMIT_SINGULAR] = {"singular_position",
+                              "its closed loop is near a position from which its bodies can go on in two"
+                              " ways, and takes one of them by the smallest difference; margin %.2g"},
 };
 
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
@@ -118,7 +119,8 @@ static void check_closures(bough_simulation *s) {
     bough_validity *v = s->validity;
     if (v->limit[BOUGH_LIMIT_SINGULAR].passed) return;
     bough_simulation_update(s);
-    if (!bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration)) return;
+    if (!bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration))
+        return;
     double margin = bough_loops_margin(s->tree, s->view, &closure);
     v->margin = fmax(v->margin, margin);
     if (!(margin <= least_margin && margin <= least_share * v->margin)) return;

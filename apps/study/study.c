@@ -339,7 +339,8 @@ static bool is_verification(const bough_node *root, bough_errors *errors) {
 static bool is_scene(const char *path, const bough_node *root, bough_errors *errors) {
     const bough_node *bodies = bough_node_find(root, "bodies");
     if (!bodies || bough_node_find(root, "kind")) return false;
-    bough_errors_add(errors, bodies, "bodies", "this is a scene, not a study: 'bough run %.200s' runs it", path);
+    bough_errors_add(errors, bodies, "bodies", "this is a scene, not a study: 'bough run %.200s' runs it",
+                     path);
     return true;
 }
 

@@ -20,8 +20,8 @@ const bough_study_setting *bough_study_concerned(const bough_study_settings *set
 const bough_study_setting *bough_study_concerned_value(const bough_study_grid *grid, const int *index,
                                                        const bough_error *e);
 
-// Adds an error of a run's scene, once for all runs that have it: an error in a replacement at `origin`, where
-// the study gives it.
+// Adds an error of a run's scene, once for all runs that have it: an error in a replacement at `origin`,
+// where the study gives it.
 void bough_study_tell(const bough_error *e, const char *scene, const bough_node *origin,
                       bough_errors *errors);
 

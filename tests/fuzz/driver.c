@@ -1,6 +1,6 @@
 // Feeds a target without libFuzzer: every seed as it is, then mutations of them, always the same.
-// BOUGH_FUZZ_COUNT is their number, or BOUGH_FUZZ_SECONDS the time. driver STATE SEED...; what a crash was fed stays in the file
-// STATE, and `driver STATE STATE` with a count of 0 feeds it again.
+// BOUGH_FUZZ_COUNT is their number, or BOUGH_FUZZ_SECONDS the time. driver STATE SEED...; what a crash was
+// fed stays in the file STATE, and `driver STATE STATE` with a count of 0 feeds it again.
 #include "tests/fuzz/fuzz.h"
 
 #include <dirent.h>

@@ -58,7 +58,7 @@ static const bough_schema study_schema = {
 // clang-format on
 
 void *bough_blade_models_read(bough_arena *arena, const char *path, const bough_node *root,
-                        bough_errors *errors) {
+                              bough_errors *errors) {
     bough_blade_models *s = bough_arena_take(arena, sizeof *s);
     if (!s) return NULL;
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = ""};
@@ -265,7 +265,7 @@ static bough_status write_file(const comparison *c, const char *folder) {
 }
 
 bough_status bough_blade_models_perform(bough_arena *arena, const void *study,
-                                  const bough_verification_options *options) {
+                                        const bough_verification_options *options) {
     comparison c = {.study = study};
     bough_status status = make_run(arena, c.study, &c.run);
     if (bough_is_ok(&status)) status = bough_folder_make(options->folder);

@@ -8,10 +8,10 @@
 
 // Reads the study at `path` from its root; adds what is wrong to `errors`.
 void *bough_blade_models_read(bough_arena *arena, const char *path, const bough_node *root,
-                        bough_errors *errors);
+                              bough_errors *errors);
 
 // Prints the table and writes blade-models.csv.
 bough_status bough_blade_models_perform(bough_arena *arena, const void *study,
-                                  const bough_verification_options *options);
+                                        const bough_verification_options *options);
 
 #endif

@@ -16,7 +16,7 @@ static const char models[] =
     "  - {name: linear, body: [fidelity=modal, rod.segments=24, modal.modes=14]}\n";
 
 static bough_blade_models *read_study(bough_arena *arena, const char *folder, const char *text,
-                               bough_errors *errors) {
+                                      bough_errors *errors) {
     char path[128];
     bough_verification study;
     snprintf(path, sizeof path, "%s/study.yaml", folder);
