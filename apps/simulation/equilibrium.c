@@ -68,8 +68,8 @@ static bough_status explain(const bough_simulation *s, const bough_assembly *ass
     return bough_fail(BOUGH_FAILED,
                       "%s: no equilibrium found in %d steps; it still moves by %.3g of its scale "
                       "in a step, at a rate of %.3g; a free joint needs a spring, a speed or "
-                      "a motion; or the load is too large (try a part of it), or the mesh "
-                      "too coarse",
+                      "a motion; or the load is too large (try a part of it, or 'bough static --path'), "
+                      "or the mesh too coarse",
                       body_of(s, assembly, report->row), report->steps, report->change,
                       report->rate);
 }
