@@ -4,18 +4,19 @@
 #include <string.h>
 
 // clang-format off
-// A channel with OpenFAST's name. Three channels along or about x, y and z, with small letters in their names
+// A channel without OpenFAST's name, and with it. Three channels along or about x, y and z, with small letters in their names
 // and with capitals; `text` and `after` enclose the axis.
+#define OURS(name, unit, text) {name, unit, text, NULL}
 #define SAME(name, unit, text) {name, unit, text, name}
 #define XYZ(name, end, unit, text, after)                                                          \
-    {name "x" end, unit, text "x" after, NULL}, {name "y" end, unit, text "y" after, NULL},        \
-    {name "z" end, unit, text "z" after, NULL}
+    OURS(name "x" end, unit, text "x" after), OURS(name "y" end, unit, text "y" after),            \
+    OURS(name "z" end, unit, text "z" after)
 #define SAME_XYZ(name, end, unit, text, after)                                                     \
     SAME(name "x" end, unit, text "x" after), SAME(name "y" end, unit, text "y" after),            \
     SAME(name "z" end, unit, text "z" after)
 #define AXES(name, unit, text, after)                                                              \
-    {name "X", unit, text "x" after, NULL}, {name "Y", unit, text "y" after, NULL},                \
-    {name "Z", unit, text "z" after, NULL}
+    OURS(name "X", unit, text "x" after), OURS(name "Y", unit, text "y" after),                    \
+    OURS(name "Z", unit, text "z" after)
 static const bough_channel_row rotor[] = {
     SAME("RotSpeed", "rpm", "speed of the rotor's joint, positive about its axis"),
     SAME("Azimuth", "deg", "angle of the rotor's joint, from 0 to 360"),
@@ -110,29 +111,20 @@ static const bough_channel_row fmu[] = {
     XYZ("{a}F", "", "N", "force of the FMU on the body that carries it, ", " axis of its frame"),
     XYZ("{a}M", "", "N-m", "moment of the FMU about its frame's origin, ", " axis of its frame"),
 };
-// The twelve channels of a place on a rod: P before, S behind "TDx".
-#define SECTION(P, S)                                                                              \
-    SAME_XYZ(P "TD", S, "m", "displacement along the body's ", ""),                                \
-    SAME_XYZ(P "RD", S, "deg", "rotation vector of the section, ", " component in the body's axes"), \
-    SAME(P "FLx" S, "kN", "force of the outer part on the inner part along x of the section axes"), \
-    SAME(P "FLy" S, "kN", "force of the outer part on the inner part along y of the section axes"), \
-    SAME(P "FLz" S, "kN", "force of the outer part on the inner part along z of the section axes, positive in tension"), \
-    SAME(P "MLx" S, "kN-m", "moment of the outer part on the inner part about x of the section axes"), \
-    SAME(P "MLy" S, "kN-m", "moment of the outer part on the inner part about y of the section axes"), \
-    SAME(P "MLz" S, "kN-m", "moment of the outer part on the inner part about z of the section axes: torsion")
-static const bough_channel_row blade_section[] = {SECTION("Spn{b}", "b{a}")};
-static const bough_channel_row tower_section[] = {SECTION("TwHt{b}", "t")};
+// The twelve channels of a place on a rod: P before, S behind "TDx"; VECTOR and ROW with or without OpenFAST's name.
+#define SECTION(P, S, VECTOR, ROW)                                                                 \
+    VECTOR(P "TD", S, "m", "displacement along the body's ", ""),                                  \
+    VECTOR(P "RD", S, "deg", "rotation vector of the section, ", " component in the body's axes"), \
+    ROW(P "FLx" S, "kN", "force of the outer part on the inner part along x of the section axes"), \
+    ROW(P "FLy" S, "kN", "force of the outer part on the inner part along y of the section axes"), \
+    ROW(P "FLz" S, "kN", "force of the outer part on the inner part along z of the section axes, positive in tension"), \
+    ROW(P "MLx" S, "kN-m", "moment of the outer part on the inner part about x of the section axes"), \
+    ROW(P "MLy" S, "kN-m", "moment of the outer part on the inner part about y of the section axes"), \
+    ROW(P "MLz" S, "kN-m", "moment of the outer part on the inner part about z of the section axes: torsion")
+static const bough_channel_row blade_section[] = {SECTION("Spn{b}", "b{a}", SAME_XYZ, SAME)};
+static const bough_channel_row tower_section[] = {SECTION("TwHt{b}", "t", SAME_XYZ, SAME)};
+static const bough_channel_row section[] = {SECTION("{a}Spn{b}", "", XYZ, OURS)};
 #undef SECTION
-static const bough_channel_row section[] = {
-    XYZ("{a}Spn{b}TD", "", "m", "displacement along the body's ", ""),
-    XYZ("{a}Spn{b}RD", "", "deg", "rotation vector of the section, ", " component in the body's axes"),
-    {"{a}Spn{b}FLx", "kN", "force of the outer part on the inner part along x of the section axes", NULL},
-    {"{a}Spn{b}FLy", "kN", "force of the outer part on the inner part along y of the section axes", NULL},
-    {"{a}Spn{b}FLz", "kN", "force of the outer part on the inner part along z of the section axes, positive in tension", NULL},
-    {"{a}Spn{b}MLx", "kN-m", "moment of the outer part on the inner part about x of the section axes", NULL},
-    {"{a}Spn{b}MLy", "kN-m", "moment of the outer part on the inner part about y of the section axes", NULL},
-    {"{a}Spn{b}MLz", "kN-m", "moment of the outer part on the inner part about z of the section axes: torsion", NULL},
-};
 static const bough_channel_row shaft[] = {
     SAME("RotTorq", "kN-m", "torque of the rotor on loads, spring, generator and motion of its joint; positive when these brake a rotor that turns forward"),
     SAME("RotPwr", "kW", "RotTorq times the rotor's speed"),
