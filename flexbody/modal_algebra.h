@@ -19,11 +19,12 @@ static inline void add_scaled(int n, double c, const double *restrict x, double 
     for (int k = 0; k < n; k++) y[k] += c * x[k];
 }
 
-// y += c A x
+// y += c A x; of a unit vector x one column
 static inline void add_product(const bough_modal_piece *p, double c, const double *a,
                                const double *x, double *y) {
-    if (c == 0) return;
-    for (int l = 0; l < p->m; l++) add_scaled(p->m, c * x[l], a + (size_t)l * p->stride, y);
+    for (int l = 0; l < p->m; l++) {
+        if (x[l] != 0) add_scaled(p->m, c * x[l], a + (size_t)l * p->stride, y);
+    }
 }
 
 // y += Σ c_a A_a x of three matrices, one after the other in memory
@@ -84,11 +85,6 @@ static inline void add3(const bough_modal_piece *p, double sign, const double *r
     bough_vec3 w = bough_scale(sign, c);
 #pragma omp simd
     for (int k = 0; k < p->m; k++) to[k] += w.x * a[k] + w.y * b[k] + w.z * d[k];
-}
-
-// Column k of three rows.
-static inline bough_vec3 column3(const bough_modal_piece *p, const double *rows, int k) {
-    return bough_v3(rows[k], rows[p->stride + k], rows[2 * p->stride + k]);
 }
 
 // Displacement and turn of moving vertex i = 1..n, in frame axes, for modal coordinates.

@@ -96,6 +96,7 @@ typedef struct bough_modal_newton_piece {
     double *answer;                // q and η by d (2m × 12)
     double *wrench_x, *wrench;     // root wrench by q and η (6 × 2m), by d (6 × 12)
     double *work;                  // (m)
+    double *unit;                  // (2m) zeros between uses
 } bough_modal_newton_piece;
 
 typedef struct bough_modal_newton {

@@ -22,6 +22,7 @@ static void init_piece(bough_modal_newton_piece *p, bough_arena *arena,
     p->root_x = bough_arena_doubles(arena, W * 2 * m);
     p->wrench_x = bough_arena_doubles(arena, W * 2 * m);
     p->work = bough_arena_doubles(arena, (size_t)of->stride);
+    p->unit = bough_arena_doubles(arena, 2 * m);
     if (!first) {
         p->rate_d = bough_arena_doubles(arena, 2 * m * D);
         p->answer = bough_arena_doubles(arena, 2 * m * D);
@@ -56,9 +57,25 @@ static void add_matrices(int rows, int inner, int columns, double s, const doubl
 
 // -- tangents -------------------------------------------------------------------------------------
 
+static const bough_wrench none;
+
+static void set_state_columns(const bough_modal_point *at, bough_modal_newton_piece *p) {
+    int m = at->piece->m, stride = at->piece->stride;
+    const double *dq = p->unit, *deta = p->unit + m;
+    for (int j = 0; j < 2 * m; j++) {
+        double *rate = j < m ? p->by_q + (size_t)j * stride : p->by_eta + (size_t)(j - m) * stride;
+        bough_modal_frame_change tip;
+        p->unit[j] = 1;
+        bough_modal_forward_tangent(at, dq, deta, NULL, p->work, &tip);
+        bough_wrench root = bough_modal_backward_tangent(at, dq, deta, p->work, NULL, none, rate);
+        p->unit[j] = 0;
+        bough_wrench_store(root, p->root_x + (size_t)j * W);
+        if (at->piece->inner) memcpy(p->tip_x + (size_t)j * D, &tip, sizeof tip);
+    }
+}
+
 static void set_frame_columns(const bough_modal_point *at, bough_modal_newton_piece *p) {
     int m = at->piece->m;
-    const bough_wrench none = {{0, 0, 0}, {0, 0, 0}};
     for (int j = 0; j < D; j++) {
         double entry[D] = {0}, *rate = p->rate_d + (size_t)j * 2 * m;
         bough_modal_frame_change d, tip;
@@ -73,13 +90,12 @@ static void set_frame_columns(const bough_modal_point *at, bough_modal_newton_pi
 
 static void set_wrench_columns(const bough_modal_point *at, bough_modal_newton_piece *p) {
     int m = at->piece->m;
-    const bough_modal_frame_change held = {0};
     memset(p->work, 0, (size_t)m * sizeof *p->work); // q̇ does not change
     for (int j = 0; j < W; j++) {
         double entry[W] = {0};
         entry[j] = 1;
         bough_wrench root = bough_modal_backward_tangent(
-            at, NULL, NULL, p->work, &held, bough_wrench_load(entry), p->rate_w + (size_t)j * m);
+            at, NULL, NULL, p->work, NULL, bough_wrench_load(entry), p->rate_w + (size_t)j * m);
         bough_wrench_store(root, p->root_w + j * W);
     }
 }
@@ -93,7 +109,7 @@ bool bough_modal_linearise(const bough_modal_model *m, const bough_rod_loads *lo
         const bough_modal_point *at = &chain->point[k];
         bough_modal_newton_piece *p = &newton->piece[k];
         memcpy(p->turn, at->turn, (size_t)m->piece[k].m * m->piece[k].stride * sizeof *p->turn);
-        bough_modal_state_tangents(at, p->by_q, p->by_eta, p->root_x, p->tip_x);
+        set_state_columns(at, p);
         if (k > 0) set_frame_columns(at, p);
         if (m->piece[k].inner) set_wrench_columns(at, p);
         for (int j = 0; j < m->piece[k].m * m->piece[k].stride; j++) sum += fabs(p->by_q[j]);

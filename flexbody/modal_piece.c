@@ -8,7 +8,7 @@ void bough_modal_point_init(bough_modal_point *point, bough_arena *arena,
         size_t size;
     } arrays[] = {{&point->turn_q, 3 * s},      {&point->rate_q, s},
                   {&point->force, s},           {&point->lever, 3 * s},
-                  {&point->rest, s},              {&point->tip_turn, 3 * s},
+                  {&point->rest, s},
                   {&point->coefficient, BOUGH_MODAL_FIELDS},
                   {&point->rate_eta, s},        {&point->turn_rate, 3 * s},
                   {&point->turn, matrix},       {&point->gyroscopic, matrix},
@@ -35,9 +35,9 @@ bough_vec3 bough_modal_spin(bough_vec3 psi, bough_vec3 rate) {
 static void set_tip(bough_modal_point *at) {
     const bough_modal_piece *p = at->piece;
     const bough_modal_frame *frame = &at->frame;
-    bough_twist shift = vertex_of(p, p->n, at->q);
-    bough_twist rate = vertex_of(p, p->n, at->rate_q);
-    bough_mat3 e = bough_rotation_matrix(bough_quaternion_exponential(shift.angular));
+    bough_twist shift = at->tip_shift = vertex_of(p, p->n, at->q);
+    bough_twist rate = at->tip_rate = vertex_of(p, p->n, at->rate_q);
+    bough_mat3 e = at->tip_turn = bough_rotation_matrix(bough_quaternion_exponential(shift.angular));
     bough_vec3 x = bough_add(p->rod->position0[p->n], shift.linear);
     bough_vec3 u = bough_add(bough_add(frame->velocity, rate.linear), bough_cross(frame->spin, x));
     bough_vec3 w = bough_add(frame->spin, bough_modal_spin(shift.angular, rate.angular));
@@ -67,10 +67,9 @@ void bough_modal_forward(bough_modal_point *at, const bough_modal_frame *frame, 
 
 // The outer wrench in frame axes, and its moment as it works on ψ̇.
 static bough_wrench outer_wrench(const bough_modal_point *at, bough_vec3 *working) {
-    bough_vec3 psi = vertex_of(at->piece, at->piece->n, at->q).angular;
-    bough_mat3 e = bough_rotation_matrix(bough_quaternion_exponential(psi));
-    bough_wrench w = {bough_mat3_mul(e, at->outer.force), bough_mat3_mul(e, at->outer.moment)};
-    *working = bough_modal_spin(bough_scale(-1, psi), w.moment);
+    bough_wrench w = {bough_mat3_mul(at->tip_turn, at->outer.force),
+                      bough_mat3_mul(at->tip_turn, at->outer.moment)};
+    *working = bough_modal_spin(bough_scale(-1, at->tip_shift.angular), w.moment);
     return w;
 }
 

@@ -28,7 +28,10 @@ typedef struct bough_modal_point {
     bough_modal_frame frame;
     double *turn_q;           // G_a q (3 × stride)
     double *rate_q;           // q̇ (stride)
-    bough_modal_frame tip;    // the last vertex': the next piece's frame
+    // of a piece that has an inner one
+    bough_twist tip_shift, tip_rate; // displacement and rotation vector of the last vertex, their rates
+    bough_mat3 tip_turn;             // exp of that rotation vector
+    bough_modal_frame tip;           // the last vertex': the next piece's frame
     // computed by bough_modal_backward
     bough_wrench outer;       // on the tip, in the tip's axes
     double *force;            // Φᵀf of vertex loads and outer wrench (stride)
@@ -43,7 +46,6 @@ typedef struct bough_modal_point {
     double *turn, *gyroscopic, *field; // combined (m × stride each)
     double *field_q, *gyroscopic_eta;  // of each field (12 × stride), of each axis (3 × stride)
     double *eta_turn, *rest_turn;      // ηᵀG_a and (C_tᵀg − η̇)ᵀG_a (3 × stride)
-    double *tip_turn;                  // of η̇ per unit turn of the tip (3 × stride)
     double *force_turn;                // of force per unit turn of the frame (3 × stride)
     bough_vec3 moment_turn[3];         // of the loads' moment likewise
 } bough_modal_point;
@@ -70,8 +72,8 @@ void bough_modal_backward_loaded(bough_modal_point *point);
 // Prepares the tangents; after forward and backward (with the root).
 void bough_modal_slopes(bough_modal_point *point, const double *load, int load_stride);
 
-// Derivatives along dq, deta (m; both NULL for none) and a change of the frame: of q̇ to rate (m),
-// and the tip's change.
+// Derivatives along dq, deta (m; both NULL for none) and a change of the frame (NULL for none): of q̇ to
+// rate (m), and the tip's change.
 void bough_modal_forward_tangent(const bough_modal_point *point, const double *dq,
                                  const double *deta, const bough_modal_frame_change *frame,
                                  double *rate, bough_modal_frame_change *tip);
@@ -82,11 +84,6 @@ bough_wrench bough_modal_backward_tangent(const bough_modal_point *point, const 
                                           const double *deta, const double *drate_q,
                                           const bough_modal_frame_change *frame,
                                           bough_wrench outer, double *rate);
-
-// All derivatives by the piece's own state, by columns: of η̇ by q and by η (m × stride each), of
-// the root wrench by q, then η (6 × 2m) and of the tip's frame (12 × 2m) unless it is NULL.
-void bough_modal_state_tangents(const bough_modal_point *point, double *by_q, double *by_eta,
-                                double *root, double *tip);
 
 // Displacement and rotation vector of moving vertex i = 1..n for modal coordinates, or their rates
 // for rates, in frame axes.

@@ -1,4 +1,4 @@
-// Tangents of a modal piece: along a direction, and by its own state as matrices.
+// Tangents of a modal piece along a direction.
 #include "flexbody/modal_algebra.h"
 
 // -- slopes ---------------------------------------------------------------------------------------
@@ -83,9 +83,9 @@ void bough_modal_slopes(bough_modal_point *at, const double *load, int load_stri
 static void tip_change(const bough_modal_point *at, bough_twist dshift, bough_twist dmove,
                        const bough_modal_frame_change *d, bough_modal_frame_change *tip) {
     const bough_modal_piece *p = at->piece;
-    bough_twist shift = vertex_of(p, p->n, at->q), move = vertex_of(p, p->n, at->rate_q);
+    bough_twist shift = at->tip_shift, move = at->tip_rate;
     turning j = turning_of(shift.angular);
-    bough_mat3 e = bough_rotation_matrix(bough_quaternion_exponential(shift.angular));
+    bough_mat3 e = at->tip_turn;
     bough_vec3 beta = bough_mat3_tmul(e, tangent_map(j, shift.angular, dshift.angular));
     bough_vec3 x = bough_add(p->rod->position0[p->n], shift.linear);
     bough_vec3 du = bough_add(bough_add(d->velocity, dmove.linear),
@@ -104,10 +104,9 @@ static void tip_change(const bough_modal_point *at, bough_twist dshift, bough_tw
 // axes; and that of its moment as it works on ψ̇.
 static bough_wrench outer_change(const bough_modal_point *at, bough_vec3 dpsi, bough_wrench d,
                                  bough_vec3 *working) {
-    bough_vec3 psi = vertex_of(at->piece, at->piece->n, at->q).angular;
-    bough_vec3 back = bough_scale(-1, psi);
+    bough_vec3 psi = at->tip_shift.angular, back = bough_scale(-1, psi);
     turning j = turning_of(psi);
-    bough_mat3 e = bough_rotation_matrix(bough_quaternion_exponential(psi));
+    bough_mat3 e = at->tip_turn;
     bough_vec3 turn = tangent_map(j, psi, dpsi), moment = bough_mat3_mul(e, at->outer.moment);
     bough_vec3 force = bough_mat3_mul(e, at->outer.force);
     bough_wrench w = {bough_add(bough_mat3_mul(e, d.force), bough_cross(turn, force)),
@@ -121,13 +120,15 @@ static bough_wrench outer_change(const bough_modal_point *at, bough_vec3 dpsi, b
 static bough_wrench add_outer(const bough_modal_point *at, bough_wrench w, bough_vec3 working,
                               double *rate) {
     const bough_modal_piece *p = at->piece;
-    bough_vec3 x = bough_add(p->rod->position0[p->n], vertex_of(p, p->n, at->q).linear);
+    bough_vec3 x = bough_add(p->rod->position0[p->n], at->tip_shift.linear);
     add_force(p, p->n, (bough_wrench){w.force, working}, rate);
     add3(p, 1, at->field_q + (size_t)9 * p->stride, w.force, rate);
     return (bough_wrench){w.force, bough_add(w.moment, bough_cross(x, w.force))};
 }
 
 // -- along a direction ----------------------------------------------------------------------------
+
+static const bough_modal_frame_change held;
 
 void bough_modal_forward_tangent(const bough_modal_point *at, const double *dq, const double *deta,
                                  const bough_modal_frame_change *d, double *rate,
@@ -140,10 +141,12 @@ void bough_modal_forward_tangent(const bough_modal_point *at, const double *dq, 
         add_product(p, -1, at->turn, dq, rate);
         if (p->inner) dshift = vertex_of(p, p->n, dq);
     }
-    add3(p, -1, p->rigid, d->velocity, rate);
-    add3(p, -1, p->rigid + 3 * p->stride, d->spin, rate);
-    add3(p, -1, at->turn_q, d->spin, rate);
-    if (p->inner) tip_change(at, dshift, vertex_of(p, p->n, rate), d, tip);
+    if (d != NULL) {
+        add3(p, -1, p->rigid, d->velocity, rate);
+        add3(p, -1, p->rigid + 3 * p->stride, d->spin, rate);
+        add3(p, -1, at->turn_q, d->spin, rate);
+    }
+    if (p->inner) tip_change(at, dshift, vertex_of(p, p->n, rate), d ? d : &held, tip);
 }
 
 // What the frame's change adds to η̇, its share by q̇ apart.
@@ -196,15 +199,20 @@ bough_wrench bough_modal_backward_tangent(const bough_modal_point *at, const dou
                                           const bough_modal_frame_change *d, bough_wrench outer,
                                           double *rate) {
     const bough_modal_piece *p = at->piece;
-    bough_wrench w = resultant_change(at, d);
+    bough_wrench w = {{0, 0, 0}, {0, 0, 0}};
+    bough_twist dtwist = {{0, 0, 0}, {0, 0, 0}};
     memset(rate, 0, (size_t)p->m * sizeof *rate);
     if (p->inner) {
         bough_vec3 working, dpsi = {0, 0, 0};
         if (dq != NULL) dpsi = vertex_of(p, p->n, dq).angular;
         bough_wrench change = outer_change(at, dpsi, outer, &working);
-        w = bough_wrench_add(w, add_outer(at, change, working, rate));
+        w = add_outer(at, change, working, rate);
     }
-    add_frame_change(at, d, rate);
+    if (d != NULL) {
+        dtwist = (bough_twist){d->velocity, d->spin};
+        w = bough_wrench_add(w, resultant_change(at, d));
+        add_frame_change(at, d, rate);
+    }
     add_product(p, -1, p->damping, drate_q, rate);
     if (dq != NULL) {
         for (int k = 0; k < p->m; k++) rate[k] -= p->square[k] * dq[k];
@@ -217,118 +225,5 @@ bough_wrench bough_modal_backward_tangent(const bough_modal_point *at, const dou
                                bough_add(arms_times(at, deta), dot3(p, at->eta_turn, dq))};
         w = bough_wrench_sub(w, bough_wrench_cross(frame_twist(&at->frame), change));
     }
-    return less_momentum(at, w, drate_q, rate, (bough_twist){d->velocity, d->spin});
-}
-
-// -- by the state ---------------------------------------------------------------------------------
-
-static const bough_modal_frame_change held = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
-static const bough_wrench no_wrench = {{0, 0, 0}, {0, 0, 0}};
-static const bough_twist still = {{0, 0, 0}, {0, 0, 0}};
-
-// What a turn of the tip about each axis changes through the outer wrench: in η̇ (3 × stride) and
-// in the resultant.
-static void tip_turns(const bough_modal_point *at, double *rate, bough_wrench resultant[3]) {
-    clear(at->piece, 3, rate);
-    for (int a = 0; a < 3; a++) {
-        bough_vec3 working;
-        bough_wrench w = outer_change(at, unit_vector3(a), no_wrench, &working);
-        resultant[a] = add_outer(at, w, working, rate + a * at->piece->stride);
-    }
-}
-
-// Column k: dq = e_k, with q̇ changing by −(turn)_k, and dη = e_k, with q̇ changing by e_k.
-static bough_wrench column_of_q(const bough_modal_point *at, int k, bough_wrench resultant,
-                                const double *turn, const double *rate) {
-    const bough_modal_piece *p = at->piece;
-    bough_vec3 eta_turn = column3(p, at->eta_turn, k);
-    resultant.moment = bough_add(resultant.moment, bough_add(column3(p, at->lever, k),
-                                                             column3(p, at->rest_turn, k)));
-    bough_wrench change = {{0, 0, 0}, eta_turn};
-    resultant = bough_wrench_sub(resultant,
-                                 bough_wrench_cross(frame_twist(&at->frame), change));
-    resultant.force = bough_sub(resultant.force, dot3(p, p->rigid, rate));
-    resultant.moment = bough_sub(resultant.moment, arms_times(at, rate));
-    resultant.moment = bough_add(resultant.moment, dot3(p, at->eta_turn, turn));
-    return resultant;
-}
-
-static bough_wrench column_of_eta(const bough_modal_point *at, int k, const double *rate) {
-    const bough_modal_piece *p = at->piece;
-    bough_vec3 arm = bough_add(column3(p, p->rigid + 3 * p->stride, k), column3(p, at->turn_q, k));
-    bough_wrench change = {column3(p, p->rigid, k), arm};
-    bough_wrench w = {{0, 0, 0}, bough_scale(-1, bough_add(column3(p, at->turn_rate, k),
-                                                           column3(p, at->eta_turn, k)))};
-    w = bough_wrench_sub(w, bough_wrench_cross(frame_twist(&at->frame), change));
-    w.force = bough_sub(w.force, dot3(p, p->rigid, rate));
-    w.moment = bough_sub(w.moment, arms_times(at, rate));
-    return w;
-}
-
-static void rate_columns(const bough_modal_point *at, int k, double *by_q, double *by_eta) {
-    const bough_modal_piece *p = at->piece;
-    size_t column = (size_t)k * p->stride;
-    memcpy(by_q, at->field + column, (size_t)p->m * sizeof *by_q);
-    by_q[k] -= p->square[k];
-    add_product(p, 1, p->damping, at->turn + column, by_q);
-    for (int l = 0; l < p->m; l++) {
-        by_eta[l] = -p->damping[column + l] - at->gyroscopic[column + l];
-    }
-}
-
-// Of the tip's frame by its displacement and turn, and by their rates (12 × 6 each, by columns).
-static void tip_columns(const bough_modal_point *at, double *by_shift, double *by_move) {
-    for (int k = 0; k < 6; k++) {
-        double unit[6] = {0};
-        bough_modal_frame_change change;
-        unit[k] = 1;
-        tip_change(at, bough_twist_load(unit), still, &held, &change);
-        memcpy(by_shift + 12 * k, &change, sizeof change);
-        tip_change(at, still, bough_twist_load(unit), &held, &change);
-        memcpy(by_move + 12 * k, &change, sizeof change);
-    }
-}
-
-// The tip's frame by q and η: by_shift Φ − by_move Φ (turn), by_move Φ.
-static void set_tip_tangents(const bough_modal_point *at, double *tip) {
-    const bough_modal_piece *p = at->piece;
-    const double *rows = p->shape + (size_t)6 * (p->n - 1) * p->stride;
-    double by_shift[72], by_move[72];
-    tip_columns(at, by_shift, by_move);
-    memset(tip, 0, 24 * (size_t)p->m * sizeof *tip);
-    for (int k = 0; k < p->m; k++) {
-        double *by_q = tip + 12 * k, *by_eta = tip + 12 * (p->m + k);
-        for (int c = 0; c < 6; c++) {
-            double shape = rows[c * p->stride + k];
-            double turned = dot(p->m, rows + c * p->stride, at->turn + (size_t)k * p->stride);
-            add_scaled(12, shape, by_shift + 12 * c, by_q);
-            add_scaled(12, -turned, by_move + 12 * c, by_q);
-            add_scaled(12, shape, by_move + 12 * c, by_eta);
-        }
-    }
-}
-
-void bough_modal_state_tangents(const bough_modal_point *at, double *by_q, double *by_eta,
-                                double *root, double *tip) {
-    const bough_modal_piece *p = at->piece;
-    bough_wrench turned[3] = {no_wrench, no_wrench, no_wrench};
-    if (p->inner) tip_turns(at, at->tip_turn, turned);
-    for (int k = 0; k < p->m; k++) {
-        double *rate = by_q + (size_t)k * p->stride, *rate_eta = by_eta + (size_t)k * p->stride;
-        bough_wrench resultant = no_wrench;
-        rate_columns(at, k, rate, rate_eta);
-        if (p->inner) {
-            bough_vec3 psi = column3(p, p->shape + (size_t)(6 * p->n - 3) * p->stride, k);
-            add3(p, 1, at->tip_turn, psi, rate);
-            for (int a = 0; a < 3; a++) {
-                resultant.force = bough_axpy(component(psi, a), turned[a].force, resultant.force);
-                resultant.moment = bough_axpy(component(psi, a), turned[a].moment,
-                                              resultant.moment);
-            }
-        }
-        bough_wrench w = column_of_q(at, k, resultant, at->turn + (size_t)k * p->stride, rate);
-        bough_wrench_store(w, root + 6 * k);
-        bough_wrench_store(column_of_eta(at, k, rate_eta), root + 6 * (p->m + k));
-    }
-    if (tip != NULL) set_tip_tangents(at, tip);
+    return less_momentum(at, w, drate_q, rate, dtwist);
 }
