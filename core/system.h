@@ -81,10 +81,6 @@ typedef struct bough_system_ops {
     // Removes from a tangent x (n_state) at `state` the part that is not a motion: changes of a
     // quaternion's length.
     void (*project)(void *self, const double *state, double *x);
-
-    // Loads do not change for derivatives from t0 to t1, so terms that depend only on them may be computed
-    // once. t0 = t1 ends this.
-    void (*hold_loads)(void *self, double t0, double t1);
 } bough_system_ops;
 
 // The required operations, for static functions that have the names above.

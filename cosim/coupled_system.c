@@ -76,21 +76,12 @@ static void project(void *self, const double *state, double *x) {
     bough_coupled_project(self, state, x);
 }
 
-static void hold_loads(void *self, double t0, double t1) {
-    const bough_assembly *a = ((const bough_coupled *)self)->assembly;
-    for (int i = 0; i < a->n_member; i++) {
-        const bough_system *s = &a->member[i]->system;
-        if (s->ops->hold_loads) s->ops->hold_loads(s->self, t0, t1);
-    }
-}
-
 static const bough_system_ops operations = {
     BOUGH_SYSTEM_REQUIRED,
     .derivative_again = derivative_again,
     .stage = stage,
     .constrain = constrain,
     .project = project,
-    .hold_loads = hold_loads,
 };
 
 bough_system bough_coupled_system(bough_arena *arena, const bough_assembly *a, bough_pool *pool,

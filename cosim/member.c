@@ -73,10 +73,6 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
 
 // -- own steps ------------------------------------------------------------------------------------
 
-static void hold_loads(const bough_member *m, double t0, double t1) {
-    if (m->system.ops->hold_loads != NULL) m->system.ops->hold_loads(m->system.self, t0, t1);
-}
-
 static bool constrain(const bough_member *m) {
     if (m->system.ops->constrain == NULL) return false;
     return m->system.ops->constrain(m->system.self, m->time, m->state);
@@ -89,10 +85,7 @@ bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
     bough_status status = bough_ok();
     assert(t <= t1 && pause <= t1 && (input == NULL || input->n == m->system.n_input));
     m->signal = input;
-    if (!m->paused) {
-        memcpy(m->integrated, m->state, size);
-        hold_loads(m, t, t1);
-    }
+    if (!m->paused) memcpy(m->integrated, m->state, size);
     if (m->integrator.ops == NULL) {
         t = t1;
     } else {
@@ -102,7 +95,6 @@ bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
     m->started = bough_is_ok(&status);
     assert(!m->started || (t >= pause && t <= t1));
     m->paused = m->started && t < t1;
-    if (!m->paused) hold_loads(m, t1, t1);
     if (!m->started) return status;
     m->time = m->paused ? t : t1;
     memcpy(m->state, m->integrated, size);
@@ -127,7 +119,6 @@ bough_statistics bough_member_statistics(const bough_member *m) {
 static void begin_anew(bough_member *m, bool started) {
     size_t size = (size_t)m->system.n_state * sizeof(double);
     m->started = started;
-    if (m->paused) hold_loads(m, m->time, m->time);
     m->paused = false;
     if (m->own_error != NULL) memset(m->own_error, 0, size);
 }

@@ -31,7 +31,6 @@ void bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena,
     *chain = (bough_modal_chain){0};
     chain->point = bough_arena_take(arena, (size_t)m->n_piece * sizeof *chain->point);
     chain->load = bough_arena_doubles(arena, 6 * (size_t)m->rod->stride);
-    chain->held = bough_arena_doubles(arena, 2 * (size_t)m->piece[0].stride);
     chain->place = bough_arena_doubles(arena, (size_t)m->n_state + BOUGH_ROD_INPUTS);
     chain->place_load = bough_arena_doubles(arena, 6 * (size_t)m->rod->stride);
     chain->change = bough_arena_take(arena, ((size_t)m->n_piece + 1) * sizeof *chain->change);
@@ -87,43 +86,11 @@ static void evaluate(const bough_modal_model *m, const bough_rod_loads *loads, d
     }
 }
 
-void bough_modal_hold_loads(const bough_modal_model *m, const bough_rod_loads *loads, double t,
-                            double t1, bough_modal_chain *chain) {
-    const bough_modal_piece *p = &m->piece[0];
-    double *from = chain->held, *rate = chain->held + p->stride;
-    if (m->n_piece > 1 || !(t1 > t)) return;
-    set_loads(m, loads, t, chain->load);
-    bough_modal_project(p, chain->load, m->rod->stride, from);
-    set_loads(m, loads, t1, chain->load);
-    bough_modal_project(p, chain->load, m->rod->stride, rate);
-    for (int k = 0; k < p->m; k++) rate[k] = (rate[k] - from[k]) / (t1 - t);
-    chain->held_from = t;
-    chain->holds = true;
-}
-
-void bough_modal_release_loads(bough_modal_chain *chain) {
-    chain->holds = false;
-}
-
-// η̇ of the only piece under the held loads.
-static void backward_held(const bough_modal_model *m, double t, bough_modal_chain *chain) {
-    const bough_modal_piece *p = &m->piece[0];
-    double elapsed = t - chain->held_from, *force = chain->point[0].force;
-    const double *from = chain->held, *rate = chain->held + p->stride;
-    for (int k = 0; k < p->m; k++) force[k] = from[k] + elapsed * rate[k];
-    bough_modal_backward_loaded(&chain->point[0]);
-}
-
 bool bough_modal_derivative(const bough_modal_model *m, const bough_rod_loads *loads, double t,
                             const double *state, const double *input, bough_modal_chain *chain,
                             double *rate) {
     double sum = 0;
-    if (chain->holds) {
-        forward(m, state, input, chain);
-        backward_held(m, t, chain);
-    } else {
-        evaluate(m, loads, t, state, input, chain, false);
-    }
+    evaluate(m, loads, t, state, input, chain, false);
     for (int k = 0; k < m->n_piece; k++) {
         const bough_modal_point *at = &chain->point[k];
         size_t size = (size_t)m->piece[k].m * sizeof *rate;

@@ -23,9 +23,6 @@ typedef struct bough_modal_model {
 typedef struct bough_modal_chain {
     bough_modal_point *point; // (n_piece)
     double *load;             // on the body's vertices at the time of evaluation (6 × rod stride)
-    double *held;             // Φᵀf at held_from, and its rate (2 × stride of the one piece)
-    double held_from;         // [s]
-    bool holds;
     double *place;            // state and input of the last slopes (n_state + 9)
     double *place_load;       // and its loads (6 × rod stride)
     bool placed;              // they are those of an evaluation
@@ -45,12 +42,6 @@ void bough_modal_rest_state(const bough_modal_model *m, const double *input, dou
 // Sets η to that of a body at rest relative to its frame in the shape of the state, q̇ = 0.
 void bough_modal_ride(const bough_modal_model *m, const double *input, bough_modal_chain *chain,
                       double *state);
-
-// Projects the loads for derivatives at times from t to t1, over which they are linear; of use to a
-// body of one piece. Until bough_modal_release_loads.
-void bough_modal_hold_loads(const bough_modal_model *m, const bough_rod_loads *loads, double t,
-                            double t1, bough_modal_chain *chain);
-void bough_modal_release_loads(bough_modal_chain *chain);
 
 // rate (n_state); false when a value is not finite.
 bool bough_modal_derivative(const bough_modal_model *m, const bough_rod_loads *loads, double t,

@@ -143,21 +143,6 @@ static void set_root(bough_modal_point *at, bough_wrench loads) {
     at->root = bough_wrench_sub(w, carried);
 }
 
-void bough_modal_project(const bough_modal_piece *p, const double *load, int stride,
-                         double *force) {
-    memset(force, 0, (size_t)p->m * sizeof *force);
-    for (int i = 1; i <= p->n; i++) {
-        const double *f = load + p->first + i;
-        bough_wrench w = {{f[0], f[stride], f[2 * stride]},
-                          {f[3 * stride], f[4 * stride], f[5 * stride]}};
-        add_force(p, i, w, force);
-    }
-}
-
-void bough_modal_backward_loaded(bough_modal_point *at) {
-    set_rate(at);
-}
-
 void bough_modal_backward(bough_modal_point *at, const double *load, int load_stride,
                           bough_wrench outer, bool root) {
     at->outer = outer;

@@ -62,13 +62,6 @@ void bough_modal_forward(bough_modal_point *point, const bough_modal_frame *fram
 void bough_modal_backward(bough_modal_point *point, const double *load, int load_stride,
                           bough_wrench outer, bool root);
 
-// Φᵀf of the loads on the body's vertices for a piece whose frame is not turned: force (m).
-void bough_modal_project(const bough_modal_piece *piece, const double *load, int load_stride,
-                         double *force);
-
-// η̇ under point->force; no piece follows.
-void bough_modal_backward_loaded(bough_modal_point *point);
-
 // Prepares the tangents; after forward and backward (with the root).
 void bough_modal_slopes(bough_modal_point *point, const double *load, int load_stride);
 

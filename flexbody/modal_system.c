@@ -69,15 +69,6 @@ static void solve(void *self, void *factors, double *x) {
     bough_modal_solve(b->model, factors, x);
 }
 
-static void hold_loads(void *self, double t0, double t1) {
-    bough_modal_body *b = self;
-    if (t1 > t0) {
-        bough_modal_hold_loads(b->model, &b->loads, t0, t1, &b->chain);
-    } else {
-        bough_modal_release_loads(&b->chain);
-    }
-}
-
 // -- life -----------------------------------------------------------------------------------------
 
 static void take_memory(bough_modal_body *b, bough_arena *arena) {
@@ -111,10 +102,7 @@ bough_modal_body *bough_modal_body_create(bough_arena *arena, const bough_modal_
 }
 
 bough_system bough_modal_body_system(bough_modal_body *body) {
-    static const bough_system_ops ops = {
-        BOUGH_SYSTEM_REQUIRED,
-        .hold_loads = hold_loads,
-    };
+    static const bough_system_ops ops = {BOUGH_SYSTEM_REQUIRED};
     return (bough_system){.name = body->model->name,
                           .kind = "modal",
                           .n_state = body->model->n_state,

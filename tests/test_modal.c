@@ -2,6 +2,7 @@
 #include "tests/check.h"
 
 #include "tests/verification/modal_static.h"
+#include "cosim/port.h"
 #include "flexbody/modal_system.h"
 #include "flexbody/rod_modes.h"
 #include "flexbody/rod_system.h"
@@ -353,6 +354,35 @@ static void few_shapes_keep_momentum(void **context) {
     check_near(moment[0] / moment[1], 4, 0.2, 0);
 }
 
+// Loads that bend over a step act as they are: the tip follows them whether the step is taken in one or in eight.
+static void loads_bend_over_a_step(void **context) {
+    (void)context;
+    const double still[BOUGH_ROD_INPUTS] = {0};
+    const int parts[2] = {1, 8};
+    double reached[2];
+    for (int k = 0; k < 2; k++) {
+        bough_arena *arena = bough_arena_create();
+        bough_modal_model *m = general(arena, 7, 1, (bough_modal_options){3, false, false});
+        bough_modal_body *body = body_of(arena, m, still);
+        bough_modal_body_loads(body)->curve[m->rod->n] = 1e3; // along x at the tip
+        bough_system s = bough_modal_body_system(body);
+        bough_member *member = member_of(
+            arena, &s, (bough_integrator_options){.kind = BOUGH_ROSENBROCK, .rtol = 1e-9});
+        bough_signal input = bough_port_signal(arena, BOUGH_ROD_INPUTS);
+        for (int i = 0; i < parts[k]; i++) {
+            input.t0 = 0.02 * i / parts[k];
+            input.t1 = 0.02 * (i + 1) / parts[k];
+            bough_status status = bough_member_advance(member, input.t1, &input, i == 0);
+            assert_int_equal(status.code, BOUGH_OK);
+        }
+        reached[k] = bough_modal_body_vertices(body, member->state, still, m->rod->n)[m->rod->n - 1] -
+                     m->rod->position0[m->rod->n].x;
+        bough_arena_destroy(arena);
+    }
+    assert_true(reached[0] > 0);
+    check_near(reached[0], reached[1], 1e-4, 0);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(operations_of_one_piece_agree),
@@ -363,6 +393,7 @@ int main(void) {
         cmocka_unit_test(linear_statics_err_by_the_cube_of_the_load),
         cmocka_unit_test(pieces_converge_to_the_bent_rod),
         cmocka_unit_test(few_shapes_keep_momentum),
+        cmocka_unit_test(loads_bend_over_a_step),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
