@@ -1,4 +1,4 @@
-// Blade element momentum at one station: the inflow angle at which blade forces and momentum
+// Blade element momentum at a station: the inflow angle at which blade forces and momentum
 // agree, by Ning's single residual, whose root is always bracketed.
 //
 // The solver has no memory. A stalled polar may have several roots; a start from the last result would then
@@ -42,48 +42,32 @@ typedef struct bough_induction_options {
 // Everything on, smooth high thrust.
 bough_induction_options bough_induction_options_default(void);
 
-// One station. x is normal to the swept surface (downwind), y tangential against the rotation.
-typedef struct bough_element {
-    const bough_polar *polar;
-    double solidity;               // B c/(2 π r) [-]
-    double tip_factor, hub_factor; // B (R − r)/(2 r), B (r − R_hub)/(2 R_hub) [-]
-    double cone;                   // cos² of the blade's angle from the rotor plane [-]
-    double twist;                  // of the chord from y [rad]
-    double inflow_x, inflow_y;     // relative to the blade, without induction [m/s]
-    // The section, its twist taken out, stands askew to y: its normal's part along y, and what its
-    // chord's is short of 1. 0 unless the blade leans from the rotor plane and y from its chord.
-    double skew_normal, skew_chord;
-    double skew; // χ, of the wind and the shaft, of the whole rotor, below 90 degrees [rad]
-} bough_element;
-
-typedef struct bough_induction {
-    double axial, tangential; // a in [−1, 1.5], a' in [−1, 1]; both 0 where no balance exists [-]
-    double loss;              // Prandtl's factor there [-]
-    int evaluations;          // of the residual
-} bough_induction;
-
-// The induction at an element; finite for any finite element.
-bough_induction bough_induction_solve(const bough_induction_options *options,
-                                      const bough_element *element);
-
 // Whether an element is at the very tip or root, where the loss leaves a = 1, a' = 0.
-static inline bool bough_induction_is_fixed(const bough_induction_options *options,
-                                            double tip_factor, double hub_factor) {
+static inline bool bough_induction_is_fixed(const bough_induction_options *options, double tip_factor,
+                                            double hub_factor) {
     return (options->tip_loss && tip_factor < 1e-9) || (options->hub_loss && hub_factor < 1e-9);
 }
 
-// Elements in structures of arrays.
+// Stations in structures of arrays. x is normal to the swept surface (downwind), y tangential against the
+// rotation.
 typedef struct bough_elements {
-    int n;                           // a multiple of BOUGH_LANES
-    const bough_polar *const *polar; // (n), and so all that follow; each as in bough_element
-    const double *solidity, *tip_factor, *hub_factor, *cone, *twist, *inflow_x, *inflow_y;
+    int n;                                 // a multiple of BOUGH_LANES
+    const bough_polar *const *polar;       // (n), and so all that follow
+    const double *solidity;                // B c/(2 π r) [-]
+    const double *tip_factor, *hub_factor; // B (R − r)/(2 r), B (r − R_hub)/(2 R_hub) [-]
+    const double *cone;                    // cos² of the blade's angle from the rotor plane [-]
+    const double *twist;                   // of the chord from y [rad]
+    const double *inflow_x, *inflow_y;     // relative to the blade, without induction [m/s]
+    // The section, its twist taken out, stands askew to y: its normal's part along y, and what its
+    // chord's is short of 1. 0 unless the blade leans from the rotor plane and y from its chord.
     const double *skew_normal, *skew_chord;
-    double skew;                     // of all
+    double skew; // χ, of the wind and the shaft, of the whole rotor, below 90 degrees [rad]
 } bough_elements;
 
-// The same for all elements, side by side in vector lanes: `axial`, `tangential`, `loss` (n each).
-void bough_induction_solve_all(const bough_induction_options *options,
-                               const bough_elements *elements, double *axial, double *tangential,
-                               double *loss);
+// The inductions, side by side in vector lanes: `axial` a in [−1, 1.5], `tangential` a' in [−1, 1], both 0
+// where no balance exists, and `loss`, Prandtl's factor there (n each) [-]; finite for any finite elements.
+// Returns how often it evaluated the residuals.
+int bough_induction_solve(const bough_induction_options *options, const bough_elements *elements,
+                          double *axial, double *tangential, double *loss);
 
 #endif

@@ -1,7 +1,7 @@
 // Ning's residual multiplied by sin φ, in which it has no pole:
 //     f(φ) = sin²φ/(1 − a) − |Vx/Vy| (sin φ cos φ − σ ct/(4F)),
 // written for the quadrant of positive inflow, to which mirroring brings every other. Without
-// branches but those of the options, so that it runs in vector lanes; for induction*.c only.
+// branches but those of the options, so that it runs in vector lanes; for induction.c only.
 #ifndef BOUGH_AERO_INDUCTION_BALANCE_H
 #define BOUGH_AERO_INDUCTION_BALANCE_H
 
@@ -81,18 +81,18 @@ static inline wake wake_of(const bough_induction_options *o, double skew) {
                   .most = 2 + 2.113 * pow(t * t, 0.7635)};
 }
 
-// Its wake is the caller's.
-static inline problem problem_of(weights o, bough_element e) {
-    return (problem){.sign_x = copysign(1, e.inflow_x),
-                     .sign_y = copysign(1, e.inflow_y),
-                     .slope = fabs(e.inflow_x / e.inflow_y),
-                     .density = e.solidity / 4,
-                     .cone = e.cone,
-                     .tip_factor = o.tip_loss * e.tip_factor + (1 - o.tip_loss) * 1e3,
-                     .hub_factor = o.hub_loss * e.hub_factor + (1 - o.hub_loss) * 1e3,
-                     .twist = e.twist,
-                     .skew_normal = e.skew_normal,
-                     .skew_chord = e.skew_chord};
+// Of element i; its wake is the caller's.
+static inline problem problem_of(weights o, const bough_elements *e, int i) {
+    return (problem){.sign_x = copysign(1, e->inflow_x[i]),
+                     .sign_y = copysign(1, e->inflow_y[i]),
+                     .slope = fabs(e->inflow_x[i] / e->inflow_y[i]),
+                     .density = e->solidity[i] / 4,
+                     .cone = e->cone[i],
+                     .tip_factor = o.tip_loss * e->tip_factor[i] + (1 - o.tip_loss) * 1e3,
+                     .hub_factor = o.hub_loss * e->hub_factor[i] + (1 - o.hub_loss) * 1e3,
+                     .twist = e->twist[i],
+                     .skew_normal = e->skew_normal[i],
+                     .skew_chord = e->skew_chord[i]};
 }
 
 // Whether the loss leaves a momentum balance, and the inflow a wake.
@@ -183,14 +183,13 @@ static inline double swirl_share(const wake w, double c, double s, double axial)
 static inline double swirl_skewed(const wake w, double c, double s, double axial, double f) {
     double s2 = s * s, t2 = w.tangent2, x = s2 / axial, a = 1 - x, x2 = x * x;
     double inverse = 1 / sqrt(x2 + t2), thrust = 4 * f * c / s2 * x2;
-    double high = 4 * fabs(a) * f * fabs(x) * sqrt(x2 + t2 * f * f) /
-                  sqrt(thrust * thrust + 16 * a * a * t2);
+    double high = 4 * fabs(a) * f * fabs(x) * sqrt(x2 + t2 * f * f) / sqrt(thrust * thrust + 16 * a * a * t2);
     return (c <= w.limit * s2 ? fabs(x) : high) * inverse;
 }
 
 // `high_thrust`, `brake`, `skewed`: known where this is inlined into a loop.
-static inline balance balance_of(bough_high_thrust high_thrust, bool brake, bool skewed, weights o,
-                                 problem p, flow w, double lift, double drag) {
+static inline balance balance_of(bough_high_thrust high_thrust, bool brake, bool skewed, weights o, problem p,
+                                 flow w, double lift, double drag) {
     section_flow f = seen_by_section(p, p.sign_x * w.s, p.sign_y * w.c);
     double normal = lift * f.c + o.axial_drag * drag * f.s;
     double chordwise = lift * f.s - o.tangential_drag * drag * f.c;
@@ -227,8 +226,8 @@ static inline double attached_angle(problem p, double lift_slope, double zero_li
 // Where a bracket's other end is sought, a little beyond the root's likely place: next to the
 // attached angle where Newton's method leads with the slope of the same model, from φ₀ where one
 // step of the plain iteration for the inductions does.
-static inline double nearby(problem p, double attached, double lift_slope, double phi0, double phi,
-                            flow w, balance b) {
+static inline double nearby(problem p, double attached, double lift_slope, double phi0, double phi, flow w,
+                            balance b) {
     const double overshoot = 1.4;
     double rise = 2 * phi - phi0 + p.density * p.cone * lift_slope / w.loss;
     double newton = lane_clamp(phi - overshoot * b.residual / rise, 0.8 * phi, 1.2 * phi);
@@ -256,11 +255,13 @@ static inline double root_fraction(double a, double fa, double b, double fb, dou
     return fits > 0 ? t : 0.5;
 }
 
-static inline bough_induction induction_of(weights o, flow w, balance b) {
+typedef struct induction {
+    double axial, tangential;
+} induction;
+
+static inline induction induction_of(weights o, flow w, balance b) {
     double safe = b.swirl == 0 ? 1 : b.swirl, swirl = b.swirl == 0 ? -1 : w.s * w.c / safe - 1;
-    return (bough_induction){.axial = lane_clamp(1 - w.s * w.s / b.axial, -1, 1.5),
-                             .tangential = o.swirl * lane_clamp(swirl, -1, 1),
-                             .loss = w.loss};
+    return (induction){lane_clamp(1 - w.s * w.s / b.axial, -1, 1.5), o.swirl * lane_clamp(swirl, -1, 1)};
 }
 
 #endif

@@ -205,6 +205,6 @@ void bough_rotor_induce(const bough_rotor *rotor, const bough_rotor_motion *moti
     bough_elements elements = {rotor->stride, m->polar, r->solidity, m->tip_factor, m->hub_factor,
                                r->cone,       r->twist, r->inflow_x, r->inflow_y,
                                r->skew_normal, r->skew_chord, skew_of(rotor, motion)};
-    bough_induction_solve_all(&rotor->induction, &elements, r->axial, r->tangential, r->loss);
+    bough_induction_solve(&rotor->induction, &elements, r->axial, r->tangential, r->loss);
     if (data->memory.station) delay(rotor, motion->time, blade, data);
 }

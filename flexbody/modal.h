@@ -36,31 +36,28 @@ typedef struct bough_modal_piece {
     int m, stride;              // shapes; padded
     bool inner;                 // another piece hangs on its last vertex
     double mass;                // of the moving vertices [kg]
-    double *square;      // Λ: squared angular frequencies (stride) [1/s²]
-    double *damping;     // D
-    double *rigid;       // C: shares of unit translations and rotations (6 × stride)
-    double *turn;        // G_a: the shapes turning with the frame, projected (3 ·)
-    double *gyroscopic;  // B_a (3 ·)
-    double *field;       // N_ab, T_k, F_k (12 ·)
-    double *centrifugal; // r_ab (6 × stride)
-    double *shape;       // Φ: displacement and rotation of vertices 1..n in frame axes
-                         // (6 n × stride), row 6 (i − 1) + c
-    double *scale;       // q that moves a vertex by 1 m or turns it by 0.1 rad (stride)
+    double *square;             // Λ: squared angular frequencies (stride) [1/s²]
+    double *damping;            // D
+    double *rigid;              // C: shares of unit translations and rotations (6 × stride)
+    double *turn;               // G_a: the shapes turning with the frame, projected (3 ·)
+    double *gyroscopic;         // B_a (3 ·)
+    double *field;              // N_ab, T_k, F_k (12 ·)
+    double *centrifugal;        // r_ab (6 × stride)
+    double *shape;              // Φ: displacement and rotation of vertices 1..n in frame axes
+                                // (6 n × stride), row 6 (i − 1) + c
+    double *scale;              // q that moves a vertex by 1 m or turns it by 0.1 rad (stride)
 } bough_modal_piece;
 
 // Reduces vertices first..last of `def`; the frame is parallel to the body's and sits at `first`.
-bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *def, int first,
-                                      int last, bough_modal_options options,
-                                      bough_modal_piece *piece);
+bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *def, int first, int last,
+                                      bough_modal_options options, bough_modal_piece *piece);
 
 // -- parts of the creation, each in a file of its own ---------------------------------------------
 
 // Λ, D and the shapes, which go to piece->shape with rotations in frame axes.
-bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options,
-                               bough_modal_piece *piece);
+bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options, bough_modal_piece *piece);
 
 // All other matrices from the shapes.
-void bough_modal_matrices(bough_arena *arena, bough_modal_options options,
-                          bough_modal_piece *piece);
+void bough_modal_matrices(bough_arena *arena, bough_modal_options options, bough_modal_piece *piece);
 
 #endif

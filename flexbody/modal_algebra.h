@@ -20,8 +20,8 @@ static inline void add_scaled(int n, double c, const double *restrict x, double 
 }
 
 // y += c A x; of a unit vector x one column
-static inline void add_product(const bough_modal_piece *p, double c, const double *a,
-                               const double *x, double *y) {
+static inline void add_product(const bough_modal_piece *p, double c, const double *a, const double *x,
+                               double *y) {
     for (int l = 0; l < p->m; l++) {
         if (x[l] != 0) add_scaled(p->m, c * x[l], a + (size_t)l * p->stride, y);
     }
@@ -42,8 +42,7 @@ static inline void add_products3(const bough_modal_piece *p, const double *c, co
 }
 
 // y += Aᵀ x
-static inline void add_transposed(const bough_modal_piece *p, const double *a, const double *x,
-                                  double *y) {
+static inline void add_transposed(const bough_modal_piece *p, const double *a, const double *x, double *y) {
     for (int l = 0; l < p->m; l++) y[l] += dot(p->m, a + (size_t)l * p->stride, x);
 }
 
@@ -55,13 +54,9 @@ static inline void clear(const bough_modal_piece *p, int rows, double *x) {
     memset(x, 0, (size_t)rows * p->stride * sizeof *x);
 }
 
-static inline double component(bough_vec3 v, int k) {
-    return k == 0 ? v.x : k == 1 ? v.y : v.z;
-}
+static inline double component(bough_vec3 v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
 
-static inline bough_vec3 unit_vector3(int k) {
-    return bough_v3(k == 0, k == 1, k == 2);
-}
+static inline bough_vec3 unit_vector3(int k) { return bough_v3(k == 0, k == 1, k == 2); }
 
 // The products of three rows with x, and their sum weighted by c.
 static inline bough_vec3 dot3(const bough_modal_piece *p, const double *rows, const double *x) {
@@ -101,13 +96,11 @@ static inline void add_force(const bough_modal_piece *p, int i, bough_wrench w, 
 }
 
 // A load of the body at vertex i, in frame axes.
-static inline bough_wrench vertex_load(const bough_modal_point *at, const double *load, int stride,
-                                       int i) {
+static inline bough_wrench vertex_load(const bough_modal_point *at, const double *load, int stride, int i) {
     const double *f = load + at->piece->first + i;
     bough_mat3 r = at->frame.pose.rotation;
-    return (bough_wrench){
-        bough_mat3_tmul(r, bough_v3(f[0], f[stride], f[2 * stride])),
-        bough_mat3_tmul(r, bough_v3(f[3 * stride], f[4 * stride], f[5 * stride]))};
+    return (bough_wrench){bough_mat3_tmul(r, bough_v3(f[0], f[stride], f[2 * stride])),
+                          bough_mat3_tmul(r, bough_v3(f[3 * stride], f[4 * stride], f[5 * stride]))};
 }
 
 static inline bough_twist frame_twist(const bough_modal_frame *f) {
@@ -116,8 +109,12 @@ static inline bough_twist frame_twist(const bough_modal_frame *f) {
 
 // ω_aω_b in the order of the fields, of the symmetric product of two vectors.
 static inline void squares(bough_vec3 v, bough_vec3 w, double *to) {
-    const double values[6] = {v.x * w.x, v.y * w.y, v.z * w.z, 0.5 * (v.x * w.y + v.y * w.x),
-                              0.5 * (v.x * w.z + v.z * w.x), 0.5 * (v.y * w.z + v.z * w.y)};
+    const double values[6] = {v.x * w.x,
+                              v.y * w.y,
+                              v.z * w.z,
+                              0.5 * (v.x * w.y + v.y * w.x),
+                              0.5 * (v.x * w.z + v.z * w.x),
+                              0.5 * (v.y * w.z + v.z * w.y)};
     memcpy(to, values, sizeof values);
 }
 
@@ -141,11 +138,10 @@ typedef struct turning {
 static inline turning turning_of(bough_vec3 psi) {
     double t = bough_dot(psi, psi);
     if (t < 0.05) {
-        return (turning){
-            1 / 2. - t * (1 / 24. - t * (1 / 720. - t * (1 / 40320. - t / 3628800))),
-            1 / 6. - t * (1 / 120. - t * (1 / 5040. - t * (1 / 362880. - t / 39916800))),
-            -1 / 24. + t * (1 / 360. - t * (1 / 13440. - t / 907200)),
-            -1 / 120. + t * (1 / 2520. - t * (1 / 120960. - t / 9979200))};
+        return (turning){1 / 2. - t * (1 / 24. - t * (1 / 720. - t * (1 / 40320. - t / 3628800))),
+                         1 / 6. - t * (1 / 120. - t * (1 / 5040. - t * (1 / 362880. - t / 39916800))),
+                         -1 / 24. + t * (1 / 360. - t * (1 / 13440. - t / 907200)),
+                         -1 / 120. + t * (1 / 2520. - t * (1 / 120960. - t / 9979200))};
     }
     double angle = sqrt(t), b = (1 - cos(angle)) / t, c = (1 - sin(angle) / angle) / t;
     return (turning){b, c, (sin(angle) / angle - 2 * b) / (2 * t), (b - 3 * c) / (2 * t)};
@@ -162,8 +158,7 @@ static inline bough_vec3 tangent_map_change(turning j, bough_vec3 psi, bough_vec
     bough_vec3 once = bough_cross(psi, v), other = bough_cross(d, v);
     bough_vec3 twice = bough_add(bough_cross(d, once), bough_cross(psi, other));
     bough_vec3 first = bough_axpy(j.db * dt, once, bough_scale(j.b, other));
-    return bough_add(first,
-                     bough_axpy(j.dc * dt, bough_cross(psi, once), bough_scale(j.c, twice)));
+    return bough_add(first, bough_axpy(j.dc * dt, bough_cross(psi, once), bough_scale(j.c, twice)));
 }
 
 #endif

@@ -16,7 +16,7 @@ static const double dependent = 1e-6; // of a shape left by those before: not a 
 typedef struct basis {
     bough_arena *arena;
     const bough_rod_model *rod;
-    int size; // 6 n
+    int size;                          // 6 n
     bough_rod_tangent tangent;         // at rest
     bough_block_tridiagonal stiffness; // K; factored by solve()
     bool factored;
@@ -210,8 +210,7 @@ static bool add_others(basis *b, bool statics, bool inner) {
 // -- Rayleigh and Ritz ----------------------------------------------------------------------------
 
 // Xᵀ A X (count × count) of a tridiagonal A with its sign turned if `negative`.
-static void project(const basis *b, const bough_block_tridiagonal *a, double sign, double *work,
-                    double *to) {
+static void project(const basis *b, const bough_block_tridiagonal *a, double sign, double *work, double *to) {
     for (int l = 0; l < b->count; l++) {
         tridiagonal_times(a, b->vector + (size_t)l * b->size, work);
         for (int k = 0; k < b->count; k++) {
@@ -233,8 +232,7 @@ static void rotate(const basis *b, const double *eigen, double *rotated) {
     }
 }
 
-static void store(const basis *b, const double *value, const double *damping,
-                  bough_modal_piece *piece) {
+static void store(const basis *b, const double *value, const double *damping, bough_modal_piece *piece) {
     int m = b->count, stride = piece->stride;
     for (int k = 0; k < m; k++) {
         double largest = 0;
@@ -268,13 +266,11 @@ static bool find_shapes(basis *b, bough_modal_options options, bool inner) {
     size_t most = (size_t)options.modes + 3 * RIGID + 1; // one more than can be kept, as work
     b->vector = bough_arena_doubles(b->arena, most * (size_t)b->size);
     b->product = bough_arena_doubles(b->arena, most * (size_t)b->size);
-    return linearise(b) && add_modes(b, options.modes) &&
-           add_others(b, options.statics, inner);
+    return linearise(b) && add_modes(b, options.modes) && add_others(b, options.statics, inner);
 }
 
 // Diagonalises the stiffness; value (count), damping (count × count).
-static bool diagonalise(basis *b, const bough_block_tridiagonal *stiffness, double *value,
-                        double *damping) {
+static bool diagonalise(basis *b, const bough_block_tridiagonal *stiffness, double *value, double *damping) {
     size_t m = (size_t)b->count;
     double *reduced = bough_arena_doubles(b->arena, m * m);
     double *eigen = bough_arena_doubles(b->arena, m * m);
@@ -291,12 +287,10 @@ static bool diagonalise(basis *b, const bough_block_tridiagonal *stiffness, doub
     return true;
 }
 
-bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options,
-                               bough_modal_piece *piece) {
+bough_status bough_modal_basis(bough_arena *arena, bough_modal_options options, bough_modal_piece *piece) {
     basis b = {.arena = bough_arena_child(arena), .rod = piece->rod, .size = 6 * piece->n};
     if (options.modes > b.size) options.modes = b.size;
-    bough_status status = bough_fail(BOUGH_FAILED, "%s: its modes cannot be found",
-                                     piece->rod->name);
+    bough_status status = bough_fail(BOUGH_FAILED, "%s: its modes cannot be found", piece->rod->name);
     if (find_shapes(&b, options, piece->inner)) {
         double *value = bough_arena_doubles(b.arena, (size_t)b.count);
         double *damping = bough_arena_doubles(b.arena, (size_t)b.count * (size_t)b.count);

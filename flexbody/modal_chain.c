@@ -26,8 +26,7 @@ bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, in
     return status;
 }
 
-void bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena,
-                            const bough_modal_model *m) {
+void bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena, const bough_modal_model *m) {
     *chain = (bough_modal_chain){0};
     chain->point = bough_arena_take(arena, (size_t)m->n_piece * sizeof *chain->point);
     chain->load = bough_arena_doubles(arena, 6 * (size_t)m->rod->stride);
@@ -58,8 +57,7 @@ static void forward(const bough_modal_model *m, const double *state, const doubl
     }
 }
 
-static void set_loads(const bough_modal_model *m, const bough_rod_loads *loads, double t,
-                      double *load) {
+static void set_loads(const bough_modal_model *m, const bough_rod_loads *loads, double t, double *load) {
     int count = 6 * m->rod->stride;
     double elapsed = t - loads->start;
     for (int k = 0; k < count; k++) {
@@ -72,9 +70,8 @@ static void set_loads(const bough_modal_model *m, const bough_rod_loads *loads, 
 }
 
 // Both sweeps; the root wrench of the first piece only if asked for.
-static void evaluate(const bough_modal_model *m, const bough_rod_loads *loads, double t,
-                     const double *state, const double *input, bough_modal_chain *chain,
-                     bool root) {
+static void evaluate(const bough_modal_model *m, const bough_rod_loads *loads, double t, const double *state,
+                     const double *input, bough_modal_chain *chain, bool root) {
     bough_wrench outer = {{0, 0, 0}, {0, 0, 0}};
     chain->placed = false;
     set_loads(m, loads, t, chain->load);
@@ -146,23 +143,21 @@ static void expand_vertex(const bough_modal_point *at, int i, int v, int n, doub
     bough_twist shift = bough_modal_vertex(p, i, at->q);
     bough_twist rate = bough_modal_vertex(p, i, at->rate_q);
     bough_vec3 x = bough_add(p->rod->position0[i], shift.linear);
-    bough_vec3 u = bough_add(bough_add(at->frame.velocity, rate.linear),
-                             bough_cross(at->frame.spin, x));
+    bough_vec3 u = bough_add(bough_add(at->frame.velocity, rate.linear), bough_cross(at->frame.spin, x));
     bough_vec3 w = bough_add(at->frame.spin, bough_modal_spin(shift.angular, rate.angular));
-    bough_quaternion turned = bough_quaternion_product(
-        bough_quaternion_exponential(shift.angular), p->rod->rotation0[i]);
+    bough_quaternion turned =
+        bough_quaternion_product(bough_quaternion_exponential(shift.angular), p->rod->rotation0[i]);
     w = bough_mat3_tmul(bough_rotation_matrix(turned), w);
     u = bough_mat3_mul(at->frame.pose.rotation, u);
     x = bough_add(at->frame.pose.position, bough_mat3_mul(at->frame.pose.rotation, x));
     bough_quaternion r =
         bough_quaternion_product(bough_quaternion_of_matrix(at->frame.pose.rotation), turned);
-    const double values[BOUGH_ROD_STATES] = {x.x, x.y, x.z, r.w, r.x, r.y, r.z,
-                                             u.x, u.y, u.z, w.x, w.y, w.z};
+    const double values[BOUGH_ROD_STATES] = {x.x, x.y, x.z, r.w, r.x, r.y, r.z, u.x, u.y, u.z, w.x, w.y, w.z};
     for (int c = 0; c < BOUGH_ROD_STATES; c++) to[c * n + v] = values[c];
 }
 
-void bough_modal_expand(const bough_modal_model *m, const double *state, const double *input,
-                        int first, bough_modal_chain *chain, double *rod_state) {
+void bough_modal_expand(const bough_modal_model *m, const double *state, const double *input, int first,
+                        bough_modal_chain *chain, double *rod_state) {
     chain->placed = false;
     forward(m, state, input, chain);
     for (int k = 0; k < m->n_piece; k++) {
@@ -182,8 +177,7 @@ static bool same_place(const bough_modal_model *m, const bough_rod_loads *loads,
     set_loads(m, loads, t, chain->load);
     return chain->placed && memcmp(chain->place, state, size) == 0 &&
            memcmp(chain->place + m->n_state, input, BOUGH_ROD_INPUTS * sizeof *input) == 0 &&
-           memcmp(chain->place_load, chain->load,
-                  6 * (size_t)m->rod->stride * sizeof *chain->load) == 0;
+           memcmp(chain->place_load, chain->load, 6 * (size_t)m->rod->stride * sizeof *chain->load) == 0;
 }
 
 void bough_modal_chain_slopes(const bough_modal_model *m, const bough_rod_loads *loads, double t,
@@ -200,17 +194,16 @@ void bough_modal_chain_slopes(const bough_modal_model *m, const bough_rod_loads 
     }
 }
 
-void bough_modal_tangent(const bough_modal_model *m, bough_modal_chain *chain,
-                         const double *state_variation, const double *input_variation,
-                         double *rate, double *wrench) {
+void bough_modal_tangent(const bough_modal_model *m, bough_modal_chain *chain, const double *state_variation,
+                         const double *input_variation, double *rate, double *wrench) {
     const double *y = state_variation;
     bough_modal_frame_change *frame = chain->change;
     bough_wrench outer = {{0, 0, 0}, {0, 0, 0}};
     frame[0] = (bough_modal_frame_change){0};
     if (input_variation != NULL) {
         const double *d = input_variation;
-        frame[0] = (bough_modal_frame_change){
-            {d[0], d[1], d[2]}, {d[3], d[4], d[5]}, {d[6], d[7], d[8]}, {0, 0, 0}};
+        frame[0] =
+            (bough_modal_frame_change){{d[0], d[1], d[2]}, {d[3], d[4], d[5]}, {d[6], d[7], d[8]}, {0, 0, 0}};
     }
     for (int k = 0; k < m->n_piece; k++) {
         const double *dq = y == NULL ? NULL : y + m->offset[k];

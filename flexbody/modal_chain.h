@@ -14,18 +14,18 @@ typedef struct bough_modal_model {
     const char *name;
     const bough_rod_model *rod; // the body's vertices and segments
     int n_piece;
-    bough_modal_piece *piece;   // (n_piece) from the root
-    int *offset;                // of each piece in the state (n_piece)
+    bough_modal_piece *piece; // (n_piece) from the root
+    int *offset;              // of each piece in the state (n_piece)
     int n_state;
 } bough_modal_model;
 
 // Work of evaluations, one after another.
 typedef struct bough_modal_chain {
-    bough_modal_point *point; // (n_piece)
-    double *load;             // on the body's vertices at the time of evaluation (6 × rod stride)
-    double *place;            // state and input of the last slopes (n_state + 9)
-    double *place_load;       // and its loads (6 × rod stride)
-    bool placed;              // they are those of an evaluation
+    bough_modal_point *point;         // (n_piece)
+    double *load;                     // on the body's vertices at the time of evaluation (6 × rod stride)
+    double *place;                    // state and input of the last slopes (n_state + 9)
+    double *place_load;               // and its loads (6 × rod stride)
+    bool placed;                      // they are those of an evaluation
     bough_modal_frame_change *change; // of each piece's frame and the last tip's (n_piece + 1)
 } bough_modal_chain;
 
@@ -33,8 +33,7 @@ typedef struct bough_modal_chain {
 bough_status bough_modal_create(bough_arena *arena, const bough_rod_def *def, int pieces,
                                 bough_modal_options options, bough_modal_model **model);
 
-void bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena,
-                            const bough_modal_model *m);
+void bough_modal_chain_init(bough_modal_chain *chain, bough_arena *arena, const bough_modal_model *m);
 
 // The undeformed body moving rigidly with its frame: state (n_state), input (9).
 void bough_modal_rest_state(const bough_modal_model *m, const double *input, double *state);
@@ -45,8 +44,7 @@ void bough_modal_ride(const bough_modal_model *m, const double *input, bough_mod
 
 // rate (n_state); false when a value is not finite.
 bool bough_modal_derivative(const bough_modal_model *m, const bough_rod_loads *loads, double t,
-                            const double *state, const double *input, bough_modal_chain *chain,
-                            double *rate);
+                            const double *state, const double *input, bough_modal_chain *chain, double *rate);
 
 // The root wrench (6).
 void bough_modal_root_wrench(const bough_modal_model *m, const bough_rod_loads *loads, double t,
@@ -59,14 +57,13 @@ void bough_modal_chain_slopes(const bough_modal_model *m, const bough_rod_loads 
 
 // Derivative of the rates, to rate (n_state), and of the root wrench (6) along a variation of state
 // and input (9); either may be NULL for zero.
-void bough_modal_tangent(const bough_modal_model *m, bough_modal_chain *chain,
-                         const double *state_variation, const double *input_variation,
-                         double *rate, double *wrench);
+void bough_modal_tangent(const bough_modal_model *m, bough_modal_chain *chain, const double *state_variation,
+                         const double *input_variation, double *rate, double *wrench);
 
 // The state of vertices from `first` on as a rod's (13 n), absolute velocities for the frame's
 // twist in `input`.
-void bough_modal_expand(const bough_modal_model *m, const double *state, const double *input,
-                        int first, bough_modal_chain *chain, double *rod_state);
+void bough_modal_expand(const bough_modal_model *m, const double *state, const double *input, int first,
+                        bough_modal_chain *chain, double *rod_state);
 
 // -- Newton's matrix: dense per piece, pieces eliminated from the tip to the root -----------------
 
@@ -74,9 +71,9 @@ void bough_modal_expand(const bough_modal_model *m, const double *state, const d
 // the outer wrench in the tip's axes (6). Only pieces that have an inner one carry what is by d,
 // only inner ones what is by w and of the tip.
 typedef struct bough_modal_newton_piece {
-    double *by_q, *by_eta;  // of η̇ (m × stride each)
-    double *rate_d;         // of q̇ and η̇ (2m × 12)
-    double *rate_w;         // of η̇ (m × 6)
+    double *by_q, *by_eta;            // of η̇ (m × stride each)
+    double *rate_d;                   // of q̇ and η̇ (2m × 12)
+    double *rate_w;                   // of η̇ (m × 6)
     double *root_x, *root_d, *root_w; // of the root wrench (6 × 2m), (6 × 12), (6 × 6)
     double *tip_x, *tip_d;            // of the tip's frame (12 × 2m), (12 × 12)
     // computed by bough_modal_factor, by_q and so on with the outer pieces' answer
@@ -95,8 +92,7 @@ typedef struct bough_modal_newton {
     double gamma;
 } bough_modal_newton;
 
-void bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena,
-                             const bough_modal_model *m);
+void bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena, const bough_modal_model *m);
 
 // Tangents there; false when they are not finite.
 bool bough_modal_linearise(const bough_modal_model *m, const bough_rod_loads *loads, double t,

@@ -16,10 +16,10 @@ typedef struct vertex_mass {
 
 typedef struct fields {
     bough_modal_piece *piece;
-    vertex_mass *vertex;       // (n)
-    double *shape;             // the shapes as a field (6 n × stride)
-    double *product;           // work (6 n × stride)
-    double *rest[3];           // what of the turning shapes no shape has (6 n × stride)
+    vertex_mass *vertex; // (n)
+    double *shape;       // the shapes as a field (6 n × stride)
+    double *product;     // work (6 n × stride)
+    double *rest[3];     // what of the turning shapes no shape has (6 n × stride)
 } fields;
 
 static const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -58,8 +58,7 @@ static bough_twist gyroscopic(const vertex_mass *v, bough_vec3 e, bough_twist x)
 
 typedef bough_twist (*vertex_map)(const vertex_mass *v, bough_vec3 e, bough_twist x);
 
-static void map_field(const fields *f, vertex_map map, bough_vec3 e, const double *from,
-                      double *to) {
+static void map_field(const fields *f, vertex_map map, bough_vec3 e, const double *from, double *to) {
     for (int i = 0; i < f->piece->n; i++) {
         for (int k = 0; k < f->piece->m; k++) {
             put(f, to, i, k, map(&f->vertex[i], e, load(f, from, i, k)));
@@ -87,8 +86,7 @@ static void set_rigid(const fields *f) {
         for (int k = 0; k < p->m; k++) {
             bough_twist x = momentum(v, unit[0], load(f, f->shape, i, k));
             bough_vec3 moment = bough_add(x.angular, bough_cross(v->position, x.linear));
-            const double values[6] = {x.linear.x, x.linear.y, x.linear.z,
-                                      moment.x,   moment.y,   moment.z};
+            const double values[6] = {x.linear.x, x.linear.y, x.linear.z, moment.x, moment.y, moment.z};
             for (int c = 0; c < 6; c++) p->rigid[c * p->stride + k] += values[c];
         }
         p->mass += v->mass;
@@ -113,8 +111,7 @@ static void set_turning(const fields *f, int a) {
     }
 }
 
-static const int square_of[BOUGH_MODAL_SQUARES][2] = {{0, 0}, {1, 1}, {2, 2},
-                                                      {0, 1}, {0, 2}, {1, 2}};
+static const int square_of[BOUGH_MODAL_SQUARES][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
 
 static double *field_matrix(const fields *f, int j) {
     return f->piece->field + (size_t)j * f->piece->m * f->piece->stride;
@@ -242,8 +239,7 @@ static void set_all(fields *f, bool stiffening) {
     for (int j = 0; j < BOUGH_MODAL_FIELDS && stiffening; j++) set_stiffening(f, j);
 }
 
-void bough_modal_matrices(bough_arena *arena, bough_modal_options options,
-                          bough_modal_piece *piece) {
+void bough_modal_matrices(bough_arena *arena, bough_modal_options options, bough_modal_piece *piece) {
     fields f = {.piece = piece};
     bough_arena *work = bough_arena_child(arena);
     take_memory(arena, work, &f);
@@ -253,9 +249,8 @@ void bough_modal_matrices(bough_arena *arena, bough_modal_options options,
 
 // -- a piece --------------------------------------------------------------------------------------
 
-bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *def, int first,
-                                      int last, bough_modal_options options,
-                                      bough_modal_piece *piece) {
+bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *def, int first, int last,
+                                      bough_modal_options options, bough_modal_piece *piece) {
     size_t vertices = (size_t)(last - first) + 1;
     bough_vec3 *position = bough_arena_take(arena, vertices * sizeof *position);
     bough_rod_model *rod = NULL;
@@ -273,8 +268,8 @@ bough_status bough_modal_piece_create(bough_arena *arena, const bough_rod_def *d
     part.inertia += first;
     part.line = NULL; // the whole body's loads are lumped
     bough_status status = bough_rod_create(arena, &part, &rod);
-    *piece = (bough_modal_piece){
-        .rod = rod, .first = first, .n = last - first, .inner = last < def->n_segment};
+    *piece =
+        (bough_modal_piece){.rod = rod, .first = first, .n = last - first, .inner = last < def->n_segment};
     if (bough_is_ok(&status)) status = bough_modal_basis(arena, options, piece);
     if (bough_is_ok(&status)) bough_modal_matrices(arena, options, piece);
     return status;

@@ -9,8 +9,8 @@
 
 enum { D = 12, W = 6 }; // entries of a frame's change and of a wrench
 
-static void init_piece(bough_modal_newton_piece *p, bough_arena *arena,
-                       const bough_modal_piece *of, bool first) {
+static void init_piece(bough_modal_newton_piece *p, bough_arena *arena, const bough_modal_piece *of,
+                       bool first) {
     size_t m = (size_t)of->m, matrix = m * (size_t)of->stride;
     p->by_q = bough_arena_doubles(arena, matrix);
     p->by_eta = bough_arena_doubles(arena, matrix);
@@ -37,8 +37,7 @@ static void init_piece(bough_modal_newton_piece *p, bough_arena *arena,
     }
 }
 
-void bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena,
-                             const bough_modal_model *m) {
+void bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena, const bough_modal_model *m) {
     newton->piece = bough_arena_take(arena, (size_t)m->n_piece * sizeof *newton->piece);
     for (int k = 0; k < m->n_piece; k++) {
         init_piece(&newton->piece[k], arena, &m->piece[k], k == 0);
@@ -46,8 +45,8 @@ void bough_modal_newton_init(bough_modal_newton *newton, bough_arena *arena,
 }
 
 // c += s · a b by columns; a (rows × inner), b (inner × columns)
-static void add_matrices(int rows, int inner, int columns, double s, const double *a,
-                         const double *b, double *c) {
+static void add_matrices(int rows, int inner, int columns, double s, const double *a, const double *b,
+                         double *c) {
     for (int j = 0; j < columns; j++) {
         for (int l = 0; l < inner; l++) {
             add_scaled(rows, s * b[j * inner + l], a + l * rows, c + j * rows);
@@ -94,8 +93,8 @@ static void set_wrench_columns(const bough_modal_point *at, bough_modal_newton_p
     for (int j = 0; j < W; j++) {
         double entry[W] = {0};
         entry[j] = 1;
-        bough_wrench root = bough_modal_backward_tangent(
-            at, NULL, NULL, p->work, NULL, bough_wrench_load(entry), p->rate_w + (size_t)j * m);
+        bough_wrench root = bough_modal_backward_tangent(at, NULL, NULL, p->work, NULL,
+                                                         bough_wrench_load(entry), p->rate_w + (size_t)j * m);
         bough_wrench_store(root, p->root_w + j * W);
     }
 }
@@ -125,8 +124,8 @@ static void close_tip(const bough_modal_piece *of, bough_modal_newton_piece *p,
     int m = of->m;
     for (int j = 0; j < 2 * m; j++) {
         double w[W] = {0};
-        double *to = j < m ? p->closed_q + (size_t)j * of->stride
-                           : p->closed_eta + (size_t)(j - m) * of->stride;
+        double *to =
+            j < m ? p->closed_q + (size_t)j * of->stride : p->closed_eta + (size_t)(j - m) * of->stride;
         add_matrices(W, D, 1, 1, outer->wrench, p->tip_x + j * D, w);
         add_matrices(m, W, 1, 1, p->rate_w, w, to);
         add_matrices(W, W, 1, 1, p->root_w, w, p->wrench_x + j * W);
@@ -134,8 +133,8 @@ static void close_tip(const bough_modal_piece *of, bough_modal_newton_piece *p,
 }
 
 // (I − γE)(I + γG) − γ²Q
-static void set_matrix(const bough_modal_piece *of, const bough_modal_newton_piece *p,
-                       double gamma, double *matrix) {
+static void set_matrix(const bough_modal_piece *of, const bough_modal_newton_piece *p, double gamma,
+                       double *matrix) {
     int m = of->m;
     for (int j = 0; j < m; j++) {
         const double *g = p->turn + (size_t)j * of->stride;
@@ -150,8 +149,8 @@ static void set_matrix(const bough_modal_piece *of, const bough_modal_newton_pie
 }
 
 // q and η of one right-hand side b (2m), in place.
-static void solve_piece(const bough_modal_piece *of, const bough_modal_newton_piece *p,
-                        double gamma, double *b) {
+static void solve_piece(const bough_modal_piece *of, const bough_modal_newton_piece *p, double gamma,
+                        double *b) {
     int m = of->m;
     double *q = p->work, *b_q = b, *eta = b + m;
     for (int k = 0; k < m; k++) q[k] = b_q[k] + gamma * eta[k];

@@ -1,20 +1,26 @@
 #include "flexbody/modal_algebra.h"
 
-void bough_modal_point_init(bough_modal_point *point, bough_arena *arena,
-                            const bough_modal_piece *piece) {
+void bough_modal_point_init(bough_modal_point *point, bough_arena *arena, const bough_modal_piece *piece) {
     size_t s = (size_t)piece->stride, matrix = (size_t)piece->m * s;
     struct {
         double **array;
         size_t size;
-    } arrays[] = {{&point->turn_q, 3 * s},      {&point->rate_q, s},
-                  {&point->force, s},           {&point->lever, 3 * s},
+    } arrays[] = {{&point->turn_q, 3 * s},
+                  {&point->rate_q, s},
+                  {&point->force, s},
+                  {&point->lever, 3 * s},
                   {&point->rest, s},
                   {&point->coefficient, BOUGH_MODAL_FIELDS},
-                  {&point->rate_eta, s},        {&point->turn_rate, 3 * s},
-                  {&point->turn, matrix},       {&point->gyroscopic, matrix},
-                  {&point->field, matrix},      {&point->field_q, BOUGH_MODAL_FIELDS * s},
-                  {&point->gyroscopic_eta, 3 * s}, {&point->eta_turn, 3 * s},
-                  {&point->rest_turn, 3 * s},   {&point->force_turn, 3 * s}};
+                  {&point->rate_eta, s},
+                  {&point->turn_rate, 3 * s},
+                  {&point->turn, matrix},
+                  {&point->gyroscopic, matrix},
+                  {&point->field, matrix},
+                  {&point->field_q, BOUGH_MODAL_FIELDS * s},
+                  {&point->gyroscopic_eta, 3 * s},
+                  {&point->eta_turn, 3 * s},
+                  {&point->rest_turn, 3 * s},
+                  {&point->force_turn, 3 * s}};
     point->piece = piece;
     for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) {
         *arrays[k].array = bough_arena_doubles(arena, arrays[k].size);
@@ -74,21 +80,18 @@ static bough_wrench outer_wrench(const bough_modal_point *at, bough_vec3 *workin
 }
 
 // A wrench at vertex i adds to the resultant about the frame's origin.
-static void add_resultant(const bough_modal_point *at, int i, bough_wrench w,
-                          bough_wrench *resultant) {
+static void add_resultant(const bough_modal_point *at, int i, bough_wrench w, bough_wrench *resultant) {
     const bough_modal_piece *p = at->piece;
-    bough_vec3 x = bough_add(p->rod->position0[i],
-                             dot3(p, p->shape + (size_t)6 * (i - 1) * p->stride, at->q));
+    bough_vec3 x =
+        bough_add(p->rod->position0[i], dot3(p, p->shape + (size_t)6 * (i - 1) * p->stride, at->q));
     resultant->force = bough_add(resultant->force, w.force);
-    resultant->moment =
-        bough_add(resultant->moment, bough_add(w.moment, bough_cross(x, w.force)));
+    resultant->moment = bough_add(resultant->moment, bough_add(w.moment, bough_cross(x, w.force)));
 }
 
 static const bough_wrench no_wrench = {{0, 0, 0}, {0, 0, 0}};
 
 // Φᵀf and, if `root`, the loads' resultant at the displaced vertices.
-static bough_wrench gather_loads(bough_modal_point *at, const double *load, int stride,
-                                 bool root) {
+static bough_wrench gather_loads(bough_modal_point *at, const double *load, int stride, bool root) {
     const bough_modal_piece *p = at->piece;
     bough_wrench resultant = no_wrench;
     clear(p, 1, at->force);
@@ -143,8 +146,8 @@ static void set_root(bough_modal_point *at, bough_wrench loads) {
     at->root = bough_wrench_sub(w, carried);
 }
 
-void bough_modal_backward(bough_modal_point *at, const double *load, int load_stride,
-                          bough_wrench outer, bool root) {
+void bough_modal_backward(bough_modal_point *at, const double *load, int load_stride, bough_wrench outer,
+                          bool root) {
     at->outer = outer;
     bough_wrench loads = gather_loads(at, load, load_stride, root);
     set_rate(at);

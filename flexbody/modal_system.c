@@ -5,24 +5,22 @@
 struct bough_modal_body {
     const bough_modal_model *model;
     bough_rod_loads loads;
-    double *initial;     // (n_state)
-    double *scale;       // (n_state)
-    double *vertices;    // (13 n) computed on request
-    double *work;        // rates of a tangent (n_state)
+    double *initial;  // (n_state)
+    double *scale;    // (n_state)
+    double *vertices; // (13 n) computed on request
+    double *work;     // rates of a tangent (n_state)
     bough_modal_chain chain;
     bough_modal_chain slopes; // of tangents
 };
 
 // -- the contract ---------------------------------------------------------------------------------
 
-static bool derivative(void *self, double t, const double *state, const double *input,
-                       double *rate) {
+static bool derivative(void *self, double t, const double *state, const double *input, double *rate) {
     bough_modal_body *b = self;
     return bough_modal_derivative(b->model, &b->loads, t, state, input, &b->chain, rate);
 }
 
-static void output(void *self, double t, const double *state, const double *input,
-                   double *wrench) {
+static void output(void *self, double t, const double *state, const double *input, double *wrench) {
     bough_modal_body *b = self;
     bough_modal_root_wrench(b->model, &b->loads, t, state, input, &b->chain, wrench);
 }
@@ -34,15 +32,13 @@ static void output_tangent(void *self, double t, const double *state, const doub
     bough_modal_tangent(b->model, &b->slopes, state_rate, input_rate, b->work, rate);
 }
 
-static void input_columns(void *self, double t, const double *state, const double *input,
-                          double *column) {
+static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
     bough_modal_body *b = self;
     bough_modal_chain_slopes(b->model, &b->loads, t, state, input, &b->slopes);
     for (int j = 0; j < BOUGH_ROD_INPUTS; j++) {
         double unit[BOUGH_ROD_INPUTS] = {0}, wrench[BOUGH_ROD_OUTPUTS];
         unit[j] = 1;
-        bough_modal_tangent(b->model, &b->slopes, NULL, unit,
-                            column + (size_t)j * b->model->n_state, wrench);
+        bough_modal_tangent(b->model, &b->slopes, NULL, unit, column + (size_t)j * b->model->n_state, wrench);
     }
 }
 
@@ -53,8 +49,7 @@ static void *factors(void *self, bough_arena *arena) {
     return newton;
 }
 
-static bool linearise(void *self, double t, const double *state, const double *input,
-                      void *factors) {
+static bool linearise(void *self, double t, const double *state, const double *input, void *factors) {
     bough_modal_body *b = self;
     return bough_modal_linearise(b->model, &b->loads, t, state, input, &b->slopes, factors);
 }
@@ -114,20 +109,16 @@ bough_system bough_modal_body_system(bough_modal_body *body) {
                           .self = body};
 }
 
-bough_rod_loads *bough_modal_body_loads(bough_modal_body *body) {
-    return &body->loads;
-}
+bough_rod_loads *bough_modal_body_loads(bough_modal_body *body) { return &body->loads; }
 
 void bough_modal_body_ride(bough_modal_body *body, const double *input, double *state) {
     bough_modal_ride(body->model, input, &body->chain, state);
 }
 
-const bough_modal_model *bough_modal_body_model(const bough_modal_body *body) {
-    return body->model;
-}
+const bough_modal_model *bough_modal_body_model(const bough_modal_body *body) { return body->model; }
 
-const double *bough_modal_body_vertices(bough_modal_body *body, const double *state,
-                                        const double *input, int first) {
+const double *bough_modal_body_vertices(bough_modal_body *body, const double *state, const double *input,
+                                        int first) {
     bough_modal_expand(body->model, state, input, first, &body->chain, body->vertices);
     return body->vertices;
 }

@@ -26,7 +26,7 @@ const bough_modal_model *bough_modal_body_model(const bough_modal_body *body);
 
 // The state of vertices from `first` on, in a state of the body, as rod.h lays out that of a rod
 // (13 n); valid until the next call.
-const double *bough_modal_body_vertices(bough_modal_body *body, const double *state,
-                                        const double *input, int first);
+const double *bough_modal_body_vertices(bough_modal_body *body, const double *state, const double *input,
+                                        int first);
 
 #endif

@@ -4,8 +4,7 @@
 // -- slopes ---------------------------------------------------------------------------------------
 
 // to = Σ c_j A_j
-static void combine(const bough_modal_piece *p, int count, const double *c, const double *list,
-                    double *to) {
+static void combine(const bough_modal_piece *p, int count, const double *c, const double *list, double *to) {
     size_t size = (size_t)p->m * p->stride;
     memset(to, 0, size * sizeof *to);
     for (int j = 0; j < count; j++) {
@@ -45,8 +44,7 @@ static void set_load_turns(bough_modal_point *at, const double *load, int stride
             w.force = bough_cross(w.force, unit_vector3(a));
             w.moment = bough_cross(w.moment, unit_vector3(a));
             add_force(p, i, w, at->force_turn + a * p->stride);
-            bough_vec3 x = bough_add(p->rod->position0[i],
-                                     vertex_of(p, i, at->q).linear);
+            bough_vec3 x = bough_add(p->rod->position0[i], vertex_of(p, i, at->q).linear);
             sum = bough_add(sum, bough_add(w.moment, bough_cross(x, w.force)));
         }
         at->moment_turn[a] = sum;
@@ -89,11 +87,9 @@ static void tip_change(const bough_modal_point *at, bough_twist dshift, bough_tw
     bough_vec3 beta = bough_mat3_tmul(e, tangent_map(j, shift.angular, dshift.angular));
     bough_vec3 x = bough_add(p->rod->position0[p->n], shift.linear);
     bough_vec3 du = bough_add(bough_add(d->velocity, dmove.linear),
-                              bough_add(bough_cross(d->spin, x),
-                                        bough_cross(at->frame.spin, dshift.linear)));
-    bough_vec3 dw = bough_add(
-        bough_add(d->spin, tangent_map(j, shift.angular, dmove.angular)),
-        tangent_map_change(j, shift.angular, dshift.angular, move.angular));
+                              bough_add(bough_cross(d->spin, x), bough_cross(at->frame.spin, dshift.linear)));
+    bough_vec3 dw = bough_add(bough_add(d->spin, tangent_map(j, shift.angular, dmove.angular)),
+                              tangent_map_change(j, shift.angular, dshift.angular, move.angular));
     tip->velocity = bough_sub(bough_mat3_tmul(e, du), bough_cross(beta, at->tip.velocity));
     tip->spin = bough_sub(bough_mat3_tmul(e, dw), bough_cross(beta, at->tip.spin));
     tip->gravity = bough_sub(bough_mat3_tmul(e, d->gravity), bough_cross(beta, at->tip.gravity));
@@ -111,14 +107,13 @@ static bough_wrench outer_change(const bough_modal_point *at, bough_vec3 dpsi, b
     bough_vec3 force = bough_mat3_mul(e, at->outer.force);
     bough_wrench w = {bough_add(bough_mat3_mul(e, d.force), bough_cross(turn, force)),
                       bough_add(bough_mat3_mul(e, d.moment), bough_cross(turn, moment))};
-    *working = bough_add(tangent_map(j, back, w.moment),
-                         tangent_map_change(j, back, bough_scale(-1, dpsi), moment));
+    *working =
+        bough_add(tangent_map(j, back, w.moment), tangent_map_change(j, back, bough_scale(-1, dpsi), moment));
     return w;
 }
 
 // What a change of the outer wrench, in frame axes, adds to η̇ and to the loads' resultant.
-static bough_wrench add_outer(const bough_modal_point *at, bough_wrench w, bough_vec3 working,
-                              double *rate) {
+static bough_wrench add_outer(const bough_modal_point *at, bough_wrench w, bough_vec3 working, double *rate) {
     const bough_modal_piece *p = at->piece;
     bough_vec3 x = bough_add(p->rod->position0[p->n], at->tip_shift.linear);
     add_force(p, p->n, (bough_wrench){w.force, working}, rate);
@@ -150,8 +145,7 @@ void bough_modal_forward_tangent(const bough_modal_point *at, const double *dq, 
 }
 
 // What the frame's change adds to η̇, its share by q̇ apart.
-static void add_frame_change(const bough_modal_point *at, const bough_modal_frame_change *d,
-                             double *rate) {
+static void add_frame_change(const bough_modal_point *at, const bough_modal_frame_change *d, double *rate) {
     const bough_modal_piece *p = at->piece;
     const bough_modal_frame *f = &at->frame;
     double c[BOUGH_MODAL_SQUARES];
@@ -161,8 +155,7 @@ static void add_frame_change(const bough_modal_point *at, const bough_modal_fram
         add_scaled(p->m, 2 * c[j], p->centrifugal + j * p->stride, rate);
     }
     bough_vec3 apparent = bough_sub(
-        bough_add(bough_cross(d->spin, f->velocity), bough_cross(f->spin, d->velocity)),
-        d->gravity);
+        bough_add(bough_cross(d->spin, f->velocity), bough_cross(f->spin, d->velocity)), d->gravity);
     add3(p, 1, at->field_q + 6 * p->stride, apparent, rate);
     add3(p, -1, at->gyroscopic_eta, d->spin, rate);
     add3(p, 1, p->rigid, d->gravity, rate);
@@ -170,8 +163,7 @@ static void add_frame_change(const bough_modal_point *at, const bough_modal_fram
 }
 
 // The loads' and the weight's resultant by the frame's change.
-static bough_wrench resultant_change(const bough_modal_point *at,
-                                     const bough_modal_frame_change *d) {
+static bough_wrench resultant_change(const bough_modal_point *at, const bough_modal_frame_change *d) {
     const bough_modal_piece *p = at->piece;
     bough_wrench w = {bough_scale(p->mass, d->gravity), {0, 0, 0}};
     for (int a = 0; a < 3; a++) {
@@ -184,20 +176,17 @@ static bough_wrench resultant_change(const bough_modal_point *at,
 }
 
 // Less the rates of momentum by q̇, η̇ and the frame's twist.
-static bough_wrench less_momentum(const bough_modal_point *at, bough_wrench w,
-                                  const double *drate_q, const double *drate_eta,
-                                  bough_twist dtwist) {
+static bough_wrench less_momentum(const bough_modal_point *at, bough_wrench w, const double *drate_q,
+                                  const double *drate_eta, bough_twist dtwist) {
     const bough_modal_piece *p = at->piece;
     w.force = bough_sub(w.force, dot3(p, p->rigid, drate_eta));
-    w.moment = bough_sub(w.moment, bough_add(arms_times(at, drate_eta),
-                                             dot3(p, at->eta_turn, drate_q)));
+    w.moment = bough_sub(w.moment, bough_add(arms_times(at, drate_eta), dot3(p, at->eta_turn, drate_q)));
     return bough_wrench_sub(w, bough_wrench_cross(dtwist, momentum_of(at)));
 }
 
-bough_wrench bough_modal_backward_tangent(const bough_modal_point *at, const double *dq,
-                                          const double *deta, const double *drate_q,
-                                          const bough_modal_frame_change *d, bough_wrench outer,
-                                          double *rate) {
+bough_wrench bough_modal_backward_tangent(const bough_modal_point *at, const double *dq, const double *deta,
+                                          const double *drate_q, const bough_modal_frame_change *d,
+                                          bough_wrench outer, double *rate) {
     const bough_modal_piece *p = at->piece;
     bough_wrench w = {{0, 0, 0}, {0, 0, 0}};
     bough_twist dtwist = {{0, 0, 0}, {0, 0, 0}};
@@ -218,8 +207,7 @@ bough_wrench bough_modal_backward_tangent(const bough_modal_point *at, const dou
         for (int k = 0; k < p->m; k++) rate[k] -= p->square[k] * dq[k];
         add_product(p, -1, at->gyroscopic, deta, rate);
         add_product(p, 1, at->field, dq, rate);
-        w.moment = bough_add(w.moment, bough_add(dot3(p, at->lever, dq),
-                                                 dot3(p, at->rest_turn, dq)));
+        w.moment = bough_add(w.moment, bough_add(dot3(p, at->lever, dq), dot3(p, at->rest_turn, dq)));
         w.moment = bough_sub(w.moment, dot3(p, at->turn_rate, deta));
         bough_wrench change = {dot3(p, p->rigid, deta),
                                bough_add(arms_times(at, deta), dot3(p, at->eta_turn, dq))};

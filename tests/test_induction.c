@@ -1,8 +1,7 @@
-#include "aero/induction.h"
-
 #include "core/base.h"
 #include "tests/check.h"
 #include "tests/nrel5mw_aero.h"
+#include "tests/verification/one_element.h"
 
 typedef struct airfoils {
     bough_arena *arena;
@@ -61,7 +60,7 @@ static void thrust_balances_momentum(void **state) {
     for (double twist = 0.03; twist < 0.2; twist += 0.01) {
         bough_element e = element_of(&foils->plate);
         e.twist = twist;
-        bough_induction i = bough_induction_solve(&options, &e);
+        bough_induction i = induction_at(&options, &e);
         double u = e.inflow_x * (1 - i.axial), phi = atan2(u, e.inflow_y);
         double lift = 2 * BOUGH_PI * sin(phi - twist); // the plate's table has chords of 0.1°
         double ct = e.solidity * lift * cos(phi) * (u * u + 40 * 40) / 64;
@@ -82,9 +81,9 @@ static void small_angles_agree_with_closed_form(void **state) {
     e.inflow_x = 1;
     e.inflow_y = 100;
     double a = BOUGH_PI * e.solidity * 100 / 2;
-    check_near(bough_induction_solve(&options, &e).axial, a, 2e-4, 0);
+    check_near(induction_at(&options, &e).axial, a, 2e-4, 0);
     e.cone = 0.5; // the blade stands 45° out of the rotor plane: half the thrust on the wake
-    check_near(bough_induction_solve(&options, &e).axial, a / 2, 2e-4, 0);
+    check_near(induction_at(&options, &e).axial, a / 2, 2e-4, 0);
 }
 
 // Torque from the blade equals angular momentum 4a'(1 − a) λ_r; ideal rotor without drag.
@@ -94,7 +93,7 @@ static void torque_balances_angular_momentum(void **state) {
     bough_element e = element_of(&foils->plate);
     e.inflow_y = 12;
     e.twist = 0.3;
-    bough_induction i = bough_induction_solve(&options, &e);
+    bough_induction i = induction_at(&options, &e);
     double u = 8 * (1 - i.axial), v = 12 * (1 + i.tangential);
     double lift = 2 * BOUGH_PI * sin(atan2(u, v) - e.twist), w2 = u * u + v * v;
     double cq = e.solidity * lift * u * sqrt(w2) / 64;
@@ -121,14 +120,14 @@ static void high_thrust_lies_on_parabola(void **state) {
         bough_element e = element_of(foils->polar + 7);
         e.solidity = solidity;
         options.high_thrust = BOUGH_HIGH_THRUST_SMOOTH;
-        double a = bough_induction_solve(&options, &e).axial, b = a - 0.35;
+        double a = induction_at(&options, &e).axial, b = a - 0.35;
         if (a > 0.4) {
             seen++;
             check_near(thrust(&e, a), 0.91 + b * (1.2 + b * (2 - 0.91 - 1.2 * 0.65) / 0.4225), 1e-9,
                        0);
         }
         options.high_thrust = BOUGH_HIGH_THRUST_BUHL;
-        a = bough_induction_solve(&options, &e).axial;
+        a = induction_at(&options, &e).axial;
         if (a > 0.4 && a < 1) {
             seen++;
             check_near(thrust(&e, a), 8. / 9 - 4. / 9 * a + 14. / 9 * a * a, 1e-9, 0);
@@ -150,7 +149,7 @@ static void skewed_momentum_is_that_of_glauert(void **state) {
             e.solidity = solidity;
             e.skew = degrees * BOUGH_PI / 180;
             double t = tan(e.skew), critical = fmin(0.35 / cos(e.skew), 0.5);
-            bough_induction i = bough_induction_solve(&options, &e);
+            bough_induction i = induction_at(&options, &e);
             double a = i.axial, u = 8 * (1 - a), v = 40 * (1 + i.tangential);
             double phi = atan2(u, v), w2 = u * u + v * v;
             double lift = bough_polar_at(e.polar, phi - e.twist).lift;
@@ -207,9 +206,9 @@ static void any_state_is_finite_and_repeats(void **state) {
         if (n % 2) options.high_thrust = BOUGH_HIGH_THRUST_BUHL;
         if (n % 7 == 0) options.tangential_drag = options.axial_drag = false;
         bough_element e = random_element(foils, &seed), other = random_element(foils, &seed);
-        bough_induction first = bough_induction_solve(&options, &e);
-        bough_induction_solve(&options, &other);
-        bough_induction second = bough_induction_solve(&options, &e);
+        bough_induction first = induction_at(&options, &e);
+        induction_at(&options, &other);
+        bough_induction second = induction_at(&options, &e);
         assert_true(first.axial >= -1 && first.axial <= 1.5);
         assert_true(first.tangential >= -1 && first.tangential <= 1);
         assert_true(first.axial == second.axial && first.tangential == second.tangential);
@@ -250,9 +249,9 @@ static void lanes_give_what_one_gives(void **state) {
         }
         bough_elements all = {N,        polar,    value[0], value[1], value[2], value[3],
                               value[4], value[5], value[6], value[7], value[8], skew};
-        bough_induction_solve_all(&options, &all, axial, tangential, loss);
+        bough_induction_solve(&options, &all, axial, tangential, loss);
         for (int i = 0; i < N; i++) {
-            bough_induction one = bough_induction_solve(&options, e + i);
+            bough_induction one = induction_at(&options, e + i);
             check_near(axial[i], one.axial, 1e-8, 1e-9);
             check_near(tangential[i], one.tangential, 1e-8, 1e-9);
             check_near(loss[i], one.loss, 1e-8, 1e-9);
@@ -268,10 +267,10 @@ static void mirrored_flow_gives_same_induction(void **state) {
     for (int n = 0; n < 1000; n++) {
         bough_element e = random_element(foils, &seed);
         e.polar = &foils->plate; // symmetric in both ways
-        bough_induction i = bough_induction_solve(&options, &e);
+        bough_induction i = induction_at(&options, &e);
         e.inflow_x = -e.inflow_x;
         e.twist = -e.twist;
-        bough_induction back = bough_induction_solve(&options, &e);
+        bough_induction back = induction_at(&options, &e);
         check_near(back.axial, i.axial, 1e-6, 1e-8);
         check_near(back.tangential, i.tangential, 1e-6, 1e-8);
     }

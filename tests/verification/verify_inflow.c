@@ -1,8 +1,8 @@
 // A case of kind inflow: the induction answers in any state, and the same from any start.
 #include "tests/verification/verify.h"
 
-#include "aero/induction.h"
 #include "core/base.h"
+#include "tests/verification/one_element.h"
 
 #include <math.h>
 #include <stdint.h>
@@ -74,9 +74,9 @@ bough_status bough_verify_inflow(bough_arena *arena, const bough_verify_case *x,
         if (n % 7 == 0) options.axial_drag = options.tangential_drag = false;
         bough_element e = random_element(polar, n_polar, &seed);
         bough_element other = random_element(polar, n_polar, &seed);
-        bough_induction first = bough_induction_solve(&options, &e);
-        bough_induction_solve(&options, &other);
-        bough_induction again = bough_induction_solve(&options, &e);
+        bough_induction first = induction_at(&options, &e);
+        induction_at(&options, &other);
+        bough_induction again = induction_at(&options, &e);
         if (!in_range(first)) result[1]++;
         result[2] = fmax(result[2], difference(first, again));
     }
