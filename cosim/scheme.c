@@ -30,11 +30,16 @@ bough_scheme_options bough_scheme_options_default(void) {
                                   .iterations = 30};
 }
 
-const bough_scheme *bough_scheme_find(const char *name) {
+int bough_scheme_index(const char *name) {
     for (int i = 0; i < N_SCHEME; i++) {
-        if (strcmp(schemes[i]->name, name) == 0) return schemes[i];
+        if (strcmp(schemes[i]->name, name) == 0) return i;
     }
-    return NULL;
+    return -1;
+}
+
+const bough_scheme *bough_scheme_find(const char *name) {
+    int index = bough_scheme_index(name);
+    return index < 0 ? NULL : schemes[index];
 }
 
 const char *bough_scheme_name(int index) {

@@ -54,6 +54,7 @@ bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assem
 
 // Name of the scheme at that place of the table, for messages and help; NULL beyond its end.
 const char *bough_scheme_name(int index);
+int bough_scheme_index(const char *name); // −1: there is none
 
 // Order of the interface defects in the macro step.
 int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options *options);

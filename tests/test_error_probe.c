@@ -180,7 +180,7 @@ static void a_range_seen_at_few_times_is_not_too_small(void **state) {
         bough_error_probe probe = {.channels = &channels, .vector = &vector, .batches = 2, .low = &low,
                                    .high = &high, .true_low = &true_low, .true_high = &true_high,
                                    .largest = &largest};
-        check_near(bough_error_probe_relative(&probe, 0), largest / cases[k].range, 0, 1e-12);
+        check_near(bough_error_probe_relative(&probe, 0, largest), largest / cases[k].range, 0, 1e-12);
     }
 }
 

@@ -199,6 +199,8 @@ bough_status bough_verb_run(bough_arena *arena, const bough_options *options) {
     if (bough_is_ok(&job.run.outcome)) {
         double interval = job.run.simulation->scene->simulation.output.interval;
         bough_error_shares_find(&job.shares, &job.run, interval);
+        job.run.outcome = bough_error_shares_judge(&job.shares, &job.run.probe,
+                                                   job.run.simulation->scene->simulation.error_bound);
     }
     status = close_results(&job);
     bough_run_report(&job, stdout);

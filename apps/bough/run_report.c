@@ -154,8 +154,9 @@ static void write_estimates(bough_summary *s, const bough_run *run) {
         bool known = bough_error_probe_knows(&run->probe, k);
         bough_summary_object(s, run->channels.channel[k].name);
         bough_summary_text(s, "unit", run->channels.channel[k].unit);
-        bough_summary_number(s, "largest", known ? run->probe.largest[k] : unknown);
-        bough_summary_number(s, "relative", !known ? unknown : bough_error_probe_relative(&run->probe, k));
+        double error = known ? run->probe.largest[k] : unknown;
+        bough_summary_number(s, "largest", error);
+        bough_summary_number(s, "relative", bough_error_probe_relative(&run->probe, k, error));
         bough_summary_end(s);
     }
     bough_summary_end(s);

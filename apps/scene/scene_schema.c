@@ -134,7 +134,7 @@ static const bough_key simulation_keys[] = {
     {KEY(BOOLEAN, error_shares), .fallback = "false",
      .help = "also estimates the errors of mesh and air, by three more runs with short steps: as "
              "it is, with twice the segments of each rod, and with twice the aerodynamic sampling "
-             "rate"},
+             "rate; error_bound holds for these errors too"},
     {KEY(INTEGER, threads), .range = "[0, 1024]", .fallback = "0", .example = "2",
      .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not "
              "set"},

@@ -47,11 +47,17 @@ void bough_error_probe_widen(bough_error_probe *probe, const double *value);
 // Whether the channel's error is estimated: it follows from the states, and the scheme has one.
 bool bough_error_probe_knows(const bough_error_probe *probe, int channel);
 
-// Its largest error relative to its range; NaN for one that keeps its value. The components of a vector
-// have one range, the largest of theirs.
-double bough_error_probe_relative(const bough_error_probe *probe, int channel);
+// An error of the channel, in its unit, relative to its range; NaN for one that keeps its value. The components
+// of a vector have one range, the largest of theirs.
+double bough_error_probe_relative(const bough_error_probe *probe, int channel, double error);
 
 bough_error_verdict bough_error_probe_verdict(const bough_error_probe *probe);
+
+// The same of errors (n_motion_channel) from elsewhere, in the channels' units; `time` says nothing then.
+bough_error_verdict bough_error_probe_verdict_of(const bough_error_probe *probe, const double *error);
+
+// The error relative to the channel's range from which on a run warns.
+#define BOUGH_ERROR_NOTICEABLE 0.01
 
 // The same of forces and moments, which the bound does not judge.
 bough_error_verdict bough_error_probe_force_verdict(const bough_error_probe *probe);

@@ -109,6 +109,7 @@ bool bough_error_share_refine(bough_arena *arena, bough_scene *scene, int times,
         any = true;
     }
     if (!any) unknown(share, "no body has a mesh");
+    share->order = mesh_order;
     share->part = 1 / (1 - pow(times, -mesh_order));
     scene->body = body;
     return any;
@@ -116,7 +117,8 @@ bool bough_error_share_refine(bough_arena *arena, bough_scene *scene, int times,
 
 // Twice the samples: half of them may be too few to be stable.
 static bool refine_air(bough_scene *scene, bough_error_share *share) {
-    double finer = pow(2, scene->aero.hold == BOUGH_SCENE_CONSTANT ? held_air_order : linear_air_order);
+    share->order = scene->aero.hold == BOUGH_SCENE_CONSTANT ? held_air_order : linear_air_order;
+    double finer = pow(2, share->order);
     if (!repeatable(scene, share)) return false;
     if (!scene->aero.node) unknown(share, "the scene has no air");
     scene->aero.rate *= 2;
@@ -126,20 +128,21 @@ static bool refine_air(bough_scene *scene, bough_error_share *share) {
 
 static double tighter(double rtol) { return fmin(rtol, fmax(rtol / 30, 1e-8)); }
 
-// Steps with small errors, and macro steps into which twice the samples of the air fit.
-static void refine_time(bough_arena *arena, bough_scene *scene) {
+// All bodies in one system, because a coupling that holds on the scene's mesh may not hold on a finer one, with
+// small errors of the steps; and macro steps into which twice the samples of the air fit.
+static void refine_time(bough_scene *scene) {
     bough_scene_simulation *simulation = &scene->simulation;
-    size_t n = (size_t)scene->n_body;
-    bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
-    memcpy(body, scene->body, n * sizeof *body);
-    simulation->master.rtol = tighter(simulation->master.rtol);
-    simulation->micro.rtol = tighter(simulation->micro.rtol);
-    for (size_t i = 0; i < n; i++) body[i].micro.rtol = tighter(body[i].micro.rtol);
-    scene->body = body;
+    int monolithic = bough_scheme_index("monolithic");
+    if (simulation->coupling.scheme == monolithic && simulation->master.solver != BOUGH_GENERALIZED_ALPHA) {
+        simulation->master.rtol = tighter(simulation->master.rtol);
+    } else {
+        simulation->coupling.scheme = monolithic;
+        simulation->master.solver = BOUGH_AUTOMATIC;
+        simulation->master.rtol = 1e-5;
+    }
     bool air = scene->aero.node != NULL;
     if (air && lround(1 / (scene->aero.rate * simulation->macro_step)) % 2 != 0) {
         simulation->macro_step /= 2;
-        simulation->micro.step = fmin(simulation->micro.step, simulation->macro_step);
         simulation->master.step = fmin(simulation->master.step, simulation->macro_step);
     }
 }
@@ -193,7 +196,7 @@ static bough_status find(bough_arena *arena, void *self) {
     base.simulation.error_estimate = BOUGH_ERROR_NOT_TOLD;
     base.simulation.error_bound = 0;
     base.simulation.error_shares = false;
-    refine_time(arena, &base);
+    refine_time(&base);
     bough_scene scene = base;
     // Twice the segments: half of them may be too few for the order to hold.
     bool mesh = x->kind == BOUGH_SHARE_MESH;
@@ -210,4 +213,39 @@ void bough_error_shares_find(bough_error_shares *shares, const bough_run *run, d
         bough_status status = bough_arena_use(find, &f);
         if (!bough_is_ok(&status)) unknown(&shares->share[k], "%s", status.message);
     }
+}
+
+// -- what they mean -------------------------------------------------------------------------------
+
+// Above `least` and up to `most`, of the channel's range.
+static void describe(const bough_error_shares *shares, bough_error_share_kind kind,
+                     const bough_error_probe *probe, double least, double most,
+                     char text[BOUGH_ERROR_WARNING]) {
+    const bough_error_share *share = &shares->share[kind];
+    text[0] = '\0';
+    if (share->unknown[0]) return;
+    bough_error_verdict v = bough_error_probe_verdict_of(probe, share->largest);
+    if (v.channel < 0 || v.relative <= least || v.relative > most) return;
+    bool mesh = kind == BOUGH_SHARE_MESH;
+    const bough_channel *channel = &probe->channels->channel[v.channel];
+    snprintf(text, BOUGH_ERROR_WARNING,
+             "%s errs by %.2g %s, %.2g of its range; cause: the %s; try %s, %.2g times as %s", channel->name,
+             share->largest[v.channel], channel->unit, v.relative, mesh ? "mesh" : "sampling of the air",
+             mesh ? "rod.segments" : "aero.rate", 1.1 * pow(v.relative / least, 1 / share->order),
+             mesh ? "many" : "high");
+}
+
+void bough_error_share_warn(const bough_error_shares *shares, bough_error_share_kind kind,
+                            const bough_error_probe *probe, double bound, char text[BOUGH_ERROR_WARNING]) {
+    describe(shares, kind, probe, BOUGH_ERROR_NOTICEABLE, bound > 0 ? bound : HUGE_VAL, text);
+}
+
+bough_status bough_error_shares_judge(const bough_error_shares *shares, const bough_error_probe *probe,
+                                      double bound) {
+    char text[BOUGH_ERROR_WARNING];
+    for (int k = 0; k < BOUGH_SHARES && bound > 0; k++) {
+        describe(shares, (bough_error_share_kind)k, probe, bound, HUGE_VAL, text);
+        if (text[0]) return bough_fail(BOUGH_FAILED, "the error bound %.3g is exceeded: %s", bound, text);
+    }
+    return bough_ok();
 }

@@ -17,6 +17,7 @@ typedef struct bough_error_share {
     char unknown[160]; // why it is not estimated; "": it is
     double *largest;   // (n_channel) largest error of each channel in the run, in its unit
     double part;       // the error by the difference [1]
+    double order;      // at which it falls with the length of segments, or the time between samples
     double cpu_s;      // of the runs made for it [s]
 } bough_error_share;
 
@@ -44,5 +45,13 @@ void bough_error_shares_note(bough_error_shares *shares, bough_run *run);
 
 // After a complete run: runs the scene again for each share. What cannot be estimated says why.
 void bough_error_shares_find(bough_error_shares *shares, const bough_run *run, double interval);
+
+// A warning about a share that is a noticeable error of a channel of motion, with the bound [1] at most, or "".
+void bough_error_share_warn(const bough_error_shares *shares, bough_error_share_kind kind,
+                            const bough_error_probe *probe, double bound, char text[BOUGH_ERROR_WARNING]);
+
+// BOUGH_FAILED, with channel, cause and what to try, when a share exceeds the bound [1]; 0: no bound.
+bough_status bough_error_shares_judge(const bough_error_shares *shares, const bough_error_probe *probe,
+                                      double bound);
 
 #endif

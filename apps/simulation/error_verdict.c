@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double noticeable = 0.01; // of a channel's range: the run warns from there on
+static const double noticeable = BOUGH_ERROR_NOTICEABLE;
 static const double rounding = 1e-6; // of the largest range of all motion or value up to 1, in SI units
 static const double least_share = 1e-3; // of the largest range with that unit: moves less, says nothing
 
@@ -51,9 +51,9 @@ static double range_of(const bough_error_probe *p, int channel) {
     return range;
 }
 
-double bough_error_probe_relative(const bough_error_probe *p, int channel) {
+double bough_error_probe_relative(const bough_error_probe *p, int channel, double error) {
     double range = range_of(p, channel);
-    return range > 0 ? p->largest[channel] / range : (double)NAN;
+    return range > 0 ? error / range : (double)NAN;
 }
 
 void bough_error_probe_widen(bough_error_probe *p, const double *value) {
@@ -107,34 +107,41 @@ static double largest_value(const bough_error_probe *p) {
 
 // What moves, or errs, by next to nothing has none: a range that is rounding is no range. A force that
 // hardly changes has none either.
-static bool has_say(const bough_error_probe *p, int i) {
+static bool has_say(const bough_error_probe *p, int i, double error) {
     const bough_channel *channel = &p->channels->channel[i];
-    double moves = fmax(range_of(p, i), p->largest[i]);
+    double moves = fmax(range_of(p, i), error);
     double size = fmax(fabs(p->high[i]), fabs(p->low[i]));
     bool moving =
         is_motion(channel) ? in_si(channel, moves) > rounding * largest_value(p) : moves > least_share * size;
     return moving && moves >= least_share * largest_range(p, channel->unit);
 }
 
-static bough_error_verdict verdict_of(const bough_error_probe *p, bool motion) {
+// Of the errors (n_motion_channel); those of the estimate may be unknown.
+static bough_error_verdict verdict_of(const bough_error_probe *p, bool motion, const double *error) {
     bough_error_verdict v = {.channel = -1};
     for (int i = 0; i < p->simulation->n_motion_channel; i++) {
         if (is_motion(&p->channels->channel[i]) != motion) continue;
-        bool known = bough_error_probe_knows(p, i);
+        bool known = error != p->largest || bough_error_probe_knows(p, i);
         v.unknown += !known;
-        if (!known || !has_say(p, i)) continue;
+        if (!known || !has_say(p, i, error[i])) continue;
         double range = range_of(p, i);
-        double relative = range > 0 ? p->largest[i] / range : p->largest[i] > 0 ? HUGE_VAL : 0;
+        double relative = range > 0 ? error[i] / range : error[i] > 0 ? HUGE_VAL : 0;
         if (v.channel >= 0 && relative <= v.relative) continue;
         v = (bough_error_verdict){i, relative, p->passed[i], v.unknown};
     }
     return v;
 }
 
-bough_error_verdict bough_error_probe_verdict(const bough_error_probe *p) { return verdict_of(p, true); }
+bough_error_verdict bough_error_probe_verdict(const bough_error_probe *p) {
+    return verdict_of(p, true, p->largest);
+}
+
+bough_error_verdict bough_error_probe_verdict_of(const bough_error_probe *p, const double *error) {
+    return verdict_of(p, true, error);
+}
 
 bough_error_verdict bough_error_probe_force_verdict(const bough_error_probe *p) {
-    return verdict_of(p, false);
+    return verdict_of(p, false, p->largest);
 }
 
 static const double hopeless = 3; // times the range

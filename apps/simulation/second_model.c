@@ -2,20 +2,12 @@
 
 #include "apps/simulation/build.h"
 
-#include <string.h>
-
 static bool loads_react(const bough_scene *scene) { return scene->aero.node || scene->control.node; }
 
 static bool can_follow(const bough_simulation *s) { return !s->inputs && !s->master->assembly->opaque; }
 
 static bool has_library(const bough_scene *scene) {
     return scene->control.node && scene->control.kind == BOUGH_SCENE_BLADED;
-}
-
-static int monolithic(void) {
-    int k = 0;
-    while (strcmp(bough_scheme_name(k), "monolithic") != 0) k++;
-    return k;
 }
 
 bough_status bough_second_model_build(bough_arena *arena, const bough_simulation *s,
@@ -27,7 +19,7 @@ bough_status bough_second_model_build(bough_arena *arena, const bough_simulation
     bough_scene *scene = bough_arena_take(arena, sizeof *scene);
     *scene = *s->scene;
     bough_scene_simulation *simulation = &scene->simulation;
-    simulation->coupling.scheme = monolithic();
+    simulation->coupling.scheme = bough_scheme_index("monolithic");
     simulation->master.solver = (int)def.kind;
     simulation->master.rtol = def.rtol;
     simulation->master.step = def.step;
