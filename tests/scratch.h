@@ -51,6 +51,22 @@ static inline char *scratch_read(const char *folder, const char *name) {
     return text;
 }
 
+// The number of files folder/name/*ending; `first` (256, or NULL) receives the path of one of them.
+static inline int scratch_files(const char *folder, const char *name, const char *ending, char *first) {
+    char path[512];
+    int n = 0;
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    DIR *stream = opendir(path);
+    for (struct dirent *entry; stream && (entry = readdir(stream));) {
+        size_t length = strlen(entry->d_name), end = strlen(ending);
+        if (length < end || strcmp(entry->d_name + length - end, ending) != 0) continue;
+        if (first && n == 0) snprintf(first, 256, "%.60s/%.180s", name, entry->d_name);
+        n++;
+    }
+    if (stream) closedir(stream);
+    return n;
+}
+
 static inline bool scratch_has(const char *folder, const char *name) {
     char path[512];
     snprintf(path, sizeof path, "%s/%s", folder, name);

@@ -501,7 +501,7 @@ END
     BOUGH=$bough "$folder/apps/studies/spread.sh" ../spread.yaml 2 out >../stdout 2>../stderr ||
         fail "spread.sh: $(cat ../stderr)"
     has ../stdout '^4 of 4 held, 0 stopped'
-    [ "$(cat out/cells-*-of-2.csv | grep -c 'macro_step=')" -eq 4 ] || fail "$said: four cells"
+    [ "$(grep -l 'macro_step=' out/cases/*.case | wc -l)" -eq 4 ] || fail "$said: four cells"
     rm -r out
     for k in 1 2; do
         SLURM_ARRAY_TASK_ID=$k BOUGH=$bough "$folder/apps/studies/spread.sh" ../spread.yaml 2 out \

@@ -1,6 +1,6 @@
 #include "apps/study/study_perform.h"
 #include "apps/study/study_run.h"
-#include "apps/study/study_store.h"
+#include "apps/study/study_table.h"
 #include "tests/scratch.h"
 
 // The rubber bar falls for 20 ms: monolithic runs are good, frozen ones fail at once, since the
@@ -52,20 +52,13 @@ static bool stopped;             // NOLINT(cppcoreguidelines-avoid-non-const-glo
 
 enum { ALL = 1000 };
 
-// Runs in the folder's cells.csv, below its two lines of head.
-static int count_runs(const char *folder) {
-    if (!scratch_has(folder, "cells.csv")) return 0;
-    char *text = scratch_read(folder, "cells.csv");
-    int lines = 0;
-    for (const char *c = text; c && *c; c++) lines += *c == '\n';
-    free(text);
-    return lines - 2;
-}
+// Results in the folder, that of the reference among them.
+static int count_results(const char *folder) { return scratch_files(folder, "cases", ".case", NULL); }
 
 // Asked at each evaluation of a run; the file is read now and then.
 static bool stop(void) {
     if (asked++ % 64 == 0 && runs_allowed < ALL) {
-        stopped = stopped || count_runs(runs_counted) >= runs_allowed;
+        stopped = stopped || count_results(runs_counted) - 1 >= runs_allowed;
     }
     return stopped;
 }
@@ -259,7 +252,7 @@ static void every_run_has_a_row(void **state) {
     bough_status status = perform(*state, good_study, ALL, table);
     assert_true(bough_is_ok(&status));
     assert_int_equal(count_in(*state, "table.csv", "\n"), 1 + 1 + 4);
-    assert_int_equal(count_in(*state, "cells.csv", "\n"), 1 + 1 + 4);
+    assert_int_equal(count_results(*state), 1 + 4);
     assert_int_equal(count_in(*state, "table.csv", ",tip [m],tip estimated [m],angle [rad],"), 1);
     char *text = scratch_read(*state, "table.txt");
     assert_string_equal(text, table);
@@ -308,38 +301,50 @@ static void failed_reference_ends_the_study(void **state) {
 }
 
 static void interrupted_study_goes_on(void **state) {
-    char table[4096], again[4096];
+    char table[4096], again[4096], name[256];
     bough_status status = perform(*state, good_study, 1, table);
     assert_int_equal(status.code, BOUGH_INTERRUPTED);
     assert_non_null(strstr(status.message, "after 1 of 4 runs"));
-    assert_int_equal(count_in(*state, "cells.csv", "\n"), 1 + 1 + 1);
+    assert_int_equal(scratch_files(*state, "cases", ".case", name), 1 + 1);
     assert_false(scratch_has(*state, "table.csv"));
-    char *first = scratch_read(*state, "cells.csv"); // with the run's time, which differs in each
+    char *first = scratch_read(*state, name); // with the run's time, which differs in each
     status = perform(*state, good_study, ALL, table);
     assert_true(bough_is_ok(&status));
-    char *all = scratch_read(*state, "cells.csv");
-    assert_memory_equal(all, first, strlen(first));
+    char *kept = scratch_read(*state, name);
+    assert_string_equal(kept, first);
     free(first);
-    free(all);
+    free(kept);
+    assert_int_equal(count_results(*state), 1 + 4);
     status = perform(*state, good_study, 0, again);
     assert_true(bough_is_ok(&status));
     assert_int_equal(asked, 0);
     assert_string_equal(again, table);
 }
 
-// A process that is killed leaves half a line; the next line must not be glued to it.
-static void half_a_line_is_skipped(void **state) {
-    char table[4096], path[256];
-    perform(*state, good_study, 1, table);
-    snprintf(path, sizeof path, "%s/cells.csv", (char *)*state);
-    FILE *file = fopen(path, "a");
+// What a process that is killed has begun is no result; a result that is cut off is refused by name, and
+// runs again once it is removed.
+static void half_a_result_is_none(void **state) {
+    char table[4096], name[256], path[512];
+    bough_status status = perform(*state, good_study, 1, table);
+    snprintf(path, sizeof path, "%s/cases/0123.case.partial", (char *)*state);
+    FILE *file = fopen(path, "w");
     assert_non_null(file);
-    fputs("0123,\"scheme=mono", file);
+    fputs("case 0123 finger", file);
     fclose(file);
-    perform(*state, good_study, ALL, table);
-    bough_status status = perform(*state, good_study, 0, table);
+    status = perform(*state, good_study, ALL, table);
     assert_true(bough_is_ok(&status));
-    assert_int_equal(count_in(*state, "cells.csv", "\n"), 1 + 1 + 4 + 1);
+    assert_int_equal(scratch_files(*state, "cases", ".case", name), 1 + 4);
+    snprintf(path, sizeof path, "%s/%s", (char *)*state, name);
+    char *text = scratch_read(*state, name);
+    assert_int_equal(truncate(path, (off_t)strlen(text) - 6), 0);
+    free(text);
+    status = perform(*state, good_study, 0, table);
+    assert_int_equal(status.code, BOUGH_IO);
+    assert_non_null(strstr(status.message, name));
+    assert_int_equal(remove(path), 0);
+    status = perform(*state, good_study, ALL, table);
+    assert_true(bough_is_ok(&status));
+    assert_int_equal(count_results(*state), 1 + 4);
 }
 
 static void other_settings_are_run_anew_and_a_grown_grid_is_completed(void **state) {
@@ -393,7 +398,7 @@ int main(void) {
         SCRATCH(no_title_is_clipped),
         SCRATCH(failed_reference_ends_the_study),
         SCRATCH(interrupted_study_goes_on),
-        SCRATCH(half_a_line_is_skipped),
+        SCRATCH(half_a_result_is_none),
         SCRATCH(other_settings_are_run_anew_and_a_grown_grid_is_completed),
         cmocka_unit_test(csv_text_is_quoted_where_needed),
     };

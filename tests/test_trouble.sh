@@ -119,10 +119,10 @@ unwritable() {
     says 1 'cannot create the folder' run "$bar" --set "$long" --out locked/below
 }
 
-await() { # FILE PROCESS
+await_result() { # PROCESS, a study that writes into part/
     for _ in $(seq 1000); do
-        [ -e "$1" ] && return 0
-        kill -0 "$2" 2>/dev/null || return 1
+        ls part/cases/*.case >/dev/null 2>&1 && return 0
+        kill -0 "$1" 2>/dev/null || return 1
         sleep 0.02
     done
     return 1
@@ -136,18 +136,21 @@ vanished() {
     says 2 'cannot be read' study none.yaml
     "$bough" study study.yaml --out part --threads 1 --quiet >/dev/null 2>stderr &
     process=$!
-    await part/cells.csv $process || fail 'the study began'
+    await_result $process || fail 'the study began'
     mv scene.yaml away.yaml
     wait $process
     code=$?
     [ $code -eq 1 ] || fail "vanished scene: exit code $code, expected 1"
     grep -q 'has changed or is gone' stderr || fail "vanished scene: $(head -c 300 stderr)"
-    cp part/cells.csv cells
-    grep -q 'macro_step=[^,]*,[1-9]' cells && fail 'vanished scene: stored as a result'
+    rm -rf kept
+    cp -r part/cases kept
+    grep -q '^outcome [1-9]' kept/*.case && fail 'vanished scene: stored as a result'
     mv away.yaml scene.yaml
     says 0 '' study study.yaml --out part --threads 1 --quiet
-    head -c "$(wc -c <cells)" part/cells.csv | cmp - cells || fail 'vanished scene: runs were lost'
-    [ "$(grep -c macro_step= part/cells.csv)" -eq 6 ] || fail 'vanished scene: six cells'
+    for result in kept/*.case; do
+        cmp "$result" "part/cases/${result#kept/}" || fail 'vanished scene: runs were lost'
+    done
+    [ "$(grep -l macro_step= part/cases/*.case | wc -l)" -eq 6 ] || fail 'vanished scene: six cells'
 }
 
 # TERM and INT end a study after its step, KILL at once; what was done is not done again.
@@ -156,7 +159,7 @@ signals() {
         rm -rf part
         "$bough" study study.yaml --out part --threads 1 --quiet >/dev/null 2>stderr &
         process=$!
-        await part/cells.csv $process || fail "SIG$signal: the study began"
+        await_result $process || fail "SIG$signal: the study began"
         sleep 0.1
         kill -s $signal $process
         wait $process 2>/dev/null

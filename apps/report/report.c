@@ -68,7 +68,7 @@ static bough_status add_part(const char *folder, const char *field,
 // The rows of a study that leaves no table.txt.
 static bough_status add_rows(const char *folder, FILE *out, bool *any) {
     static const char *const names[] = {"verify.csv", "blade-models.csv", "two-mass.csv",
-                                        "added-mass.csv", "cells.csv"};
+                                        "added-mass.csv"};
     bough_status status = bough_ok();
     for (size_t i = 0; i < sizeof names / sizeof *names && !*any && bough_is_ok(&status); i++) {
         status = add_file(folder, names[i], "rows", out, any);

@@ -1,5 +1,4 @@
-// The result of one case as a file of the study's folder, cases/NUMBER.case: text, complete or absent.
-// Numbers keep all their digits.
+// The result of one case of a load set as a file of the study's folder, cases/NUMBER.case.
 #ifndef BOUGH_APPS_STUDY_CASE_FILE_H
 #define BOUGH_APPS_STUDY_CASE_FILE_H
 
@@ -13,8 +12,7 @@ bough_status bough_case_write(const char *folder, const bough_load_set *set, int
 bough_status bough_case_read(const char *folder, const bough_load_set *set, int number,
                              bough_case_result *result);
 
-// Whether there is a result of this input, without reading its counts; its outcome in *outcome.
-bool bough_case_exists(const char *folder, const bough_load_set *set, int number,
-                       bough_status *outcome);
+// Whether there is a result of this input, without reading its counts.
+bool bough_case_exists(const char *folder, const bough_load_set *set, int number);
 
 #endif

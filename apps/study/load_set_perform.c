@@ -7,23 +7,20 @@
 #include "apps/study/case_file.h"
 #include "apps/study/load_set_plot.h"
 #include "apps/study/load_set_tables.h"
-#include "core/pool.h"
+#include "apps/study/result_file.h"
+#include "apps/study/study_batch.h"
 
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct work {
     const bough_load_set *set;
     const bough_study_options *options;
-    bough_pool *pool;
+    bough_batch batch; // a piece is a case of the list
     int claims;
-    int n_to_do;
-    int *to_do; // (n_to_do) cases
-    int ran, failed; // in this call
+    int *to_do;            // (batch.n) cases
+    int failed;            // in this call
     double simulated, cpu; // [s]
-    bough_status worst;
-    pthread_mutex_t mutex; // of the four above
 } work;
 
 // -- a case ---------------------------------------------------------------------------------------
@@ -35,27 +32,17 @@ static void tell_failure(const work *w, int number, const bough_status *outcome,
 }
 
 static void count(work *w, int number, const bough_case_result *r) {
-    pthread_mutex_lock(&w->mutex);
-    w->ran++;
+    bough_batch_enter(&w->batch);
     w->simulated += r->time;
     w->cpu += r->cpu;
     if (!bough_is_ok(&r->outcome)) {
         w->failed++;
         tell_failure(w, number, &r->outcome, stderr);
     }
-    if (!w->options->quiet) fprintf(stderr, "\r%d of %d cases", w->ran, w->n_to_do);
-    pthread_mutex_unlock(&w->mutex);
+    bough_batch_leave(&w->batch);
 }
 
-typedef struct one_case {
-    work *work;
-    int number;
-} one_case;
-
-static bough_status run_case(bough_arena *arena, void *self) {
-    const one_case *x = self;
-    work *w = x->work;
-    int number = x->number;
+static bough_status run_case(bough_arena *arena, work *w, int number) {
     char name[48], folder[BOUGH_PATH_MAX];
     bough_case_result result = bough_case_take(arena, w->set);
     snprintf(name, sizeof name, "cases/%06d", number + 1);
@@ -71,27 +58,14 @@ static bough_status run_case(bough_arena *arena, void *self) {
 }
 
 // Another process may have run it since the list was made.
-static void perform_case(void *self, int i) {
+static bough_status perform_case(bough_arena *arena, void *self, int i) {
     work *w = self;
     int number = w->to_do[i];
-    bough_status outcome;
-    pthread_mutex_lock(&w->mutex);
-    bool go_on = bough_is_ok(&w->worst);
-    pthread_mutex_unlock(&w->mutex);
-    if (!go_on || !bough_claim(w->claims, number)) return;
-    if (!bough_case_exists(w->options->folder, w->set, number, &outcome)) {
-        one_case x = {w, number};
-        bough_status status = bough_arena_use(run_case, &x);
-        pthread_mutex_lock(&w->mutex);
-        if (bough_is_ok(&w->worst)) w->worst = status;
-        pthread_mutex_unlock(&w->mutex);
-    }
+    bough_status status = bough_ok();
+    if (!bough_claim(w->claims, number)) return status;
+    if (!bough_case_exists(w->options->folder, w->set, number)) status = run_case(arena, w, number);
     bough_claim_drop(w->claims, number);
-}
-
-static void perform_all(void *self) {
-    work *w = self;
-    bough_pool_run(w->pool, w->n_to_do, perform_case, w);
+    return status;
 }
 
 // -- all cases ------------------------------------------------------------------------------------
@@ -102,16 +76,12 @@ static bool is_mine(const work *w, int number) {
     return w->options->parts == 0 || number % w->options->parts == w->options->part - 1;
 }
 
-static bough_status list_cases(bough_arena *arena, work *w) {
-    const char *folder = w->options->folder;
+static void list_cases(bough_arena *arena, work *w) {
     w->to_do = bough_arena_take(arena, (size_t)w->set->n_case * sizeof *w->to_do);
     for (int i = 0; i < w->set->n_case; i++) {
-        bough_status outcome;
-        if (is_mine(w, i) && !bough_case_exists(folder, w->set, i, &outcome)) {
-            w->to_do[w->n_to_do++] = i;
-        }
+        bool wanted = is_mine(w, i) && !bough_case_exists(w->options->folder, w->set, i);
+        if (wanted) w->to_do[w->batch.n++] = i;
     }
-    return bough_ok();
 }
 
 // Tables of an earlier state must not stand beside new cases.
@@ -137,37 +107,28 @@ static bough_status check_name(bough_arena *arena, const work *w) {
 }
 
 static bough_status start(bough_arena *arena, work *w) {
-    char cases[BOUGH_PATH_MAX];
     bough_status status = check_name(arena, w);
-    if (!bough_is_ok(&status)) return status;
-    status = bough_folder_path(w->options->folder, "cases", cases);
-    if (bough_is_ok(&status)) status = bough_folder_make(cases);
+    if (bough_is_ok(&status)) status = bough_result_folder(w->options->folder);
     if (bough_is_ok(&status)) status = bough_claims_open(arena, w->options->folder, &w->claims);
-    if (bough_is_ok(&status)) status = list_cases(arena, w);
-    if (bough_is_ok(&status) && w->n_to_do > 0) status = remove_tables(w->options->folder);
-    return status;
+    if (!bough_is_ok(&status)) return status;
+    list_cases(arena, w);
+    return w->batch.n > 0 ? remove_tables(w->options->folder) : status;
 }
 
 static bough_status run_cases(bough_arena *arena, work *w) {
+    bough_batch *b = &w->batch;
     int threads = w->set->threads > 0 ? w->set->threads : bough_pool_default(0);
-    if (threads > w->n_to_do) threads = w->n_to_do > 0 ? w->n_to_do : 1;
-    w->pool = bough_pool_create(arena, threads);
+    if (threads > b->n) threads = b->n > 0 ? b->n : 1;
     double began = bough_wall_clock();
-    w->worst = bough_ok();
-    pthread_mutex_init(&w->mutex, NULL);
-    bough_pool_region(w->pool, perform_all, w);
-    pthread_mutex_destroy(&w->mutex);
-    if (!w->options->quiet && w->ran > 0) fputc('\n', stderr);
-    if (w->ran > 0) {
+    b->to_do = b->n;
+    bough_status status = bough_batch_run(arena, b, threads);
+    if (b->done > 0) {
         fprintf(w->options->stream,
                 "ran %d cases, %.4g simulated hours in %.4g s on %d threads: %.4g simulated hours per "
-                "core hour\n", w->ran, w->simulated / 3600, bough_wall_clock() - began, threads,
+                "core hour\n", b->done, w->simulated / 3600, bough_wall_clock() - began, threads,
                 w->simulated / w->cpu);
     }
-    if (w->worst.code != BOUGH_INTERRUPTED) return w->worst;
-    return bough_fail(BOUGH_INTERRUPTED,
-                      "interrupted after %d of %d cases, which are kept in %.150s; the same command "
-                      "goes on from there", w->ran, w->n_to_do, w->options->folder);
+    return status;
 }
 
 // -- conclusion -----------------------------------------------------------------------------------
@@ -252,10 +213,8 @@ static bough_status conclude_in(bough_arena *arena, const work *w) {
 
 static int count_missing(const work *w) {
     int n = 0;
-    for (int i = 0; i < w->set->n_case; i++) {
-        bough_status outcome;
-        n += !bough_case_exists(w->options->folder, w->set, i, &outcome);
-    }
+    for (int i = 0; i < w->set->n_case; i++)
+        n += !bough_case_exists(w->options->folder, w->set, i);
     return n;
 }
 
@@ -265,7 +224,7 @@ static bough_status conclude(bough_arena *arena, const work *w) {
     FILE *f = w->options->stream;
     if (w->options->parts > 0) {
         fprintf(f, "part %d of %d: %d cases run, %d of %d cases still missing\n", w->options->part,
-                w->options->parts, w->ran, missing, n);
+                w->options->parts, w->batch.done, missing, n);
     } else if (missing > 0 && w->options->only) {
         fprintf(f, "%d of %d cases still missing\n", missing, n);
     } else if (missing > 0) {
@@ -275,12 +234,13 @@ static bough_status conclude(bough_arena *arena, const work *w) {
         return conclude_in(arena, w);
     }
     if (w->failed == 0) return bough_ok();
-    return bough_fail(BOUGH_FAILED, "%d of the %d cases run here failed", w->failed, w->ran);
+    return bough_fail(BOUGH_FAILED, "%d of the %d cases run here failed", w->failed, w->batch.done);
 }
 
 bough_status bough_load_set_perform(bough_arena *arena, const bough_study *study,
                                     const bough_study_options *options) {
     work w = {.set = study->load_set, .options = options};
+    w.batch = (bough_batch){options, "cases", .counts = !options->quiet, .perform = perform_case, .self = &w};
     bough_status status = start(arena, &w);
     if (bough_is_ok(&status)) status = run_cases(arena, &w);
     return bough_is_ok(&status) ? conclude(arena, &w) : status;

@@ -1,7 +1,7 @@
 #include "apps/study/load_set_tables.h"
 
 #include "apps/output/folder.h"
-#include "apps/study/study_store.h"
+#include "apps/study/study_table.h"
 
 #include <inttypes.h>
 #include <math.h>

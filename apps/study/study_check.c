@@ -40,7 +40,8 @@ static uint64_t fingerprint(const bough_study *s, const bough_scene *scene) {
         bough_mix_text(&hash, s->grid.axis[i].key);
     for (int i = 0; i < s->n_measure; i++)
         mix_measure(&hash, &s->measure[i]);
-    snprintf(numbers, sizeof numbers, "%d %d", s->repeat, s->threads);
+    // of a stability study they are groups side by side
+    snprintf(numbers, sizeof numbers, "%d %d", s->repeat, s->kind == BOUGH_STUDY_STABILITY ? 0 : s->threads);
     bough_mix_text(&hash, numbers);
     return hash;
 }

@@ -1,8 +1,6 @@
 #include "apps/study/study_table.h"
 
 #include "apps/output/folder.h"
-#include "apps/study/study_store.h"
-
 #include <math.h>
 #include <stdarg.h>
 #include <string.h>
@@ -27,7 +25,7 @@ static const bough_study_cell *cell_of(const bough_study *s, int row) {
 }
 
 static const bough_study_result *result_of(const bough_study_results *results, int row) {
-    return row < 0 ? &results->reference : &results->result[row];
+    return row < 0 ? results->reference : &results->result[row];
 }
 
 // -- text -----------------------------------------------------------------------------------------
@@ -160,6 +158,16 @@ void bough_study_print(const bough_study_results *results, FILE *stream) {
 }
 
 // -- CSV ------------------------------------------------------------------------------------------
+
+void bough_csv_text(FILE *file, const char *text) {
+    bool quoted = strpbrk(text, ",\"\r\n") != NULL;
+    if (quoted) fputc('"', file);
+    for (const char *c = text; *c; c++) {
+        if (*c == '"') fputc('"', file);
+        fputc(*c == '\n' || *c == '\r' ? ' ' : *c, file);
+    }
+    if (quoted) fputc('"', file);
+}
 
 static void write_csv_head(const bough_study *s, FILE *f) {
     fputs("run", f);

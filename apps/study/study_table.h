@@ -2,16 +2,12 @@
 #ifndef BOUGH_APPS_STUDY_STUDY_TABLE_H
 #define BOUGH_APPS_STUDY_STUDY_TABLE_H
 
-#include "apps/study/study_run.h"
+#include "apps/study/study_cells.h"
 
 #include <stdio.h>
 
-// Cells of a study and what they came to. Cells that are not done show so.
-typedef struct bough_study_results {
-    const bough_study *study;
-    bough_study_result reference;
-    bough_study_result *result; // (n_cell)
-} bough_study_results;
+// Writes a field of a CSV file, in quotes where it needs them; line ends become blanks.
+void bough_csv_text(FILE *file, const char *text);
 
 // "ok", "failed at t=12.3 s", "not run"
 void bough_study_status(const bough_study_result *result, char text[40]);

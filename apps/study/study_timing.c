@@ -2,7 +2,7 @@
 
 #include "apps/output/folder.h"
 #include "apps/study/study_run.h"
-#include "apps/study/study_store.h"
+#include "apps/study/study_table.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -5,7 +5,7 @@
 #include "apps/scene/scene.h"
 #include "apps/study/study.h"
 #include "tests/verification/blade_models_internal.h"
-#include "apps/study/study_store.h"
+#include "apps/study/study_table.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #include "apps/config/schema.h"
 #include "apps/output/folder.h"
 #include "apps/study/study_map.h"
-#include "apps/study/study_store.h"
+#include "apps/study/study_table.h"
 #include "tests/verification/two_mass.h"
 
 #include <math.h>

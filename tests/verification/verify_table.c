@@ -3,7 +3,7 @@
 
 #include "apps/output/folder.h"
 #include "apps/output/progress.h"
-#include "apps/study/study_store.h"
+#include "apps/study/study_table.h"
 
 #include <math.h>
 #include <string.h>
