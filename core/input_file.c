@@ -43,3 +43,25 @@ FILE *bough_input_open(const char *path, int64_t most, char reason[BOUGH_INPUT_R
     errno = error;
     return NULL;
 }
+
+static void close_file(void *stream) { fclose(stream); }
+
+char *bough_input_read(bough_arena *arena, const char *path, int64_t most, size_t *size,
+                       char reason[BOUGH_INPUT_REASON]) {
+    FILE *stream = bough_input_open(path, most, reason);
+    if (!stream) return NULL;
+    bough_arena *own = bough_arena_child(arena); // closes the file also where there is no memory
+    bough_arena_on_destroy(own, close_file, stream);
+    fseek(stream, 0, SEEK_END);
+    long end = ftell(stream);
+    size_t expected = end > 0 ? (size_t)end : 0;
+    rewind(stream);
+    char *bytes = bough_arena_take(arena, expected + 1);
+    errno = 0;
+    *size = fread(bytes, 1, expected + 1, stream);
+    bool whole = end >= 0 && !ferror(stream) && *size <= expected;
+    if (!whole) snprintf(reason, BOUGH_INPUT_REASON, "%s", errno ? strerror(errno) : "it grows while it is read");
+    bytes[whole ? *size : 0] = '\0';
+    bough_arena_destroy(own);
+    return whole ? bytes : NULL;
+}

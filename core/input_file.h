@@ -3,6 +3,8 @@
 #ifndef BOUGH_CORE_INPUT_FILE_H
 #define BOUGH_CORE_INPUT_FILE_H
 
+#include "core/arena.h"
+
 #include <stdint.h>
 #include <stdio.h>
 
@@ -15,5 +17,9 @@ enum { BOUGH_INPUT_REASON = 96 };
 // Opens a plain file of at most `most` bytes for reading. NULL: `reason` says why in a few words,
 // errno as of open(2), EISDIR, EINVAL for anything else that is no plain file, EFBIG.
 FILE *bough_input_open(const char *path, int64_t most, char reason[BOUGH_INPUT_REASON]);
+
+// The same file as a whole, *size bytes and a NUL behind them, in the arena's memory; NULL: `reason` as above.
+char *bough_input_read(bough_arena *arena, const char *path, int64_t most, size_t *size,
+                       char reason[BOUGH_INPUT_REASON]);
 
 #endif

@@ -6,6 +6,7 @@
 #include "apps/config/schema.h"
 #include "apps/output/archive.h"
 #include "apps/output/folder.h"
+#include "apps/output/picture.h"
 #include "apps/scene/fingerprint.h"
 #include "apps/simulation/body_alone.h"
 
@@ -98,20 +99,6 @@ static bough_status place_files(export *x) {
 
 // -- description ----------------------------------------------------------------------------------
 
-static void put_text(const char *text, FILE *out) {
-    for (const char *c = text; *c; c++) {
-        if (*c == '<') {
-            fputs("&lt;", out);
-        } else if (*c == '&') {
-            fputs("&amp;", out);
-        } else if (*c == '"') {
-            fputs("&quot;", out);
-        } else {
-            fputc(*c, out);
-        }
-    }
-}
-
 #define DEGREE 0.017453292519943295
 #define RPM 0.10471975511965977
 
@@ -136,7 +123,7 @@ static void put_exponent(const char *name, int exponent, FILE *out) {
 
 static void put_unit(const char *unit, FILE *out) {
     fputs("    <Unit name=\"", out);
-    put_text(unit, out);
+    bough_picture_text(out, unit);
     fputs("\">", out);
     for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
         if (strcmp(units[k].name, unit) != 0) continue;
@@ -169,13 +156,13 @@ static void put_units(const export *x, FILE *out) {
 
 static void put_variable(const variable *v, int reference, bool input, FILE *out) {
     fputs("    <Float64 name=\"", out);
-    put_text(v->name, out);
+    bough_picture_text(out, v->name);
     fprintf(out, "\" valueReference=\"%d\" causality=\"%s\" variability=\"continuous\"", reference,
             input ? "input" : "output");
     if (input) fprintf(out, " start=\"%.17g\"", v->start);
     if (v->unit[0]) {
         fputs(" unit=\"", out);
-        put_text(v->unit, out);
+        bough_picture_text(out, v->unit);
         fputc('"', out);
     }
     fputs("/>\n", out);
@@ -201,7 +188,7 @@ static void put_description(const export *x, FILE *out) {
     bool copies = !control->node || control->kind != BOUGH_SCENE_BLADED;
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\" "
           "modelName=\"", out);
-    put_text(scene->title ? scene->title : scene->file, out);
+    bough_picture_text(out, scene->title ? scene->title : scene->file);
     fprintf(out, "\" instantiationToken=\"%s\" generationTool=\"bough " BOUGH_VERSION "\" "
                  "variableNamingConvention=\"flat\">\n", x->token);
     fprintf(out, "  <CoSimulation modelIdentifier=\"bough\" canHandleVariableCommunicationStepSize="
@@ -264,28 +251,21 @@ static bough_status list_variables(export *x) {
 }
 
 // What a session opens: the token, the scene, the body, the settings, a line each.
-static bough_status add_settings(const export *x, bough_archive *archive) {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
+static void put_settings(const export *x, FILE *out) {
     const char *body = x->options->body;
     fprintf(out, "%s\n%s\n%s\nsimulation.threads=1\n", x->token, x->scene, body ? body : "");
     for (int k = 0; k < x->options->n_set; k++) fprintf(out, "%s\n", x->options->set[k]);
-    fclose(out);
-    bough_status status = bough_archive_add(archive, "resources/scene.txt", text, size);
-    free(text);
-    return status;
 }
 
-static bough_status add_description(const export *x, bough_archive *archive) {
+static bough_status add_text(const export *x, const char *name, void (*put)(const export *x, FILE *out),
+                             bough_archive *archive) {
     char *text = NULL;
     size_t size = 0;
     FILE *out = open_memstream(&text, &size);
     if (!out) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    put_description(x, out);
+    put(x, out);
     fclose(out);
-    bough_status status = bough_archive_add(archive, "modelDescription.xml", text, size);
+    bough_status status = bough_archive_add(archive, name, text, size);
     free(text);
     return status;
 }
@@ -312,10 +292,10 @@ static bough_status write_archive(export *x, const char *path) {
     FILE *file;
     bough_status status = bough_folder_open_partial(path, &file);
     if (!bough_is_ok(&status)) return status;
-    bough_archive archive = {.file = file};
-    status = add_description(x, &archive);
+    bough_archive archive = {.arena = x->arena, .file = file};
+    status = add_text(x, "modelDescription.xml", put_description, &archive);
     if (bough_is_ok(&status)) status = add_library(&archive);
-    if (bough_is_ok(&status)) status = add_settings(x, &archive);
+    if (bough_is_ok(&status)) status = add_text(x, "resources/scene.txt", put_settings, &archive);
     for (int k = 0; k < x->n_file && bough_is_ok(&status); k++)
         status = bough_archive_copy(&archive, x->file[k].name, x->file[k].path);
     if (!bough_is_ok(&status)) {

@@ -7,7 +7,6 @@
 
 #include <yaml.h>
 
-#include <errno.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -416,34 +415,12 @@ bough_node *bough_text_parse(bough_arena *arena, const char *file, const char *t
     return root;
 }
 
-static void close_file(void *stream) { fclose(stream); }
-
-// The file's bytes; NULL after an error.
-static char *read_bytes(bough_arena *arena, const char *path, size_t *size, bough_errors *errors) {
-    bough_node where = {.file = path};
-    char why[BOUGH_INPUT_REASON];
-    FILE *stream = bough_input_open(path, MAX_BYTES, why);
-    if (stream == NULL) {
-        bough_errors_add(errors, &where, "", "cannot be read: %s", why);
-        return NULL;
-    }
-    bough_arena_on_destroy(arena, close_file, stream);
-    fseek(stream, 0, SEEK_END);
-    long most = ftell(stream);
-    rewind(stream);
-    char *bytes = bough_arena_take(arena, (size_t)(most > 0 ? most : 0) + 1);
-    errno = 0;
-    *size = fread(bytes, 1, (size_t)(most > 0 ? most : 0) + 1, stream);
-    if (most >= 0 && !ferror(stream) && *size <= (size_t)most) return bytes;
-    bough_errors_add(errors, &where, "", "cannot be read: %s",
-                     errno ? strerror(errno) : "it grows while it is read");
-    return NULL;
-}
-
 bough_node *bough_text_read(bough_arena *arena, const char *path, bough_errors *errors) {
     size_t size = 0;
     bough_arena *work = bough_arena_child(arena);
-    const char *bytes = read_bytes(work, path, &size, errors);
+    char why[BOUGH_INPUT_REASON];
+    const char *bytes = bough_input_read(work, path, MAX_BYTES, &size, why);
+    if (!bytes) bough_errors_add(errors, &(bough_node){.file = path}, "", "cannot be read: %s", why);
     bough_node *root = bytes ? bough_text_parse(arena, path, bytes, size, errors) : NULL;
     bough_arena_destroy(work);
     return root;

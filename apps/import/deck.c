@@ -27,31 +27,6 @@ void bough_deck_fail(const bough_deck *deck, int line, const char *format, ...) 
 
 // -- reading --------------------------------------------------------------------------------------
 
-static bough_status read_bytes(bough_arena *arena, const char *path, char **text) {
-    char why[BOUGH_INPUT_REASON];
-    FILE *file = bough_input_open(path, MOST_BYTES, why);
-    if (!file) return bough_fail(BOUGH_INVALID, "cannot read '%.250s': %s", path, why);
-    char *bytes = NULL;
-    size_t size = 0, got = 1;
-    bough_status status = bough_ok();
-    FILE *out = open_memstream(&bytes, &size);
-    if (!out) bough_arena_leave(arena);
-    char part[4096];
-    for (size_t sum = 0; got > 0 && sum <= MOST_BYTES; sum += got) {
-        got = fread(part, 1, sizeof part, file);
-        fwrite(part, 1, got, out);
-    }
-    if (ferror(file)) status = bough_fail(BOUGH_INVALID, "cannot read '%.250s'", path);
-    fclose(file);
-    if (fclose(out) != 0) bough_arena_leave(arena);
-    if (bough_is_ok(&status) && (size > MOST_BYTES || memchr(bytes, 0, size))) {
-        status = bough_fail(BOUGH_INVALID, "'%.250s' is not a text file, or is larger than 16 MB", path);
-    }
-    if (bough_is_ok(&status)) *text = bough_arena_string(arena, bytes);
-    free(bytes);
-    return status;
-}
-
 // Lines of a text may end with \n, \r\n or \r; the number of lines when all end with \n.
 static int mend_line_ends(char *text) {
     char *to = text;
@@ -67,8 +42,12 @@ static int mend_line_ends(char *text) {
 
 bough_deck *bough_deck_open(bough_arena *arena, const char *path, bough_status *status) {
     if (!bough_is_ok(status)) return NULL;
-    char *text = NULL;
-    *status = read_bytes(arena, path, &text);
+    char why[BOUGH_INPUT_REASON];
+    size_t size;
+    char *text = bough_input_read(arena, path, MOST_BYTES, &size, why);
+    if (!text) *status = bough_fail(BOUGH_INVALID, "cannot read '%.250s': %s", path, why);
+    if (text && strlen(text) != size)
+        *status = bough_fail(BOUGH_INVALID, "'%.250s' is not a text file", path);
     if (!bough_is_ok(status)) return NULL;
     int n = mend_line_ends(text);
     bough_deck *deck = bough_arena_take(arena, sizeof *deck);
@@ -147,8 +126,8 @@ static int value_of(const bough_deck *deck, const char *names, const char *what,
     if (!deck || !bough_is_ok(deck->status)) return -1;
     int line = bough_deck_line(deck, names);
     if (line < 0) {
-        bough_deck_fail(deck, -1, "no '%.*s': expected a line '%s  %.*s'", (int)strcspn(names, "|"),
-                        names, what, (int)strcspn(names, "|"), names);
+        bough_deck_fail(deck, -1, "no '%.*s': expected a line '%s  %.*s'", (int)strcspn(names, "|"), names,
+                        what, (int)strcspn(names, "|"), names);
         return -1;
     }
     const char *at = deck->line[line];
@@ -190,8 +169,8 @@ double bough_deck_number(const bough_deck *deck, const char *names) {
     double value = 0;
     int line = value_of(deck, names, "number", word);
     if (line < 0 || read_number(word, &value)) return value;
-    bough_deck_fail(deck, line, "%.*s: expected a number, got '%.60s'", (int)strcspn(names, "|"),
-                    names, word);
+    bough_deck_fail(deck, line, "%.*s: expected a number, got '%.60s'", (int)strcspn(names, "|"), names,
+                    word);
     return 0;
 }
 
@@ -199,9 +178,8 @@ int bough_deck_whole(const bough_deck *deck, const char *names, int least, int m
     double value = bough_deck_number(deck, names);
     if (!deck || !bough_is_ok(deck->status)) return 0;
     if (value == floor(value) && value >= least && value <= most) return (int)value;
-    bough_deck_fail(deck, bough_deck_line(deck, names),
-                    "%.*s: expected a whole number from %d to %d, got %g", (int)strcspn(names, "|"),
-                    names, least, most, value);
+    bough_deck_fail(deck, bough_deck_line(deck, names), "%.*s: expected a whole number from %d to %d, got %g",
+                    (int)strcspn(names, "|"), names, least, most, value);
     return 0;
 }
 
@@ -212,8 +190,8 @@ bool bough_deck_flag(const bough_deck *deck, const char *names) {
     const char *first = word + (word[0] == '.'); // Fortran reads no further
     if (*first == 't' || *first == 'T') return true;
     if (*first == 'f' || *first == 'F') return false;
-    bough_deck_fail(deck, line, "%.*s: expected True or False, got '%.60s'",
-                    (int)strcspn(names, "|"), names, word);
+    bough_deck_fail(deck, line, "%.*s: expected True or False, got '%.60s'", (int)strcspn(names, "|"), names,
+                    word);
     return false;
 }
 
@@ -234,6 +212,14 @@ int bough_deck_whole_or(const bough_deck *deck, const char *names, int fallback)
 
 bool bough_deck_flag_or(const bough_deck *deck, const char *names, bool fallback) {
     return is_default(deck, names) ? fallback : bough_deck_flag(deck, names);
+}
+
+// A switch was a flag in some versions and is a number in others.
+double bough_deck_switch_or(const bough_deck *deck, const char *names, double fallback) {
+    if (is_default(deck, names)) return fallback;
+    const char *text = bough_deck_text(deck, names);
+    return strchr("tTfF", text[text[0] == '.']) ? bough_deck_flag(deck, names)
+                                                : bough_deck_number(deck, names);
 }
 
 // -- files ----------------------------------------------------------------------------------------
@@ -315,8 +301,7 @@ const char *bough_deck_path(const bough_deck *deck, const char *names) {
 // Where each column stands in a line; false when one that must be there is not.
 static bool find_columns(const char *line, const char *const *column, int n_column, int *place) {
     char word[WORD];
-    for (int k = 0; k < n_column; k++)
-        place[k] = -1;
+    for (int k = 0; k < n_column; k++) place[k] = -1;
     for (int i = 0; i < MOST_WORDS && next_word(&line, word); i++) {
         for (int k = 0; k < n_column; k++) {
             if (place[k] < 0 && is_one_of(word, column[k] + (column[k][0] == '?'))) place[k] = i;
@@ -338,16 +323,13 @@ bool bough_deck_is_comment(const bough_deck *deck, int line) {
 }
 
 // A comment, or units below the columns' names.
-static bool skipped(const char *line) {
-    return is_comment(line) || line[strspn(line, " \t")] == '(';
-}
+static bool skipped(const char *line) { return is_comment(line) || line[strspn(line, " \t")] == '('; }
 
 static void read_row(const bough_deck *deck, int line, const char *const *column, int n_column,
                      const int *place, double *row) {
     char word[WORD];
     const char *at = line < deck->n ? deck->line[line] : "";
-    for (int k = 0; k < n_column; k++)
-        row[k] = (double)NAN;
+    for (int k = 0; k < n_column; k++) row[k] = (double)NAN;
     for (int i = 0; i < MOST_WORDS && next_word(&at, word); i++) {
         for (int k = 0; k < n_column; k++) {
             if (place[k] == i && !read_number(word, &row[k])) {
@@ -370,12 +352,10 @@ static bool begins_with_number(const char *line) {
     return next_word(&line, word) && read_number(word, &value);
 }
 
-const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column,
-                               int n) {
+const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column, int n) {
     int place[MOST_WORDS], line = 0;
     if (!deck || !bough_is_ok(deck->status)) return NULL;
-    while (line < deck->n && !find_columns(deck->line[line], column, n_column, place))
-        line++;
+    while (line < deck->n && !find_columns(deck->line[line], column, n_column, place)) line++;
     if (line == deck->n) {
         bough_deck_fail(deck, -1, "no table with the columns %s, %s, ...", column[0],
                         n_column > 1 ? column[1] : "");
@@ -383,8 +363,7 @@ const double *bough_deck_table(const bough_deck *deck, const char *const *column
     }
     double *table = bough_arena_doubles(deck->arena, (size_t)n * n_column);
     for (int i = 0; i < n && bough_is_ok(deck->status); i++) {
-        do
-            line++;
+        do line++;
         while (line < deck->n && skipped(deck->line[line]));
         if (i == 0 && line < deck->n && !begins_with_number(deck->line[line]))
             line++; // units, in any spelling
@@ -399,8 +378,7 @@ bool bough_deck_three(const bough_deck *deck, const char *name, double to[3]) {
     for (int i = 0; i < deck->n; i++) {
         const char *at = deck->line[i];
         int n = 0;
-        while (n < 3 && next_word(&at, word) && read_number(word, &to[n]))
-            n++;
+        while (n < 3 && next_word(&at, word) && read_number(word, &to[n])) n++;
         if (n == 3 && next_word(&at, word) && is_one_of(word, name)) return true;
     }
     return false;
@@ -418,11 +396,9 @@ int bough_deck_only_numbers(const bough_deck *deck, int line, int most, double *
 void bough_deck_row(const bough_deck *deck, int *line, const char *what, int count, double *to) {
     char word[WORD];
     int got = 0;
-    while (*line < deck->n && skipped(deck->line[*line]))
-        ++*line;
+    while (*line < deck->n && skipped(deck->line[*line])) ++*line;
     const char *at = *line < deck->n ? deck->line[*line] : "";
-    while (got < count && next_word(&at, word) && read_number(word, &to[got]))
-        got++;
+    while (got < count && next_word(&at, word) && read_number(word, &to[got])) got++;
     if (got < count) {
         bough_deck_fail(deck, *line < deck->n ? *line : deck->n - 1,
                         "%s: expected %d numbers in the line, got %d", what, count, got);
@@ -430,8 +406,7 @@ void bough_deck_row(const bough_deck *deck, int *line, const char *what, int cou
     ++*line;
 }
 
-void bough_deck_numbers(const bough_deck *deck, int *line, const char *what, int count,
-                        double *to) {
+void bough_deck_numbers(const bough_deck *deck, int *line, const char *what, int count, double *to) {
     char word[WORD];
     for (int got = 0; got < count && bough_is_ok(deck->status); ++*line) {
         if (*line >= deck->n) {

@@ -43,6 +43,7 @@ const char *bough_deck_text(const bough_deck *deck, const char *names);
 // The same, `fallback` where there is no such line or it says "default".
 double bough_deck_number_or(const bough_deck *deck, const char *names, double fallback);
 int bough_deck_whole_or(const bough_deck *deck, const char *names, int fallback);
+double bough_deck_switch_or(const bough_deck *deck, const char *names, double fallback); // True is 1
 bool bough_deck_flag_or(const bough_deck *deck, const char *names, bool fallback);
 
 // The path of a file that is named relative to this one, whether it is there or not; refused unless
@@ -58,8 +59,7 @@ bool bough_deck_is_comment(const bough_deck *deck, int line);
 
 // A table of `n` rows below the line that names all columns, units below it skipped: (n ×
 // n_column), NULL after a failure. A column "?Name" need not be there: its entries are then NaN.
-const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column,
-                               int n);
+const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column, int n);
 
 // The three numbers of a line "x, y, z  Name"; false where there is no such line.
 bool bough_deck_three(const bough_deck *deck, const char *name, double to[3]);

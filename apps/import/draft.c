@@ -18,9 +18,9 @@ static const double longest_step = 0.02, shortest_step = 0.02 / 32, most_turn = 
 
 enum { TRIAL_STEPS = 2 };
 
-const char *const bough_import_name[BOUGH_N_IMPORT_FILE] = {
-    "scene.yaml",      "blade-structure.yaml", "tower-structure.yaml",
-    "blade-aero.yaml", "airfoils.yaml",        "import.txt"};
+const char *const bough_import_name[BOUGH_N_IMPORT_FILE] = {"scene.yaml",           "blade-structure.yaml",
+                                                            "tower-structure.yaml", "blade-aero.yaml",
+                                                            "airfoils.yaml",        "import.txt"};
 
 // -- text -----------------------------------------------------------------------------------------
 
@@ -36,14 +36,34 @@ void bough_draft_note(bough_draft *d, bough_import_note kind, const char *format
 void bough_draft_turbine(bough_draft *d, const char *rotor, int n_blade) {
     FILE *file = d->file[BOUGH_IMPORT_SCENE];
     fprintf(file, "turbine:\n  rotor: %s\n  blades: [blade1", rotor);
-    for (int k = 2; k <= n_blade; k++)
-        fprintf(file, ", blade%d", k);
+    for (int k = 2; k <= n_blade; k++) fprintf(file, ", blade%d", k);
     fputs("]\n", file);
 }
 
+void bough_draft_tower(bough_draft *d, double foot) {
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    fputs("  - name: tower\n    fidelity: rod\n    joint: {kind: fixed, parent: ground", file);
+    if (foot != 0) fprintf(file, ", placement: [move z %.10g m]", foot);
+    fprintf(file, "}\n    rod: {table: %s, segments: 20}\n", bough_import_name[BOUGH_IMPORT_TOWER]);
+}
+
+void bough_draft_library(bough_draft *d, const char *library, const char *input, double gear_ratio,
+                         double efficiency) {
+    FILE *file = d->file[BOUGH_IMPORT_SCENE];
+    fprintf(
+        file,
+        "control:\n  kind: bladed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n  efficiency: %.10g\n  library: ",
+        1 / d->macro_step, gear_ratio, efficiency);
+    bough_import_path(file, library);
+    if (input) {
+        fputs("\n  input: ", file);
+        bough_import_path(file, input);
+    }
+    fputc('\n', file);
+}
+
 void bough_import_list(FILE *file, const double *value, int n) {
-    for (int i = 0; i < n; i++)
-        fprintf(file, "%s%.10g", i == 0 ? "[" : ", ", value[i] + 0.0);
+    for (int i = 0; i < n; i++) fprintf(file, "%s%.10g", i == 0 ? "[" : ", ", value[i] + 0.0);
     fputc(']', file);
 }
 
@@ -67,12 +87,11 @@ char bough_import_letter(char letter) {
     return isalnum((unsigned char)letter) || letter == '-' ? letter : '_';
 }
 
-void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity,
-                      double duration, double rotor_speed) {
+void bough_draft_head(bough_draft *d, const char *title, const char *origin, double gravity, double duration,
+                      double rotor_speed) {
     FILE *file = d->file[BOUGH_IMPORT_SCENE];
     double step = longest_step;
-    while (step * rotor_speed > most_turn && step > shortest_step * 1.5)
-        step /= 2;
+    while (step * rotor_speed > most_turn && step > shortest_step * 1.5) step /= 2;
     double steps = fmax(ceil(duration / step - 1e-6), 1);
     d->macro_step = step;
     fprintf(file,
@@ -134,8 +153,7 @@ static bough_status try_scene(bough_arena *arena, bough_scene *scene) {
     for (int i = 0; i < TRIAL_STEPS && !calls && bough_is_ok(&status) && !bough_run_done(&run); i++)
         status = bough_run_step(&run);
     if (bough_is_ok(&status)) return status;
-    return bough_fail(status.code, "the model gives a scene that cannot run: %.300s",
-                      status.message);
+    return bough_fail(status.code, "the model gives a scene that cannot run: %.300s", status.message);
 }
 
 // What the deck's own checks have let through.
@@ -225,9 +243,7 @@ bough_status bough_draft_import(const bough_draft_def *def) {
     if (bough_is_ok(&status)) status = bough_arena_use(import, &own);
     close_all(d->note, BOUGH_N_NOTE);
     close_all(d->file, BOUGH_N_IMPORT_FILE);
-    for (int i = 0; i < BOUGH_N_NOTE; i++)
-        free(d->note_text[i]);
-    for (int i = 0; i < BOUGH_N_IMPORT_FILE; i++)
-        free(d->file_text[i]);
+    for (int i = 0; i < BOUGH_N_NOTE; i++) free(d->note_text[i]);
+    for (int i = 0; i < BOUGH_N_IMPORT_FILE; i++) free(d->file_text[i]);
     return status;
 }

@@ -36,8 +36,8 @@ typedef struct bough_draft {
     FILE *file[BOUGH_N_IMPORT_FILE]; // texts of the files; one left empty is not written
     char *note_text[BOUGH_N_NOTE], *file_text[BOUGH_N_IMPORT_FILE];
     size_t note_size[BOUGH_N_NOTE], file_size[BOUGH_N_IMPORT_FILE];
-    double macro_step;               // [s]; air and control are sampled as often
-    const bough_wind_box *box;       // to be written as wind.bts; NULL: none
+    double macro_step;         // [s]; air and control are sampled as often
+    const bough_wind_box *box; // to be written as wind.bts; NULL: none
 } bough_draft;
 
 #define BOUGH_IMPORT_BOX "wind.bts"
@@ -67,6 +67,12 @@ enum { BOUGH_IMPORT_BLADES = 16 }; // at most
 
 // The scene's 'turbine': blades are named blade1, blade2 ...
 void bough_draft_turbine(bough_draft *d, const char *rotor, int n_blade);
+
+// The scene's flexible tower, its foot at this height [m], and its 'control' by a library with its input file
+// (NULL: none) and the constants of the generator; further keys may follow.
+void bough_draft_tower(bough_draft *d, double foot);
+void bough_draft_library(bough_draft *d, const char *library, const char *input, double gear_ratio,
+                         double efficiency);
 
 // "[1, 2, 3]" in the scene's spelling.
 void bough_import_list(FILE *file, const double *value, int n);

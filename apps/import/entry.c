@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MOST = 4000, PATH = 200 };
@@ -15,8 +16,7 @@ void bough_entry_fail(bough_draft *d, const bough_node *where, const char *forma
     va_start(list, format);
     vsnprintf(text, sizeof text, format, list);
     va_end(list);
-    *d->status = bough_fail(BOUGH_INVALID, "%.150s:%d:%d: %s", where->file, where->line,
-                            where->column, text);
+    *d->status = bough_fail(BOUGH_INVALID, "%.150s:%d:%d: %s", where->file, where->line, where->column, text);
 }
 
 const bough_node *bough_entry_read(bough_draft *d, const char *path) {
@@ -27,8 +27,7 @@ const bough_node *bough_entry_read(bough_draft *d, const char *path) {
     const bough_error *e = errors.n > 0 ? errors.item : NULL;
     if (e && e->line == 0) *d->status = bough_fail(BOUGH_INVALID, "%.200s: %s", e->file, e->text);
     if (e && e->line > 0) {
-        *d->status =
-            bough_fail(BOUGH_INVALID, "%.200s:%d:%d: %s", e->file, e->line, e->column, e->text);
+        *d->status = bough_fail(BOUGH_INVALID, "%.200s:%d:%d: %s", e->file, e->line, e->column, e->text);
     }
     return NULL;
 }
@@ -103,8 +102,7 @@ double bough_entry_number(bough_draft *d, const bough_node *from, const char *pa
     return node ? number_of(d, node, path) : 0;
 }
 
-double bough_entry_number_or(bough_draft *d, const bough_node *from, const char *path,
-                             double fallback) {
+double bough_entry_number_or(bough_draft *d, const bough_node *from, const char *path, double fallback) {
     const bough_node *node = bough_entry(from, path);
     return node && bough_is_ok(d->status) ? number_of(d, node, path) : fallback;
 }
@@ -128,25 +126,24 @@ static bool is_list(bough_draft *d, const bough_node *node, const char *path, in
     return false;
 }
 
-const double *bough_entry_numbers(bough_draft *d, const bough_node *from, const char *path,
-                                  int *n) {
+const double *bough_entry_numbers(bough_draft *d, const bough_node *from, const char *path, int *n) {
     const bough_node *node = bough_entry_need(d, from, path);
     if (!node || !is_list(d, node, path, *n)) return NULL;
     double *value = bough_arena_doubles(d->arena, (size_t)node->n);
-    for (int i = 0; i < node->n; i++)
-        value[i] = number_of(d, node->value[i], path);
+    for (int i = 0; i < node->n; i++) value[i] = number_of(d, node->value[i], path);
     *n = node->n;
     return bough_is_ok(d->status) ? value : NULL;
 }
 
 // -- curves ---------------------------------------------------------------------------------------
 
-bough_curve bough_curve_of(bough_draft *d, const bough_node *node, const double *x, const double *y,
-                           int n) {
+bough_curve bough_curve_of(bough_draft *d, const bough_node *node, const double *x, const double *y, int n) {
     for (int i = 1; i < n; i++) {
         if (x[i] >= x[i - 1]) continue;
-        bough_entry_fail(d, node, "grid: expected increasing numbers, but number %d is not larger "
-                                  "than the one before", i + 1);
+        bough_entry_fail(d, node,
+                         "grid: expected increasing numbers, but number %d is not larger "
+                         "than the one before",
+                         i + 1);
         return (bough_curve){0};
     }
     return (bough_curve){node, n, x, y};
@@ -163,10 +160,41 @@ bough_curve bough_entry_curve(bough_draft *d, const bough_node *from, const char
 double bough_curve_at(const bough_curve *c, double x) {
     if (c->n == 0) return 0;
     int i = 1;
-    while (i < c->n - 1 && c->x[i] < x)
-        i++;
+    while (i < c->n - 1 && c->x[i] < x) i++;
     if (c->n == 1 || x <= c->x[0]) return c->y[0];
     double width = c->x[i] - c->x[i - 1];
     double s = width > 0 ? fmin((x - c->x[i - 1]) / width, 1) : 1;
     return c->y[i - 1] + s * (c->y[i] - c->y[i - 1]);
+}
+
+static int compare(const void *a, const void *b) {
+    double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+int bough_curve_places(bough_draft *d, const bough_curve *const *curve, int n_curve, double least,
+                       double **place) {
+    int n = 0, kept = 0;
+    for (int c = 0; c < n_curve; c++) n += curve[c]->n;
+    double *x = *place = bough_arena_doubles(d->arena, (size_t)n + 2);
+    n = 0;
+    for (int c = 0; c < n_curve; c++) {
+        for (int i = 0; i < curve[c]->n; i++) x[n++] = curve[c]->x[i];
+    }
+    qsort(x, (size_t)n, sizeof *x, compare);
+    for (int i = 0; i < n; i++)
+        if (kept == 0 || x[i] >= x[kept - 1] + least) x[kept++] = x[i];
+    return kept;
+}
+
+int bough_curve_shares(bough_draft *d, const bough_curve *const *curve, int n_curve, double least,
+                       double **share) {
+    double *all, *x;
+    int n = bough_curve_places(d, curve, n_curve, least, &all), kept = 1;
+    x = *share = bough_arena_doubles(d->arena, (size_t)n + 2);
+    for (int i = 0; i < n; i++)
+        if (all[i] >= least && all[i] < 1) x[kept++] = all[i];
+    if (x[kept - 1] < 1 - least / 2) kept++;
+    x[kept - 1] = 1;
+    return kept;
 }

@@ -22,8 +22,7 @@ const bough_node *bough_entry_need(bough_draft *d, const bough_node *from, const
 
 // A number, a text; with a fallback where there is none.
 double bough_entry_number(bough_draft *d, const bough_node *from, const char *path);
-double bough_entry_number_or(bough_draft *d, const bough_node *from, const char *path,
-                             double fallback);
+double bough_entry_number_or(bough_draft *d, const bough_node *from, const char *path, double fallback);
 const char *bough_entry_text(bough_draft *d, const bough_node *from, const char *path);
 
 // The numbers of a list, *n of them, or just as many as wanted where *n > 0.
@@ -42,11 +41,19 @@ typedef struct bough_curve {
 bough_curve bough_entry_curve(bough_draft *d, const bough_node *from, const char *path);
 
 // A curve of these numbers (n each), which must outlive it; `node` says where they stand.
-bough_curve bough_curve_of(bough_draft *d, const bough_node *node, const double *x, const double *y,
-                           int n);
+bough_curve bough_curve_of(bough_draft *d, const bough_node *node, const double *x, const double *y, int n);
 
 // Linear between the points, constant outside; 0 of a curve that could not be read.
 double bough_curve_at(const bough_curve *c, double x);
+
+// The places of all curves' points in rising order, those closer than `least` to the one before left out:
+// their number.
+int bough_curve_places(bough_draft *d, const bough_curve *const *curve, int n_curve, double least,
+                       double **place);
+
+// The same of curves over a share, from 0 to 1.
+int bough_curve_shares(bough_draft *d, const bough_curve *const *curve, int n_curve, double least,
+                       double **share);
 
 // Keeps a failure at a node, unless there was one.
 void bough_entry_fail(bough_draft *d, const bough_node *where, const char *format, ...)

@@ -19,12 +19,12 @@ typedef struct bough_import_options {
 // left out, which `echo` also receives (NULL: nobody). Nothing is written unless the whole model
 // could be read, and its scene built and stepped. BOUGH_INVALID says file:line, the value's name and
 // what was expected.
-bough_status bough_import_openfast(const char *path, const char *folder,
-                                   const bough_import_options *options, FILE *echo);
+bough_status bough_import_openfast(const char *path, const char *folder, const bough_import_options *options,
+                                   FILE *echo);
 
 // The same with a turbine of the WindIO ontology, a YAML file in the layout of version 1 or 2;
 // BOUGH_INVALID says file:line:col.
-bough_status bough_import_windio(const char *path, const char *folder,
-                                 const bough_import_options *options, FILE *echo);
+bough_status bough_import_windio(const char *path, const char *folder, const bough_import_options *options,
+                                 FILE *echo);
 
 #endif

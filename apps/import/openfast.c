@@ -8,9 +8,18 @@
 bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names) {
     const char *path = bough_deck_file(from, names);
     bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
-    if (deck)
-        bough_draft_note(&o->draft, BOUGH_TAKEN, "%.*s: %s", (int)strcspn(names, "|"), names, path);
+    if (deck) bough_draft_note(&o->draft, BOUGH_TAKEN, "%.*s: %s", (int)strcspn(names, "|"), names, path);
     return deck;
+}
+
+void bough_openfast_leave(bough_openfast *o, const bough_deck *deck, const bough_openfast_rest *rest,
+                          size_t n) {
+    for (size_t i = 0; i < n; i++) {
+        double value = bough_deck_switch_or(deck, rest[i].name, rest[i].neutral);
+        if (value == rest[i].neutral) continue;
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s%s%s", rest[i].name, rest[i].text ? ": " : "",
+                         rest[i].text ? rest[i].text : "");
+    }
 }
 
 // -- reading --------------------------------------------------------------------------------------
@@ -27,11 +36,11 @@ static void leave_water(bough_openfast *o) {
         }
         bough_deck_fail(o->main, bough_deck_line(o->main, part[i]),
                         "%s: expected 0, a turbine on land; --clamp-base imports it clamped at "
-                        "the tower's base", part[i]);
+                        "the tower's base",
+                        part[i]);
     }
     if (bough_deck_whole_or(o->main, "MHK", 0) != 0) {
-        bough_deck_fail(o->main, bough_deck_line(o->main, "MHK"),
-                        "MHK: expected 0, a turbine in air");
+        bough_deck_fail(o->main, bough_deck_line(o->main, "MHK"), "MHK: expected 0, a turbine in air");
     }
 }
 
@@ -116,12 +125,10 @@ static void read_shape(bough_openfast *o) {
 // -- writing --------------------------------------------------------------------------------------
 
 static void put_head(bough_openfast *o, const char *path) {
-    double g = bough_deck_number_or(o->main, "Gravity",
-                                    bough_deck_number_or(o->elasto, "Gravity", 9.80665));
+    double g = bough_deck_number_or(o->main, "Gravity", bough_deck_number_or(o->elasto, "Gravity", 9.80665));
     double most = bough_deck_number(o->main, "TMax"), turn = bough_openfast_rotor_speed(o);
     if (!(most >= 0 && most <= 1e6)) {
-        bough_deck_fail(o->main, bough_deck_line(o->main, "TMax"),
-                        "TMax: expected a time from 0 to 1e6 s");
+        bough_deck_fail(o->main, bough_deck_line(o->main, "TMax"), "TMax: expected a time from 0 to 1e6 s");
     }
     const char *slash = strrchr(path, '/');
     bough_draft_head(&o->draft, slash ? slash + 1 : path, "an OpenFAST model", g, most, turn);
@@ -137,8 +144,7 @@ static void note_other_blades(bough_openfast *o, const bough_deck *deck, const c
         snprintf(name, sizeof name, "%s(%d)|%s%d", stem, k, stem, k);
         if (bough_deck_line(deck, name) < 0) continue;
         if (strcmp(bough_deck_text(deck, name), bough_deck_text(deck, first)) == 0) continue;
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "%s(%d): blade %d is as the first", stem, k,
-                         k);
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "%s(%d): blade %d is as the first", stem, k, k);
     }
 }
 
@@ -169,13 +175,9 @@ static void convert(void *self, const char *path) {
     write_scene(o, path);
 }
 
-bough_status bough_import_openfast(const char *path, const char *folder,
-                                   const bough_import_options *options, FILE *echo) {
+bough_status bough_import_openfast(const char *path, const char *folder, const bough_import_options *options,
+                                   FILE *echo) {
     bough_openfast o = {.options = options};
-    return bough_draft_import(&(bough_draft_def){.draft = &o.draft,
-                                                 .convert = convert,
-                                                 .self = &o,
-                                                 .path = path,
-                                                 .folder = folder,
-                                                 .echo = echo});
+    return bough_draft_import(&(bough_draft_def){
+        .draft = &o.draft, .convert = convert, .self = &o, .path = path, .folder = folder, .echo = echo});
 }

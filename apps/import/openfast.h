@@ -21,10 +21,10 @@ typedef struct bough_openfast {
     const bough_import_options *options;
     bough_deck *main, *elasto, *tower, *servo, *inflow, *aero; // NULL: the model has none
     int n_blade;
-    bough_deck *furl;  // NULL: nothing furls
-    bool rotor_furls;  // a body "furl" carries the shaft
-    bool old_aero; // `aero` is of AeroDyn 14
-    bool beamdyn; // blades by BeamDyn, else by ElastoDyn
+    bough_deck *furl; // NULL: nothing furls
+    bool rotor_furls; // a body "furl" carries the shaft
+    bool old_aero;    // `aero` is of AeroDyn 14
+    bool beamdyn;     // blades by BeamDyn, else by ElastoDyn
     bool rigid_blade, rigid_tower;
     bough_generator generator;
     const char *library;          // of the controller
@@ -48,6 +48,15 @@ typedef enum bough_openfast_limits {
     BOUGH_LIMITS_TOWER,
 } bough_openfast_limits;
 void bough_openfast_check(const bough_deck *deck, bough_openfast_limits which);
+
+// Values of a deck for which the scene has no place, and what the list says of them.
+typedef struct bough_openfast_rest {
+    const char *name;
+    const char *text; // NULL: the name says it
+    double neutral;   // the value that needs no word; False is 0
+} bough_openfast_rest;
+void bough_openfast_leave(bough_openfast *o, const bough_deck *deck, const bough_openfast_rest *rest,
+                          size_t n);
 
 // Tables of blade and tower; with `top_mass` [kg] on the tower.
 void bough_openfast_beamdyn(bough_openfast *o);

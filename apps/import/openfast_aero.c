@@ -21,10 +21,9 @@ enum { POLAR = BOUGH_POLAR_COLUMNS };
 
 // The rows (n × POLAR) of a file's first table.
 static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
-    int column[POLAR] = {bough_deck_whole_or(o->aero, "InCol_Alfa", 1),
-                         bough_deck_whole_or(o->aero, "InCol_Cl", 2),
-                         bough_deck_whole_or(o->aero, "InCol_Cd", 3),
-                         bough_deck_whole_or(o->aero, "InCol_Cm", 0)};
+    int column[POLAR] = {
+        bough_deck_whole_or(o->aero, "InCol_Alfa", 1), bough_deck_whole_or(o->aero, "InCol_Cl", 2),
+        bough_deck_whole_or(o->aero, "InCol_Cd", 3), bough_deck_whole_or(o->aero, "InCol_Cm", 0)};
     int width = 0, line = bough_deck_line(deck, "NumAlf") + 1;
     *n = bough_deck_whole(deck, "NumAlf", 1, MOST_ROWS);
     for (int k = 0; k < POLAR; k++) {
@@ -38,12 +37,11 @@ static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
     double *table = bough_arena_doubles(o->draft.arena, (size_t)POLAR * (size_t)*n), row[MOST_COLUMNS];
     for (int i = 0; i < *n && bough_is_ok(o->draft.status); i++) {
         bough_deck_row(deck, &line, "a row of the polar", width, row);
-        for (int k = 0; k < POLAR; k++)
-            table[POLAR * i + k] = column[k] > 0 ? row[column[k] - 1] : 0;
+        for (int k = 0; k < POLAR; k++) table[POLAR * i + k] = column[k] > 0 ? row[column[k] - 1] : 0;
         double angle = table[POLAR * i];
         if (fabs(angle) <= 180 + 1e-3 && (i == 0 || angle > table[POLAR * (i - 1)])) continue;
-        bough_deck_fail(deck, line - 1,
-                        "alpha: expected increasing angles from -180 to 180 deg, got %g", angle);
+        bough_deck_fail(deck, line - 1, "alpha: expected increasing angles from -180 to 180 deg, got %g",
+                        angle);
     }
     return bough_is_ok(o->draft.status) ? table : NULL;
 }
@@ -66,8 +64,7 @@ void bough_openfast_put_polar(bough_openfast *o, const char *name, const double 
         gap = fmax(gap, fabs(first[1 + c] - last[1 + c]));
     }
     bool whole = n > 1 && first[0] <= close - 180 && last[0] >= 180 - close;
-    fprintf(file, "  - name: %s\n    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n",
-            name);
+    fprintf(file, "  - name: %s\n    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n", name);
     put_row(file, -180, end);
     for (int i = 0; i < n; i++) {
         const double *row = table + POLAR * i;
@@ -88,14 +85,12 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
     bough_openfast_put_polar(o, name, table, n);
     if (bough_deck_whole_or(deck, "NumTabs", 1) > 1) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "%s: the first of its tables is used for all Reynolds numbers",
-                         name);
+                         "%s: the first of its tables is used for all Reynolds numbers", name);
     }
 }
 
 bough_deck *bough_openfast_open_airfoil(bough_openfast *o, int *line, int number, char name[NAME]) {
-    while (bough_deck_is_comment(o->aero, *line))
-        ++*line;
+    while (bough_deck_is_comment(o->aero, *line)) ++*line;
     const char *path = bough_deck_file_at(o->aero, (*line)++);
     bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
     if (deck) airfoil_name(path, number, name);
@@ -130,8 +125,8 @@ enum {
 };
 
 static void put_element(FILE *file, const double *row, double span, const char *name) {
-    fprintf(file, "    - [%.10g, %.10g, %.10g, %.10g, %.10g, %s]\n", span, row[CURVE], row[SWEEP],
-            row[TWIST], row[CHORD], name);
+    fprintf(file, "    - [%.10g, %.10g, %.10g, %.10g, %.10g, %s]\n", span, row[CURVE], row[SWEEP], row[TWIST],
+            row[CHORD], name);
 }
 
 // From the root to the tip: what stands beyond the tip is cut, and what ends before it goes on as it
@@ -161,14 +156,13 @@ static void put_span(bough_openfast *o, const double *row, int n, char (*name)[N
     if (first > close || fabs(last - length) > close) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
                          "blade elements from %g to %g m on a blade of %g m: cut at its tip, or "
-                         "extended with the last element", first, last, length);
+                         "extended with the last element",
+                         first, last, length);
     }
 }
 
-static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)[NAME],
-                         int n_name) {
-    const char *const column[] = {"BlSpn",   "BlCrvAC", "BlSwpAC", "?BlCrvAng",
-                                  "BlTwist", "BlChord", "BlAFID"};
+static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)[NAME], int n_name) {
+    const char *const column[] = {"BlSpn", "BlCrvAC", "BlSwpAC", "?BlCrvAng", "BlTwist", "BlChord", "BlAFID"};
     int n = bough_deck_whole(deck, "NumBlNds", 1, MOST_ROWS);
     bough_openfast_put_elements(o, deck, "NumBlNds", bough_deck_table(deck, column, N_COLUMN, n), n, name,
                                 n_name);
@@ -186,11 +180,12 @@ void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, cons
             line = bough_deck_line(deck, count);
         }
         if (id != r[AIRFOIL]) {
-            bough_deck_fail(deck, line, "BlAFID: row %d: expected an airfoil from 1 to %d, got %g",
-                            i + 1, n_name, r[AIRFOIL]);
+            bough_deck_fail(deck, line, "BlAFID: row %d: expected an airfoil from 1 to %d, got %g", i + 1,
+                            n_name, r[AIRFOIL]);
         } else if (!(r[SPAN] > last)) {
-            bough_deck_fail(deck, line, "BlSpn: row %d: expected increasing spans from 0, got %g "
-                                        "m",
+            bough_deck_fail(deck, line,
+                            "BlSpn: row %d: expected increasing spans from 0, got %g "
+                            "m",
                             i + 1, r[SPAN]);
         } else if (!(r[CHORD] > 0)) {
             bough_deck_fail(deck, line, "BlChord: row %d: expected a positive chord, got %g m", i + 1,
@@ -204,8 +199,7 @@ void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, cons
     bough_draft_note(&o->draft, BOUGH_TAKEN, "%d blade elements", n);
     if (angle > 0) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
-                         "BlCrvAng, up to %g deg: elements are normal to the structure's axis",
-                         angle);
+                         "BlCrvAng, up to %g deg: elements are normal to the structure's axis", angle);
     }
 }
 
@@ -232,18 +226,15 @@ static void put_induction(bough_openfast *o) {
     int skew = bough_deck_whole_or(a, "SkewMod|Skew_Mod", 1);
     bool new_skew = bough_deck_line(a, "Skew_Mod") >= 0;
     bool oye = wake == 2 || (wake == 1 && bough_deck_line(a, "Wake_Mod") >= 0 && dynamic > 0);
-    bool pitt =
-        new_skew ? skew == 1 && bough_deck_whole_or(a, "SkewRedistr_Mod", 1) != 0 : skew == 2;
+    bool pitt = new_skew ? skew == 1 && bough_deck_whole_or(a, "SkewRedistr_Mod", 1) != 0 : skew == 2;
     int balance = bough_deck_whole_or(a, "BEM_Mod", 0);
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     fprintf(file,
             "  induction: {tip_loss: %s, hub_loss: %s, tangential: %s, drag: %s, skew: %s, "
             "high_thrust: %s",
-            truth(bough_deck_flag_or(a, "TipLoss", true)),
-            truth(bough_deck_flag_or(a, "HubLoss", true)),
-            truth(bough_deck_flag_or(a, "TanInd", true)),
-            truth(bough_deck_flag_or(a, "AIDrag", true)), pitt ? "pitt-peters" : "none",
-            balance == 1 ? "buhl" : "smooth");
+            truth(bough_deck_flag_or(a, "TipLoss", true)), truth(bough_deck_flag_or(a, "HubLoss", true)),
+            truth(bough_deck_flag_or(a, "TanInd", true)), truth(bough_deck_flag_or(a, "AIDrag", true)),
+            pitt ? "pitt-peters" : "none", balance == 1 ? "buhl" : "smooth");
     bool momentum = bough_deck_flag_or(a, "SkewMomCorr", false);
     if (momentum && balance != 1) fputs(", skewed_momentum: true", file);
     if (oye) fputs(", inflow: oye", file);
@@ -266,16 +257,13 @@ static void put_induction(bough_openfast *o) {
                          "no BEM_Mod: smooth high-thrust correction, in place of Buhl's in "
                          "AeroDyn before version 4");
     }
-    if (wake == 0)
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "WakeMod 0: induction is computed");
+    if (wake == 0) bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "WakeMod 0: induction is computed");
     if (wake == 3) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "OLAF: replaced by blade element momentum theory");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "OLAF: replaced by blade element momentum theory");
     }
     if (oye) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "DBEMT_Mod %d: Oye's dynamic inflow, for each element separately",
-                         dynamic);
+                         "DBEMT_Mod %d: Oye's dynamic inflow, for each element separately", dynamic);
     }
 }
 
@@ -293,23 +281,14 @@ static void put_stall(bough_openfast *o) {
                          model);
     }
     if (on && bough_deck_number_or(a, "UAStartRad", 0) > 0) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
-                         "UAStartRad: dynamic stall acts on all elements");
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "UAStartRad: dynamic stall acts on all elements");
     }
     if (!bough_deck_flag_or(a, "UseBlCm", true)) fputs("  pitching_moment: false\n", file);
 }
 
-// A switch that was a flag before AeroDyn 15.04.
-static int shadow_of(const bough_deck *a) {
-    const char *text = bough_deck_line(a, "TwrShadow") >= 0 ? bough_deck_text(a, "TwrShadow") : "0";
-    if (strchr("tTfF.", text[0])) return bough_deck_flag_or(a, "TwrShadow", false);
-    return bough_deck_whole_or(a, "TwrShadow", 0);
-}
-
 static void put_column(FILE *file, const char *key, const double *row, int column, int n) {
     fprintf(file, "    %s: [", key);
-    for (int i = 0; i < n; i++)
-        fprintf(file, "%s%.10g", i > 0 ? ", " : "", row[3 * i + column]);
+    for (int i = 0; i < n; i++) fprintf(file, "%s%.10g", i > 0 ? ", " : "", row[3 * i + column]);
     fputs("]\n", file);
 }
 
@@ -324,7 +303,8 @@ static const double *above_ground(bough_openfast *o, const double *row, int *n) 
         if (!(r[1] > 0) || r[2] < 0 || (m > 0 && !(height > kept[3 * (m - 1)]))) {
             bough_deck_fail(o->aero, bough_deck_line(o->aero, "NumTwrNds"),
                             "TwrElev, TwrDiam, TwrCd: row %d: expected increasing heights, "
-                            "positive diameters, drag not negative", i + 1);
+                            "positive diameters, drag not negative",
+                            i + 1);
         }
         const double own[] = {height, r[1], r[2]};
         memcpy(kept + 3 * m++, own, sizeof own);
@@ -340,7 +320,8 @@ static const double *above_ground(bough_openfast *o, const double *row, int *n) 
 static void put_tower(bough_openfast *o) {
     const bough_deck *a = o->aero;
     const char *const column[] = {"TwrElev", "TwrDiam", "TwrCd"};
-    int potential = bough_deck_whole_or(a, "TwrPotent", 0), shadow = shadow_of(a);
+    int potential = bough_deck_whole_or(a, "TwrPotent", 0);
+    int shadow = (int)bough_deck_switch_or(a, "TwrShadow", 0); // a flag before AeroDyn 15.04
     bool drag = bough_deck_flag_or(a, "TwrAero", false) && !o->rigid_tower;
     if (potential == 0 && shadow == 0 && !drag) return;
     int n = bough_deck_whole(a, "NumTwrNds", 1, MOST_ROWS);
@@ -362,8 +343,9 @@ static void put_tower(bough_openfast *o) {
                          "or drag");
     }
     if (shadow == 2) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "TwrShadow 2: Powles' model replaces "
-                                        "Eames'");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "TwrShadow 2: Powles' model replaces "
+                         "Eames'");
     }
 }
 
@@ -375,9 +357,8 @@ void bough_openfast_aero(bough_openfast *o) {
     fprintf(file, "aero:\n  rate: %.10g Hz\n  air_density: %.10g\n", 1 / o->draft.macro_step,
             bough_deck_number_or(a, "AirDens", density));
     bough_openfast_wind(o);
-    fprintf(file, "  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n",
-            bough_import_name[BOUGH_IMPORT_AERO], bough_import_name[BOUGH_IMPORT_POLARS],
-            o->hub_radius);
+    fprintf(file, "  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n", bough_import_name[BOUGH_IMPORT_AERO],
+            bough_import_name[BOUGH_IMPORT_POLARS], o->hub_radius);
     if (o->old_aero) {
         bough_openfast_aero14(o);
         return;
@@ -385,11 +366,8 @@ void bough_openfast_aero(bough_openfast *o) {
     put_induction(o);
     put_stall(o);
     put_tower(o);
-    static const char *const left[] = {"CavitCheck",  "Buoyancy",    "CompAA", "TFinAero",
-                                       "NacelleDrag", "SectAvg"};
-    for (size_t i = 0; i < sizeof left / sizeof *left; i++) {
-        if (bough_deck_flag_or(a, left[i], false)) {
-            bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "AeroDyn's %s", left[i]);
-        }
-    }
+    static const bough_openfast_rest rest[] = {{"CavitCheck", NULL, 0},  {"Buoyancy", NULL, 0},
+                                               {"CompAA", NULL, 0},      {"TFinAero", NULL, 0},
+                                               {"NacelleDrag", NULL, 0}, {"SectAvg", NULL, 0}};
+    bough_openfast_leave(o, a, rest, sizeof rest / sizeof *rest);
 }

@@ -83,8 +83,9 @@ static bool says(const bough_openfast *o, const char *key, const char *word) {
 void bough_openfast_aero14(bough_openfast *o) {
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     bool dynamic = says(o, "InfModel", "DYN"), stall = says(o, "StallMod", "BED");
-    fprintf(file, "  induction: {tip_loss: %s, hub_loss: %s, tangential: %s, drag: false, skew: pitt-peters, "
-                  "high_thrust: smooth%s}\n",
+    fprintf(file,
+            "  induction: {tip_loss: %s, hub_loss: %s, tangential: %s, drag: false, skew: pitt-peters, "
+            "high_thrust: smooth%s}\n",
             says(o, "TLModel", "NONE") ? "false" : "true", says(o, "HLModel", "NONE") ? "false" : "true",
             says(o, "IndModel", "SWIRL") ? "true" : "false", dynamic ? ", inflow: oye" : "");
     if (stall) fputs("  dynamic_stall: hgm\n", file);

@@ -14,9 +14,7 @@ typedef struct beam {
     double *span, *flap, *edge, *mass; // (n) [m, N m2, N m2, kg/m]
 } beam;
 
-typedef struct line_point {
-    double x, y, z, twist; // [m, deg]
-} line_point;
+typedef bough_section_place line_point;
 
 static double distance(line_point a, line_point b) {
     double x = b.x - a.x, y = b.y - a.y, z = b.z - a.z;
@@ -26,12 +24,10 @@ static double distance(line_point a, line_point b) {
 // The reference line at a share of its arc length [0 to 1].
 static line_point at_share(const line_point *p, int n, double share) {
     double length = 0;
-    for (int i = 1; i < n; i++)
-        length += distance(p[i - 1], p[i]);
+    for (int i = 1; i < n; i++) length += distance(p[i - 1], p[i]);
     double left = share * length;
     int i = 1;
-    for (; i < n - 1 && left > distance(p[i - 1], p[i]); i++)
-        left -= distance(p[i - 1], p[i]);
+    for (; i < n - 1 && left > distance(p[i - 1], p[i]); i++) left -= distance(p[i - 1], p[i]);
     line_point a = p[i - 1], b = p[i];
     double s = fmin(left / distance(a, b), 1);
     return (line_point){a.x + s * (b.x - a.x), a.y + s * (b.y - a.y), a.z + s * (b.z - a.z),
@@ -41,8 +37,7 @@ static line_point at_share(const line_point *p, int n, double share) {
 static const line_point *read_line(bough_openfast *o, const bough_deck *deck, int *n) {
     *n = bough_deck_whole(deck, "kp_total", 2, MOST);
     if (bough_deck_whole_or(deck, "member_total", 1) != 1) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "BeamDyn's members: joined to one row of points");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "BeamDyn's members: joined to one row of points");
     }
     const char *const column[] = {"kp_xr", "kp_yr", "kp_zr", "initial_twist"};
     const line_point *p = (const line_point *)bough_deck_table(deck, column, 4, *n);
@@ -50,7 +45,8 @@ static const line_point *read_line(bough_openfast *o, const bough_deck *deck, in
         if (p[i].z > p[i - 1].z) continue;
         bough_deck_fail(deck, bough_deck_line(deck, "kp_total"),
                         "kp_zr: expected increasing values, but number %d is not larger than the "
-                        "one before", i + 1);
+                        "one before",
+                        i + 1);
     }
     if (p && fabs(p[0].z) > 1e-9) {
         bough_deck_fail(deck, bough_deck_line(deck, "kp_total"),
@@ -59,20 +55,15 @@ static const line_point *read_line(bough_openfast *o, const bough_deck *deck, in
     return p;
 }
 
-static void put_station(bough_openfast *o, const bough_deck *deck, const line_point *p,
-                        const double *s, int line) {
+static void put_station(bough_openfast *o, const bough_deck *deck, const line_point *p, const double *s,
+                        int line) {
     const double *k = s + 1, *m = s + 1 + MATRIX;
-    FILE *file = o->draft.file[BOUGH_IMPORT_BLADE];
     if (!bough_section_possible(k, m)) {
         bough_deck_fail(deck, line,
                         "the station: expected stiffness and inertia of a real section, positive "
                         "definite");
     }
-    fprintf(file, "    - [%.10g, %.10g, [%.10g, %.10g], ", p->z, p->twist, p->x, p->y);
-    bough_section_stiffness(file, k);
-    fputs(", ", file);
-    bough_section_mass(file, m);
-    fputs("]\n", file);
+    bough_section_matrix_put(o->draft.file[BOUGH_IMPORT_BLADE], p, k, m);
 }
 
 // Puts the section `s` at a share of the line.
@@ -88,24 +79,22 @@ static void add_station(bough_openfast *o, const bough_deck *deck, const line_po
     if (i > 0) bough_openfast_weigh(o, b->span + i - 1, b->mass + i - 1);
 }
 
-static void put_stations(bough_openfast *o, const bough_deck *deck, const line_point *p,
-                         int n_point, beam *b) {
+static void put_stations(bough_openfast *o, const bough_deck *deck, const line_point *p, int n_point,
+                         beam *b) {
     int n = bough_deck_whole(deck, "station_total", 1, MOST);
     int line = bough_deck_find(deck, "DISTRIBUTED PROPERTIES") + 1;
     if (bough_is_ok(o->draft.status) && line == 0) {
         bough_deck_fail(deck, -1, "no section 'DISTRIBUTED PROPERTIES'");
     }
     double first = 0, last = 0, s[STATION], strange = 0;
-    fprintf(o->draft.file[BOUGH_IMPORT_BLADE],
-            "stations:\n  columns: [span, twist deg, axis, stiffness, mass]\n  rows:\n");
+    bough_section_matrix_head(o->draft.file[BOUGH_IMPORT_BLADE]);
     for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
         bough_deck_numbers(deck, &line, "a station's share of the length", 1, s);
         int start = line - 1;
         bough_deck_numbers(deck, &line, "a station's two matrices", 2 * MATRIX, s + 1);
         bool good = i == 0 ? s[0] >= -close_enough : s[0] > last;
         if (!good || s[0] > 1 + close_enough) {
-            bough_deck_fail(deck, start,
-                            "the station is at %g: expected increasing fractions from 0 to 1",
+            bough_deck_fail(deck, start, "the station is at %g: expected increasing fractions from 0 to 1",
                             s[0]);
         }
         last = s[0];
@@ -120,19 +109,14 @@ static void put_stations(bough_openfast *o, const bough_deck *deck, const line_p
     if (bough_is_ok(o->draft.status) && (fabs(first) > close_enough || fabs(last - 1) > close_enough)) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
                          "stations from %g to %g of the length: extended with the values at their "
-                         "ends", first,
-                         last);
+                         "ends",
+                         first, last);
     }
     bough_draft_note(&o->draft, BOUGH_TAKEN,
                      "%d stations with full stiffness and mass; the blade weighs "
                      "%.7g kg",
                      n, o->blade_mass);
-    if (strange > 1e-3) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "mass matrices: only mass, centre and inertias; "
-                         "other entries, up to %.2g of these, are left out",
-                         strange);
-    }
+    bough_section_note(&o->draft, strange);
 }
 
 // Times that give the first flapwise and edgewise mode their ratios.
@@ -177,9 +161,8 @@ void bough_openfast_beamdyn(bough_openfast *o) {
     if (!bough_is_ok(o->draft.status)) return;
     int n;
     const line_point *p = read_line(o, deck, &n);
-    if (bough_deck_flag_or(deck, "UsePitchAct", false)) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "UsePitchAct: the pitch actuator");
-    }
+    static const bough_openfast_rest rest[] = {{"UsePitchAct", "the pitch actuator", 0}};
+    bough_openfast_leave(o, deck, rest, 1);
     bough_deck *blade = bough_openfast_open(o, deck, "BldFile");
     if (!bough_is_ok(o->draft.status)) return;
     o->blade_length = p[n - 1].z;

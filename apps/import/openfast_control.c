@@ -26,8 +26,7 @@ static double synchronous_speed(const bough_openfast *o) {
     if (bough_deck_whole_or(o->servo, "GenModel", SIMPLE) == SIMPLE) {
         return bough_deck_number(o->servo, "SIG_SySp") * rpm;
     }
-    return 120 * rpm * bough_deck_number(o->servo, "TEC_Freq") /
-           bough_deck_number(o->servo, "TEC_NPol");
+    return 120 * rpm * bough_deck_number(o->servo, "TEC_Freq") / bough_deck_number(o->servo, "TEC_NPol");
 }
 
 double bough_openfast_rotor_speed(const bough_openfast *o) {
@@ -56,9 +55,10 @@ static void lack(bough_openfast *o, const char *format, ...) {
     va_end(list);
     o->lacks_control = bough_arena_string(o->draft.arena, text);
     o->generator = BOUGH_GENERATOR_DRIVEN;
-    bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: the generator keeps its initial speed, %g "
-                                        "rpm of the rotor, and the pitch is constant", text,
-                     bough_deck_number(o->elasto, "RotSpeed"));
+    bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
+                     "%s: the generator keeps its initial speed, %g "
+                     "rpm of the rotor, and the pitch is constant",
+                     text, bough_deck_number(o->elasto, "RotSpeed"));
 }
 
 static bool take_library(bough_openfast *o, const char *path, char why[200]) {
@@ -70,8 +70,9 @@ static bool take_library(bough_openfast *o, const char *path, char why[200]) {
     o->generator = BOUGH_GENERATOR_LIBRARY;
     bough_draft_note(&o->draft, BOUGH_TAKEN, "controller: %s, by its path", path);
     if (torque_mode(o) != pitch_mode(o)) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "the library controls both torque and "
-                                        "pitch");
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "the library controls both torque and "
+                         "pitch");
     }
     return true;
 }
@@ -179,8 +180,7 @@ static torque_line read_thevenin(const bough_openfast *o) {
     double square = r * r + (leak + mutual) * (leak + mutual);
     double volts = line * line * mutual * mutual / square; // 3 V² of a phase
     double resistance = r * mutual * mutual / square;
-    double reactance = mutual * (r * r + leak * (leak + mutual)) / square +
-                       bough_deck_number(s, "TEC_RLR");
+    double reactance = mutual * (r * r + leak * (leak + mutual)) / square + bough_deck_number(s, "TEC_RLR");
     torque_line l = {.most = volts / (2 * omega * (hypot(resistance, reactance) - resistance))};
     l.slip = l.most * omega * rotor / volts;
     l.full_speed = omega * (1 + l.slip);
@@ -224,8 +224,8 @@ static void put_law(bough_openfast *o) {
     if (!(l.slip >= least) && isfinite(least)) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
                          "torque grows to its maximum over %.2g %% of the speed, not %.2g %%, "
-                         "which would be unstable with samples every %g s", 100 * least, 100 * l.slip,
-                         o->draft.macro_step);
+                         "which would be unstable with samples every %g s",
+                         100 * least, 100 * l.slip, o->draft.macro_step);
         if (l.gain == 0) full *= (1 + least) / (1 + l.slip);
         l.slip = least;
     }
@@ -236,8 +236,8 @@ static void put_law(bough_openfast *o) {
             "    rated_power: %.10g\n    above_rated: torque\n    slip: %.10g\n"
             "    most_torque: %.10g\n    torque_rate: 1e9\n    power_pitch: 100 rad\n",
             1 / o->draft.macro_step, bough_deck_number(o->elasto, "GBRatio"),
-            bough_deck_number_or(o->servo, "GenEff", 100) / 100, 2 / o->draft.macro_step, l.gain,
-            full, l.most * full, l.slip, l.most);
+            bough_deck_number_or(o->servo, "GenEff", 100) / 100, 2 / o->draft.macro_step, l.gain, full,
+            l.most * full, l.slip, l.most);
     if (bough_deck_number_or(o->servo, "TimGenOn", 0) > 0) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "TimGenOn: the generator works from the start");
     }
@@ -246,30 +246,22 @@ static void put_law(bough_openfast *o) {
 // -- library --------------------------------------------------------------------------------------
 
 static void put_library(bough_openfast *o) {
-    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     double step = o->draft.macro_step;
     double efficiency = o->servo ? bough_deck_number_or(o->servo, "GenEff", 100) / 100 : 1;
-    fprintf(file,
-            "control:\n  kind: bladed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
-            "  efficiency: %.10g\n  library: ",
-            1 / step, bough_deck_number(o->elasto, "GBRatio"), efficiency);
-    bough_import_path(file, o->library);
+    bool input = o->servo && bough_deck_line(o->servo, "DLL_InFile") >= 0;
+    bough_draft_library(&o->draft, o->library, input ? bough_deck_path(o->servo, "DLL_InFile") : NULL,
+                        bough_deck_number(o->elasto, "GBRatio"), efficiency);
     if (o->servo && bough_deck_whole_or(o->servo, "Ptch_Cntrl", 0) == 1) {
-        fputs("\n  individual_pitch: true", file);
+        fputs("  individual_pitch: true\n", o->draft.file[BOUGH_IMPORT_SCENE]);
     }
-    if (o->servo && bough_deck_line(o->servo, "DLL_InFile") >= 0) {
-        const char *input = bough_deck_path(o->servo, "DLL_InFile");
-        fputs("\n  input: ", file);
-        bough_import_path(file, input);
-    }
-    fputc('\n', file);
     if (o->servo && bough_deck_number_or(o->servo, "TPCOn", 0) > 0) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "TPCOn: the library controls the pitch from the start");
     }
     double asked = o->servo ? bough_deck_number_or(o->servo, "DLL_DT", step) : step;
     if (fabs(asked - step) > 1e-9) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "DLL_DT %g s: the library is called every "
-                                        "%g s",
+        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
+                         "DLL_DT %g s: the library is called every "
+                         "%g s",
                          asked, step);
     }
 }
@@ -286,22 +278,18 @@ static void note_manoeuvres(bough_openfast *o) {
     }
 }
 
-// Tuned masses and dampers of blades, nacelle, tower and platform; flags before OpenFAST 2.5.
-static void note_structural_control(bough_openfast *o) {
-    static const char *const count[] = {"NumBStC", "NumNStC", "NumTStC", "NumSStC"};
-    static const char *const flag[] = {"CompNTMD", "CompTTMD"};
-    for (size_t i = 0; i < sizeof count / sizeof *count; i++) {
-        if (bough_deck_whole_or(o->servo, count[i], 0) == 0) continue;
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: structural control", count[i]);
-    }
-    for (size_t i = 0; i < sizeof flag / sizeof *flag; i++) {
-        if (!bough_deck_flag_or(o->servo, flag[i], false)) continue;
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: structural control", flag[i]);
-    }
-    if (bough_deck_whole_or(o->servo, "AfCmode", 0) != 0) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "AfCmode: flaps and other airfoil control");
-    }
-}
+// Tuned masses and dampers are flags before OpenFAST 2.5.
+static const bough_openfast_rest rest[] = {
+    {"YCMode", "yaw control", 0},
+    {"HSSBrMode", "the brake", 0},
+    {"NumBStC", "structural control", 0},
+    {"NumNStC", "structural control", 0},
+    {"NumTStC", "structural control", 0},
+    {"NumSStC", "structural control", 0},
+    {"CompNTMD", "structural control", 0},
+    {"CompTTMD", "structural control", 0},
+    {"AfCmode", "flaps and other airfoil control", 0},
+};
 
 void bough_openfast_control(bough_openfast *o) {
     if (!bough_is_ok(o->draft.status)) return;
@@ -314,12 +302,6 @@ void bough_openfast_control(bough_openfast *o) {
     }
     if (pitch != NONE && pitch != LIBRARY && o->generator != BOUGH_GENERATOR_LIBRARY)
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "PCMode %d: the pitch is held", pitch);
-    if (bough_deck_whole_or(o->servo, "YCMode", 0) != 0) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "YCMode: yaw control");
-    }
-    if (bough_deck_whole_or(o->servo, "HSSBrMode", 0) != 0) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "HSSBrMode: the brake");
-    }
     note_manoeuvres(o);
-    note_structural_control(o);
+    bough_openfast_leave(o, o->servo, rest, sizeof rest / sizeof *rest);
 }

@@ -64,7 +64,8 @@ static const limit tower[] = {
     {"AdjSSSt", 1e-6, 1e6},
 };
 
-#define LIMITS(list) {sizeof(list) / sizeof *(list), list}
+#define LIMITS(list)                                                                                         \
+    { sizeof(list) / sizeof *(list), list }
 static const struct {
     int n;
     const limit *list;

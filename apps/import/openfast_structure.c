@@ -25,8 +25,7 @@ typedef struct slender {
 static double at(const slender *b, int column, double x) {
     const double *r = b->row;
     int w = b->width, i = 0;
-    while (i < b->n - 2 && r[(i + 1) * w] < x)
-        i++;
+    while (i < b->n - 2 && r[(i + 1) * w] < x) i++;
     double s = (x - r[i * w]) / (r[(i + 1) * w] - r[i * w]);
     return r[i * w + column] + s * (r[(i + 1) * w + column] - r[i * w + column]);
 }
@@ -153,8 +152,7 @@ static void put_blade(bough_openfast *o, const bough_deck *deck, const slender *
         double axial = r[AXIAL] > 0 ? r[AXIAL] : laminate * mass;
         double bend_x = r[EDGE] * edge, bend_y = r[FLAP] * b->bending_factor;
         double torsion = r[TORSION] > 0 ? r[TORSION] : bend_x;
-        bough_section s = {r[0] * b->length, r[TWIST], mass,   axial,
-                           axial / 10,       bend_x,   bend_y, torsion};
+        bough_section s = {r[0] * b->length, r[TWIST], mass, axial, axial / 10, bend_x, bend_y, torsion};
         bough_section_put(file, &s);
     }
 }
@@ -178,8 +176,7 @@ void bough_openfast_blade(bough_openfast *o) {
     extend(o, deck, &b, "NBlInpSt");
     if (!bough_is_ok(o->draft.status)) return;
     if (!(b.length > 0)) {
-        bough_deck_fail(o->elasto, bough_deck_line(o->elasto, "TipRad"),
-                        "TipRad: expected more than HubRad");
+        bough_deck_fail(o->elasto, bough_deck_line(o->elasto, "TipRad"), "TipRad: expected more than HubRad");
     }
     check_rows(deck, &b, "NBlInpSt", EDGE);
     put_blade(o, deck, &b, edge);
@@ -187,8 +184,7 @@ void bough_openfast_blade(bough_openfast *o) {
     for (int i = 1; i < b.n; i++) {
         const double *r = &b.row[i * b.width];
         bough_openfast_weigh(o, (const double[]){r[-b.width] * b.length, r[0] * b.length},
-                             (const double[]){r[MASS - b.width] * b.mass_factor,
-                                              r[MASS] * b.mass_factor});
+                             (const double[]){r[MASS - b.width] * b.mass_factor, r[MASS] * b.mass_factor});
     }
     bough_draft_note(&o->draft, BOUGH_TAKEN,
                      "%d stations, mass times AdjBlMs %g: the blade weighs %.7g "
@@ -244,8 +240,7 @@ void bough_openfast_tower(bough_openfast *o, double top_mass) {
         const double *r = &b.row[i * b.width];
         double mass = r[1] * b.mass_factor, axial = steel * mass;
         double x = r[SIDE] * side, y = r[FORE] * b.bending_factor, ratio = 80.8 / 210;
-        bough_section s = {r[0] * b.length,   0, mass, axial,
-                           axial * ratio / 2, x, y,    (x + y) * ratio};
+        bough_section s = {r[0] * b.length, 0, mass, axial, axial * ratio / 2, x, y, (x + y) * ratio};
         bough_section_put(file, &s);
     }
     bough_draft_note(&o->draft, BOUGH_TAKEN, "%d stations of the tower, which weighs %.7g kg", n,

@@ -8,14 +8,11 @@
 static void put_tower(bough_openfast *o, double top_mass) {
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     if (o->rigid_tower) {
-        fputs("  - name: tower\n    fidelity: rigid\n    joint: {kind: fixed, parent: ground}\n",
-              file);
+        fputs("  - name: tower\n    fidelity: rigid\n    joint: {kind: fixed, parent: ground}\n", file);
         return;
     }
     bough_openfast_tower(o, top_mass);
-    fputs("  - name: tower\n    fidelity: rod\n    joint: {kind: fixed, parent: ground", file);
-    if (o->tower_base != 0) fprintf(file, ", placement: [move z %.10g m]", o->tower_base);
-    fprintf(file, "}\n    rod: {table: %s, segments: 20}\n", bough_import_name[BOUGH_IMPORT_TOWER]);
+    bough_draft_tower(&o->draft, o->tower_base);
 }
 
 static void put_yaw(bough_openfast *o) {
@@ -38,8 +35,9 @@ static void put_yaw(bough_openfast *o) {
                 bough_deck_number_or(o->servo, "YawNeut", 0));
         bough_draft_note(&o->draft, BOUGH_TAKEN, "yaw bearing with spring and damper");
     } else if (bough_deck_flag_or(e, "YawDOF", false)) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "YawDOF: without ServoDyn the yaw angle is "
-                                        "constant");
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
+                         "YawDOF: without ServoDyn the yaw angle is "
+                         "constant");
     }
     fputs("}\n", file);
 }
@@ -80,8 +78,8 @@ double bough_openfast_generator_inertia(const bough_openfast *o) {
 }
 
 bool bough_openfast_shaft_twists(const bough_openfast *o) {
-    return bough_deck_flag_or(o->elasto, "DrTrDOF", false) &&
-           bough_openfast_generator_inertia(o) > 0 && bough_deck_number(o->elasto, "DTTorSpr") > 0;
+    return bough_deck_flag_or(o->elasto, "DrTrDOF", false) && bough_openfast_generator_inertia(o) > 0 &&
+           bough_deck_number(o->elasto, "DTTorSpr") > 0;
 }
 
 // The joint on the nacelle, which turns with the generator's speed.
@@ -90,8 +88,7 @@ static void put_main_joint(bough_openfast *o) {
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     double speed = bough_deck_number(e, "RotSpeed");
     double angle = bough_deck_number_or(e, "Azimuth", 0) - bough_deck_number_or(e, "AzimB1Up", 0);
-    fprintf(file,
-            "    joint:\n      kind: revolute\n      parent: %s\n      placement: [",
+    fprintf(file, "    joint:\n      kind: revolute\n      parent: %s\n      placement: [",
             o->rotor_furls ? "furl" : "nacelle");
     bough_openfast_put_shaft_offset(o);
     fprintf(file, "move z %.10g m, ", bough_deck_number(e, "Twr2Shft"));
@@ -103,19 +100,20 @@ static void put_main_joint(bough_openfast *o) {
         fprintf(file, "      # This scene lacks %s:\n      # the speed of the start is kept.\n",
                 o->lacks_control);
     }
-    fprintf(file, o->generator == BOUGH_GENERATOR_DRIVEN ? "      motion: {speed: %.10g rpm}\n"
-                                                         : "      speed: %.10g rpm\n",
+    fprintf(file,
+            o->generator == BOUGH_GENERATOR_DRIVEN ? "      motion: {speed: %.10g rpm}\n"
+                                                   : "      speed: %.10g rpm\n",
             speed);
 }
 
 static void put_generator(bough_openfast *o) {
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     fputs("  - name: generator # on the slow shaft, against which the hub turns\n"
-          "    fidelity: rigid\n", file);
+          "    fidelity: rigid\n",
+          file);
     put_main_joint(o);
     fprintf(file, "    inertia: [%.10g, 0, 0]\n", bough_openfast_generator_inertia(o));
-    bough_draft_note(&o->draft, BOUGH_TAKEN,
-                     "drive train: spring and damper between hub and generator");
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "drive train: spring and damper between hub and generator");
 }
 
 static void put_spring(bough_openfast *o) {
@@ -143,8 +141,8 @@ static void put_teeter(bough_openfast *o) {
             -bough_deck_number_or(e, "Delta3", 0), bough_deck_number_or(e, "TeetDefl", 0));
     if (damping > 0) fprintf(file, ", damping: %.10g", damping);
     if (stop > 0 && stop < 90 && stiffness > 0) {
-        fprintf(file, ", stop: [%.10g rad, %.10g rad], stop_stiffness: %.10g", -stop * radian,
-                stop * radian, stiffness);
+        fprintf(file, ", stop: [%.10g rad, %.10g rad], stop_stiffness: %.10g", -stop * radian, stop * radian,
+                stiffness);
     }
     fputs("}\n", file);
     bough_draft_note(&o->draft, BOUGH_TAKEN, "TeetDOF: the hub teeters, with damper and hard stops");
@@ -178,13 +176,11 @@ static void put_hub(bough_openfast *o, bool twists) {
     } else {
         put_main_joint(o);
     }
-    fprintf(file, "    mass: %.10g kg\n    centre_of_mass: [%.10g, 0, 0]\n",
-            bough_deck_number(e, "HubMass"),
+    fprintf(file, "    mass: %.10g kg\n    centre_of_mass: [%.10g, 0, 0]\n", bough_deck_number(e, "HubMass"),
             bough_deck_number_or(e, "HubCM", 0) - undersling(o));
     fprintf(file, "    inertia: [%.10g, %.10g, %.10g]\n", about_shaft, given / 2,
             o->n_blade == 2 ? given : given / 2);
-    bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                     "hub: inertias about its other axes half of HubIner");
+    bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "hub: inertias about its other axes half of HubIner");
 }
 
 // -- blades ---------------------------------------------------------------------------------------
@@ -195,8 +191,10 @@ static void put_tip(bough_openfast *o, int k) {
     double mass = bough_deck_number_or(o->elasto, name, 0);
     if (mass == 0) return;
     if (o->beamdyn) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "TipMass(%d): only for ElastoDyn's blades, "
-                                        "not for BeamDyn's", k);
+        bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
+                         "TipMass(%d): only for ElastoDyn's blades, "
+                         "not for BeamDyn's",
+                         k);
         return;
     }
     fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
@@ -233,37 +231,32 @@ static void put_rotor(bough_openfast *o) {
                          "spring is zero");
     }
     put_hub(o, twists);
-    for (int k = 1; k <= o->n_blade; k++)
-        put_blade(o, k);
+    for (int k = 1; k <= o->n_blade; k++) put_blade(o, k);
     bough_draft_turbine(&o->draft, twists ? "generator" : teeters(o) ? "shaft" : "hub", o->n_blade);
 }
 
-static void note_left(bough_openfast *o) {
-    static const char *const freedoms[] = {"PtfmSgDOF", "PtfmSwDOF", "PtfmHvDOF", "PtfmRDOF",
-                                           "PtfmPDOF",  "PtfmYDOF"};
-    static const char *const starts[] = {"OoPDefl",   "IPDefl",    "TTDspFA",   "TTDspSS",  "PtfmSurge",
-                                         "PtfmSway",  "PtfmHeave", "PtfmRoll",  "PtfmPitch", "PtfmYaw"};
-    for (size_t i = 0; i < sizeof freedoms / sizeof *freedoms; i++) {
-        if (bough_deck_flag_or(o->elasto, freedoms[i], false)) {
-            bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s", freedoms[i]);
-        }
-    }
-    for (size_t i = 0; i < sizeof starts / sizeof *starts; i++) {
-        if (bough_deck_number_or(o->elasto, starts[i], 0) != 0) {
-            bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s: the run starts undeformed, without "
-                                        "initial displacement", starts[i]);
-        }
-    }
-    if (bough_deck_flag_or(o->elasto, "PitchDOF", false)) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "PitchDOF: the pitch bearings are rigid");
-    }
-    if (bough_deck_whole_or(o->elasto, "YawFrctMod", 0) != 0) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "YawFrctMod: the yaw bearing has no friction");
-    }
-    if (bough_deck_number_or(o->elasto, "GBoxEff", 100) != 100) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "GBoxEff: the gearbox loses nothing");
-    }
-}
+#define START "the run starts undeformed, without initial displacement"
+static const bough_openfast_rest rest[] = {
+    {"PtfmSgDOF", NULL, 0},
+    {"PtfmSwDOF", NULL, 0},
+    {"PtfmHvDOF", NULL, 0},
+    {"PtfmRDOF", NULL, 0},
+    {"PtfmPDOF", NULL, 0},
+    {"PtfmYDOF", NULL, 0},
+    {"OoPDefl", START, 0},
+    {"IPDefl", START, 0},
+    {"TTDspFA", START, 0},
+    {"TTDspSS", START, 0},
+    {"PtfmSurge", START, 0},
+    {"PtfmSway", START, 0},
+    {"PtfmHeave", START, 0},
+    {"PtfmRoll", START, 0},
+    {"PtfmPitch", START, 0},
+    {"PtfmYaw", START, 0},
+    {"PitchDOF", "the pitch bearings are rigid", 0},
+    {"YawFrctMod", "the yaw bearing has no friction", 0},
+    {"GBoxEff", "the gearbox loses nothing", 100},
+};
 
 void bough_openfast_bodies(bough_openfast *o) {
     if (!bough_is_ok(o->draft.status)) return;
@@ -276,5 +269,5 @@ void bough_openfast_bodies(bough_openfast *o) {
     bough_openfast_furl(o);
     if (!bough_is_ok(o->draft.status)) return;
     put_rotor(o);
-    note_left(o);
+    bough_openfast_leave(o, e, rest, sizeof rest / sizeof *rest);
 }

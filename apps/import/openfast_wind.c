@@ -60,8 +60,9 @@ static void put_stand_in(bough_openfast *o, const char *why) {
     fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
             "  # This scene lacks its wind, which --wind FILE of the import gives:\n  # %s\n", why);
     put_steady(o, speed);
-    bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "the wind file is missing (give it by --wind "
-                                        "FILE): %s; steady wind of %g m/s instead",
+    bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
+                     "the wind file is missing (give it by --wind "
+                     "FILE): %s; steady wind of %g m/s instead",
                      why, speed);
 }
 
@@ -127,8 +128,8 @@ static void put_type(bough_openfast *o, int type) {
         return;
     }
     if (type == NATIVE_BLADED || type == 6) {
-        put_stand_in(o, type == 6 ? "WindType 6, the user's own routine"
-                                  : "WindType 7, Bladed's native files");
+        put_stand_in(o,
+                     type == 6 ? "WindType 6, the user's own routine" : "WindType 7, Bladed's native files");
         return;
     }
     int line = file_line(o->inflow, type);
@@ -137,9 +138,8 @@ static void put_type(bough_openfast *o, int type) {
                         "WindType %d: expected a line with the name of its file", type);
         return;
     }
-    static const bough_wind_form form[] = {[UNIFORM] = BOUGH_WIND_UNIFORM_FILE,
-                                           [TURBSIM] = BOUGH_WIND_TURBSIM,
-                                           [BLADED] = BOUGH_WIND_BLADED};
+    static const bough_wind_form form[] = {
+        [UNIFORM] = BOUGH_WIND_UNIFORM_FILE, [TURBSIM] = BOUGH_WIND_TURBSIM, [BLADED] = BOUGH_WIND_BLADED};
     const char *path = bough_deck_path_at(o->inflow, line);
     if (!bough_is_ok(o->draft.status)) return;
     if (type == HAWC)

@@ -1,11 +1,10 @@
 #include "apps/import/section.h"
 
-#include "apps/import/draft.h"
 #include "core/linalg.h"
 
 #include <math.h>
 
-void bough_section_stiffness(FILE *file, const double k[BOUGH_IMPORT_MATRIX]) {
+static void put_stiffness(FILE *file, const double k[BOUGH_IMPORT_MATRIX]) {
     double entry[21];
     bool diagonal = true;
     int n = 0;
@@ -22,22 +21,40 @@ void bough_section_stiffness(FILE *file, const double k[BOUGH_IMPORT_MATRIX]) {
         bough_import_list(file, entry, 21);
 }
 
-void bough_section_mass(FILE *file, const double m[BOUGH_IMPORT_MATRIX]) {
-    const double row[] = {
-        m[0], -m[2 * 6 + 4] / m[0], m[2 * 6 + 3] / m[0], m[21], m[28], (m[22] + m[27]) / 2, m[35]};
+static void put_mass(FILE *file, const double m[BOUGH_IMPORT_MATRIX]) {
+    const double row[] = {m[0], -m[2 * 6 + 4] / m[0], m[2 * 6 + 3] / m[0], m[21], m[28], (m[22] + m[27]) / 2,
+                          m[35]};
     bough_import_list(file, row, 7);
 }
 
-bool bough_section_possible(const double k[BOUGH_IMPORT_MATRIX],
-                            const double m[BOUGH_IMPORT_MATRIX]) {
+void bough_section_matrix_head(FILE *file) {
+    fputs("stations:\n  columns: [span, twist deg, axis, stiffness, mass]\n  rows:\n", file);
+}
+
+void bough_section_matrix_put(FILE *file, const bough_section_place *at, const double k[BOUGH_IMPORT_MATRIX],
+                              const double m[BOUGH_IMPORT_MATRIX]) {
+    fprintf(file, "    - [%.10g, %.10g, [%.10g, %.10g], ", at->z, at->twist, at->x, at->y);
+    put_stiffness(file, k);
+    fputs(", ", file);
+    put_mass(file, m);
+    fputs("]\n", file);
+}
+
+void bough_section_note(bough_draft *d, double strangeness) {
+    if (!(strangeness > 1e-3)) return;
+    bough_draft_note(
+        d, BOUGH_APPROXIMATED,
+        "mass matrices: only mass, centre and inertias; other entries, up to %.2g of these, are left out",
+        strangeness);
+}
+
+bool bough_section_possible(const double k[BOUGH_IMPORT_MATRIX], const double m[BOUGH_IMPORT_MATRIX]) {
     double stiffness[BOUGH_IMPORT_MATRIX], mass = m[0];
     double x = -m[2 * 6 + 4] / mass, y = m[2 * 6 + 3] / mass;
     double product = (m[22] + m[27]) / 2 + mass * x * y;
-    double inertia[] = {m[21] - mass * y * y,          product, 0, product,
-                        m[28] - mass * x * x,          0,       0, 0,
+    double inertia[] = {m[21] - mass * y * y,          product, 0, product, m[28] - mass * x * x, 0, 0, 0,
                         m[35] - mass * (x * x + y * y)};
-    for (int i = 0; i < BOUGH_IMPORT_MATRIX; i++)
-        stiffness[i] = (k[i] + k[i % 6 * 6 + i / 6]) / 2;
+    for (int i = 0; i < BOUGH_IMPORT_MATRIX; i++) stiffness[i] = (k[i] + k[i % 6 * 6 + i / 6]) / 2;
     return mass > 0 && bough_cholesky_factor(6, stiffness) && bough_cholesky_factor(3, inertia);
 }
 
@@ -58,8 +75,7 @@ double bough_section_strangeness(const double m[BOUGH_IMPORT_MATRIX]) {
                     polar > 0 ? m[23] / polar : 0,
                     polar > 0 ? m[29] / polar : 0};
     double most = 0;
-    for (size_t i = 0; i < sizeof off / sizeof *off; i++)
-        most = fmax(most, fabs(off[i]));
+    for (size_t i = 0; i < sizeof off / sizeof *off; i++) most = fmax(most, fabs(off[i]));
     return most;
 }
 
@@ -67,18 +83,15 @@ enum { CELLS = 200, ROUNDS = 6 };
 
 static double between(int n, const double *x, const double *y, double at) {
     int i = 1;
-    while (i < n - 1 && x[i] < at)
-        i++;
+    while (i < n - 1 && x[i] < at) i++;
     return y[i - 1] + (at - x[i - 1]) / (x[i] - x[i - 1]) * (y[i] - y[i - 1]);
 }
 
 // Stodola's iteration: the deflection under the mode's own inertial load, and Rayleigh's quotient.
-double bough_section_frequency(int n, const double *span, const double *stiffness,
-                               const double *mass) {
+double bough_section_frequency(int n, const double *span, const double *stiffness, const double *mass) {
     double h = (span[n - 1] - span[0]) / CELLS, square = 0;
     double shape[CELLS], load[CELLS], moment[CELLS];
-    for (int i = 0; i < CELLS; i++)
-        shape[i] = (i + 0.5) * (i + 0.5);
+    for (int i = 0; i < CELLS; i++) shape[i] = (i + 0.5) * (i + 0.5);
     for (int round = 0; round < ROUNDS; round++) {
         double shear = 0, bend = 0, slope = 0, place = 0, work = 0, kinetic = 0;
         for (int i = CELLS - 1; i >= 0; i--) {
@@ -97,8 +110,7 @@ double bough_section_frequency(int n, const double *span, const double *stiffnes
             slope += curvature * h;
         }
         square = work / kinetic;
-        for (int i = 0; i < CELLS; i++)
-            shape[i] /= place;
+        for (int i = 0; i < CELLS; i++) shape[i] /= place;
     }
     return sqrt(square);
 }

@@ -73,8 +73,7 @@ static void add_moments(double f, const double middle[2], const double way[2], d
 }
 
 // Normals at the nodes (n × 2): the mean of their walls', or nothing where these form a corner.
-static void find_normals(int n_node, int n_wall, const bough_wall *wall, const line *l,
-                         double *normal) {
+static void find_normals(int n_node, int n_wall, const bough_wall *wall, const line *l, double *normal) {
     memset(normal, 0, 2 * (size_t)n_node * sizeof *normal);
     for (int w = 0; w < n_wall; w++) {
         for (int e = 0; e < 2 && !wall[w].centred; e++) {
@@ -85,8 +84,7 @@ static void find_normals(int n_node, int n_wall, const bough_wall *wall, const l
     }
     for (int i = 0; i < n_node; i++) {
         double *to = normal + 2 * i, size = hypot(to[0], to[1]);
-        for (int c = 0; c < 2; c++)
-            to[c] = size > 0.85 && size < 1.1 ? to[c] / size : 0;
+        for (int c = 0; c < 2; c++) to[c] = size > 0.85 && size < 1.1 ? to[c] / size : 0;
     }
 }
 
@@ -120,11 +118,11 @@ static void add_wall(const bough_wall *w, const line *l, const double *x, const 
 
 typedef struct network {
     int n_node, n_wall;
-    double *x, *y;     // (n_node) of the walls' middles
-    double *area;      // (n_node) axial stiffness [N]
-    double *matrix;    // ((n_node)²): warping of nodes 1 and on, twist rate last
-    double *load[3];   // (n_node) for unit Vx, Vy, T; then the solutions
-    double *right[3];  // (n_node) a copy of the loads
+    double *x, *y;    // (n_node) of the walls' middles
+    double *area;     // (n_node) axial stiffness [N]
+    double *matrix;   // ((n_node)²): warping of nodes 1 and on, twist rate last
+    double *load[3];  // (n_node) for unit Vx, Vy, T; then the solutions
+    double *right[3]; // (n_node) a copy of the loads
 } network;
 
 static void take(bough_arena *arena, network *n) {
@@ -140,8 +138,7 @@ static void take(bough_arena *arena, network *n) {
 }
 
 // Nodes move to the middles of their walls, in the mean of these by length.
-static void place_nodes(network *n, const double *x, const double *y, const bough_wall *wall,
-                        const line *l) {
+static void place_nodes(network *n, const double *x, const double *y, const bough_wall *wall, const line *l) {
     double *weight = n->right[0];
     for (int w = 0; w < n->n_wall; w++) {
         for (int e = 0; e < 2; e++) {
@@ -190,15 +187,13 @@ static bool load_nodes(network *n) {
     double plane_of_strain[9] = {0};
     for (int i = 0; i < m; i++) {
         const double row[] = {1, n->x[i], n->y[i]};
-        for (int a = 0; a < 9; a++)
-            plane_of_strain[a] += n->area[i] * row[a / 3] * row[a % 3];
+        for (int a = 0; a < 9; a++) plane_of_strain[a] += n->area[i] * row[a / 3] * row[a % 3];
     }
     if (!bough_cholesky_factor(3, plane_of_strain)) return false;
     for (int k = 0; k < 2; k++) {
         double c[3] = {0, k == 0, k == 1};
         bough_cholesky_solve(3, plane_of_strain, c);
-        for (int i = 1; i < m; i++)
-            n->load[k][i - 1] = n->area[i] * (c[0] + c[1] * n->x[i] + c[2] * n->y[i]);
+        for (int i = 1; i < m; i++) n->load[k][i - 1] = n->area[i] * (c[0] + c[1] * n->x[i] + c[2] * n->y[i]);
     }
     n->load[2][m - 1] = 1;
     return true;
@@ -208,16 +203,13 @@ static bool load_nodes(network *n) {
 static bool solve(network *n, double compliance[9]) {
     int m = n->n_node;
     if (!load_nodes(n)) return false;
-    for (int k = 0; k < 3; k++)
-        memcpy(n->right[k], n->load[k], (size_t)m * sizeof(double));
+    for (int k = 0; k < 3; k++) memcpy(n->right[k], n->load[k], (size_t)m * sizeof(double));
     if (!bough_cholesky_factor(m, n->matrix)) return false;
-    for (int k = 0; k < 3; k++)
-        bough_cholesky_solve(m, n->matrix, n->load[k]);
+    for (int k = 0; k < 3; k++) bough_cholesky_solve(m, n->matrix, n->load[k]);
     for (int a = 0; a < 3; a++) {
         for (int b = 0; b < 3; b++) {
             compliance[3 * a + b] = 0;
-            for (int i = 0; i < m; i++)
-                compliance[3 * a + b] += n->right[a][i] * n->load[b][i];
+            for (int i = 0; i < m; i++) compliance[3 * a + b] += n->right[a][i] * n->load[b][i];
         }
     }
     return true;
@@ -230,8 +222,7 @@ static bool put_shear(double compliance[9], double stiffness[36]) {
     for (int a = 0; a < 3; a++) {
         double column[3] = {a == 0, a == 1, a == 2};
         bough_cholesky_solve(3, compliance, column);
-        for (int b = 0; b < 3; b++)
-            stiffness[6 * place[b] + place[a]] = column[b];
+        for (int b = 0; b < 3; b++) stiffness[6 * place[b] + place[a]] = column[b];
     }
     return true;
 }
@@ -240,8 +231,7 @@ static bool put_shear(double compliance[9], double stiffness[36]) {
 
 static void put_bending(const double s[6], double to[36]) {
     static const int place[6][2] = {{2, 2}, {2, 3}, {2, 4}, {3, 3}, {4, 4}, {3, 4}};
-    for (int e = 0; e < 6; e++)
-        to[6 * place[e][0] + place[e][1]] = to[6 * place[e][1] + place[e][0]] = s[e];
+    for (int e = 0; e < 6; e++) to[6 * place[e][0] + place[e][1]] = to[6 * place[e][1] + place[e][0]] = s[e];
 }
 
 static void put_mass(const double s[6], double to[36]) {
@@ -252,9 +242,8 @@ static void put_mass(const double s[6], double to[36]) {
     to[35] = s[3] + s[4];
 }
 
-bough_status bough_wall_section(bough_arena *arena, int n_node, const double *x, const double *y,
-                                int n_wall, const bough_wall *wall, double stiffness[36],
-                                double mass[36]) {
+bough_status bough_wall_section(bough_arena *arena, int n_node, const double *x, const double *y, int n_wall,
+                                const bough_wall *wall, double stiffness[36], double mass[36]) {
     network n = {.n_node = n_node, .n_wall = n_wall};
     line *l = bough_arena_take(arena, (size_t)n_wall * sizeof *l);
     double *normal = bough_arena_doubles(arena, 2 * (size_t)n_node);
@@ -266,8 +255,7 @@ bough_status bough_wall_section(bough_arena *arena, int n_node, const double *x,
         if (!sound) return bough_fail(BOUGH_INVALID, "a wall without length, thickness or stiffness");
     }
     find_normals(n_node, n_wall, wall, l, normal);
-    for (int w = 0; w < n_wall; w++)
-        add_wall(&wall[w], &l[w], x, y, normal, axial, inertia);
+    for (int w = 0; w < n_wall; w++) add_wall(&wall[w], &l[w], x, y, normal, axial, inertia);
     memset(stiffness, 0, 36 * sizeof(double));
     memset(mass, 0, 36 * sizeof(double));
     place_nodes(&n, x, y, wall, l);

@@ -30,8 +30,7 @@ typedef struct bough_wall {
 // Stiffness and mass (6 × 6 each, rows) about the origin, of strains in the order shear x, shear y,
 // axial, bend x, bend y, twist, of a section with nodes at x, y (n_node) [m]. The walls must connect all
 // nodes. BOUGH_INVALID: a wall has no thickness or no length.
-bough_status bough_wall_section(bough_arena *arena, int n_node, const double *x, const double *y,
-                                int n_wall, const bough_wall *wall, double stiffness[36],
-                                double mass[36]);
+bough_status bough_wall_section(bough_arena *arena, int n_node, const double *x, const double *y, int n_wall,
+                                const bough_wall *wall, double stiffness[36], double mass[36]);
 
 #endif

@@ -54,8 +54,7 @@ static bool has(const char *line, const char *words) {
     size_t n = strlen(words);
     for (; *line; line++) {
         size_t i = 0;
-        while (i < n && toupper((unsigned char)line[i]) == words[i])
-            i++;
+        while (i < n && toupper((unsigned char)line[i]) == words[i]) i++;
         if (i == n) return true;
     }
     return false;
@@ -84,8 +83,7 @@ static void read_summary_lines(FILE *file, summary *s) {
         if (has(line, "BLADED LEFT-HAND RULE")) s->left_handed = true;
         if (!has(line, "UBAR")) continue;
         s->mean = number_in(line);
-        for (int c = 0; c < 3 && next_line(file, line); c++)
-            s->intensity[c] = number_in(line);
+        for (int c = 0; c < 3 && next_line(file, line); c++) s->intensity[c] = number_in(line);
     }
 }
 
@@ -137,8 +135,8 @@ static bool read_old_head(FILE *file, int first, bladed_head *h) {
     for (int i = 0; i < 12; i++) {
         if (!read_int16(file, &v[i])) return false;
     }
-    *h = (bladed_head){-first,    v[10] / 1000, v[11] / 1000, 2 * v[3], 1e-3 * v[0],
-                       1e-3 * v[1], 1e-3 * v[2],      0.1 * v[4],   {0}};
+    *h = (bladed_head){-first,      v[10] / 1000, v[11] / 1000, 2 * v[3], 1e-3 * v[0],
+                       1e-3 * v[1], 1e-3 * v[2],  0.1 * v[4],   {0}};
     for (int i = 0; h->components == 3 && i < 6; i++) {
         if (!read_int16(file, &skipped)) return false;
     }
@@ -155,8 +153,7 @@ static bool read_new_head(FILE *file, bladed_head *h) {
     if (model == 4) {
         if (!read_words(file, own, 7)) return false;
         h->components = (int)own[0];
-        for (int c = 0; c < 3; c++)
-            h->intensity[c] = real_of(own[4 + c]);
+        for (int c = 0; c < 3; c++) h->intensity[c] = real_of(own[4 + c]);
     }
     if (model == 7 || model == 8) {
         if (!read_words(file, own, 2)) return false;
@@ -176,10 +173,9 @@ static bool read_new_head(FILE *file, bladed_head *h) {
 }
 
 static bool is_sound(const bladed_head *h) {
-    return (h->components == 1 || h->components == 3) && h->n_z >= 2 && h->n_y >= 2 &&
-           h->n_z < MOST_GRID && h->n_y < MOST_GRID && h->n_time >= 2 && h->dz > 0 && h->dy > 0 &&
-           h->dx > 0 && h->mean > 0 && isfinite(h->dz + h->dy + h->dx + h->mean) &&
-           (int64_t)h->n_z * h->n_y * h->n_time <= MOST_POINTS;
+    return (h->components == 1 || h->components == 3) && h->n_z >= 2 && h->n_y >= 2 && h->n_z < MOST_GRID &&
+           h->n_y < MOST_GRID && h->n_time >= 2 && h->dz > 0 && h->dy > 0 && h->dx > 0 && h->mean > 0 &&
+           isfinite(h->dz + h->dy + h->dx + h->mean) && (int64_t)h->n_z * h->n_y * h->n_time <= MOST_POINTS;
 }
 
 static bough_status read_grid(FILE *file, const char *path, const bladed_head *h, const summary *s,
@@ -202,15 +198,21 @@ static bough_status read_bladed(bough_arena *arena, FILE *file, const char *path
                                 bough_wind_box *box) {
     int first;
     bladed_head h = {0};
-    bool good = read_int16(file, &first) &&
-                (first == -99 ? read_new_head(file, &h)
-                              : first < 0 && first >= -3 && read_old_head(file, first, &h));
+    bool good =
+        read_int16(file, &first) &&
+        (first == -99 ? read_new_head(file, &h) : first < 0 && first >= -3 && read_old_head(file, first, &h));
     if (!good || !is_sound(&h)) return bad(path, "it is no full-field file in the style of Bladed");
     if (fabs(h.mean - s->mean) > 0.1) {
         return bad(path, "its mean speed is not that of the .sum file");
     }
-    *box = (bough_wind_box){.n_z = h.n_z, .n_y = h.n_y, .n_time = h.n_time, .dz = h.dz, .dy = h.dy,
-                            .dt = h.dx / h.mean, .mean = h.mean, .hub = s->hub};
+    *box = (bough_wind_box){.n_z = h.n_z,
+                            .n_y = h.n_y,
+                            .n_time = h.n_time,
+                            .dz = h.dz,
+                            .dy = h.dy,
+                            .dt = h.dx / h.mean,
+                            .mean = h.mean,
+                            .hub = s->hub};
     for (int c = 0; c < 3; c++) {
         double percent = h.intensity[c] > 0 ? h.intensity[c] : s->intensity[c];
         box->scale[c] = 1e-5 * h.mean * percent * (c == 1 && s->left_handed ? -1 : 1);
@@ -293,8 +295,8 @@ static void shape(const bough_hawc_def *d, int component, double bottom, double 
 }
 
 // Puts a component into the box, whose sixteen bits cover its range.
-static void store(const bough_wind_box *box, int component, const double *from, size_t n,
-                  double *scale, double *offset, int16_t *value) {
+static void store(const bough_wind_box *box, int component, const double *from, size_t n, double *scale,
+                  double *offset, int16_t *value) {
     double low = from[0], high = from[0];
     for (size_t i = 0; i < n; i++) {
         low = fmin(low, from[i]);
@@ -312,11 +314,10 @@ static void store(const bough_wind_box *box, int component, const double *from, 
     }
 }
 
-bough_status bough_wind_hawc_read(bough_arena *arena, const bough_hawc_def *def,
-                                  bough_wind_box *box) {
-    bool sound = def->nx >= 2 && def->ny >= 2 && def->nz >= 2 && def->ny < MOST_GRID &&
-                 def->nz < MOST_GRID && (int64_t)def->nx * def->ny * def->nz <= MOST_POINTS &&
-                 def->dx > 0 && def->dy > 0 && def->dz > 0 && def->mean > 0 && def->height > 0;
+bough_status bough_wind_hawc_read(bough_arena *arena, const bough_hawc_def *def, bough_wind_box *box) {
+    bool sound = def->nx >= 2 && def->ny >= 2 && def->nz >= 2 && def->ny < MOST_GRID && def->nz < MOST_GRID &&
+                 (int64_t)def->nx * def->ny * def->nz <= MOST_POINTS && def->dx > 0 && def->dy > 0 &&
+                 def->dz > 0 && def->mean > 0 && def->height > 0;
     if (sound && def->profile == BOUGH_HAWC_LOG) {
         sound = def->roughness > 0 && def->roughness < def->height;
     }
@@ -324,8 +325,13 @@ bough_status bough_wind_hawc_read(bough_arena *arena, const bough_hawc_def *def,
         return bough_fail(BOUGH_INVALID, "the wind in HAWC's form: expected at least 2 points a way, "
                                          "positive distances, height and mean speed");
     }
-    *box = (bough_wind_box){.n_z = def->nz, .n_y = def->ny, .n_time = def->nx, .dz = def->dz,
-                            .dy = def->dy, .dt = def->dx / def->mean, .mean = def->mean,
+    *box = (bough_wind_box){.n_z = def->nz,
+                            .n_y = def->ny,
+                            .n_time = def->nx,
+                            .dz = def->dz,
+                            .dy = def->dy,
+                            .dt = def->dx / def->mean,
+                            .mean = def->mean,
                             .hub = def->height};
     finish(box, def->height, true);
     size_t n = (size_t)def->nx * (size_t)(def->ny * def->nz);

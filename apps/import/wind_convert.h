@@ -18,19 +18,18 @@ typedef enum bough_hawc_profile {
 } bough_hawc_profile;
 
 typedef struct bough_hawc_def {
-    const char *file[3];      // of u, v, w: float32, x slowest, z fastest
-    int nx, ny, nz;           // points
-    double dx, dy, dz;        // between them [m]
-    double height;            // of the middle of the grid, and of the mean speed [m]
-    double mean;              // [m/s]
-    int profile;              // bough_hawc_profile
-    double exponent;          // of the power law
-    double roughness;         // of the logarithmic law [m]
-    int scaling;              // 0: none, 1: by `factor`, 2: to the deviation `sigma` in the middle
+    const char *file[3];        // of u, v, w: float32, x slowest, z fastest
+    int nx, ny, nz;             // points
+    double dx, dy, dz;          // between them [m]
+    double height;              // of the middle of the grid, and of the mean speed [m]
+    double mean;                // [m/s]
+    int profile;                // bough_hawc_profile
+    double exponent;            // of the power law
+    double roughness;           // of the logarithmic law [m]
+    int scaling;                // 0: none, 1: by `factor`, 2: to the deviation `sigma` in the middle
     double factor[3], sigma[3]; // [-], [m/s]
 } bough_hawc_def;
 
-bough_status bough_wind_hawc_read(bough_arena *arena, const bough_hawc_def *def,
-                                  bough_wind_box *box);
+bough_status bough_wind_hawc_read(bough_arena *arena, const bough_hawc_def *def, bough_wind_box *box);
 
 #endif

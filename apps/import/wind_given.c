@@ -20,8 +20,7 @@ void bough_wind_made(bough_draft *d, const bough_wind_box *box, const char *path
     bough_draft_note(d, BOUGH_TAKEN, "wind of %s, as " BOUGH_IMPORT_BOX, path);
 }
 
-static void put(bough_draft *d, bough_wind_form form, const char *path, double height,
-                double diameter) {
+static void put(bough_draft *d, bough_wind_form form, const char *path, double height, double diameter) {
     FILE *file = d->file[BOUGH_IMPORT_SCENE];
     bool box = form == BOUGH_WIND_TURBSIM;
     fprintf(file, "  wind: {kind: %s, file: ", box ? "bts" : "wnd");

@@ -27,8 +27,7 @@ static void find_parts(bough_windio *w) {
 static void read_axis(bough_windio *w) {
     static const char *const key[] = {"reference_axis.x", "reference_axis.y", "reference_axis.z"};
     const bough_node *from = w->second ? w->blade : w->shape;
-    for (int i = 0; i < 3; i++)
-        w->axis[i] = bough_entry_curve(&w->draft, from, key[i]);
+    for (int i = 0; i < 3; i++) w->axis[i] = bough_entry_curve(&w->draft, from, key[i]);
     const bough_curve *z = &w->axis[2];
     if (!bough_is_ok(w->draft.status)) return;
     for (int i = 1; i < z->n; i++) {
@@ -67,32 +66,48 @@ static void read_assembly(bough_windio *w) {
     w->radius = (w->hub_radius + w->blade_length) * cos(cone);
 }
 
-double bough_windio_control(bough_windio *w, const char *first, const char *second,
-                            double second_unit, double fallback) {
+double bough_windio_control(bough_windio *w, const char *first, const char *second, double second_unit,
+                            double fallback) {
     const bough_node *control = bough_entry(w->root, "control");
     if (bough_entry(control, first)) return bough_entry_number(&w->draft, control, first);
     return bough_entry_number_or(&w->draft, control, second, fallback / second_unit) * second_unit;
 }
 
+const bough_node *bough_windio_material(bough_windio *w, const bough_node *layer) {
+    const bough_node *materials = bough_entry_need(&w->draft, w->root, "materials");
+    const char *name = bough_entry_text(&w->draft, layer, "material");
+    const bough_node *material = bough_entry_named(materials, name);
+    if (materials && !material)
+        bough_entry_fail(&w->draft, layer, "material: no material is named '%.60s'", name);
+    return material;
+}
+
+double bough_windio_property(bough_windio *w, const bough_node *material, const char *key, int k) {
+    const bough_node *node = bough_entry_need(&w->draft, material, key);
+    if (node && node->kind == BOUGH_SEQUENCE && node->n > 0)
+        node = node->value[k < node->n ? k : node->n - 1];
+    double value = node ? bough_entry_number(&w->draft, node, "") : 0;
+    if (node && !(value > 0)) bough_entry_fail(&w->draft, node, "%s: expected a positive value", key);
+    return value;
+}
+
 // Where the optimal tip speed ratio meets three quarters of the rated speed, the rotor turns in the
 // middle of its range, and no pitch is needed.
 static void choose_start(bough_windio *w) {
-    double rpm = BOUGH_PI / 30, tip = bough_windio_control(w, "supervisory.maxTS",
-                                                           "max_allowable_blade_tip_speed", 1, 0);
+    double rpm = BOUGH_PI / 30,
+           tip = bough_windio_control(w, "supervisory.maxTS", "max_allowable_blade_tip_speed", 1, 0);
     double ratio = bough_windio_control(w, "torque.tsr", "optimal_tsr", 1, 0);
-    w->rated_speed =
-        bough_windio_control(w, "torque.VS_maxspd", "rated_rotor_speed|max_rotor_speed", rpm, 0);
+    w->rated_speed = bough_windio_control(w, "torque.VS_maxspd", "rated_rotor_speed|max_rotor_speed", rpm, 0);
     if (!(w->rated_speed > 0)) w->rated_speed = tip / w->radius;
     if (!(w->rated_speed > 0)) {
         w->rated_speed = usual_tip / w->radius;
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "no rated rotor speed: tip speed of %g m/s assumed", usual_tip);
+        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "no rated rotor speed: tip speed of %g m/s assumed",
+                         usual_tip);
     }
     w->speed = 0.75 * w->rated_speed;
     w->wind = ratio > 0 ? w->speed * w->radius / ratio : 8;
     if (!(ratio > 0)) {
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "no optimal tip-speed ratio: wind of 8 m/s assumed");
+        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "no optimal tip-speed ratio: wind of 8 m/s assumed");
     }
     bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
                      "the file has no load case: wind of %.3g m/s and %.3g rpm, at the optimal "
@@ -115,8 +130,7 @@ static void note_left(bough_windio *w) {
         if (!bough_entry(w->parts, part[i])) continue;
         bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "%s: the tower's foot is held", part[i]);
     }
-    bough_draft_note(&w->draft, BOUGH_LEFT_OUT,
-                     "strength, costs, site");
+    bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "strength, costs, site");
 }
 
 static void convert(void *self, const char *path) {
@@ -127,8 +141,7 @@ static void convert(void *self, const char *path) {
     if (bough_is_ok(w->draft.status)) bough_windio_shape_read(w);
     read_assembly(w);
     if (!bough_is_ok(w->draft.status)) return;
-    bough_draft_note(&w->draft, BOUGH_TAKEN, "%s, in the layout of version %d", path,
-                     w->second ? 2 : 1);
+    bough_draft_note(&w->draft, BOUGH_TAKEN, "%s, in the layout of version %d", path, w->second ? 2 : 1);
     choose_start(w);
     put_head(w, path);
     bough_windio_blade(w);
@@ -140,13 +153,9 @@ static void convert(void *self, const char *path) {
     note_left(w);
 }
 
-bough_status bough_import_windio(const char *path, const char *folder,
-                                 const bough_import_options *options, FILE *echo) {
+bough_status bough_import_windio(const char *path, const char *folder, const bough_import_options *options,
+                                 FILE *echo) {
     bough_windio w = {.options = options};
-    return bough_draft_import(&(bough_draft_def){.draft = &w.draft,
-                                                 .convert = convert,
-                                                 .self = &w,
-                                                 .path = path,
-                                                 .folder = folder,
-                                                 .echo = echo});
+    return bough_draft_import(&(bough_draft_def){
+        .draft = &w.draft, .convert = convert, .self = &w, .path = path, .folder = folder, .echo = echo});
 }

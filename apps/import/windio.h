@@ -48,8 +48,13 @@ typedef struct bough_windio {
 
 // A number of the control block, in version 1 or 2 by other names and units: `second_unit` is what
 // one of the latter is in the former. The fallback is in version 1's unit.
-double bough_windio_control(bough_windio *w, const char *first, const char *second,
-                            double second_unit, double fallback);
+double bough_windio_control(bough_windio *w, const char *first, const char *second, double second_unit,
+                            double fallback);
+
+// The material that a layer names; NULL after a failure. The k-th value of a material's property, of which it
+// may have one for all directions.
+const bough_node *bough_windio_material(bough_windio *w, const bough_node *layer);
+double bough_windio_property(bough_windio *w, const bough_node *material, const char *key, int k);
 
 // Fails at the first angle above 90 deg: files with degrees where their version has radians.
 void bough_windio_check_angles(bough_windio *w, const bough_curve *angles, const char *name);

@@ -14,15 +14,13 @@ enum { NAME = 64 };
 static void airfoil_name(const bough_node *airfoil, int number, char name[NAME]) {
     const bough_node *own = bough_entry(airfoil, "name");
     int n = snprintf(name, NAME, "%d-", number);
-    for (const char *p = own ? own->text : ""; *p && n < NAME - 1; p++)
-        name[n++] = bough_import_letter(*p);
+    for (const char *p = own ? own->text : ""; *p && n < NAME - 1; p++) name[n++] = bough_import_letter(*p);
     name[n] = '\0';
 }
 
 // A coefficient over the angle of attack [deg], from -180 to 180, where it is the mean of what the
 // file has at its ends; nothing where the file has none.
-static bough_curve read_coefficient(bough_windio *w, const bough_node *from, const char *names,
-                                    bool needed) {
+static bough_curve read_coefficient(bough_windio *w, const bough_node *from, const char *names, bool needed) {
     if (!needed && !bough_entry(from, names)) return (bough_curve){0};
     bough_curve c = bough_entry_curve(&w->draft, from, names);
     double *x = bough_arena_doubles(w->draft.arena, (size_t)c.n + 2);
@@ -30,8 +28,8 @@ static bough_curve read_coefficient(bough_windio *w, const bough_node *from, con
     if (!x || !y || c.n == 0) return (bough_curve){0};
     double low = c.x[0] * w->degree, high = c.x[c.n - 1] * w->degree;
     if (low < -181 || high > 181) {
-        bough_entry_fail(&w->draft, c.node,
-                         "grid: expected angles from -180 to 180 deg, got %g to %g", low, high);
+        bough_entry_fail(&w->draft, c.node, "grid: expected angles from -180 to 180 deg, got %g to %g", low,
+                         high);
     }
     int n = 0;
     bool whole = low < -179 && high > 179; // files often stop at 3.14
@@ -65,16 +63,14 @@ static void put_polar(bough_windio *w, const bough_curve *c, const char *name) {
     double *angle = bough_arena_doubles(w->draft.arena, (size_t)(c[0].n + c[1].n + c[2].n));
     if (!bough_is_ok(w->draft.status)) return;
     for (int k = 0; k < 3; k++) {
-        for (int i = 0; i < c[k].n; i++)
-            angle[n++] = c[k].x[i];
+        for (int i = 0; i < c[k].n; i++) angle[n++] = c[k].x[i];
     }
     qsort(angle, (size_t)n, sizeof *angle, compare);
-    fprintf(file, "  - name: %s\n    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n",
-            name);
+    fprintf(file, "  - name: %s\n    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n", name);
     for (int i = 0; i < n; i++) {
         if (i > 0 && angle[i] - angle[i - 1] < 1e-9) continue;
-        const double row[] = {angle[i], bough_curve_at(&c[0], angle[i]),
-                              bough_curve_at(&c[1], angle[i]), bough_curve_at(&c[2], angle[i])};
+        const double row[] = {angle[i], bough_curve_at(&c[0], angle[i]), bough_curve_at(&c[1], angle[i]),
+                              bough_curve_at(&c[2], angle[i])};
         fputs("        - ", file);
         bough_import_list(file, row, 4);
         fputc('\n', file);
@@ -143,8 +139,8 @@ static void put_element(bough_windio *w, const bough_windio_shape *a, double at)
     fprintf(file, "    - [%.10g, %.10g, %.10g, %.10g, %.10g, %s, %s, %.10g]\n",
             bough_curve_at(&w->axis[2], at),
             bough_curve_at(&w->axis[0], at) + back * sin(turn) + up * cos(turn),
-            bough_curve_at(&w->axis[1], at) + back * cos(turn) - up * sin(turn), twist, chord, name,
-            other, share);
+            bough_curve_at(&w->axis[1], at) + back * cos(turn) - up * sin(turn), twist, chord, name, other,
+            share);
     if (!(chord > 0)) bough_entry_fail(&w->draft, a->chord.node, "chord: expected a positive value");
 }
 

@@ -7,7 +7,6 @@
 #include "core/symmetric6.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 enum { ENTRIES = 21, MATRIX = BOUGH_IMPORT_MATRIX };
 
@@ -24,8 +23,7 @@ typedef struct matrices {
 
 static void matrix_at(const matrices *m, double share, double to[MATRIX]) {
     int k = m->n > 1;
-    while (k < m->n - 1 && m->grid[k] < share)
-        k++;
+    while (k < m->n - 1 && m->grid[k] < share) k++;
     double width = k > 0 ? m->grid[k] - m->grid[k - 1] : 0;
     double s = width > 0 ? fmin(fmax((share - m->grid[k - 1]) / width, 0), 1) : 1;
     for (int i = 0; i < 6; i++) {
@@ -44,8 +42,7 @@ static matrices read_grid(bough_windio *w, const bough_node *from, const char *p
     if (!m.grid) return (matrices){0};
     m.entry = bough_arena_doubles(w->draft.arena, (size_t)ENTRIES * m.n);
     if (!m.entry) return (matrices){0};
-    for (int i = 0; i < ENTRIES * m.n; i++)
-        m.entry[i] = 0;
+    for (int i = 0; i < ENTRIES * m.n; i++) m.entry[i] = 0;
     return m;
 }
 
@@ -53,15 +50,13 @@ static matrices read_grid(bough_windio *w, const bough_node *from, const char *p
 static void read_rows(bough_windio *w, matrices *m) {
     const bough_node *rows = bough_entry(m->node, "values");
     if (rows->kind != BOUGH_SEQUENCE || rows->n != m->n) {
-        bough_entry_fail(&w->draft, rows, "values: expected a list of %d rows, as the grid has",
-                         m->n);
+        bough_entry_fail(&w->draft, rows, "values: expected a list of %d rows, as the grid has", m->n);
         return;
     }
     for (int k = 0; k < m->n && bough_is_ok(w->draft.status); k++) {
         int n = ENTRIES;
         const double *row = bough_entry_numbers(&w->draft, rows->value[k], "", &n);
-        for (int e = 0; row && e < ENTRIES; e++)
-            m->entry[(size_t)e * m->n + k] = row[e];
+        for (int e = 0; row && e < ENTRIES; e++) m->entry[(size_t)e * m->n + k] = row[e];
     }
 }
 
@@ -99,8 +94,7 @@ static void put_inertia(matrices *m, int k, const double value[7]) {
                  {1, 5, mass * x}, {2, 3, mass * y}, {2, 4, -mass * x}, {3, 3, value[3]},
                  {4, 4, value[4]}, {5, 5, value[5]}, {3, 4, -value[6]}};
     for (size_t e = 0; e < sizeof entry / sizeof *entry; e++)
-        m->entry[(size_t)bough_symmetric6_index(entry[e].i, entry[e].j) * m->n + k] =
-            entry[e].value;
+        m->entry[(size_t)bough_symmetric6_index(entry[e].i, entry[e].j) * m->n + k] = entry[e].value;
 }
 
 static matrices read_inertia(bough_windio *w, const bough_node *from) {
@@ -117,8 +111,7 @@ static matrices read_inertia(bough_windio *w, const bough_node *from) {
         list[e] = needed[e] || bough_entry(m.node, key[e]) ? read_list(w, &m, key[e]) : NULL;
     for (int k = 0; k < m.n && bough_is_ok(w->draft.status); k++) {
         double value[7];
-        for (int e = 0; e < 7; e++)
-            value[e] = list[e] ? list[e][k] : 0;
+        for (int e = 0; e < 7; e++) value[e] = list[e] ? list[e][k] : 0;
         put_inertia(&m, k, value);
     }
     return m;
@@ -126,37 +119,9 @@ static matrices read_inertia(bough_windio *w, const bough_node *from) {
 
 // -- stations -------------------------------------------------------------------------------------
 
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-// All shares at which something bends, from 0 to 1; their number.
-static int union_of(bough_draft *d, const bough_curve *const *curve, int n_curve, double **share) {
-    int n = 2, kept = 1;
-    for (int c = 0; c < n_curve; c++)
-        n += curve[c]->n;
-    double *s = *share = bough_arena_doubles(d->arena, (size_t)n);
-    if (!s) return 0;
-    s[0] = 0;
-    s[1] = 1;
-    n = 2;
-    for (int c = 0; c < n_curve; c++) {
-        for (int i = 0; i < curve[c]->n; i++)
-            if (curve[c]->x[i] > 0 && curve[c]->x[i] < 1) s[n++] = curve[c]->x[i];
-    }
-    qsort(s, (size_t)n, sizeof *s, compare);
-    for (int i = 1; i < n; i++) {
-        if (s[i] > s[kept - 1] + 1e-6) s[kept++] = s[i];
-    }
-    s[kept - 1] = 1;
-    return kept;
-}
-
-static void put_station(bough_windio *w, const matrices *stiffness, const matrices *inertia,
-                        double share, double twist, double *strange) {
+static void put_station(bough_windio *w, const matrices *stiffness, const matrices *inertia, double share,
+                        double twist, double *strange) {
     double k[MATRIX], m[MATRIX];
-    FILE *file = w->draft.file[BOUGH_IMPORT_BLADE];
     matrix_at(stiffness, share, k);
     matrix_at(inertia, share, m);
     if (!bough_section_possible(k, m)) {
@@ -165,12 +130,9 @@ static void put_station(bough_windio *w, const matrices *stiffness, const matric
                          "positive definite",
                          share);
     }
-    fprintf(file, "    - [%.10g, %.10g, [%.10g, %.10g], ", bough_curve_at(&w->axis[2], share),
-            twist, bough_curve_at(&w->axis[0], share), bough_curve_at(&w->axis[1], share));
-    bough_section_stiffness(file, k);
-    fputs(", ", file);
-    bough_section_mass(file, m);
-    fputs("]\n", file);
+    const bough_section_place at = {bough_curve_at(&w->axis[0], share), bough_curve_at(&w->axis[1], share),
+                                    bough_curve_at(&w->axis[2], share), twist};
+    bough_section_matrix_put(w->draft.file[BOUGH_IMPORT_BLADE], &at, k, m);
     *strange = fmax(*strange, bough_section_strangeness(m));
 }
 
@@ -197,8 +159,7 @@ static void put_damping(bough_windio *w, const bough_node *from) {
     for (int i = 0; mu && i < 6; i++) {
         any = any || mu[i] > 0;
         if (mu[i] < 0)
-            bough_entry_fail(&w->draft, from,
-                             "structural_damping.mu: expected times that are not negative");
+            bough_entry_fail(&w->draft, from, "structural_damping.mu: expected times that are not negative");
     }
     if (!any || mu == usual) {
         mu = usual;
@@ -209,19 +170,19 @@ static void put_damping(bough_windio *w, const bough_node *from) {
     }
     fprintf(file, "length: %.10g\ndamping: ", w->blade_length);
     bough_import_list(file, mu, 6);
-    fputs("  # s\nstations:\n  columns: [span, twist deg, axis, stiffness, mass]\n  rows:\n", file);
+    fputs("  # s\n", file);
+    bough_section_matrix_head(file);
 }
 
 static void put_stations(bough_windio *w, const bough_node *from, const matrices *stiffness,
                          const matrices *inertia) {
     bough_curve k = {stiffness->node, stiffness->n, stiffness->grid, NULL};
     bough_curve m = {inertia->node, inertia->n, inertia->grid, NULL};
-    bough_curve twist =
-        bough_entry_curve(&w->draft, bough_entry(from, "twist") ? from : w->shape, "twist");
+    bough_curve twist = bough_entry_curve(&w->draft, bough_entry(from, "twist") ? from : w->shape, "twist");
     bough_windio_check_angles(w, &twist, "twist");
     const bough_curve *all[] = {&k, &m, &twist, &w->axis[0], &w->axis[1], &w->axis[2]};
     double *share, strange = 0;
-    int n = union_of(&w->draft, all, 6, &share);
+    int n = bough_curve_shares(&w->draft, all, 6, 1e-6, &share); // all at which something bends
     for (int i = 0; i < n && bough_is_ok(w->draft.status); i++) {
         double turn = bough_curve_at(&twist, share[i]) * w->degree;
         put_station(w, stiffness, inertia, share[i], turn, &strange);
@@ -235,12 +196,7 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
                      "%d stations of the blade, %d of them with full stiffness and inertia; it "
                      "weighs %.7g kg",
                      n, stiffness->n, w->blade_mass);
-    if (strange > 1e-3) {
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "inertia matrices: only mass, centre and inertias; other entries, up to "
-                         "%.2g of these, are left out",
-                         strange);
-    }
+    bough_section_note(&w->draft, strange);
 }
 
 // The matrices of a row of stations.

@@ -23,8 +23,8 @@ static const char *const arc_name[] = {"start_nd_arc", "end_nd_arc"};
 
 typedef struct layer {
     const bough_node *node;
-    int web;           // −1: on the outline
-    bough_ply ply;     // thickness and angle by the curves
+    int web;                      // −1: on the outline
+    bough_ply ply;                // thickness and angle by the curves
     bough_curve thickness, angle; // [m], [rad or deg]; of none nothing
 } layer;
 
@@ -80,8 +80,7 @@ static double said(parts *p, const bough_node *node, handle end, int depth) {
         if (strcmp(fixed->text, "LE") == 0) return p->outline.arc[BOUGH_OUTLINE_SIDE];
     }
     if (bough_entry(node, "values")) return curve_at(p, node, "");
-    const bough_node *part =
-        fixed && fixed->kind == BOUGH_SCALAR ? find_part(p, fixed->text) : NULL;
+    const bough_node *part = fixed && fixed->kind == BOUGH_SCALAR ? find_part(p, fixed->text) : NULL;
     if (part) return arc_of(p, part, end == START ? END : START, depth + 1);
     return anchor_of(p, node, depth);
 }
@@ -97,13 +96,11 @@ static double turn_of(parts *p, const bough_node *part) {
 // Where a plane crosses: version 1 by offset_y_pa, version 2 by plane_intersection; NAN: none.
 static double crossing(parts *p, const bough_node *part, int side) {
     if (bough_entry(part, "offset_y_pa")) {
-        return bough_outline_crossing(&p->outline, side, turn_of(p, part),
-                                      curve_at(p, part, "offset_y_pa"));
+        return bough_outline_crossing(&p->outline, side, turn_of(p, part), curve_at(p, part, "offset_y_pa"));
     }
     const bough_node *plane = bough_entry(part, "plane_intersection");
     if (!plane || !bough_entry(plane, "offset")) return NAN;
-    double turn = bough_entry_number_or(&p->w->draft, plane,
-                                        "plane_type1|plane_type2.rotation", 0);
+    double turn = bough_entry_number_or(&p->w->draft, plane, "plane_type1|plane_type2.rotation", 0);
     return bough_outline_crossing(&p->outline, side, -p->twist + turn * BOUGH_PI / 180,
                                   curve_at(p, plane, "offset"));
 }
@@ -153,28 +150,15 @@ static double arc_of(parts *p, const bough_node *part, handle end, int depth) {
 
 // -- layers ---------------------------------------------------------------------------------------
 
-// The k-th of a material's values, of which it may have one for all directions.
-static double property(parts *p, const bough_node *material, const char *key, int k) {
-    const bough_node *node = bough_entry_need(&p->w->draft, material, key);
-    if (node && node->kind == BOUGH_SEQUENCE && node->n > 0)
-        node = node->value[k < node->n ? k : node->n - 1];
-    double value = node ? bough_entry_number(&p->w->draft, node, "") : 0;
-    if (node && !(value > 0)) {
-        bough_entry_fail(&p->w->draft, node, "%s: expected a positive value", key);
-    }
-    return value;
-}
-
 // Its stiffness must be that of a material: ν² below E1/E2.
 static bough_ply read_material(parts *p, const bough_node *material) {
     bough_draft *d = &p->w->draft;
-    bough_ply ply = {.density = property(p, material, "rho", 0)};
+    bough_ply ply = {.density = bough_windio_property(p->w, material, "rho", 0)};
     const bough_node *ratio = bough_entry(material, "nu");
     if (ratio && ratio->kind == BOUGH_SEQUENCE && ratio->n > 0) ratio = ratio->value[0];
     ply.poisson = ratio ? bough_entry_number(d, ratio, "") : 0.3;
-    for (int k = 0; k < 2; k++)
-        ply.young[k] = property(p, material, "E", k);
-    ply.shear = bough_entry(material, "G") ? property(p, material, "G", 0)
+    for (int k = 0; k < 2; k++) ply.young[k] = bough_windio_property(p->w, material, "E", k);
+    ply.shear = bough_entry(material, "G") ? bough_windio_property(p->w, material, "G", 0)
                                            : ply.young[0] / (2 * (1 + ply.poisson));
     if (bough_is_ok(d->status) && !(ply.poisson * ply.poisson * ply.young[1] < 0.99 * ply.young[0])) {
         bough_entry_fail(d, material, "nu: %g is too large for these moduli", ply.poisson);
@@ -188,20 +172,14 @@ static bough_curve read_plies(parts *p, const bough_node *node, const bough_node
     bough_curve c = bough_entry_curve(d, node, "n_plies");
     double *thick = bough_arena_doubles(d->arena, (size_t)c.n + 1);
     double each = bough_entry_number(d, material, "ply_t");
-    for (int i = 0; i < c.n; i++)
-        thick[i] = each * c.y[i];
+    for (int i = 0; i < c.n; i++) thick[i] = each * c.y[i];
     return thick ? (bough_curve){c.node, c.n, c.x, thick} : (bough_curve){0};
 }
 
 static void read_layer(parts *p, const bough_node *node, layer *l) {
     bough_draft *d = &p->w->draft;
-    const bough_node *materials = bough_entry_need(d, p->w->root, "materials");
-    const char *name = bough_entry_text(d, node, "material");
-    const bough_node *material = bough_entry_named(materials, name);
+    const bough_node *material = bough_windio_material(p->w, node);
     *l = (layer){.node = node, .web = -1};
-    if (materials && !material) {
-        bough_entry_fail(d, node, "material: no material is named '%.60s'", name);
-    }
     if (!material) return;
     l->ply = read_material(p, material);
     bool plies = !bough_entry(node, "thickness") && bough_entry(node, "n_plies");
@@ -304,8 +282,7 @@ static void put_skin(parts *p, section *s) {
 // The outline's point at an arc.
 static int node_at(const bough_outline *o, double arc) {
     int k = 0;
-    while (k < ROUND - 1 && o->arc[k + 1] < arc)
-        k++;
+    while (k < ROUND - 1 && o->arc[k + 1] < arc) k++;
     if (arc - o->arc[k] > o->arc[k + 1] - arc) k++;
     return k % ROUND;
 }
@@ -342,48 +319,27 @@ static void solve_station(parts *p, section *s, double stiffness[36], double mas
     p->twist = bough_curve_at(&p->w->outline.twist, p->share) * p->w->degree * BOUGH_PI / 180;
     s->n_wall = s->n_ply = 0;
     put_skin(p, s);
-    for (int i = 0; p->webs && i < p->webs->n; i++)
-        put_web(p, s, i);
-    bough_status status = bough_is_ok(d->status)
-                              ? bough_wall_section(scratch, s->n_node, s->x, s->y, s->n_wall, s->wall,
-                                                   stiffness, mass)
-                              : bough_ok();
+    for (int i = 0; p->webs && i < p->webs->n; i++) put_web(p, s, i);
+    bough_status status = bough_is_ok(d->status) ? bough_wall_section(scratch, s->n_node, s->x, s->y,
+                                                                      s->n_wall, s->wall, stiffness, mass)
+                                                 : bough_ok();
     if (!bough_is_ok(&status)) {
         bough_entry_fail(d, p->layers, "layers at %.4g of the span: %s", p->share, status.message);
     }
     bough_arena_destroy(scratch);
 }
 
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
 // Where chord and layers have points, but not closer than a hundredth of the blade, nor farther than
 // a thirtieth.
 static int choose_shares(parts *p, double **share) {
-    enum { MOST = 4000 };
-    const double closest = 0.01, farthest = 1.0 / 30;
-    double *all = bough_arena_doubles(p->w->draft.arena, MOST + 40);
-    int n = 0, kept = 1;
-    if (!all) return 0;
-    for (int i = 0; i <= 30; i++)
-        all[n++] = i * farthest;
-    const bough_curve *chord = &p->w->outline.chord;
-    for (int i = 0; i < chord->n && n < MOST; i++)
-        all[n++] = bough_clamp(chord->x[i], 0, 1);
-    for (int l = 0; l < p->n_layer; l++) {
-        for (int i = 0; i < p->layer[l].thickness.n && n < MOST; i++)
-            all[n++] = bough_clamp(p->layer[l].thickness.x[i], 0, 1);
-    }
-    qsort(all, (size_t)n, sizeof *all, compare);
-    for (int i = 1; i < n; i++) {
-        if (all[i] >= all[kept - 1] + closest) all[kept++] = all[i];
-    }
-    if (all[kept - 1] < 1 - closest / 2) kept++;
-    all[kept - 1] = 1;
-    *share = all;
-    return kept;
+    enum { MOST = 30 };
+    double even[MOST];
+    const bough_curve *curve[MOST_LAYERS + 2], between = {.n = MOST, .x = even};
+    for (int i = 0; i < MOST; i++) even[i] = (double)i / MOST;
+    for (int l = 0; l < p->n_layer; l++) curve[l] = &p->layer[l].thickness;
+    curve[p->n_layer] = &p->w->outline.chord;
+    curve[p->n_layer + 1] = &between;
+    return bough_curve_shares(&p->w->draft, curve, p->n_layer + 2, 0.01, share);
 }
 
 void bough_windio_layup(bough_windio *w, bough_layup *to) {

@@ -16,8 +16,7 @@ typedef struct points {
 // The mean height of some points.
 static double mean(const double *y, int from, int to) {
     double sum = 0;
-    for (int i = from; i < to; i++)
-        sum += y[i];
+    for (int i = from; i < to; i++) sum += y[i];
     return to > from ? sum / (to - from) : 0;
 }
 
@@ -61,8 +60,9 @@ static points read_points(bough_windio *w, const bough_node *airfoil) {
     memcpy(p.y, y, (size_t)p.n * sizeof(double));
     int edge = leading_edge(&p);
     if (p.n < 5 || edge < 2 || edge > p.n - 3) {
-        bough_entry_fail(d, airfoil, "coordinates: expected points around the airfoil from its "
-                                     "trailing edge");
+        bough_entry_fail(d, airfoil,
+                         "coordinates: expected points around the airfoil from its "
+                         "trailing edge");
         return (points){0};
     }
     if (mean(p.y, 0, edge) < mean(p.y, edge + 1, p.n)) {
@@ -76,8 +76,7 @@ static points read_points(bough_windio *w, const bough_node *airfoil) {
 // Draws points `from` to `to` at equal shares of their arc: SIDE + 1 of them.
 static void draw_side(const points *p, int from, int to, double *x, double *y) {
     double length = 0, done = 0;
-    for (int i = from; i < to; i++)
-        length += hypot(p->x[i + 1] - p->x[i], p->y[i + 1] - p->y[i]);
+    for (int i = from; i < to; i++) length += hypot(p->x[i + 1] - p->x[i], p->y[i + 1] - p->y[i]);
     int i = from;
     for (int k = 0; k <= SIDE; k++) {
         double wanted = length * k / SIDE, part;
@@ -115,8 +114,7 @@ const double *bough_windio_airfoils(bough_windio *w) {
 
 // -- the section ----------------------------------------------------------------------------------
 
-void bough_windio_outline_at(const bough_windio *w, const double *airfoils, double share,
-                             bough_outline *to) {
+void bough_windio_outline_at(const bough_windio *w, const double *airfoils, double share, bough_outline *to) {
     double mix, chord = bough_curve_at(&w->outline.chord, share);
     int i = bough_windio_neighbours(&w->outline, share, &mix);
     const double *one = airfoils + (size_t)i * 2 * POINTS, *two = mix > 0 ? one + 2 * POINTS : one;
@@ -130,8 +128,7 @@ void bough_windio_outline_at(const bough_windio *w, const double *airfoils, doub
     for (int k = 1; k < POINTS; k++)
         to->arc[k] = to->arc[k - 1] + hypot(to->x[k] - to->x[k - 1], to->y[k] - to->y[k - 1]);
     to->length = to->arc[ROUND];
-    for (int k = 1; k < POINTS; k++)
-        to->arc[k] /= to->length;
+    for (int k = 1; k < POINTS; k++) to->arc[k] /= to->length;
 }
 
 double bough_outline_crossing(const bough_outline *o, int side, double turn, double offset) {

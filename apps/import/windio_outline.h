@@ -21,8 +21,7 @@ typedef struct bough_outline {
 const double *bough_windio_airfoils(bough_windio *w);
 
 // The outline at a share of the blade.
-void bough_windio_outline_at(const bough_windio *w, const double *airfoils, double share,
-                             bough_outline *to);
+void bough_windio_outline_at(const bough_windio *w, const double *airfoils, double share, bough_outline *to);
 
 // The arc where a straight line crosses a side (0 suction, 1 pressure). The line is normal to the direction
 // that is turned from the chord towards the suction side by `turn` [rad]; `offset` is its distance from the

@@ -42,8 +42,7 @@ static void read_labels(bough_windio *w, const bough_node *from, bough_windio_sh
 // Version 2: [{name, spanwise_position, ...}, ...].
 static void read_items(bough_windio *w, const bough_node *list, bough_windio_shape *a) {
     if (list->kind != BOUGH_SEQUENCE || list->n < 1 || list->n > MOST_AIRFOILS) {
-        bough_entry_fail(&w->draft, list, "airfoils: expected a list of 1 to %d",
-                         (int)MOST_AIRFOILS);
+        bough_entry_fail(&w->draft, list, "airfoils: expected a list of 1 to %d", (int)MOST_AIRFOILS);
         return;
     }
     bool mixed = false;
@@ -54,8 +53,7 @@ static void read_items(bough_windio *w, const bough_node *list, bough_windio_sha
         mixed = mixed || (tags && tags->kind == BOUGH_SEQUENCE && tags->n > 1);
     }
     if (mixed) {
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "airfoils: the first configuration of each is used");
+        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "airfoils: the first configuration of each is used");
     }
 }
 
@@ -68,8 +66,7 @@ static void choose_measure(bough_windio *w, const bough_node *where, bough_windi
     }
     for (int i = 0; i < a->n && !a->by_thickness; i++) {
         if (a->place[i].share >= (i > 0 ? a->place[i - 1].share : 0)) continue;
-        bough_entry_fail(&w->draft, where, "airfoil %d: expected increasing fractions of the span",
-                         i + 1);
+        bough_entry_fail(&w->draft, where, "airfoil %d: expected increasing fractions of the span", i + 1);
     }
 }
 

@@ -24,28 +24,14 @@ typedef struct tube {
 
 // -- reading --------------------------------------------------------------------------------------
 
-// A material's property, of which an orthotropic one has three.
-static double property(bough_windio *w, const bough_node *material, const char *key) {
-    const bough_node *node = bough_entry_need(&w->draft, material, key);
-    if (node && node->kind == BOUGH_SEQUENCE && node->n > 0) node = node->value[0];
-    double value = node ? bough_entry_number(&w->draft, node, "") : 0;
-    if (node && !(value > 0)) bough_entry_fail(&w->draft, node, "%s: expected a positive value", key);
-    return value;
-}
-
 static layer read_layer(bough_windio *w, const bough_node *from) {
-    const bough_node *materials = bough_entry_need(&w->draft, w->root, "materials");
-    const char *name = bough_entry_text(&w->draft, from, "material");
-    const bough_node *material = bough_entry_named(materials, name);
+    const bough_node *material = bough_windio_material(w, from);
     layer l = {.thickness = bough_entry_curve(&w->draft, from, "thickness")};
-    if (materials && !material) {
-        bough_entry_fail(&w->draft, from, "material: no material is named '%.60s'", name);
-    }
     if (!material) return l;
-    l.young = property(w, material, "E");
-    l.density = property(w, material, "rho");
-    double ratio = bough_entry(material, "G") ? 0 : property(w, material, "nu");
-    l.shear = ratio > 0 ? l.young / (2 * (1 + ratio)) : property(w, material, "G");
+    l.young = bough_windio_property(w, material, "E", 0);
+    l.density = bough_windio_property(w, material, "rho", 0);
+    double ratio = bough_entry(material, "G") ? 0 : bough_windio_property(w, material, "nu", 0);
+    l.shear = ratio > 0 ? l.young / (2 * (1 + ratio)) : bough_windio_property(w, material, "G", 0);
     return l;
 }
 
@@ -90,8 +76,7 @@ static bough_section section_at(bough_windio *w, const tube *t, double share) {
         double thickness = bough_curve_at(&l->thickness, share), inner = outer - 2 * thickness;
         if (!(thickness >= 0) || !(inner >= 0)) {
             bough_entry_fail(&w->draft, l->thickness.node,
-                             "thickness: expected a value from 0 to the tower's radius, got %g m",
-                             thickness);
+                             "thickness: expected a value from 0 to the tower's radius, got %g m", thickness);
         }
         double area = BOUGH_PI / 4 * (outer * outer - inner * inner);
         double second = BOUGH_PI / 64 * (pow(outer, 4) - pow(inner, 4));
@@ -141,8 +126,7 @@ void bough_windio_tower(bough_windio *w) {
         return;
     }
     tube t = {.height = read_height(w)};
-    t.diameter =
-        bough_entry_curve(&w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
+    t.diameter = bough_entry_curve(&w->draft, w->tower, "outer_shape_bem|outer_shape.outer_diameter");
     read_tube(w, &t);
     if (!bough_is_ok(w->draft.status)) return;
     w->tower_base = t.height.y[0];
@@ -150,8 +134,7 @@ void bough_windio_tower(bough_windio *w) {
     if (t.n > 0) put_tube(w, &t);
 }
 
-static void put_list(bough_windio *w, const char *key, const bough_curve *over,
-                     const bough_curve *of) {
+static void put_list(bough_windio *w, const char *key, const bough_curve *over, const bough_curve *of) {
     FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
     fprintf(file, "    %s: [", key);
     for (int i = 0; i < over->n; i++)

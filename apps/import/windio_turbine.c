@@ -23,8 +23,7 @@ typedef struct lump {
 // Adds the inertia of a mass at c about the origin.
 static void add_offset(double inertia[6], double mass, const double c[3]) {
     double square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
-    for (int i = 0; i < 3; i++)
-        inertia[i] += mass * (square - c[i] * c[i]);
+    for (int i = 0; i < 3; i++) inertia[i] += mass * (square - c[i] * c[i]);
     inertia[3] -= mass * c[0] * c[1];
     inertia[4] -= mass * c[0] * c[2];
     inertia[5] -= mass * c[1] * c[2];
@@ -43,8 +42,7 @@ static void read_inertia(bough_windio *w, const bough_node *from, const char *pa
     const bough_node *node = bough_entry(from, path);
     int n = node && node->n == 3 ? 3 : 6;
     const double *row = node ? bough_entry_numbers(&w->draft, node, "", &n) : NULL;
-    for (int i = 0; i < 6; i++)
-        to[i] = row && i < n ? row[i] : 0;
+    for (int i = 0; i < 6; i++) to[i] = row && i < n ? row[i] : 0;
 }
 
 // Version 1: elastic_properties_mb {system_mass, system_inertia, system_center_mass}; version 2:
@@ -70,8 +68,7 @@ static void add_yaw(bough_windio *w, lump *l) {
     double sum = l->mass + mass;
     if (!(mass > 0)) return;
     add_offset(l->inertia, l->mass * mass / sum, l->centre);
-    for (int i = 0; i < 3; i++)
-        l->centre[i] *= l->mass / sum;
+    for (int i = 0; i < 3; i++) l->centre[i] *= l->mass / sum;
     l->mass = sum;
 }
 
@@ -81,7 +78,8 @@ static lump hub_lump(bough_windio *w) {
     double inertia = 2.0 / 3 * hub_per_blade * w->blade_mass * w->hub_radius * w->hub_radius;
     bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
                      "hub: no mass given: %g times the mass of a blade assumed, as a shell of the "
-                     "hub's radius", hub_per_blade);
+                     "hub's radius",
+                     hub_per_blade);
     return (lump){hub_per_blade * w->blade_mass, {0}, {inertia, inertia, inertia}};
 }
 
@@ -97,16 +95,16 @@ static bool assembly_lump(bough_windio *w, double overhang, lump *l) {
     if (!part || !read_lump(w, part, &all)) return false;
     double head = hub_mass(w) + w->n_blade * w->blade_mass, mass = all.mass - head;
     if (!(mass > 0)) {
-        bough_entry_fail(&w->draft, part, "mass: %g kg, which is less than the mass of hub and "
-                                        "blades, %g kg",
+        bough_entry_fail(&w->draft, part,
+                         "mass: %g kg, which is less than the mass of hub and "
+                         "blades, %g kg",
                          all.mass, head);
         return false;
     }
     double inertia = mass * overhang * overhang / 4;
     const double at[] = {-w->forward * overhang, 0, w->hub_height};
     *l = (lump){.mass = mass, .inertia = {inertia, inertia, inertia}};
-    for (int i = 0; i < 3; i++)
-        l->centre[i] = (all.mass * all.centre[i] - head * at[i]) / mass;
+    for (int i = 0; i < 3; i++) l->centre[i] = (all.mass * all.centre[i] - head * at[i]) / mass;
     bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
                      "nacelle: mass and centre of RNA without hub and blades, its radius of gyration "
                      "half the overhang");
@@ -120,8 +118,7 @@ static lump nacelle_lump(bough_windio *w, double overhang) {
         return l;
     }
     if (read_lump(w, w->train, &l)) {
-        if (w->second && !bough_entry(w->train, "elastic_properties.inertia_tt"))
-            move_to_centre(&l);
+        if (w->second && !bough_entry(w->train, "elastic_properties.inertia_tt")) move_to_centre(&l);
         add_yaw(w, &l);
         return l;
     }
@@ -150,15 +147,6 @@ static void put_lump(FILE *file, const lump *l) {
     fputs("\n    inertia: ", file);
     bough_import_list(file, l->inertia, 6);
     fputc('\n', file);
-}
-
-// A rigid tower is only a place.
-static void put_tower(bough_windio *w, bool rod) {
-    FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
-    if (!rod) return;
-    fputs("  - name: tower\n    fidelity: rod\n    joint: {kind: fixed, parent: ground", file);
-    if (w->tower_base > 0) fprintf(file, ", placement: [move z %.10g m]", w->tower_base);
-    fprintf(file, "}\n    rod: {table: %s, segments: 20}\n", bough_import_name[BOUGH_IMPORT_TOWER]);
 }
 
 static void put_nacelle(bough_windio *w, bool on_rod, double overhang) {
@@ -222,7 +210,7 @@ void bough_windio_bodies(bough_windio *w) {
     bool rod = d->file_size[BOUGH_IMPORT_TOWER] > 0;
     if (!w->tower) w->tower_top -= w->hub_height;
     fputs("bodies:\n", d->file[BOUGH_IMPORT_SCENE]);
-    put_tower(w, rod);
+    if (rod) bough_draft_tower(d, w->tower_base); // a rigid one is only a place
     put_nacelle(w, rod, overhang);
     put_hub(w, overhang, tilt, gear_ratio(w));
     put_blades(w, cone, pitch * 180 / BOUGH_PI);
@@ -241,8 +229,7 @@ static void put_wind(bough_windio *w) {
     double shear = bough_entry_number_or(d, w->root, "environment.shear_exp", 0);
     double height = w->tower_top + w->hub_height;
     if (given) {
-        bough_status status =
-            bough_wind_given(d, bough_wind_form_of(given), given, height, 2 * w->radius);
+        bough_status status = bough_wind_given(d, bough_wind_form_of(given), given, height, 2 * w->radius);
         if (bough_is_ok(d->status)) *d->status = status;
         return;
     }
@@ -262,8 +249,7 @@ void bough_windio_air(bough_windio *w) {
     fprintf(file,
             "}\n  ramp: [0 s, 2 s]\n  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n"
             "  induction: {high_thrust: smooth, skew: pitt-peters}\n  dynamic_stall: hgm\n",
-            bough_import_name[BOUGH_IMPORT_AERO], bough_import_name[BOUGH_IMPORT_POLARS],
-            w->hub_radius);
+            bough_import_name[BOUGH_IMPORT_AERO], bough_import_name[BOUGH_IMPORT_POLARS], w->hub_radius);
     bough_draft_note(d, BOUGH_APPROXIMATED,
                      "dynamic stall by Hansen, Gaunaa and Madsen's model, which also damps the "
                      "blade's torsion");
@@ -282,18 +268,15 @@ static void put_pitch(bough_windio *w, double ratio) {
     double degree = BOUGH_PI / 180;
     double omega = bough_windio_control(w, "pitch.PC_omega", "PC_omega", 1, 0.2);
     double zeta = bough_windio_control(w, "pitch.PC_zeta", "PC_zeta", 1, 1);
-    double least =
-        bough_windio_control(w, "pitch.min_pitch", "min_pitch_limit|fine_pitch", degree, 0);
-    double most =
-        bough_windio_control(w, "pitch.max_pitch", "max_pitch_limit", degree, BOUGH_PI / 2);
+    double least = bough_windio_control(w, "pitch.min_pitch", "min_pitch_limit|fine_pitch", degree, 0);
+    double most = bough_windio_control(w, "pitch.max_pitch", "max_pitch_limit", degree, BOUGH_PI / 2);
     double rate = bough_windio_control(w, "pitch.max_pitch_rate", "max_pitch_rate", degree, 0.1);
     double gain = w->inertia * w->rated_speed * omega / (ratio * pitch_effect * w->rated_power);
     fprintf(w->draft.file[BOUGH_IMPORT_SCENE],
             "    reference_speed: %.10g rad/s\n    proportional: %.10g\n    integral: %.10g\n"
             "    halving_pitch: %.10g rad\n    least_pitch: %.10g rad\n    most_pitch: %.10g rad\n"
             "    pitch_rate: %.10g rad/s\n",
-            w->rated_speed * ratio, 2 * zeta * gain, omega * gain, doubling_pitch, least, most,
-            rate);
+            w->rated_speed * ratio, 2 * zeta * gain, omega * gain, doubling_pitch, least, most, rate);
     bough_draft_note(&w->draft, BOUGH_TAKEN, "pitch from %.4g to %.4g deg by at most %.3g deg/s",
                      least / degree, most / degree, rate / degree);
     bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
@@ -314,18 +297,13 @@ static double efficiency_of(bough_windio *w) {
 // The library that the user gives.
 static void put_library(bough_windio *w) {
     bough_draft *d = &w->draft;
-    FILE *file = d->file[BOUGH_IMPORT_SCENE];
     bough_discon *discon;
     bough_status status = bough_discon_open(d->arena, w->options->controller, "", false, &discon);
     if (!bough_is_ok(&status)) {
         *d->status = bough_fail(status.code, "--controller: %.200s", status.message);
         return;
     }
-    fprintf(file,
-            "control:\n  kind: bladed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n  efficiency: %.10g\n"
-            "  library: ", 1 / d->macro_step, gear_ratio(w), efficiency_of(w));
-    bough_import_path(file, w->options->controller);
-    fputc('\n', file);
+    bough_draft_library(d, w->options->controller, NULL, gear_ratio(w), efficiency_of(w));
     bough_draft_note(d, BOUGH_TAKEN, "controller: %s, by its path", w->options->controller);
 }
 
@@ -352,8 +330,8 @@ void bough_windio_law(bough_windio *w) {
             "    most_torque: %.10g\n    torque_rate: %.10g\n",
             1 / d->macro_step, ratio, efficiency, 0.99 * power / (rated * rated * rated), rated, power,
             1.1 * power / rated, rate);
-    bough_draft_note(d, BOUGH_TAKEN, "rated power %g MW at %.4g rpm of the rotor",
-                     w->rated_power / 1e6, w->rated_speed * 30 / BOUGH_PI);
+    bough_draft_note(d, BOUGH_TAKEN, "rated power %g MW at %.4g rpm of the rotor", w->rated_power / 1e6,
+                     w->rated_speed * 30 / BOUGH_PI);
     bough_draft_note(d, BOUGH_APPROXIMATED,
                      "torque grows with the square of the speed to its rated value, then constant "
                      "power; no loss in the generator");

@@ -2,7 +2,6 @@
 
 #include "core/input_file.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 enum { LOCAL = 0x04034b50, CENTRAL = 0x02014b50, END = 0x06054b50 };
@@ -57,20 +56,12 @@ bough_status bough_archive_add(bough_archive *a, const char *name, const void *b
 
 bough_status bough_archive_copy(bough_archive *a, const char *name, const char *path) {
     char why[BOUGH_INPUT_REASON];
-    FILE *from = bough_input_open(path, BOUGH_INPUT_DATA, why);
-    if (!from) return bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
-    fseek(from, 0, SEEK_END);
-    long size = ftell(from);
-    rewind(from);
-    void *bytes = malloc(size > 0 ? (size_t)size : 1);
-    bough_status status = bough_ok();
-    if (!bytes || size < 0 || fread(bytes, 1, (size_t)size, from) != (size_t)size) {
-        status = bough_fail(BOUGH_IO, "cannot read '%.200s'", path);
-    } else {
-        status = bough_archive_add(a, name, bytes, (size_t)size);
-    }
-    free(bytes);
-    fclose(from);
+    size_t size;
+    bough_arena *own = bough_arena_child(a->arena);
+    const char *bytes = bough_input_read(own, path, BOUGH_INPUT_DATA, &size, why);
+    bough_status status = bytes ? bough_archive_add(a, name, bytes, size)
+                                : bough_fail(BOUGH_IO, "cannot read '%.200s': %s", path, why);
+    bough_arena_destroy(own);
     return status;
 }
 

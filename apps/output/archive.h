@@ -11,7 +11,8 @@
 enum { BOUGH_ARCHIVE_FILES = 64 };
 
 typedef struct bough_archive {
-    FILE *file; // open for writing, at its start
+    bough_arena *arena; // of copies
+    FILE *file;         // open for writing, at its start
     int n;
     struct {
         const char *name; // "resources/scene.yaml"; borrowed until the end

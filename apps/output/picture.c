@@ -27,6 +27,7 @@ void bough_picture_text(FILE *svg, const char *text) {
         case '&': fputs("&amp;", svg); break;
         case '<': fputs("&lt;", svg); break;
         case '>': fputs("&gt;", svg); break;
+        case '"': fputs("&quot;", svg); break;
         default: fputc(*text, svg);
         }
     }

@@ -12,7 +12,7 @@ void bough_picture_begin(FILE *svg, int width, int height);
 // The heading at the top, `left` from the edge [px].
 void bough_picture_title(FILE *svg, int left, const char *title);
 
-// A text within an element: the characters that XML reserves are replaced.
+// A text within an element or an attribute: the characters that XML reserves are replaced.
 void bough_picture_text(FILE *svg, const char *text);
 
 // Number of characters of a text in UTF-8.
