@@ -81,20 +81,25 @@ static inline void weigh_all(bough_high_thrust high_thrust, bool brake, bool ske
     for (int g = 0; g < x->n_live; g++) weigh(high_thrust, brake, skewed, o, x->live[g], x);
 }
 
+static inline void weigh_in(bool brake, lanes *restrict x) {
+    if (x->options->high_thrust == BOUGH_HIGH_THRUST_BUHL) {
+        weigh_all(BOUGH_HIGH_THRUST_BUHL, brake, false, x);
+    } else if (x->options->skewed_momentum) {
+        weigh_all(BOUGH_HIGH_THRUST_SMOOTH, brake, true, x);
+    } else {
+        weigh_all(BOUGH_HIGH_THRUST_SMOOTH, brake, false, x);
+    }
+}
+
 // At x->phi. Stage by stage, so that the groups' chains of operations run beside each other.
 static void evaluate(lanes *restrict x) {
-    bool buhl = x->options->high_thrust == BOUGH_HIGH_THRUST_BUHL;
     x->evaluations++;
     for (int g = 0; g < x->n_live; g++) enter_flow(x->live[g], x);
     for (int g = 0; g < x->n_live; g++) ask_polars(x->live[g], x);
-    if (buhl && x->brake) {
-        weigh_all(BOUGH_HIGH_THRUST_BUHL, true, false, x);
-    } else if (buhl) {
-        weigh_all(BOUGH_HIGH_THRUST_BUHL, false, false, x);
-    } else if (x->options->skewed_momentum) {
-        weigh_all(BOUGH_HIGH_THRUST_SMOOTH, false, true, x);
+    if (x->brake) {
+        weigh_in(true, x);
     } else {
-        weigh_all(BOUGH_HIGH_THRUST_SMOOTH, false, false, x);
+        weigh_in(false, x);
     }
 }
 

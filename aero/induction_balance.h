@@ -142,7 +142,7 @@ static inline double axial_buhl(double c, double s, double f, bool brake) {
 }
 
 // The same by the parabola CT = d₀ + d₁ x + d₂ x² of x = 1 − a that leaves momentum theory smoothly
-// at a_c. Its other root, a > 1, belongs to φ < 0.
+// at a_c. Its other root, a > 1, belongs to φ < 0, at any load.
 static inline double axial_parabola(const wake w, double c, double s, double f) {
     double xc = 1 - w.critical, s2 = s * s, value = f * w.value, slope = f * w.slope;
     double least = value + slope * xc + 0.001, d0 = w.most > least ? w.most : least;
@@ -168,23 +168,29 @@ static inline double axial_skewed(const wake w, double c, double s) {
     return c > 0 ? s2 / x : s2 + c / sqrt(1 + t2);
 }
 
-static inline double axial_smooth(bool skewed, const wake w, double c, double s, double f) {
+static inline double axial_smooth(bool skewed, bool brake, const wake w, double c, double s, double f) {
+    if (brake) return axial_parabola(w, c, s, f);
     double low = skewed ? axial_skewed(w, c, s) : s * s + c;
     return c <= w.limit * s * s ? low : axial_parabola(w, c, s, f);
 }
 
-// The momentum share of the thrust, a/(k |1 − a|), with which the swirl fades beyond a_c.
-static inline double swirl_share(const wake w, double c, double s, double axial) {
+// Where momentum theory gives the swirl: not where a > 1.
+static inline bool is_low(bool brake, const wake w, double c, double s, double axial) {
+    return c <= w.limit * s * s && (!brake || axial > 0);
+}
+
+// The momentum share of the thrust, a/(k |1 − a|), with which the swirl fades beyond a_c and where a > 1.
+static inline double swirl_share(bool brake, const wake w, double c, double s, double axial) {
     double s2 = s * s, share = fabs(axial - s2) / c; // a = 1 − sin²φ/axial
-    return c <= w.limit * s2 ? 1 : share;
+    return is_low(brake, w, c, s, axial) ? 1 : share;
 }
 
 // The same in a skewed wake, and of the mass flow that it adds.
-static inline double swirl_skewed(const wake w, double c, double s, double axial, double f) {
+static inline double swirl_skewed(bool brake, const wake w, double c, double s, double axial, double f) {
     double s2 = s * s, t2 = w.tangent2, x = s2 / axial, a = 1 - x, x2 = x * x;
     double inverse = 1 / sqrt(x2 + t2), thrust = 4 * f * c / s2 * x2;
     double high = 4 * fabs(a) * f * fabs(x) * sqrt(x2 + t2 * f * f) / sqrt(thrust * thrust + 16 * a * a * t2);
-    return (c <= w.limit * s2 ? fabs(x) : high) * inverse;
+    return (is_low(brake, w, c, s, axial) ? fabs(x) : high) * inverse;
 }
 
 // `high_thrust`, `brake`, `skewed`: known where this is inlined into a loop.
@@ -199,9 +205,9 @@ static inline balance balance_of(bough_high_thrust high_thrust, bool brake, bool
     if (high_thrust == BOUGH_HIGH_THRUST_BUHL) {
         axial = axial_buhl(loading, w.s, w.loss, brake);
     } else {
-        axial = axial_smooth(skewed, p.wake, loading, w.s, w.loss);
-        swirl *= skewed ? swirl_skewed(p.wake, loading, w.s, axial, w.loss)
-                        : swirl_share(p.wake, loading, w.s, axial);
+        axial = axial_smooth(skewed, brake, p.wake, loading, w.s, w.loss);
+        swirl *= skewed ? swirl_skewed(brake, p.wake, loading, w.s, axial, w.loss)
+                        : swirl_share(brake, p.wake, loading, w.s, axial);
     }
     double left = w.s * w.c - swirl;
     return (balance){axial - p.slope * left, axial, left};

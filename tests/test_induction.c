@@ -70,6 +70,33 @@ static void thrust_balances_momentum(void **state) {
     }
 }
 
+// A heavily loaded tip in hardly any wind, a > 1: the induced velocity follows the wind without a jump.
+static void hardly_any_wind_has_one_answer(void **state) {
+    airfoils *foils = *state;
+    const double step = 1e-3;
+    for (int skewed = 0; skewed < 2; skewed++) {
+        bough_induction_options options = bough_induction_options_default();
+        options.skewed_momentum = skewed;
+        bough_element e = element_of(foils->polar + 7);
+        e.solidity = 0.011;
+        e.tip_factor = 0.033;
+        e.twist = 0.0205;
+        e.inflow_y = 76.4;
+        e.skew = 0.087;
+        double axial = 0, tangential = 0;
+        for (double wind = 0.01; wind < 3; wind += step) {
+            e.inflow_x = wind;
+            bough_induction i = induction_at(&options, &e);
+            double a = wind * i.axial, t = e.inflow_y * i.tangential;
+            assert_true(i.axial > 1);
+            if (wind > 0.01) check_near(a, axial, 0, 2 * step);
+            if (wind > 0.01) check_near(t, tangential, 0, 2 * step);
+            axial = a;
+            tangential = t;
+        }
+    }
+}
+
 // For small angles, lift 2πα and no twist φ = (1 − a)/λ, and 4a(1 − a) = 2πσλ²φ gives a = πσλ/2.
 static void small_angles_agree_with_closed_form(void **state) {
     airfoils *foils = *state;
@@ -279,6 +306,7 @@ static void mirrored_flow_gives_same_induction(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(thrust_balances_momentum),
+        cmocka_unit_test(hardly_any_wind_has_one_answer),
         cmocka_unit_test(small_angles_agree_with_closed_form),
         cmocka_unit_test(torque_balances_angular_momentum),
         cmocka_unit_test(high_thrust_lies_on_parabola),
