@@ -5,9 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double second_rtol = 1e-5;     // of a second solution far finer than the run
-static const double fine_share = 1.25;      // of the difference to it: its own error is the rest
-static const double halved_share = 8.0 / 6; // of that to steps of half the length: 8/7 at order 3
+static const double second_rtol = 1e-5; // of the second solution, at most
+static const double finer = 64;         // times the run's, where both are of the Rosenbrock method
 static const double tight = 1e-7; // tolerance of other monolithic methods from which on it is a reference
 
 // Above so many states a second solution costs what people notice. On a heavy interface, under sub-solvers
@@ -27,13 +26,12 @@ static bough_second_solution_def choose(const bough_master *m) {
     const bough_integrator_options *own = &m->coupling->options.integrator;
     double most = m->macro_step, step = own->step > 0 ? fmin(own->step, most) : most;
     if (!m->coupling->scheme->one_system) {
-        return (bough_second_solution_def){BOUGH_AUTOMATIC, second_rtol, most, fine_share, {0}};
+        return (bough_second_solution_def){BOUGH_AUTOMATIC, second_rtol, most, {0}};
     }
     if (!has_order_three(own)) {
-        return (bough_second_solution_def){
-            BOUGH_AUTOMATIC, fmin(second_rtol, own->rtol), most, fine_share, {0}};
+        return (bough_second_solution_def){BOUGH_AUTOMATIC, fmin(second_rtol, own->rtol), most, {0}};
     }
-    return (bough_second_solution_def){own->kind, own->rtol / 8, step / 2, halved_share, {0}};
+    return (bough_second_solution_def){own->kind, own->rtol / finer, step / 2, {0}};
 }
 
 static bool members_tell(const bough_assembly *a) {

@@ -13,12 +13,14 @@ static const double most_evaluations = 80000;
 static const double most_work = 4e7; // evaluations times states that small systems may take instead
 static const double most_ratio = 16; // besides, for each step of the run
 
+// Of the difference between run and second solution, which errs itself, that the run is taken to err by.
+static const double share = 1.25;
+
 struct bough_second_solution {
     const bough_assembly *assembly;
     bough_second_model beside; // with loads of its own; none: `whole`, under the loads of the run
     bough_member whole;   // all members as one system
     bough_coupled *evaluation; // of it
-    double share;
     double *error;                 // (n_state)
     double *input_error, *input_worst; // (n_input) of what inputs should be given: now, largest
     long compared;
@@ -42,7 +44,6 @@ bough_status bough_second_solution_create(bough_arena *arena, const bough_coupli
                                           bough_second_solution **second) {
     bough_second_solution *s = bough_arena_take(arena, sizeof *s);
     const bough_assembly *a = s->assembly = c->assembly;
-    s->share = def->share;
     take(s, arena);
     s->left = fmax(most_evaluations, most_work / fmax(a->n_state, 1));
     s->beside = def->beside;
@@ -90,7 +91,7 @@ static void compare(bough_second_solution *s, const bough_coupling *c) {
     const bough_assembly *a = s->assembly;
     const double *state = whole_of(s)->state, *input;
     bough_assembly_states(a, s->error);
-    for (int k = 0; k < a->n_state; k++) s->error[k] = s->share * (s->error[k] - state[k]);
+    for (int k = 0; k < a->n_state; k++) s->error[k] = share * (s->error[k] - state[k]);
     if (s->beside.coupling) {
         input = s->beside.coupling->input;
     } else {
@@ -98,7 +99,7 @@ static void compare(bough_second_solution *s, const bough_coupling *c) {
         input = s->evaluation->input;
     }
     for (int j = 0; j < a->n_input; j++) {
-        s->input_error[j] = s->share * (c->input[j] - input[j]);
+        s->input_error[j] = share * (c->input[j] - input[j]);
         s->input_worst[j] = fmax(s->input_worst[j], fabs(s->input_error[j]));
     }
 }

@@ -2,10 +2,10 @@
 // stages of the Rosenbrock method. It measures the error of the run instead of estimating it, whether
 // coupling, sub-solvers or too long a macro step cause the error, and however the mechanics amplifies it.
 //
-// Either it is far finer than the run, and the difference is the run's error; or the run is itself such
-// a solution, and the second takes steps of half the length to an eighth of the tolerance: of a method
-// of order p the run then errs by 2ᵖ/(2ᵖ − 1) of the difference (Richardson): 8/7 at order 3, and 4/3 at
-// order 2, to which stiff members reduce it.
+// It is finer than the run. Where the run is itself such a solution, the second takes steps of at most half the
+// length to 1/64 of the tolerance. Its error then is 1/8 (order 3) to 1/4 (order 2, to which stiff members reduce
+// it) of the run's where the length binds, and 1/4 where the tolerance does. An eighth of the tolerance is not
+// enough: undamped vibrations below it are lost in both solutions.
 //
 // Under the loads of the run, the reaction of loads to the error, such as that of the air or a controller, is
 // missing. Where there are such loads, a second model of the scene with loads of its own takes the same macro
@@ -33,7 +33,6 @@ typedef struct bough_second_solution_def {
     bough_integrator_kind kind; // method
     double rtol;  // of its steps, relative to the members' scales
     double step;  // longest [s]
-    double share; // of the difference between run and second solution that the run errs by
     bough_second_model beside; // at the same time; without, the members of the run are taken as one system
 } bough_second_solution_def;
 
