@@ -21,8 +21,7 @@ static double wake_strength(const bough_rotor *rotor, const bough_rotor_data *da
     return (1 - cos(BOUGH_PI * above / (full_wake_ratio - wakeless_ratio))) / 2;
 }
 
-void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *motion,
-                        bough_rotor_data *data) {
+void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data) {
     struct bough_rotor_scratch *scratch = data->scratch;
     bough_vec3 wind = {0, 0, 0};
     for (int b = 0; b < rotor->n_blade; b++) wind = bough_add(wind, scratch->wind[b]);
@@ -131,8 +130,8 @@ static void load_stations(const bough_rotor *rotor, const blade_rows *rows) {
         sine_cosine k = lane_sine_cosine(lane_remainder(r.alpha[j]));
         double normal = q * (r.lift[j] * k.cosine + r.drag[j] * k.sine);
         double chordwise = q * (r.drag[j] * k.cosine - r.lift[j] * k.sine);
-        bough_vec3 force = bough_axpy(chordwise, lane_load(r.chord, s, j),
-                                      bough_scale(normal, lane_load(r.normal, s, j)));
+        bough_vec3 force =
+            bough_axpy(chordwise, lane_load(r.chord, s, j), bough_scale(normal, lane_load(r.normal, s, j)));
         bough_vec3 moment = bough_axpy(pitching * q * chord[j] * r.moment[j], lane_load(r.z, s, j),
                                        bough_cross(lane_load(r.arm, s, j), force));
         r.force_x[j] = bough_dot(force, lane_load(r.x, s, j));
@@ -176,8 +175,8 @@ static inline response in_balance(const bough_rotor *rotor, blade_rows r, int j,
 
 // At the very tip and root the loss factor holds the induction, dynamic inflow holds it everywhere, and
 // without a wake there is none.
-static inline response section_response(const bough_rotor *rotor, blade_rows r, bool delayed,
-                                        double wake, int j, double normal, double slope) {
+static inline response section_response(const bough_rotor *rotor, blade_rows r, bool delayed, double wake,
+                                        int j, double normal, double slope) {
     response k = in_balance(rotor, r, j, normal, slope);
     bool free = rotor->station.free[j] > 0;
     k.flow = delayed ? 1 : free ? 1 + wake * (k.flow - 1) : 1 - r.axial[j];
@@ -191,8 +190,8 @@ typedef struct plane {
     double normal, chord, moment;
 } plane;
 
-static inline void store_slope(double *restrict to, plane d, bough_vec3 n, bough_vec3 c,
-                               bough_vec3 arm, bough_vec3 z) {
+static inline void store_slope(double *restrict to, plane d, bough_vec3 n, bough_vec3 c, bough_vec3 arm,
+                               bough_vec3 z) {
     bough_vec3 force = bough_axpy(d.chord, c, bough_scale(d.normal, n));
     to[0] = force.x;
     to[4] = force.y;
@@ -200,8 +199,7 @@ static inline void store_slope(double *restrict to, plane d, bough_vec3 n, bough
 }
 
 // … by the velocity of the vertices, and by the section's rotation about its normal and its rate.
-static void slope_stations(const bough_rotor *rotor, const blade_rows *rows,
-                           const bough_rotor_data *data) {
+static void slope_stations(const bough_rotor *rotor, const blade_rows *rows, const bough_rotor_data *data) {
     bool delayed = data->memory.station != NULL;
     double wake = data->scratch->wake;
     const blade_rows r = *rows;
@@ -213,8 +211,8 @@ static void slope_stations(const bough_rotor *rotor, const blade_rows *rows,
     for (int j = 0; j < s; j++) {
         double q = 0.5 * density * r.speed[j] * chord[j], nose = pitching * chord[j];
         sine_cosine k = lane_sine_cosine(lane_remainder(r.alpha[j]));
-        plane f = {r.lift[j] * k.cosine + r.drag[j] * k.sine,
-                   r.drag[j] * k.cosine - r.lift[j] * k.sine, nose * r.moment[j]};
+        plane f = {r.lift[j] * k.cosine + r.drag[j] * k.sine, r.drag[j] * k.cosine - r.lift[j] * k.sine,
+                   nose * r.moment[j]};
         plane g = {r.lift_slope[j] * k.cosine + r.drag_slope[j] * k.sine + f.chord,
                    r.drag_slope[j] * k.cosine - r.lift_slope[j] * k.sine - f.normal,
                    nose * r.moment_slope[j]}; // by the angle of attack
@@ -256,8 +254,8 @@ static void slope_stations(const bough_rotor *rotor, const blade_rows *rows,
 
 // What stations have per length (`width` numbers each, whole vectors) by n rows of the mapping, the
 // first `count` of them: on the vertices, or along the segments.
-static inline void spread(int n, const vertex_row *rows, int width, int count,
-                          const double *restrict line, double *restrict load) {
+static inline void spread(int n, const vertex_row *rows, int width, int count, const double *restrict line,
+                          double *restrict load) {
     for (int i = 0; i < n; i++) {
         vertex_row row = rows[i];
         double sum[SLOPE] = {0};
@@ -303,8 +301,7 @@ void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion
     if (rotor->slopes) {
         ask_slopes(rotor, motion->time, blade, data);
         slope_stations(rotor, r, data);
-        spread(n, rotor->row, SLOPE, BOUGH_SLOPES, r->slope,
-               data->slope + BOUGH_SLOPES * blade * n);
+        spread(n, rotor->row, SLOPE, BOUGH_SLOPES, r->slope, data->slope + BOUGH_SLOPES * blade * n);
     }
     sum_blade(rotor, motion, blade, data);
 }
@@ -321,8 +318,7 @@ void bough_rotor_conclude(const bough_rotor *rotor, const bough_rotor_motion *mo
     if (data->memory.clock) bough_rotor_remember(rotor, motion, data);
 }
 
-void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
-                        bough_rotor_data *data) {
+void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data) {
     for (int b = 0; b < rotor->n_blade; b++) {
         bough_rotor_approach(rotor, motion, b, data);
         bough_rotor_induce(rotor, motion, b, data);
@@ -349,51 +345,38 @@ bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int s
                            .force_y = r->force_y[j]};
 }
 
-enum { TOLD = 17, SUMS = 5 };
-
-static void told_rows(const bough_rotor *rotor, const blade_rows *r, double *row[TOLD]) {
-    double *const rows[TOLD] = {r->radius, r->inflow_x, r->inflow_y, r->axial, r->tangential,
-                                r->alpha,  r->phi,      r->twist,    r->speed, r->lift,
-                                r->drag,   r->moment,   r->force_x,  r->force_y,
-                                r->place,  r->place + rotor->stride, r->place + 2 * rotor->stride};
-    memcpy(row, rows, sizeof rows);
-}
-
-int bough_rotor_told_size(const bough_rotor *rotor) {
-    return SUMS + TOLD * rotor->n_blade * rotor->n_station;
-}
-
-void bough_rotor_told_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to) {
-    const double sums[SUMS] = {data->thrust, data->torque, data->disk_wind.x, data->disk_wind.y,
-                               data->disk_wind.z};
-    size_t n = (size_t)rotor->n_station;
-    memcpy(to, sums, sizeof sums);
-    to += SUMS;
+void bough_rotor_told_snapshot(const bough_rotor *rotor, bough_rotor_data *data, bough_snapshot *s) {
+    bough_snapshot_doubles(s, &data->thrust, 1);
+    bough_snapshot_doubles(s, &data->torque, 1);
+    bough_snapshot_take(s, &data->disk_wind, sizeof data->disk_wind);
     for (int b = 0; b < rotor->n_blade; b++) {
-        double *row[TOLD];
-        told_rows(rotor, data->scratch->blade + b, row);
-        for (int k = 0; k < TOLD; k++, to += n) memcpy(to, row[k], n * sizeof *to);
-    }
-}
-
-void bough_rotor_told_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data) {
-    size_t n = (size_t)rotor->n_station;
-    data->thrust = from[0];
-    data->torque = from[1];
-    data->disk_wind = bough_v3(from[2], from[3], from[4]);
-    from += SUMS;
-    for (int b = 0; b < rotor->n_blade; b++) {
-        double *row[TOLD];
-        told_rows(rotor, data->scratch->blade + b, row);
-        for (int k = 0; k < TOLD; k++, from += n) memcpy(row[k], from, n * sizeof *from);
+        const blade_rows *r = data->scratch->blade + b;
+        double *const row[] = {r->radius,
+                               r->inflow_x,
+                               r->inflow_y,
+                               r->axial,
+                               r->tangential,
+                               r->alpha,
+                               r->phi,
+                               r->twist,
+                               r->speed,
+                               r->lift,
+                               r->drag,
+                               r->moment,
+                               r->force_x,
+                               r->force_y,
+                               r->place,
+                               r->place + rotor->stride,
+                               r->place + 2 * rotor->stride};
+        for (size_t k = 0; k < sizeof row / sizeof *row; k++)
+            bough_snapshot_doubles(s, row[k], rotor->n_station);
     }
 }
 
 // Slower than this the angle of attack does not matter [m/s].
 static const double slow = 1;
 
-bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_rotor_data *data,
-                                      int blade) {
+bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_rotor_data *data, int blade) {
     const blade_rows *r = data->scratch->blade + blade;
     bough_rotor_extremes x = {.distance = HUGE_VAL};
     for (int j = 0; j < rotor->n_station; j++) {

@@ -15,6 +15,7 @@
 #include "aero/tower.h"
 #include "aero/wind.h"
 #include "core/arena.h"
+#include "core/snapshot.h"
 #include "core/spatial.h"
 #include "core/status.h"
 
@@ -64,10 +65,10 @@ bough_rotor_def bough_rotor_def_default(void);
 // One blade's vertices in the axes of a frame that moves with it, as rows of n_vertex numbers: a
 // state of rods.
 enum {
-    BOUGH_BLADE_POSITION = 0,  // [m]
-    BOUGH_BLADE_ROTATION = 3,  // quaternion of the section axes, of about unit length
-    BOUGH_BLADE_VELOCITY = 7,  // absolute [m/s]
-    BOUGH_BLADE_SPIN = 10,     // absolute angular velocity, in section axes [rad/s]
+    BOUGH_BLADE_POSITION = 0, // [m]
+    BOUGH_BLADE_ROTATION = 3, // quaternion of the section axes, of about unit length
+    BOUGH_BLADE_VELOCITY = 7, // absolute [m/s]
+    BOUGH_BLADE_SPIN = 10,    // absolute angular velocity, in section axes [rad/s]
     BOUGH_BLADE_ROWS = 13,
 };
 
@@ -111,24 +112,23 @@ typedef struct bough_rotor_memory {
 typedef struct bough_rotor_data {
     bough_rotor_memory memory; // advanced by bough_rotor_sample
     // computed by bough_rotor_sample
-    double *load; // (n_blade × 6 × n_vertex) force on each vertex, moment about it, in the axes of
-                  // the blade's frame [N, N m]
-    double *line; // (n_blade × 12 × (n_vertex − 1)) the same loads per length, their mean over each
-                  // segment between two vertices [N/m, N] and their slope [N/m², N/m], same axes
+    double *load;  // (n_blade × 6 × n_vertex) force on each vertex, moment about it, in the axes of
+                   // the blade's frame [N, N m]
+    double *line;  // (n_blade × 12 × (n_vertex − 1)) the same loads per length, their mean over each
+                   // segment between two vertices [N/m, N] and their slope [N/m², N/m], same axes
     double *slope; // (n_blade × BOUGH_SLOPES × n_vertex) how the loads follow the vertices' own
                    // motion: row 4 c + j, c of forces along x and y and moment about z of the blade's
                    // frame, j of velocities along x and y, rotation about the section's normal and
                    // its rate [N s/m, N, N s; N s, N m, N m s]
-    double thrust;        // along the shaft [N]
-    double torque;        // about the shaft [N m]
+    double thrust; // along the shaft [N]
+    double torque; // about the shaft [N m]
     bough_vec3 disk_wind; // mean of the disturbed wind over all stations [m/s]
     struct bough_rotor_scratch *scratch;
 } bough_rotor_data;
 
 // Builds the model; the def and all it points to may be released afterwards. BOUGH_INVALID for a
 // station off the blade and for wind that cannot be read or made.
-bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
-                               const bough_rotor **rotor);
+bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def, const bough_rotor **rotor);
 
 // Takes the memory of a data struct; its loads are zero. The only other allocation.
 void bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor, bough_rotor_data *data);
@@ -137,8 +137,7 @@ void bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor, bough_
 // pure function of it: nothing is kept from sample to sample. Else the memory goes on from the last
 // sample's time to this one's, with the inflow's time constant of the last. Finite for any finite
 // motion.
-void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion,
-                        bough_rotor_data *data);
+void bough_rotor_sample(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data);
 
 // The same in stages, each after the one before it for all blades, but induce only after the same
 // blade's approach. Blades are independent within a stage and may be given to different threads.
@@ -152,43 +151,35 @@ void bough_rotor_approach(const bough_rotor *rotor, const bough_rotor_motion *mo
                           bough_rotor_data *data);
 void bough_rotor_induce(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
                         bough_rotor_data *data);
-void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *motion,
-                        bough_rotor_data *data);
+void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data);
 void bough_rotor_load(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
                       bough_rotor_data *data);
-void bough_rotor_conclude(const bough_rotor *rotor, const bough_rotor_motion *motion,
-                          bough_rotor_data *data);
+void bough_rotor_conclude(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data);
 
 // What a station of a blade reports of the last sample.
 bough_station bough_rotor_station(const bough_rotor_data *data, int blade, int station);
 
-// The results of a sample as a row of numbers: those of every station, thrust, torque and wind; not the
-// loads.
-int bough_rotor_told_size(const bough_rotor *rotor);
-void bough_rotor_told_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to);
-void bough_rotor_told_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data);
+// The results of a sample: those of every station, thrust, torque and wind; not the loads.
+void bough_rotor_told_snapshot(const bough_rotor *rotor, bough_rotor_data *data, bough_snapshot *s);
 
 // The extreme values of a blade's last sample, to be compared with the range of tables and model.
 typedef struct bough_rotor_extremes {
     bool outside_table; // an angle of attack is outside the rows of its polar …
     double alpha;       // … this one [rad]
-    double speed;    // the largest relative speed [m/s]
-    double distance; // the least from the tower's axis, in radii there [-]
+    double speed;       // the largest relative speed [m/s]
+    double distance;    // the least from the tower's axis, in radii there [-]
 } bough_rotor_extremes;
 
-bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_rotor_data *data,
-                                      int blade);
+bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_rotor_data *data, int blade);
 
 // Makes the next sample the first.
 void bough_rotor_forget(const bough_rotor *rotor, bough_rotor_data *data);
 
-// The memory as a row of numbers, for schemes that repeat a step; its length is 0 without dynamic
-// inflow and stall. `to` and `from` have that length.
+// The memory, and the number of doubles in a copy of it, 0 without dynamic inflow and stall.
+void bough_rotor_memory_snapshot(const bough_rotor *rotor, bough_rotor_data *data, bough_snapshot *s);
 int bough_rotor_memory_size(const bough_rotor *rotor);
-void bough_rotor_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to);
-void bough_rotor_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data);
 
-// Rows of that memory that are states of the air, section by section: the delayed inductions, the shed
+// Rows of that copy that are states of the air, section by section: the delayed inductions, the shed
 // wake, the lags of pressure and separation; the others are their inputs at the last sample. The first
 // row is the time of the last sample. Returns their number; row has room for the memory's length.
 int bough_rotor_memory_states(const bough_rotor *rotor, int *row);

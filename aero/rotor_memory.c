@@ -33,9 +33,7 @@ void bough_rotor_remember(const bough_rotor *rotor, const bough_rotor_motion *mo
     clock->started = true;
 }
 
-static int n_section(const bough_rotor *rotor) {
-    return rotor->n_blade * rotor->n_station;
-}
+static int n_section(const bough_rotor *rotor) { return rotor->n_blade * rotor->n_station; }
 
 void bough_rotor_forget(const bough_rotor *rotor, bough_rotor_data *data) {
     bough_rotor_memory *memory = &data->memory;
@@ -53,13 +51,10 @@ enum {
     STALL = sizeof(bough_stall_state) / sizeof(double),
 };
 
-static bool has_inflow(const bough_rotor *rotor) {
-    return rotor->inflow.kind != BOUGH_INFLOW_EQUILIBRIUM;
-}
+static bool has_inflow(const bough_rotor *rotor) { return rotor->inflow.kind != BOUGH_INFLOW_EQUILIBRIUM; }
 
 int bough_rotor_memory_size(const bough_rotor *rotor) {
-    int per_section =
-        (has_inflow(rotor) ? INFLOW : 0) + (rotor->stalls ? STALL : 0);
+    int per_section = (has_inflow(rotor) ? INFLOW : 0) + (rotor->stalls ? STALL : 0);
     return per_section == 0 ? 0 : SCALARS + per_section * n_section(rotor);
 }
 
@@ -73,26 +68,14 @@ int bough_rotor_memory_states(const bough_rotor *rotor, int *row) {
     return n;
 }
 
-void bough_rotor_save(const bough_rotor *rotor, const bough_rotor_data *data, double *to) {
+void bough_rotor_memory_snapshot(const bough_rotor *rotor, bough_rotor_data *data, bough_snapshot *s) {
     const bough_rotor_memory *memory = &data->memory;
     if (!memory->clock) return;
-    *to++ = memory->clock->time;
-    *to++ = memory->clock->tau;
-    *to++ = memory->clock->started;
-    for (int k = 0; memory->station && k < n_section(rotor); k++, to += INFLOW)
-        memcpy(to, &memory->station[k].state, sizeof memory->station[k].state);
-    for (int k = 0; memory->stall && k < n_section(rotor); k++, to += STALL)
-        memcpy(to, &memory->stall[k], sizeof memory->stall[k]);
-}
-
-void bough_rotor_restore(const bough_rotor *rotor, const double *from, bough_rotor_data *data) {
-    const bough_rotor_memory *memory = &data->memory;
-    if (!memory->clock) return;
-    memory->clock->time = *from++;
-    memory->clock->tau = *from++;
-    memory->clock->started = *from++ != 0;
-    for (int k = 0; memory->station && k < n_section(rotor); k++, from += INFLOW)
-        memcpy(&memory->station[k].state, from, sizeof memory->station[k].state);
-    for (int k = 0; memory->stall && k < n_section(rotor); k++, from += STALL)
-        memcpy(&memory->stall[k], from, sizeof memory->stall[k]);
+    bough_snapshot_doubles(s, &memory->clock->time, 1);
+    bough_snapshot_doubles(s, &memory->clock->tau, 1);
+    bough_snapshot_take(s, &memory->clock->started, sizeof memory->clock->started);
+    for (int k = 0; memory->station && k < n_section(rotor); k++)
+        bough_snapshot_take(s, &memory->station[k].state, sizeof memory->station[k].state);
+    for (int k = 0; memory->stall && k < n_section(rotor); k++)
+        bough_snapshot_take(s, &memory->stall[k], sizeof memory->stall[k]);
 }

@@ -585,6 +585,10 @@ static void pitch_step_matches_reference(void **state) {
     destroy_rig(r);
 }
 
+static void move_memory(rig *r, bough_snapshot_move move, double *copy) {
+    bough_rotor_memory_snapshot(r->rotor, &r->data, &(bough_snapshot){move, (char *)copy, 0});
+}
+
 // The memory restored, a step repeats to the bit; a step of any length is stable.
 static void inflow_is_saved_and_restored(void **state) {
     (void)state;
@@ -593,13 +597,13 @@ static void inflow_is_saved_and_restored(void **state) {
     assert_int_equal(n, 3 + 6 * BLADES * STATIONS);
     double *memory = calloc((size_t)n, sizeof *memory);
     for (int k = 0; k < 5; k++) sample_at(r, 0.3 * k);
-    bough_rotor_save(r->rotor, &r->data, memory);
+    move_memory(r, BOUGH_SNAPSHOT_SAVE, memory);
     r->pitch = 3 * degree;
     sample_at(r, 2);
     double thrust = r->data.thrust;
     sample_at(r, 500);
     assert_true(isfinite(r->data.thrust) && fabs(r->data.thrust - thrust) > 1e3);
-    bough_rotor_restore(r->rotor, memory, &r->data);
+    move_memory(r, BOUGH_SNAPSHOT_RESTORE, memory);
     sample_at(r, 2);
     check_near(r->data.thrust, thrust, 0, 0);
     free(memory);
@@ -613,22 +617,26 @@ static void told_is_saved_and_restored(void **state) {
     rig *r = create_rig(false);
     operate(r, 8, 0, 9);
     sample(r, BOUGH_PI); // blade 1 in front of the tower
-    double *told = test_malloc((size_t)bough_rotor_told_size(r->rotor) * sizeof *told);
+    bough_snapshot told = {.move = BOUGH_SNAPSHOT_MEASURE};
+    bough_rotor_told_snapshot(r->rotor, &r->data, &told);
+    char *copy = test_malloc(told.used);
     bough_rotor_extremes before[BLADES];
     for (int b = 0; b < BLADES; b++) before[b] = bough_rotor_look(r->rotor, &r->data, b);
     assert_true(before[0].distance < 10 && before[1].distance > 2 * before[0].distance);
     double thrust = r->data.thrust;
-    bough_rotor_told_save(r->rotor, &r->data, told);
+    told = (bough_snapshot){BOUGH_SNAPSHOT_SAVE, copy, 0};
+    bough_rotor_told_snapshot(r->rotor, &r->data, &told);
     operate(r, 12, 3, 6);
     sample(r, 1);
     assert_true(bough_rotor_look(r->rotor, &r->data, 0).distance != before[0].distance);
-    bough_rotor_told_restore(r->rotor, told, &r->data);
+    told = (bough_snapshot){BOUGH_SNAPSHOT_RESTORE, copy, 0};
+    bough_rotor_told_snapshot(r->rotor, &r->data, &told);
     check_near(r->data.thrust, thrust, 0, 0);
     for (int b = 0; b < BLADES; b++) {
         bough_rotor_extremes after = bough_rotor_look(r->rotor, &r->data, b);
         assert_true(after.distance == before[b].distance && after.speed == before[b].speed);
     }
-    test_free(told);
+    test_free(copy);
     destroy_rig(r);
 }
 
@@ -669,7 +677,7 @@ static void stall_is_late_and_repeats(void **state) {
     double *memory = calloc((size_t)n, sizeof *memory), most = 0;
     sample(still, 0);
     for (int k = 0; k < 50; k++) sample_at(r, 0.02 * k);
-    bough_rotor_save(r->rotor, &r->data, memory);
+    move_memory(r, BOUGH_SNAPSHOT_SAVE, memory);
     r->pitch = -8 * degree;
     for (int k = 50; k < 60; k++) {
         sample_at(r, 0.02 * k);
@@ -677,7 +685,7 @@ static void stall_is_late_and_repeats(void **state) {
     }
     double thrust = r->data.thrust;
     assert_true(most > 1.02 * still->data.thrust);
-    bough_rotor_restore(r->rotor, memory, &r->data);
+    move_memory(r, BOUGH_SNAPSHOT_RESTORE, memory);
     for (int k = 50; k < 60; k++) sample_at(r, 0.02 * k);
     check_near(r->data.thrust, thrust, 0, 0);
     // The blade turns in space, cone or not: flat here, so nothing but the static polars is left.

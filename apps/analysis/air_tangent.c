@@ -41,9 +41,9 @@ static void take(bough_arena *arena, work *w) {
 // Lets the air go on for `step` from the memory in `from`, which is changed, to `to`.
 static void go_on(work *w, double step, double *from, double *to) {
     from[0] = w->time - step;
-    bough_aero_link_remind(w->simulation->aero, from);
+    bough_aero_link_memory(w->simulation->aero, BOUGH_SNAPSHOT_RESTORE, from);
     bough_aero_link_go_on(w->simulation->aero, w->time);
-    bough_aero_link_remember(w->simulation->aero, to);
+    bough_aero_link_memory(w->simulation->aero, BOUGH_SNAPSHOT_SAVE, to);
 }
 
 // Rates of all states at `state` under the loads that the air has for w->state and the memory in
@@ -73,7 +73,7 @@ static void settle(work *w, const double *state) {
     if (s->drag != NULL) bough_drag_link_hold(s->drag, w->time);
     if (!w->dynamic) return;
     bough_aero_link_go_on(s->aero, w->time);
-    bough_aero_link_remember(s->aero, w->before);
+    bough_aero_link_memory(s->aero, BOUGH_SNAPSHOT_SAVE, w->before);
     for (int k = 0; k < SETTLINGS; k++) {
         go_on(w, long_while, w->before, w->memory);
         memcpy(w->before, w->memory, (size_t)w->n_memory * sizeof *w->before);

@@ -364,12 +364,8 @@ void bough_aero_link_hold(bough_aero_link *link, double t) {
     bough_rotor_forget(link->rotor, &link->data[0]);
 }
 
-void bough_aero_link_remember(const bough_aero_link *link, double *to) {
-    bough_rotor_save(link->rotor, &link->data[0], to);
-}
-
-void bough_aero_link_remind(bough_aero_link *link, const double *from) {
-    bough_rotor_restore(link->rotor, from, &link->data[0]);
+void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, double *memory) {
+    bough_rotor_memory_snapshot(link->rotor, &link->data[0], &(bough_snapshot){move, (char *)memory, 0});
 }
 
 bough_sampled_load bough_aero_link_load(bough_aero_link *link) {
@@ -393,18 +389,6 @@ bough_vec3 bough_aero_link_hub_wind(const bough_aero_link *link, double t) {
 
 // -- saving ---------------------------------------------------------------------------------------
 
-static void take_told(bough_aero_link *link, int k, bough_snapshot *s) {
-    double *room = bough_snapshot_room(s, (size_t)bough_rotor_told_size(link->rotor) * sizeof *room);
-    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_rotor_told_save(link->rotor, &link->data[k], room);
-    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_rotor_told_restore(link->rotor, room, &link->data[k]);
-}
-
-static void take_memory(bough_aero_link *link, bough_snapshot *s) {
-    double *room = bough_snapshot_room(s, (size_t)bough_rotor_memory_size(link->rotor) * sizeof *room);
-    if (s->move == BOUGH_SNAPSHOT_SAVE) bough_aero_link_remember(link, room);
-    if (s->move == BOUGH_SNAPSHOT_RESTORE) bough_aero_link_remind(link, room);
-}
-
 // Of the evaluations only what they tell is stored: the shown one and the one at the sample ahead; of the
 // loads nothing.
 void bough_aero_link_snapshot(bough_aero_link *link, bough_snapshot *s) {
@@ -414,9 +398,9 @@ void bough_aero_link_snapshot(bough_aero_link *link, bough_snapshot *s) {
         int k = i == 0 ? link->shown : 1 - link->shown;
         bough_snapshot_take(s, &link->factor[k], sizeof link->factor[k]);
         bough_snapshot_take(s, &link->time[k], sizeof link->time[k]);
-        take_told(link, k, s);
+        bough_rotor_told_snapshot(link->rotor, &link->data[k], s);
     }
     for (int b = 0; b < link->n_blade; b++) bough_aero_signal_snapshot(link->signal[b], s);
     bough_aero_motion_snapshot(link->motion, s);
-    take_memory(link, s);
+    bough_rotor_memory_snapshot(link->rotor, &link->data[0], s);
 }

@@ -22,9 +22,8 @@ void bough_aero_link_hold(bough_aero_link *link, double t);
 // The same, but dynamic inflow and stall continue from the last sample, and the next sample from this one.
 void bough_aero_link_go_on(bough_aero_link *link, double t);
 
-// The memory of dynamic inflow and stall, as bough_rotor_save stores it.
-void bough_aero_link_remember(const bough_aero_link *link, double *to);
-void bough_aero_link_remind(bough_aero_link *link, const double *from);
+// Saves or restores dynamic inflow and stall: memory (bough_rotor_memory_size).
+void bough_aero_link_memory(bough_aero_link *link, bough_snapshot_move move, double *memory);
 
 // All that the next samples depend on, and the loads that the bodies have, for schemes that repeat samples:
 // restoring puts the loads back.
