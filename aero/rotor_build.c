@@ -74,15 +74,11 @@ static void take_stations(bough_arena *arena, int stride, station_rows *rows) {
     size_t n = (size_t)stride;
     rows->polar = bough_arena_take(arena, n * sizeof *rows->polar);
     rows->vertex = bough_arena_take(arena, n * sizeof *rows->vertex);
-    rows->weight = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &rows->weight, &rows->bow, &rows->chord, &rows->tip_factor, &rows->hub_factor,
+                     &rows->free);
     rows->section = bough_arena_doubles(arena, 9 * n);
     rows->centre = bough_arena_doubles(arena, 3 * n);
     rows->ends = bough_arena_doubles(arena, 3 * n);
-    rows->bow = bough_arena_doubles(arena, n);
-    rows->chord = bough_arena_doubles(arena, n);
-    rows->tip_factor = bough_arena_doubles(arena, n);
-    rows->hub_factor = bough_arena_doubles(arena, n);
-    rows->free = bough_arena_doubles(arena, n);
 }
 
 static void place_stations(const bough_rotor_def *def, const bough_polar *polar,
@@ -234,20 +230,15 @@ static void take_memory(bough_arena *arena, const bough_rotor *rotor, bough_roto
 }
 
 static void take_rows(bough_arena *arena, const bough_rotor *rotor, blade_rows *rows) {
-    double **const vectors[] = {&rows->arm, &rows->x, &rows->y, &rows->z, &rows->velocity,
-                                &rows->wind, &rows->place, &rows->normal, &rows->chord};
-    double **const scalars[] = {
-        &rows->radius,      &rows->twist,      &rows->turning,  &rows->solidity, &rows->cone,
-        &rows->skew_normal, &rows->skew_chord, &rows->inflow_x, &rows->inflow_y, &rows->axial,
-        &rows->tangential,  &rows->loss,       &rows->phi,      &rows->alpha,    &rows->speed,
-        &rows->lift,        &rows->drag,       &rows->moment,   &rows->force_x,  &rows->force_y,
-        &rows->lift_slope,  &rows->drag_slope, &rows->moment_slope, &rows->lift_rate,
-        &rows->drag_rate,   &rows->moment_rate, &rows->static_slope};
     size_t n = (size_t)rotor->stride;
-    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
-        *vectors[i] = bough_arena_doubles(arena, 3 * n);
-    for (size_t i = 0; i < sizeof scalars / sizeof *scalars; i++)
-        *scalars[i] = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, 3 * n, &rows->arm, &rows->x, &rows->y, &rows->z, &rows->velocity, &rows->wind,
+                     &rows->place, &rows->normal, &rows->chord);
+    bough_arena_each(arena, n, &rows->radius, &rows->twist, &rows->turning, &rows->solidity, &rows->cone,
+                     &rows->skew_normal, &rows->skew_chord, &rows->inflow_x, &rows->inflow_y, &rows->axial,
+                     &rows->tangential, &rows->loss, &rows->phi, &rows->alpha, &rows->speed, &rows->lift,
+                     &rows->drag, &rows->moment, &rows->force_x, &rows->force_y, &rows->lift_slope,
+                     &rows->drag_slope, &rows->moment_slope, &rows->lift_rate, &rows->drag_rate,
+                     &rows->moment_rate, &rows->static_slope);
     rows->load = bough_arena_doubles(arena, LOAD * n);
     rows->slope = bough_arena_doubles(arena, SLOPE * n);
     rows->turn = bough_arena_doubles(arena, 3 * (size_t)rotor->n_vertex);

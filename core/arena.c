@@ -111,6 +111,10 @@ double *bough_arena_doubles(bough_arena *arena, size_t count) {
     return bough_arena_take(arena, count * sizeof(double));
 }
 
+void bough_arena_arrays(bough_arena *arena, size_t count, double **const *array) {
+    for (; *array; array++) **array = bough_arena_doubles(arena, count);
+}
+
 char *bough_arena_string(bough_arena *arena, const char *text) {
     if (!text) return NULL;
     size_t size = strlen(text) + 1;

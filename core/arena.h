@@ -37,6 +37,11 @@ void *bough_arena_take(bough_arena *arena, size_t size);
 // A zeroed array of `count` doubles.
 double *bough_arena_doubles(bough_arena *arena, size_t count);
 
+// Several of that length, into the pointers at the addresses that follow.
+#define bough_arena_each(arena, count, ...) \
+    bough_arena_arrays(arena, count, (double **const[]){__VA_ARGS__, NULL})
+void bough_arena_arrays(bough_arena *arena, size_t count, double **const *array);
+
 // A copy of the string, NULL for NULL.
 char *bough_arena_string(bough_arena *arena, const char *text);
 

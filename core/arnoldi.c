@@ -12,12 +12,10 @@ void bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_ar
     a->length = length;
     a->capacity = capacity;
     a->basis = bough_arena_doubles(arena, m * n);
-    a->h = bough_arena_doubles(arena, m * m);
+    bough_arena_each(arena, m * m, &a->h, &a->vector, &a->matrix);
     a->weight = bough_arena_doubles(arena, n);
     a->image = bough_arena_doubles(arena, n);
     a->value = bough_arena_doubles(arena, 2 * m);
-    a->vector = bough_arena_doubles(arena, m * m);
-    a->matrix = bough_arena_doubles(arena, m * m);
     a->work = bough_arena_doubles(arena, 8 * m);
     for (int i = 0; i < length; i++) a->weight[i] = 1;
 }

@@ -18,9 +18,7 @@ enum { W = 8 }; // padded column
 void bough_block_tridiagonal_init(bough_block_tridiagonal *m, bough_arena *arena, int n) {
     m->n = n;
     size_t count = (size_t)bough_padded(n) * BOUGH_BLOCK;
-    m->lower = bough_arena_doubles(arena, count);
-    m->diagonal = bough_arena_doubles(arena, count);
-    m->upper = bough_arena_doubles(arena, count);
+    bough_arena_each(arena, count, &m->lower, &m->diagonal, &m->upper);
 }
 
 // Entry i of Σ_k a_k b_k over the columns a_k, padding included.

@@ -43,14 +43,8 @@ static void *create(bough_arena *arena, const bough_ode *ode,
     m->am = 0.5 * (3 - options->rho) / (1 + options->rho);
     m->af = 1 / (1 + options->rho);
     m->gamma = 0.5 + m->am - m->af;
-    m->weight = bough_arena_doubles(arena, n);
-    m->rate = bough_arena_doubles(arena, n);
-    m->next = bough_arena_doubles(arena, n);
-    m->next_rate = bough_arena_doubles(arena, n);
-    m->middle = bough_arena_doubles(arena, n);
-    m->residual = bough_arena_doubles(arena, n);
-    m->own_error = bough_arena_doubles(arena, n);
-    m->slope = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &m->weight, &m->rate, &m->next, &m->next_rate, &m->middle, &m->residual,
+                     &m->own_error, &m->slope);
     for (size_t i = 0; i < n; i++) m->weight[i] = 1 / ode->scale[i];
     return m;
 }

@@ -74,13 +74,8 @@ static void take(bough_arena *arena, radau *r) {
     size_t head = (sizeof(history) + sizeof(double) - 1) / sizeof(double);
     size_t count = head + 4 * n + n * n;
     double *memory = bough_arena_doubles(arena, count);
-    r->weight = bough_arena_doubles(arena, n);
-    r->rate = bough_arena_doubles(arena, n);
-    r->trial = bough_arena_doubles(arena, STAGES * n);
-    r->w = bough_arena_doubles(arena, STAGES * n);
-    r->f = bough_arena_doubles(arena, STAGES * n);
-    r->error = bough_arena_doubles(arena, n);
-    r->point = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &r->weight, &r->rate, &r->error, &r->point);
+    bough_arena_each(arena, STAGES * n, &r->trial, &r->w, &r->f);
     r->real = bough_arena_doubles(arena, n * n);
     r->complex = bough_arena_doubles(arena, 2 * n * n);
     r->pair = bough_arena_doubles(arena, 2 * n);

@@ -70,11 +70,7 @@ static void *create(bough_arena *arena, const bough_ode *ode,
     m->step = options->step > 0 ? options->step : (double)INFINITY;
     m->foresees = options->most_steps > 0;
     m->most_steps = m->foresees ? options->most_steps : MOST_STEPS;
-    m->weight = bough_arena_doubles(arena, n);
-    m->drift = bough_arena_doubles(arena, n);
-    m->error = bough_arena_doubles(arena, n);
-    m->at = bough_arena_doubles(arena, n);
-    m->own_error = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &m->weight, &m->drift, &m->error, &m->at, &m->own_error);
     for (int i = 0; i < STAGES; i++) m->stage[i] = bough_arena_doubles(arena, n);
     for (size_t k = 0; k < n; k++) m->weight[k] = 1 / (options->rtol * ode->scale[k]);
     return m;

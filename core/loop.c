@@ -48,10 +48,8 @@ bough_loops *bough_loops_create(bough_arena *arena, const bough_tree *tree) {
     l->row = bough_arena_take(arena, m * sizeof *l->row);
     l->response = bough_arena_doubles(arena, m * n);
     l->matrix = bough_arena_doubles(arena, m * m);
-    l->value = bough_arena_doubles(arena, m);
-    l->scale = bough_arena_doubles(arena, m);
+    bough_arena_each(arena, m, &l->value, &l->scale, &l->multiplier);
     l->work = bough_arena_doubles(arena, 8 * m);
-    l->multiplier = bough_arena_doubles(arena, m);
     l->correction = bough_arena_doubles(arena, n);
     l->speed = bough_arena_doubles(arena, n);
     return l;

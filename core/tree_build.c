@@ -283,12 +283,8 @@ bough_tree_data *bough_tree_data_create(bough_arena *arena, const bough_tree *tr
     d->acceleration = bough_arena_take(arena, n * sizeof *d->acceleration);
     d->turn = bough_arena_take(arena, n * sizeof *d->turn);
     d->wrench = bough_arena_take(arena, n * sizeof *d->wrench);
-    d->articulated = bough_arena_doubles(arena, 36 * n);
-    d->joint_gain = bough_arena_doubles(arena, 36 * n);
-    d->joint_factor = bough_arena_doubles(arena, 36 * n);
-    d->force = bough_arena_doubles(arena, (size_t)tree->n_v);
-    d->drive = bough_arena_doubles(arena, (size_t)tree->n_v);
-    d->passive = bough_arena_doubles(arena, (size_t)tree->n_v);
+    bough_arena_each(arena, 36 * n, &d->articulated, &d->joint_gain, &d->joint_factor);
+    bough_arena_each(arena, (size_t)tree->n_v, &d->force, &d->drive, &d->passive);
     d->loops = bough_loops_create(arena, tree);
     return d;
 }

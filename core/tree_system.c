@@ -351,14 +351,6 @@ static const bough_system_ops operations = {
 
 // -- construction ----------------------------------------------------------------------------
 
-static void take(bough_arena *arena, tree_system *s) {
-    size_t n = (size_t)s->n;
-    double **vectors[] = {&s->initial, &s->scale, &s->placed, &s->y, &s->r, &s->plus, &s->minus};
-    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
-        *vectors[i] = bough_arena_doubles(arena, n);
-    }
-}
-
 bough_system bough_tree_system_create(bough_arena *arena, bough_tree *tree, const char *name) {
     tree_system *s = bough_arena_take(arena, sizeof *s);
     s->tree = tree;
@@ -366,7 +358,7 @@ bough_system bough_tree_system_create(bough_arena *arena, bough_tree *tree, cons
     for (int i = 0; i < tree->n_links; i++)
         s->prescribed = s->prescribed || tree->links[i].motion != NULL;
     s->data = bough_tree_data_create(arena, tree);
-    take(arena, s);
+    bough_arena_each(arena, (size_t)s->n, &s->initial, &s->scale, &s->placed, &s->y, &s->r, &s->plus, &s->minus);
     for (int i = 0; i < s->n; i++)
         s->scale[i] = 1;
     memcpy(s->initial, tree->initial, (size_t)s->n * sizeof(double));

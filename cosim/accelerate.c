@@ -48,17 +48,12 @@ bough_accelerator *bough_accelerator_create(bough_arena *arena,
     bough_accelerator *a = bough_arena_take(arena, sizeof *a);
     size_t n = (size_t)def->n;
     a->def = *def;
-    a->residual = bough_arena_doubles(arena, n);
-    a->image = bough_arena_doubles(arena, n);
-    a->residual_before = bough_arena_doubles(arena, n);
-    a->image_before = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &a->residual, &a->image, &a->residual_before, &a->image_before);
     if (def->kind == BOUGH_ACCELERATE_IQN_ILS || def->kind == BOUGH_ACCELERATE_NEWTON) {
         a->capacity = def->n < MOST_COLUMNS ? def->n : MOST_COLUMNS;
     }
     for (int k = 0; k < a->capacity; k++) {
-        a->v[k] = bough_arena_doubles(arena, n);
-        a->w[k] = bough_arena_doubles(arena, n);
-        a->q[k] = bough_arena_doubles(arena, n);
+        bough_arena_each(arena, n, &a->v[k], &a->w[k], &a->q[k]);
     }
     bough_accelerator_start(a);
     return a;

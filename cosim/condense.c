@@ -75,9 +75,7 @@ bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly
         take_part(k, arena, i);
     size_t n = (size_t)k->n;
     k->gain = bough_arena_doubles(arena, (size_t)k->n_leader_input * n);
-    k->loop = bough_arena_doubles(arena, n * n);
-    k->matrix = bough_arena_doubles(arena, n * n);
-    k->square = bough_arena_doubles(arena, n * n);
+    bough_arena_each(arena, n * n, &k->loop, &k->matrix, &k->square);
     k->pivot = bough_arena_take(arena, n * sizeof(int));
     k->coordinate = bough_arena_doubles(arena, n);
     k->sum = bough_arena_doubles(arena, n);

@@ -383,9 +383,7 @@ static void take(bough_coupled *coupled, bough_arena *arena) {
 static void take_solution(bough_coupled *coupled, bough_arena *arena) {
     const bough_assembly *a = coupled->assembly;
     coupled->setup_state = bough_arena_doubles(arena, (size_t)a->n_state);
-    coupled->setup_input = bough_arena_doubles(arena, (size_t)a->n_input);
-    coupled->change = bough_arena_doubles(arena, (size_t)a->n_input);
-    coupled->led = bough_arena_doubles(arena, (size_t)a->n_input);
+    bough_arena_each(arena, (size_t)a->n_input, &coupled->setup_input, &coupled->change, &coupled->led);
     coupled->output_change = bough_arena_doubles(arena, (size_t)a->n_output);
 }
 

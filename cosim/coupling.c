@@ -14,10 +14,7 @@ static void take(bough_coupling *c, bough_arena *arena) {
     c->input = bough_arena_doubles(arena, n_input);
     c->applied = bough_arena_doubles(arena, n_input);
     for (int p = 0; p < BOUGH_PAST; p++) c->past[p] = bough_arena_doubles(arena, n_input);
-    c->start_rate = bough_arena_doubles(arena, n_output);
-    c->end_output = bough_arena_doubles(arena, n_output);
-    c->output_drift = bough_arena_doubles(arena, n_output);
-    c->end_rate = bough_arena_doubles(arena, n_output);
+    bough_arena_each(arena, n_output, &c->start_rate, &c->end_output, &c->output_drift, &c->end_rate);
     c->state_rate = bough_arena_doubles(arena, (size_t)a->n_state);
     c->seen = bough_arena_doubles(arena, n_input);
     c->seen_rate = bough_arena_doubles(arena, n_input);

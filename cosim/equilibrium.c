@@ -28,11 +28,7 @@ typedef struct search {
 
 static void take(search *s, bough_arena *arena) {
     size_t n = (size_t)s->n;
-    s->scale = bough_arena_doubles(arena, n);
-    s->rate = bough_arena_doubles(arena, n);
-    s->first = bough_arena_doubles(arena, n);
-    s->second = bough_arena_doubles(arena, n);
-    s->trial = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &s->scale, &s->rate, &s->first, &s->second, &s->trial);
 }
 
 static bool find_rate(search *s, const double *state) {

@@ -64,18 +64,9 @@ static void take(bough_error_estimate *e, bough_arena *arena) {
     size_t n = (size_t)a->n_state, n_input = (size_t)a->n_input;
     e->defect = bough_arena_doubles(arena, BATCH * 4 * n_input);
     e->curve = bough_port_signal(arena, a->n_input);
-    e->cubic = bough_arena_doubles(arena, n_input);
+    bough_arena_each(arena, n_input, &e->cubic, &e->input_worst, &e->size, &e->outside, &e->seen, &e->mean);
     e->own = bough_arena_doubles(arena, BATCH * n);
-    e->own_sum = bough_arena_doubles(arena, n);
-    e->error = bough_arena_doubles(arena, n);
-    e->rate = bough_arena_doubles(arena, n);
-    e->input_worst = bough_arena_doubles(arena, n_input);
-    e->size = bough_arena_doubles(arena, n_input);
-    e->at = bough_arena_doubles(arena, n);
-    e->x = bough_arena_doubles(arena, n);
-    e->outside = bough_arena_doubles(arena, n_input);
-    e->seen = bough_arena_doubles(arena, n_input);
-    e->mean = bough_arena_doubles(arena, n_input);
+    bough_arena_each(arena, n, &e->own_sum, &e->error, &e->rate, &e->at, &e->x);
 }
 
 bough_error_estimate *bough_error_estimate_create(bough_arena *arena, const bough_coupling *c) {

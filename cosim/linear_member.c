@@ -170,12 +170,10 @@ void bough_linear_member_create(bough_arena *arena, const bough_member *real,
     linear_member *s = bough_arena_take(arena, sizeof *s);
     *s = (linear_member){
         .real = r, .member = linear, .sub_step = sub_step, .time = real->time};
-    s->at = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &s->at, &s->plus, &s->minus);
     s->input_at = bough_arena_doubles(arena, n_input);
-    s->column = bough_arena_doubles(arena, n_input * n);
-    s->plus = bough_arena_doubles(arena, n);
-    s->minus = bough_arena_doubles(arena, n);
     s->seen = bough_arena_doubles(arena, n_input);
+    s->column = bough_arena_doubles(arena, n_input * n);
     s->own = factors(s, arena);
     *linear = (bough_member){.system = *r,
                              .solver = sdirk.title,

@@ -85,10 +85,8 @@ static void apply(void *self, const double *z, double *image) {
 static void take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
     const bough_assembly *a = m->coupled->assembly;
     size_t n = (size_t)a->n_state, parts = (size_t)m->def->n_part;
-    m->term = bough_arena_doubles(arena, n);
-    m->turned = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &m->term, &m->turned, &op->weight);
     m->rate = bough_arena_doubles(arena, parts * parts + 1);
-    op->weight = bough_arena_doubles(arena, n);
     bough_assembly_scales(a, op->weight);
     for (size_t k = 0; k < n; k++) op->weight[k] = 1 / (op->weight[k] * op->weight[k]);
 }

@@ -43,9 +43,7 @@ static void take_place(bough_arena *arena, size_t n, place *p) {
 
 static void take(path *p, bough_arena *arena) {
     size_t n = (size_t)p->n;
-    double **array[] = {&p->scale, &p->rate, &p->full, &p->load, &p->change, &p->moved};
-    for (size_t i = 0; i < sizeof array / sizeof *array; i++)
-        *array[i] = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &p->scale, &p->rate, &p->full, &p->load, &p->change, &p->moved);
     place *const places[] = {&p->here, &p->next, &p->limit, &p->next_limit};
     for (int i = 0; i < 4; i++)
         take_place(arena, n, places[i]);

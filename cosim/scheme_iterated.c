@@ -91,11 +91,9 @@ static void take(bough_iteration *it, const bough_assembly *a, bough_arena *aren
     it->n_prescribed = n_node * n;
     it->prescribed = bough_arena_doubles(arena, it->n_prescribed);
     it->best = bough_arena_doubles(arena, it->n_prescribed);
-    it->size = bough_arena_doubles(arena, n);
-    it->scale = bough_arena_doubles(arena, n);
+    bough_arena_each(arena, n, &it->size, &it->scale, &it->change);
     it->guess = bough_arena_doubles(arena, n_node * n);
     it->image = bough_arena_doubles(arena, n_node * n);
-    it->change = bough_arena_doubles(arena, n);
     for (int i = 0; i < a->n_member; i++) {
         bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
         bough_member_snapshot(a->member[i], &measure);

@@ -77,9 +77,7 @@ static bough_status create(bough_coupling *c, bough_arena *arena) {
     r->increment = bough_arena_doubles(arena, (size_t)a->n_state);
     r->base = bough_arena_doubles(arena, (size_t)a->n_output);
     r->output = bough_arena_doubles(arena, (size_t)a->n_output);
-    r->change = bough_arena_doubles(arena, (size_t)a->n_input);
-    r->input = bough_arena_doubles(arena, (size_t)a->n_input);
-    c->deficit = bough_arena_doubles(arena, (size_t)a->n_input);
+    bough_arena_each(arena, (size_t)a->n_input, &r->change, &r->input, &c->deficit);
     r->damped = -HUGE_VAL;
     r->chosen = c->options.theta > 0;
     r->theta = r->final = r->chosen ? c->options.theta : 0.5;

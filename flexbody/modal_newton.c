@@ -12,11 +12,7 @@ enum { D = 12, W = 6 }; // entries of a frame's change and of a wrench
 static void init_piece(bough_modal_newton_piece *p, bough_arena *arena, const bough_modal_piece *of,
                        bool first) {
     size_t m = (size_t)of->m, matrix = m * (size_t)of->stride;
-    p->by_q = bough_arena_doubles(arena, matrix);
-    p->by_eta = bough_arena_doubles(arena, matrix);
-    p->closed_q = bough_arena_doubles(arena, matrix);
-    p->closed_eta = bough_arena_doubles(arena, matrix);
-    p->turn = bough_arena_doubles(arena, matrix);
+    bough_arena_each(arena, matrix, &p->by_q, &p->by_eta, &p->closed_q, &p->closed_eta, &p->turn);
     p->matrix = bough_arena_doubles(arena, m * m);
     p->pivot = bough_arena_take(arena, m * sizeof *p->pivot);
     p->root_x = bough_arena_doubles(arena, W * 2 * m);

@@ -1,30 +1,14 @@
 #include "flexbody/modal_algebra.h"
 
 void bough_modal_point_init(bough_modal_point *point, bough_arena *arena, const bough_modal_piece *piece) {
-    size_t s = (size_t)piece->stride, matrix = (size_t)piece->m * s;
-    struct {
-        double **array;
-        size_t size;
-    } arrays[] = {{&point->turn_q, 3 * s},
-                  {&point->rate_q, s},
-                  {&point->force, s},
-                  {&point->lever, 3 * s},
-                  {&point->rest, s},
-                  {&point->coefficient, BOUGH_MODAL_FIELDS},
-                  {&point->rate_eta, s},
-                  {&point->turn_rate, 3 * s},
-                  {&point->turn, matrix},
-                  {&point->gyroscopic, matrix},
-                  {&point->field, matrix},
-                  {&point->field_q, BOUGH_MODAL_FIELDS * s},
-                  {&point->gyroscopic_eta, 3 * s},
-                  {&point->eta_turn, 3 * s},
-                  {&point->rest_turn, 3 * s},
-                  {&point->force_turn, 3 * s}};
+    size_t s = (size_t)piece->stride;
     point->piece = piece;
-    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) {
-        *arrays[k].array = bough_arena_doubles(arena, arrays[k].size);
-    }
+    point->coefficient = bough_arena_doubles(arena, BOUGH_MODAL_FIELDS);
+    point->field_q = bough_arena_doubles(arena, BOUGH_MODAL_FIELDS * s);
+    bough_arena_each(arena, s, &point->rate_q, &point->force, &point->rate_eta, &point->rest);
+    bough_arena_each(arena, 3 * s, &point->turn_q, &point->turn_rate, &point->lever, &point->gyroscopic_eta,
+                     &point->eta_turn, &point->rest_turn, &point->force_turn);
+    bough_arena_each(arena, (size_t)piece->m * s, &point->turn, &point->gyroscopic, &point->field);
 }
 
 bough_twist bough_modal_vertex(const bough_modal_piece *p, int i, const double *q) {

@@ -68,9 +68,7 @@ static void solve(void *self, void *factors, double *x) {
 
 static void take_memory(bough_modal_body *b, bough_arena *arena) {
     size_t states = (size_t)b->model->n_state;
-    b->initial = bough_arena_doubles(arena, states);
-    b->scale = bough_arena_doubles(arena, states);
-    b->work = bough_arena_doubles(arena, states);
+    bough_arena_each(arena, states, &b->initial, &b->scale, &b->work);
     b->vertices = bough_arena_doubles(arena, (size_t)BOUGH_ROD_STATES * b->model->rod->n);
     bough_rod_loads_init(&b->loads, arena, b->model->rod);
     bough_modal_chain_init(&b->chain, arena, b->model);

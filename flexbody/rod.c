@@ -22,18 +22,14 @@ static void take_arrays(bough_rod_model *m, bough_arena *arena) {
     m->position0 = bough_arena_take(arena, vertices * sizeof *m->position0);
     m->rotation0 = bough_arena_take(arena, vertices * sizeof *m->rotation0);
     m->vertex = bough_arena_take(arena, vertices * sizeof *m->vertex);
-    m->length = bough_arena_doubles(arena, s);
-    m->inverse_length = bough_arena_doubles(arena, s);
+    bough_arena_each(arena, s, &m->length, &m->inverse_length, &m->mass);
     m->strain0 = bough_arena_doubles(arena, 6 * s);
+    m->inertia = bough_arena_doubles(arena, 6 * s);
     m->bend0 = bough_arena_doubles(arena, 3 * s);
-    m->stiffness = bough_arena_doubles(arena, 21 * s);
-    m->damping = bough_arena_doubles(arena, 21 * s);
+    m->moment = bough_arena_doubles(arena, 3 * s);
+    bough_arena_each(arena, 21 * s, &m->stiffness, &m->damping, &m->inverse_mass);
     m->line = bough_arena_doubles(arena, 72 * s);
     m->gradient = bough_arena_doubles(arena, 25 * s);
-    m->mass = bough_arena_doubles(arena, s);
-    m->moment = bough_arena_doubles(arena, 3 * s);
-    m->inertia = bough_arena_doubles(arena, 6 * s);
-    m->inverse_mass = bough_arena_doubles(arena, 21 * s);
 }
 
 // h²/12 times the change of curvature along a segment, F m' + F' m (rod_elastic.h): L by the strains,
