@@ -164,9 +164,11 @@ static bough_status take_controlled_step(bough_master *m) {
     bough_step_control *control = m->control;
     bough_coupling *c = m->coupling;
     double to = c->t1;
+    bool known = c->measured;
     bough_step_control_save(control, c);
     for (;;) {
         c->t1 = bough_step_control_end(control, c->t0, to);
+        c->measured = known && bough_step_control_exhausted(control); // shorter steps are tried first
         bough_status status = take_step(m);
         bool good = bough_is_ok(&status);
         if (!good && (status.code != BOUGH_RETRY || bough_step_control_exhausted(control))) {
@@ -194,7 +196,7 @@ static bough_status macro_step(bough_master *m) {
     if (!bough_is_ok(&status)) return status;
 
     bough_breakdown_keep(m->breakdown, c);
-    c->measured = !m->control && bough_master_state_error(m);
+    c->measured = bough_master_state_error(m);
     status = m->control ? take_controlled_step(m) : take_step(m);
     if (!bough_is_ok(&status) && m->stop && m->stop()) {
         bough_breakdown_undo(m->breakdown, c);

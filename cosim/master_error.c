@@ -156,6 +156,7 @@ const char *bough_master_error_source(const bough_master *m) {
 // The sub-solvers are named when their own figures make up half of the error.
 const char *bough_master_error_cause(const bough_master *m) {
     if (m->coupling->scheme->one_system) return "the integrator's steps";
+    if (m->coupling->unfinished > 0) return "macro steps that have not converged";
     bool own = m->estimate && bough_error_estimate_own_share(m->estimate) > 0.5;
     return own ? "the sub-solvers' steps" : "the coupling";
 }

@@ -32,11 +32,6 @@
 #include <math.h>
 #include <string.h>
 
-// The largest residual with which a step goes on where the run tells what it errs by: the noise of adaptive
-// sub-solvers, or an accelerator that no longer gains, leaves 1e-5 to 1e-3, and an iteration that diverges
-// more than 1.
-static const double tolerable = 0.01;
-
 // Ports below this share of the largest one hold rounding only.
 static const double least_scale = 1e-6;
 
@@ -308,7 +303,8 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
                       c->t1, residual, sweeps, contraction, advice);
 }
 
-// The step with the values that left the smallest residual: the run tells what it errs by.
+// The step with the values that left the smallest residual: where the error is measured, it says what they
+// are worth.
 static bough_status go_back(bough_coupling *c) {
     bough_iteration *it = c->iteration;
     bough_status status = bough_coupling_each(c, BOUGH_ALL_STAGES, restore);
@@ -331,7 +327,7 @@ bough_status bough_iteration_step(bough_coupling *c) {
     for (int k = 1; bough_is_ok(&status); k++) {
         status = sweep(c);
         c->sweeps++;
-        if (!bough_is_ok(&status)) break;
+        if (!bough_is_ok(&status)) return c->measured && isfinite(best) ? go_back(c) : status;
         if (k == 1) update_scales(c);
         double residual = evaluate(c);
         bool lost = k == 1 && !isfinite(residual); // before iterating: for the monitor to tell
@@ -341,8 +337,7 @@ bough_status bough_iteration_step(bough_coupling *c) {
             memcpy(it->best, it->prescribed, it->n_prescribed * sizeof(double));
         }
         if (k == c->options.iterations || bough_accelerator_diverges(it->accelerator)) {
-            if (!c->measured || !(best < tolerable)) return not_converged(c, k, residual);
-            return go_back(c);
+            return c->measured && isfinite(best) ? go_back(c) : not_converged(c, k, residual);
         }
         correct(c);
         status = bough_coupling_each(c, BOUGH_ALL_STAGES, restore);

@@ -173,7 +173,8 @@ static void a_range_seen_at_few_times_is_not_too_small(void **state) {
         {2, 0, 2.5, 0.6, 2},                // the error hides some of it
     };
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        bough_channels channels = {.count = 1};
+        bough_channel channel = {.unit = "m"};
+        bough_channels channels = {.count = 1, .channel = &channel};
         int vector = 0;
         double low = 0, high = cases[k].high, true_low = cases[k].true_low, true_high = cases[k].true_high;
         double largest = cases[k].largest;

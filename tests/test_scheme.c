@@ -345,6 +345,7 @@ static void iteration_that_diverges_says_so(void **state) {
     (void)state;
     bough_two_mass m = light_case();
     bough_two_mass_build(&m, iterated(BOUGH_ACCELERATE_NONE, .02));
+    m.master->estimate = NULL; // else what it tells decides
     bough_status status = bough_step(m.master);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "mass2 and mass1 not converged at 0.02 s"));

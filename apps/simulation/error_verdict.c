@@ -7,7 +7,8 @@
 
 static const double noticeable = BOUGH_ERROR_NOTICEABLE;
 static const double rounding = 1e-6; // of the largest range of all motion or value up to 1, in SI units
-static const double least_share = 1e-3; // of the largest range with that unit: moves less, says nothing
+static const double least_share = 1e-3; // of the largest range with that unit: moves less, says nothing;
+                                        // and of a speed: what it changes by at least
 
 // -- vectors --------------------------------------------------------------------------------------
 
@@ -42,13 +43,20 @@ static double own_range(const bough_error_probe *p, int i) {
     return fmax(fmax(corrected, range - 2 * p->largest[i]), 0);
 }
 
-// Of the vector that the channel is one of.
+static double largest_of(const bough_error_probe *p, int i) { return fmax(fabs(p->high[i]), fabs(p->low[i])); }
+
+static bool is_speed(const bough_channel *channel) {
+    return strstr(channel->unit, "/s") || strcmp(channel->unit, "rpm") == 0;
+}
+
+// Of the vector that the channel is one of. A speed that hardly changes has a share of its value instead.
 static double range_of(const bough_error_probe *p, int channel) {
-    double range = 0;
+    double range = 0, size = 0;
     for (int i = p->vector[channel]; i < p->channels->count && p->vector[i] == p->vector[channel]; i++) {
         range = fmax(range, own_range(p, i));
+        size = fmax(size, largest_of(p, i));
     }
-    return range;
+    return is_speed(&p->channels->channel[channel]) ? fmax(range, least_share * size) : range;
 }
 
 double bough_error_probe_relative(const bough_error_probe *p, int channel, double error) {
@@ -99,7 +107,7 @@ static double largest_value(const bough_error_probe *p) {
     for (int i = 0; i < p->simulation->n_motion_channel; i++) {
         const bough_channel *channel = &p->channels->channel[i];
         if (!is_motion(channel)) continue;
-        double size = in_si(channel, fmax(fabs(p->high[i]), fabs(p->low[i])));
+        double size = in_si(channel, largest_of(p, i));
         largest = fmax(largest, fmax(fmin(size, 1), in_si(channel, own_range(p, i))));
     }
     return largest;
@@ -110,9 +118,8 @@ static double largest_value(const bough_error_probe *p) {
 static bool has_say(const bough_error_probe *p, int i, double error) {
     const bough_channel *channel = &p->channels->channel[i];
     double moves = fmax(range_of(p, i), error);
-    double size = fmax(fabs(p->high[i]), fabs(p->low[i]));
-    bool moving =
-        is_motion(channel) ? in_si(channel, moves) > rounding * largest_value(p) : moves > least_share * size;
+    bool moving = is_motion(channel) ? in_si(channel, moves) > rounding * largest_value(p)
+                                     : moves > least_share * largest_of(p, i);
     return moving && moves >= least_share * largest_range(p, channel->unit);
 }
 

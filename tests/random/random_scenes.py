@@ -37,7 +37,7 @@ CLASSES = ("held", "warned", "diagnosed", "gross", "silent", "too little", "too 
            "refused", "crash", "hang", "unsettled")
 BROKEN = ("silent", "too little", "gross", "crash", "hang")
 GROSS, SMALL, WARNED = 0.05, 1e-3, 0.01
-FLOOR = 1e-3  # of the largest range with that unit: what moves less is not judged
+FLOOR = 1e-3  # of the largest range with that unit: what moves less is not judged; of a speed: its least range
 ROUNDING = 1e-6  # nor what moves less than that of the largest motion, in SI units: as the program's own rule
 SI = {"(deg)": math.radians(1), "(deg/s)": math.radians(1), "(rpm)": math.pi / 30}
 TIMEOUT, REFERENCE_TIMEOUT = 60, 15  # s of CPU
@@ -126,7 +126,10 @@ def error_of(run, truth, told_of=None):
             size = max(size, max(map(abs, whole)))
             value = run.told.get(name)
             told = math.nan if value is None else max(told, value) if told == told else told
-        errors[vector] = (error, told, span, size, columns[0][3])
+        unit = columns[0][3]
+        if "/s" in unit or "rpm" in unit:
+            span = max(span, FLOOR * size)
+        errors[vector] = (error, told, span, size, unit)
     largest = collections.defaultdict(float)
     for error, told, span, size, unit in errors.values():
         largest[unit] = max(largest[unit], span)
