@@ -196,7 +196,7 @@ static bough_status macro_step(bough_master *m) {
     if (!bough_is_ok(&status)) return status;
 
     bough_breakdown_keep(m->breakdown, c);
-    c->measured = bough_master_state_error(m);
+    c->measured = bough_master_measures(m);
     status = m->control ? take_controlled_step(m) : take_step(m);
     if (!bough_is_ok(&status) && m->stop && m->stop()) {
         bough_breakdown_undo(m->breakdown, c);

@@ -31,7 +31,7 @@ static bough_second_solution_def choose(const bough_master *m) {
     if (!has_order_three(own)) {
         return (bough_second_solution_def){BOUGH_AUTOMATIC, fmin(second_rtol, own->rtol), most, {0}};
     }
-    return (bough_second_solution_def){own->kind, own->rtol / finer, step / 2, {0}};
+    return (bough_second_solution_def){BOUGH_AUTOMATIC, own->rtol / finer, step / 2, {0}};
 }
 
 static bool members_tell(const bough_assembly *a) {
