@@ -49,26 +49,22 @@ static bough_stability_advice judge_again(bough_breakdown *b, bough_coupling *c)
     return bough_is_ok(&status) ? advice : (bough_stability_advice){0};
 }
 
+// Shorter macro steps and other tolerances seldom help a member that fails under a stable coupling; one system
+// of all members does. Of an opaque member nothing is known, and only they are left.
 static void advise(const bough_coupling *c, const bough_stability_advice *advice, char *text) {
-    char other[BOUGH_SCHEME_ADVICE];
-    bough_scheme_advise(c->scheme, other);
-    if (!advice->unstable) { // of an opaque member nothing is known, and no other scheme suits it
-        bool one = c->scheme->one_system;
-        snprintf(text, ADVICE, "; try a smaller macro step%s%s",
-                 one ? " or another master.rtol" : ", another micro.rtol", c->assembly->opaque ? "" : other);
+    if (!advice->unstable) {
+        snprintf(text, ADVICE, "; try %s",
+                 c->scheme->one_system      ? "a smaller macro step or another master.rtol"
+                 : c->assembly->opaque ? "a smaller macro step or another micro.rtol"
+                                       : "scheme: monolithic");
         return;
     }
-    int n = snprintf(text, ADVICE, ": the coupling grows by a factor of %.3g in each macro step; ",
+    int n = snprintf(text, ADVICE, ": the coupling grows by a factor of %.3g in each macro step; try ",
                      exp(advice->now.growth * (c->t1 - c->t0)));
-    char *end = text + n;
-    size_t room = (size_t)(ADVICE - n);
     if (advice->macro_step > 0) {
-        snprintf(end, room, "try macro_step: %.4g s%s", advice->macro_step,
-                 advice->instead_holds ? other : "");
-    } else {
-        snprintf(end, room, "try scheme: %s",
-                 advice->instead_holds ? c->scheme->instead : bough_scheme_last_resort(c->scheme));
+        n += snprintf(text + n, (size_t)(ADVICE - n), "macro_step: %.9g s or ", advice->macro_step);
     }
+    snprintf(text + n, (size_t)(ADVICE - n), "scheme: monolithic");
 }
 
 bough_status bough_breakdown_explain(bough_breakdown *b, bough_coupling *c,

@@ -153,27 +153,33 @@ const char *bough_master_error_source(const bough_master *m) {
     return told_by(m) ? "linearised members" : "not estimated";
 }
 
+static const char the_coupling[] = "the coupling";
+
 // The sub-solvers are named when their own figures make up half of the error.
 const char *bough_master_error_cause(const bough_master *m) {
     if (m->coupling->scheme->one_system) return "the integrator's steps";
     if (m->coupling->unfinished > 0) return "macro steps that have not converged";
     bool own = m->estimate && bough_error_estimate_own_share(m->estimate) > 0.5;
-    return own ? "the sub-solvers' steps" : "the coupling";
+    return own ? "the sub-solvers' steps" : the_coupling;
+}
+
+// Ramp with another weight than 1/2, and where it repeats its steps on so light an interface, is of order 1.
+static double order_of(const bough_coupling *c) {
+    bool exact = c->scheme->explicit_forces || c->iteration || c->theta <= 0.501;
+    return exact ? bough_scheme_defect_order(c->scheme, &c->options) : 1;
 }
 
 void bough_master_advise(const bough_master *m, double factor, char text[BOUGH_MASTER_ADVICE]) {
     const bough_coupling *c = m->coupling;
     const bough_integrator_options *own = &c->options.integrator;
     if (!c->scheme->one_system) {
-        double order = bough_scheme_defect_order(c->scheme, &c->options);
-        double halvings = ceil(log2(2 * factor) / order);
-        if (halvings <= most_halvings) {
-            snprintf(text, BOUGH_MASTER_ADVICE, "macro_step: %.2g s or, coupled at the stages, "
-                     "scheme: monolithic with master.solver: rosenbrock",
+        bool coupling = strcmp(bough_master_error_cause(m), the_coupling) == 0 && !m->control;
+        double halvings = ceil(log2(4 * factor) / order_of(c));
+        if (coupling && halvings <= most_halvings) {
+            snprintf(text, BOUGH_MASTER_ADVICE, "scheme: monolithic or macro_step: %.9g s",
                      m->macro_step * pow(0.5, halvings));
         } else {
-            snprintf(text, BOUGH_MASTER_ADVICE, "scheme: monolithic with master.solver: rosenbrock, which "
-                     "couples at the stages");
+            snprintf(text, BOUGH_MASTER_ADVICE, "scheme: monolithic");
         }
     } else if (has_order_three(own)) {
         snprintf(text, BOUGH_MASTER_ADVICE, "master.rtol: %.1g", 0.1 * own->rtol / fmin(factor, 1e3));

@@ -37,7 +37,7 @@ typedef struct account {
 } account;
 
 struct bough_monitor {
-    char advice[BOUGH_SCHEME_ADVICE]; // another scheme to try, or ""
+    const char *advice; // another scheme to try, or ""
     bool resting; // growth is not judged
     int n_group;
     group *group;
@@ -71,7 +71,7 @@ bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *co
     const bough_assembly *a = coupling->assembly;
     size_t n_input = (size_t)a->n_input;
     bough_monitor *m = bough_arena_take(arena, sizeof *m);
-    if (!a->opaque) bough_scheme_advise(coupling->scheme, m->advice);
+    m->advice = a->opaque || coupling->scheme->one_system ? "" : " or scheme: monolithic";
     m->group = bough_arena_take(arena, n_input * sizeof *m->group);
     m->start = bough_arena_doubles(arena, n_input);
     m->account = bough_arena_take(arena, (size_t)a->n_interface * sizeof *m->account);
@@ -252,10 +252,9 @@ static bough_status judge_balance(bough_monitor *m, const bough_coupling *c) {
     return bough_fail(BOUGH_FAILED,
                       "the coupling of %s has lost the solution at %.6g s (scheme %s, macro step "
                       "%.6g s): the coupling itself adds or removes %.2g of the energy "
-                      "exchanged at the interfaces; try a smaller macro step%s%s",
+                      "exchanged at the interfaces; try a smaller macro step%s",
                       a->member[body]->system.name, c->t1, c->scheme->name, c->t1 - c->t0,
-                      all.residual / all.exchanged, a->opaque ? "" : " or scheme: ",
-                      a->opaque ? "" : bough_scheme_last_resort(c->scheme));
+                      all.residual / all.exchanged, m->advice);
 }
 
 // Windows are of at least 64 steps and a second.

@@ -66,12 +66,6 @@ bough_scheme_options bough_scheme_options_in_use(const bough_coupling *c) {
     return options;
 }
 
-const char *bough_scheme_last_resort(const bough_scheme *s) {
-    while (s->instead)
-        s = bough_scheme_find(s->instead);
-    return s->name;
-}
-
 void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *options,
                            char text[BOUGH_SCHEME_TEXT]) {
     size_t room = BOUGH_SCHEME_TEXT, n = (size_t)snprintf(text, room, "%s", s->name);
@@ -92,9 +86,4 @@ void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *op
     } else if (s->reads & BOUGH_READS_THETA) {
         snprintf(text + n, room - n, ", theta auto: chosen at the first step");
     }
-}
-
-void bough_scheme_advise(const bough_scheme *s, char text[BOUGH_SCHEME_ADVICE]) {
-    text[0] = 0;
-    if (s->instead) snprintf(text, BOUGH_SCHEME_ADVICE, " or scheme: %s", s->instead);
 }

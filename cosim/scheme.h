@@ -18,7 +18,6 @@ enum {
 struct bough_scheme {
     const char *name;
     const char *summary;  // one line for help: what is exchanged, order, stability
-    const char *instead;  // name of the scheme to try where this one is unstable; NULL: none
     unsigned reads;       // BOUGH_READS_… of the options
     bool explicit_forces; // forces are frozen or extrapolated: unstable beyond some macro step
     bool judged;          // may be unstable: its eigenvalues are computed before the run
@@ -62,16 +61,10 @@ int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options 
 // The options that the scheme actually uses, for a stability analysis.
 bough_scheme_options bough_scheme_options_in_use(const bough_coupling *c);
 
-// The most stable scheme: the end of the chain of `instead`.
-const char *bough_scheme_last_resort(const bough_scheme *s);
-
-enum { BOUGH_SCHEME_TEXT = 200, BOUGH_SCHEME_ADVICE = 48 };
+enum { BOUGH_SCHEME_TEXT = 200 };
 
 // The scheme with the options that it reads, "iterated, order 1, accelerator …".
 void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *options,
                            char text[BOUGH_SCHEME_TEXT]);
-
-// " or scheme: NAME" with the scheme to try instead, or "".
-void bough_scheme_advise(const bough_scheme *s, char text[BOUGH_SCHEME_ADVICE]);
 
 #endif

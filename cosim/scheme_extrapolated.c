@@ -34,7 +34,6 @@ const bough_scheme bough_scheme_gauss_seidel = {
     .name = "gauss-seidel",
     .summary = "first the master with constant forces, then the bodies with its new motion; order "
                "1, explicit",
-    .instead = "ramp",
     .explicit_forces = true,
     .judged = true,
     .create = create_held,
@@ -44,7 +43,6 @@ const bough_scheme bough_scheme_gauss_seidel = {
 const bough_scheme bough_scheme_extrapolated = {
     .name = "extrapolated",
     .summary = "forces extrapolated by a polynomial; order 1 to 3 (degree + 1), explicit",
-    .instead = "ramp",
     .reads = BOUGH_READS_ORDER,
     .explicit_forces = true,
     .judged = true,

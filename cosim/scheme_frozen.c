@@ -56,7 +56,6 @@ static bough_status step(bough_coupling *c) {
 const bough_scheme bough_scheme_frozen = {
     .name = "frozen",
     .summary = "all bodies advance at once with constant exchanged values; order 1, explicit",
-    .instead = "ramp",
     .explicit_forces = true,
     .judged = true,
     .step = step,

@@ -359,7 +359,6 @@ const bough_scheme bough_scheme_iterated = {
     .name = "iterated",
     .summary = "the step is repeated until the interface agrees; order 1 to 3 (degree + 1), of "
                "waveforms 6, implicit",
-    .instead = "ramp",
     .reads = BOUGH_READS_ORDER | BOUGH_READS_EXCHANGE | BOUGH_READS_ACCELERATOR,
     .judged = true,
     .create = bough_iteration_create,

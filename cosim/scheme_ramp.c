@@ -403,7 +403,6 @@ const bough_scheme bough_scheme_ramp = {
     .name = "ramp",
     .summary = "forces change linearly to a linearly implicit prediction; order 3 on heavy "
                "interface bodies, else 2; stable far beyond the explicit limit",
-    .instead = "monolithic",
     .reads = BOUGH_READS_THETA,
     .create = create,
     .prepare = prepare,

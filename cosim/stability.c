@@ -350,17 +350,16 @@ static bool holds(const bough_assembly *a, const bough_scheme_options *options, 
 
 bough_status bough_stability_advise(const bough_assembly *a, const bough_scheme_options *options,
                                     double macro_step, bough_stability_advice *advice) {
-    // divisors, so that periods which are multiples of the macro step stay so; stability need not
-    // be monotone in the macro step, so none is skipped
-    static const int divisor[] = {2, 3, 4, 5, 6, 8, 10, 12, 16};
+    // divisors, so that periods which are multiples of the macro step stay so, and the step has few decimals
+    static const int divisor[] = {2, 4, 5, 8, 10, 16};
     *advice = (bough_stability_advice){0};
     bough_status status = bough_stability_judge(a, options, macro_step, &advice->now);
     if (!bough_is_ok(&status) || !bough_stability_grows(&advice->now)) return status;
     bough_scheme_options instead = *options;
-    instead.name = bough_scheme_find(options->name)->instead;
+    instead.name = "ramp";
     instead.theta = 0;
     double least = advice->now.growth;
-    advice->instead_holds = instead.name && holds(a, &instead, macro_step, &least);
+    advice->ramp_holds = strcmp(options->name, "ramp") != 0 && holds(a, &instead, macro_step, &least);
     for (size_t k = 0; k < sizeof divisor / sizeof *divisor && advice->macro_step == 0; k++) {
         double smaller = macro_step / divisor[k];
         if (holds(a, options, smaller, &least)) advice->macro_step = smaller;
@@ -381,10 +380,9 @@ void bough_stability_describe(const bough_assembly *a, const bough_stability_adv
                           a->member[advice->now.body]->system.name, advice->now.growth);
     if (advice->macro_step > 0) {
         length += snprintf(text + length, (size_t)(BOUGH_VERDICT - length),
-                           "; macro_step: %.4g s holds", advice->macro_step);
+                           "; macro_step: %.9g s holds", advice->macro_step);
     }
-    if (advice->instead_holds) {
-        snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: %s holds",
-                 bough_scheme_find(options->name)->instead);
+    if (advice->ramp_holds) {
+        snprintf(text + length, (size_t)(BOUGH_VERDICT - length), "; scheme: ramp holds");
     }
 }

@@ -27,7 +27,6 @@ static bough_status step(bough_coupling *c) {
 const bough_scheme bough_scheme_toy = {
     .name = "toy",
     .summary = "inputs held at the extrapolated middle of the step; order 2, explicit",
-    .instead = "ramp",
     .explicit_forces = true,
     .judged = true,
     .step = step,
