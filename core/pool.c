@@ -33,6 +33,8 @@ struct bough_pool {
     bool open;    // a region is
     bool listing; // a list is in progress; the caller's
     bool crowded; // more threads than processors
+    int n_alone;  // tasks of the list in progress that the caller has done
+    atomic_bool alone; // of the last list, all of them
     // the list in progress, written before `list` tells of it
     bough_task task;
     void *data;
@@ -76,7 +78,7 @@ static long clock_ns(void) {
 static bool look(bough_pool *p, long duration, condition ready, uint64_t argument) {
     enum { LOOKS = 16 }; // between looks at the clock
     if (ready(p, argument)) return true;
-    if (p->crowded) return false;
+    if (p->crowded || duration == 0) return false;
     long start = clock_ns();
     for (long now = start; now < start + duration; now = clock_ns()) {
         for (int k = 0; k < LOOKS; k++) {
@@ -110,11 +112,12 @@ static void wake(bough_pool *p, wait_queue *queue) {
 
 // Does task k of the list unless it is taken. A thread that comes late finds all of them taken; who
 // has taken one keeps the list from ending, so that task and data stand.
-static void do_task(bough_pool *p, uint64_t list, int k) {
+static void do_task(bough_pool *p, uint64_t list, int k, int self) {
     uint64_t number = number_of(list), taken = atomic_load(&p->slot[k].taken);
     if (taken >= number || !atomic_compare_exchange_strong(&p->slot[k].taken, &taken, number)) {
         return;
     }
+    if (self == 0) p->n_alone++;
     p->task(p->data, p->first + k);
     atomic_store(&p->slot[k].done, number);
     wake(p, &p->waiting);
@@ -126,15 +129,18 @@ static int owner(const bough_pool *p, int k) {
     return k / p->n_thread % 2 == 0 ? place : p->n_thread - 1 - place;
 }
 
+// For a task's owner. Where no other thread has come, lists cost no more than on one thread.
+static long patience(const bough_pool *p) { return atomic_load(&p->alone) ? 0 : steal_time; }
+
 // A thread's own tasks, then those of threads that do not come.
 static void do_list(bough_pool *p, uint64_t list, int self) {
     for (int k = 0; k < count_of(list); k++) {
-        if (owner(p, k) == self) do_task(p, list, k);
+        if (owner(p, k) == self) do_task(p, list, k, self);
     }
     if (self > 0 && look(p, steal_time, has_news, list)) return;
     for (int k = 0; k < count_of(list); k++) {
-        if (self == 0 && look(p, steal_time, is_done, (uint64_t)k)) continue;
-        do_task(p, list, k);
+        if (self == 0 && look(p, patience(p), is_done, (uint64_t)k)) continue;
+        do_task(p, list, k, self);
     }
 }
 
@@ -151,11 +157,13 @@ static void run_portion(bough_pool *p, int first, int n, bough_task task, void *
     p->task = task;
     p->data = data;
     p->first = first;
+    p->n_alone = 0;
     uint64_t number = number_of(atomic_load(&p->list)) + 1, list = number << 16 | (uint64_t)n;
     atomic_store(&p->list, list);
     wake(p, &p->idle);
     do_list(p, list, 0);
     for (int k = 0; k < n; k++) wait_until(p, &p->waiting, is_done, (uint64_t)k);
+    atomic_store(&p->alone, p->n_alone == n);
 }
 
 void bough_pool_run(bough_pool *pool, int n, bough_task task, void *data) {
@@ -205,7 +213,9 @@ void bough_pool_run_turns(bough_pool *pool, int n, void (*work)(void *data, int 
 void bough_pool_await(bough_pool *pool, int earlier) {
     if (!pool || !pool->open || pool->n_thread == 1 || earlier < pool->first) return;
     int k = earlier - pool->first;
-    if (!look(pool, steal_time, is_done, (uint64_t)k)) do_task(pool, atomic_load(&pool->list), k);
+    if (!look(pool, patience(pool), is_done, (uint64_t)k)) {
+        do_task(pool, atomic_load(&pool->list), k, omp_get_thread_num());
+    }
     wait_until(pool, &pool->waiting, is_done, (uint64_t)k);
 }
 

@@ -8,7 +8,8 @@
 // Each task belongs to one thread, in all lists of the same length to the same thread, so that its data
 // stay in the cache of one processor: of three tasks the caller has the first and one thread the others.
 // A thread does its own tasks in order and then takes tasks of threads that are late; so no thread waits
-// for a thread that does not run. Results do not depend on the threads if no sum crosses tasks.
+// for a thread that does not run, and after a list in which nobody has helped the caller does not wait at
+// all. Results do not depend on the threads if no sum crosses tasks.
 //
 // A waiting thread polls for about 50 µs, yielding its processor, and then sleeps. If there are more
 // threads than processors, it sleeps at once.
