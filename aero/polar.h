@@ -92,6 +92,7 @@ static inline bough_coefficients bough_polar_slope(const bough_polar *polar, dou
 
 // Whether an angle of attack lies in the gap that the rows leave to the full turn.
 static inline bool bough_polar_outside_table(const bough_polar *polar, double alpha) {
+    if (alpha >= polar->low && alpha <= polar->high) return false;
     double above = remainder(alpha - polar->low, 2 * BOUGH_PI);
     return (above < 0 ? above + 2 * BOUGH_PI : above) > polar->high - polar->low;
 }

@@ -380,7 +380,7 @@ bough_rotor_extremes bough_rotor_look(const bough_rotor *rotor, const bough_roto
     const blade_rows *r = data->scratch->blade + blade;
     bough_rotor_extremes x = {.distance = HUGE_VAL};
     for (int j = 0; j < rotor->n_station; j++) {
-        x.speed = fmax(x.speed, r->speed[j]);
+        x.speed = r->speed[j] > x.speed ? r->speed[j] : x.speed;
         bough_vec3 place = lane_load(r->place, rotor->stride, j);
         if (bough_tower_reaches(&rotor->tower, place)) {
             x.distance = fmin(x.distance, bough_tower_distance(&rotor->tower, place));

@@ -50,6 +50,7 @@ typedef struct rosenbrock {
     bool started;
     double *drift;              // ∂f/∂t (n)
     int drifted;                // steps since it was found
+    bool drifts;                // it is found in the step in progress
     double end;                 // of the macro step in progress [s]
     double *error;              // (n)
     double *stage[STAGES];      // u_i (n)
@@ -93,33 +94,25 @@ static bool renew_factors(rosenbrock *m, double t, const double *y, double h) {
     return m->ode.factor(m->ode.self, gamma);
 }
 
-static bool evaluate(rosenbrock *m, double t, const double *y, double *rate) {
-    m->sum.derivatives++;
-    return m->ode.derivative(m->ode.self, t, y, rate);
-}
-
 // ∂f/∂t as its mean over the step, because the inputs move; like the tangents it is used for several steps.
+// Here f at the step's end, from which the first stage takes f at its start.
 static bool renew_drift(rosenbrock *m, double t, double h, const double *y) {
-    double *restrict drift = m->drift;
-    const double *restrict now = m->stage[0];
-    if (m->drifted < MOST_DRIFTED) return true;
+    m->drifts = m->drifted >= MOST_DRIFTED;
+    if (!m->drifts) return true;
     m->sum.derivatives++;
-    if (!m->ode.derivative_again(m->ode.self, t + h, y, drift)) return false;
-#pragma omp simd
-    for (int k = 0; k < m->ode.n; k++) drift[k] = (drift[k] - now[k]) / h;
-    m->drifted = 0;
-    return true;
+    return m->ode.derivative(m->ode.self, t + h, y, m->drift);
 }
 
-// The first right side γh [f + γ₁h ∂f/∂t].
-static bool find_rates(rosenbrock *m, double t, double h, const double *y) {
-    double *restrict u = m->stage[0];
-    const double *restrict drift = m->drift;
-    if (!evaluate(m, t, y, u) || !renew_drift(m, t, h, y)) return false;
-    double f = gamma_h * h, first = slope[0] * h;
+// u_0 = γh [f + γ₁h ∂f/∂t], f standing in u_0
+static void set_first_right_side(rosenbrock *m, int first, int last) {
+    double *restrict u = m->stage[0], *restrict drift = m->drift;
+    double h = m->now_step, f = gamma_h * h, d = slope[0] * h;
+    if (m->drifts) {
 #pragma omp simd
-    for (int k = 0; k < m->ode.n; k++) u[k] = f * (u[k] + first * drift[k]);
-    return true;
+        for (int k = first; k < last; k++) drift[k] = (drift[k] - u[k]) / h;
+    }
+#pragma omp simd
+    for (int k = first; k < last; k++) u[k] = f * (u[k] + d * drift[k]);
 }
 
 // Σ_j weight_j u_j over the stages before stage i; loops take what does not change out of them.
@@ -152,6 +145,7 @@ static inline void set_right_side(rosenbrock *m, int i, int first, int last) {
 static void set_present_argument(void *self, int first, int last) {
     rosenbrock *m = self;
     switch (m->now) {
+    case 0: break;
     case 1: set_argument(m, 1, first, last); break;
     case 2: set_argument(m, 2, first, last); break;
     default: set_argument(m, 3, first, last);
@@ -161,22 +155,25 @@ static void set_present_argument(void *self, int first, int last) {
 static void set_present_right_side(void *self, int first, int last) {
     rosenbrock *m = self;
     switch (m->now) {
+    case 0: set_first_right_side(m, first, last); break;
     case 1: set_right_side(m, 1, first, last); break;
     case 2: set_right_side(m, 2, first, last); break;
     default: set_right_side(m, 3, first, last);
     }
 }
 
-// Stage i after the first.
 static bool find_stage(rosenbrock *m, int i, double t) {
     const bough_ode *ode = &m->ode;
-    const bough_stage_terms terms = {m, set_present_argument, set_present_right_side};
+    const bough_stage_terms terms = {m, set_present_argument, set_present_right_side, i == 0 && m->drifts};
+    const double *state = i == 0 ? m->from : m->at;
     double at = t + alpha[i] * m->now_step;
     m->now = i;
     m->sum.derivatives++;
-    if (ode->stage) return ode->stage(ode->self, at, m->at, terms, m->stage[i]);
+    if (ode->stage) return ode->stage(ode->self, at, state, terms, m->stage[i]);
     set_present_argument(m, 0, ode->n);
-    if (!ode->derivative(ode->self, at, m->at, m->stage[i])) return false;
+    bool finite = terms.again ? ode->derivative_again(ode->self, at, state, m->stage[i])
+                              : ode->derivative(ode->self, at, state, m->stage[i]);
+    if (!finite) return false;
     set_present_right_side(m, 0, ode->n);
     ode->solve(ode->self, m->stage[i]);
     return true;
@@ -185,8 +182,11 @@ static bool find_stage(rosenbrock *m, int i, double t) {
 static bool find_stages(rosenbrock *m, double t, double h, const double *y) {
     m->from = y;
     m->now_step = h;
-    m->ode.solve(m->ode.self, m->stage[0]);
-    return find_stage(m, 1, t) && find_stage(m, 2, t) && find_stage(m, 3, t);
+    for (int i = 0; i < STAGES; i++) {
+        if (!find_stage(m, i, t)) return false;
+    }
+    if (m->drifts) m->drifted = 0;
+    return true;
 }
 
 // y₁ into `at`, whose last argument lacks the last stage only; the error against the tolerance, root
@@ -223,7 +223,7 @@ static double filter(rosenbrock *m) {
 
 // The error of a step against the tolerance; infinite where f has no value.
 static double try_step(rosenbrock *m, double t, double h, const double *y) {
-    if (!find_rates(m, t, h, y) || !renew_factors(m, t, y, h)) return (double)INFINITY;
+    if (!renew_factors(m, t, y, h) || !renew_drift(m, t, h, y)) return (double)INFINITY;
     if (!find_stages(m, t, h, y)) return (double)INFINITY;
     double error = finish(m);
     if (error > 1 && isfinite(error)) error = filter(m);

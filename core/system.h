@@ -17,6 +17,7 @@ typedef struct bough_stage_terms {
     void *self;
     void (*set_state)(void *self, int first, int last); // before it is used
     void (*set_right)(void *self, int first, int last); // of the rates that stand in its place
+    bool again; // the state is that of the last evaluation
 } bough_stage_terms;
 
 typedef struct bough_system_ops {

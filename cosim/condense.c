@@ -245,11 +245,13 @@ static bool any(const double *x, int n) {
     return false;
 }
 
-bool bough_condensed_factor_follower(bough_condensed *k, int member,
-                                     const bough_operating_point *at) {
+bool bough_condensed_factor_follower(bough_condensed *k, int member, const bough_operating_point *at) {
+    return factor(k, member, at->gamma);
+}
+
+void bough_condensed_respond(bough_condensed *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     const bough_condensed_member *w = &k->part[member];
-    if (!factor(k, member, at->gamma)) return false;
     find_directions(k, member);
     for (int d = 0; d < w->n; d++) {
         const double *direction = w->direction + (size_t)d * (size_t)s->n_input;
@@ -262,7 +264,6 @@ bool bough_condensed_factor_follower(bough_condensed *k, int member,
         bough_condensed_solve_member(k, member, state);
         bough_condensed_output_change(k, member, at, state, direction, response);
     }
-    return true;
 }
 
 // -- the interface --------------------------------------------------------------------------------

@@ -63,9 +63,11 @@ bool bough_condensed_linearise(bough_condensed *k, int member, const bough_opera
 // Factors a leader at its last linearisation, and computes its columns and responses. False when singular.
 bool bough_condensed_factor_leader(bough_condensed *k, int member, const bough_operating_point *at);
 
-// The same of a follower, whose leaders have been factored.
-bool bough_condensed_factor_follower(bough_condensed *k, int member,
-                                     const bough_operating_point *at);
+// Factors a follower at its last linearisation. False when singular.
+bool bough_condensed_factor_follower(bough_condensed *k, int member, const bough_operating_point *at);
+
+// The follower's columns and responses, once its leaders have been factored.
+void bough_condensed_respond(bough_condensed *k, int member, const bough_operating_point *at);
 
 // Change of a member's outputs with its state and its inputs, where it was last linearised, which is at
 // `at` or near; either change may be NULL.

@@ -99,21 +99,11 @@ static void evaluate_again(bough_coupled *coupled, int i) {
     evaluate_by(coupled, i, ops->derivative_again ? ops->derivative_again : ops->derivative);
 }
 
-static bough_status rate_by(bough_coupled *coupled, double t, const double *state, double *rate,
-                            void (*work)(bough_coupled *a, int member)) {
-    begin_rates(coupled, t, state, rate);
-    bough_status status = each(coupled, FOLLOWERS, work);
-    return bough_is_ok(&status) ? each(coupled, LEADERS, work) : status;
-}
-
 bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state,
                                 double *rate) {
-    return rate_by(coupled, t, state, rate, evaluate);
-}
-
-bough_status bough_coupled_rate_again(bough_coupled *coupled, double t, const double *state,
-                                      double *rate) {
-    return rate_by(coupled, t, state, rate, evaluate_again);
+    begin_rates(coupled, t, state, rate);
+    bough_status status = each(coupled, FOLLOWERS, evaluate);
+    return bough_is_ok(&status) ? each(coupled, LEADERS, evaluate) : status;
 }
 
 // -- factors --------------------------------------------------------------------------------------
@@ -130,19 +120,25 @@ static void check(bough_coupled *coupled, int i, bool good) {
         bough_fail(BOUGH_RETRY, "%s: singular Newton matrix", coupled->assembly->member[i]->system.name);
 }
 
-static void linearise(bough_coupled *coupled, int i) {
+// Leaders first, whose responses take long; those of followers wait for them.
+static void factor(void *self, int place) {
+    bough_coupled *coupled = self;
+    const bough_assembly *a = coupled->assembly;
+    bough_condensed *k = coupled->interface;
+    int i = coupled->order[(place + coupled->n_follower) % a->n_member];
     bough_operating_point at = operating_point(coupled, i);
-    check(coupled, i, bough_condensed_linearise(coupled->interface, i, &at));
+    coupled->status[i].code = BOUGH_OK;
+    bool good = coupled->linearised || bough_condensed_linearise(k, i, &at);
+    if (a->leads[i]) {
+        check(coupled, i, good && bough_condensed_factor_leader(k, i, &at));
+    } else {
+        check(coupled, i, good && bough_condensed_factor_follower(k, i, &at));
+    }
 }
 
-static void factor_leader(bough_coupled *coupled, int i) {
+static void respond(bough_coupled *coupled, int i) {
     bough_operating_point at = operating_point(coupled, i);
-    check(coupled, i, bough_condensed_factor_leader(coupled->interface, i, &at));
-}
-
-static void factor_follower(bough_coupled *coupled, int i) {
-    bough_operating_point at = operating_point(coupled, i);
-    check(coupled, i, bough_condensed_factor_follower(coupled->interface, i, &at));
+    bough_condensed_respond(coupled->interface, i, &at);
 }
 
 static bool factor_border(bough_coupled *coupled);
@@ -157,27 +153,28 @@ void bough_coupled_borrow(bough_coupled *coupled, bough_condensed *interface, do
     coupled->interface = interface;
 }
 
-bough_status bough_coupled_linearise(bough_coupled *coupled, double t, const double *state,
-                                     const double *input) {
+void bough_coupled_linearise(bough_coupled *coupled, double t, const double *state,
+                             const double *input) {
     bough_coupled_borrow(coupled, coupled->own, t, state, input, coupled->gamma);
-    return each(coupled, ALL, linearise);
+    coupled->linearised = false;
 }
 
 bough_status bough_coupled_factor(bough_coupled *coupled, double gamma) {
     assert(coupled->own != NULL && coupled->interface == coupled->own);
     coupled->gamma = gamma;
-    bough_status status = each(coupled, LEADERS, factor_leader);
+    bough_pool_run(coupled->pool, coupled->assembly->n_member, factor, coupled);
+    bough_status status = first_failure(coupled);
     if (!bough_is_ok(&status)) return status;
-    status = each(coupled, FOLLOWERS, factor_follower);
-    if (!bough_is_ok(&status)) return status;
+    coupled->linearised = true;
+    each(coupled, FOLLOWERS, respond);
     if (bough_condensed_close(coupled->interface) && factor_border(coupled)) return status;
     return bough_fail(BOUGH_RETRY, "the interface's Newton matrix is singular");
 }
 
 bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state,
                                  const double *input, double gamma) {
-    bough_status status = bough_coupled_linearise(coupled, t, state, input);
-    return bough_is_ok(&status) ? bough_coupled_factor(coupled, gamma) : status;
+    bough_coupled_linearise(coupled, t, state, input);
+    return bough_coupled_factor(coupled, gamma);
 }
 
 // -- solution -------------------------------------------------------------------------------------
@@ -304,7 +301,11 @@ static void find_right_side(void *self, int i) {
     const int *offset = w->evaluation->assembly->state_offset + i;
     w->evaluation->status[i].code = BOUGH_OK;
     if (comes_late(w->evaluation->assembly, i)) set_state(w, i);
-    evaluate(w->evaluation, i);
+    if (w->terms.again) {
+        evaluate_again(w->evaluation, i);
+    } else {
+        evaluate(w->evaluation, i);
+    }
     w->terms.set_right(w->terms.self, offset[0], offset[1]);
 }
 

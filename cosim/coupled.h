@@ -29,6 +29,7 @@ typedef struct bough_coupled {
     double *x;
 
     // factors
+    bool linearised; // at the place of setup
     double setup_time;
     double *setup_state;              // (n_state) where the matrix was taken
     double *setup_input;              // (n_input)
@@ -71,16 +72,11 @@ void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state)
 bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state,
                                 double *rate);
 
-// The same where the state is that of the last call, at another time: cheaper.
-bough_status bough_coupled_rate_again(bough_coupled *coupled, double t, const double *state,
-                                      double *rate);
+// The next factors are those about (t, state, input); input (n_input), usually coupled->input.
+void bough_coupled_linearise(bough_coupled *coupled, double t, const double *state,
+                             const double *input);
 
-// Linearises about (t, state, input); input (n_input), usually coupled->input. BOUGH_RETRY when a
-// tangent is not finite.
-bough_status bough_coupled_linearise(bough_coupled *coupled, double t, const double *state,
-                                     const double *input);
-
-// Factors I − γJ of the last linearisation. BOUGH_RETRY when it is singular.
+// Factors I − γJ there. BOUGH_RETRY when a tangent is not finite or the matrix singular.
 bough_status bough_coupled_factor(bough_coupled *coupled, double gamma);
 
 // Both.

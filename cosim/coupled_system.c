@@ -8,13 +8,6 @@ static bool derivative(void *self, double t, const double *state, const double *
     return bough_is_ok(&status);
 }
 
-static bool derivative_again(void *self, double t, const double *state, const double *input,
-                             double *rate) {
-    (void)input;
-    bough_status status = bough_coupled_rate_again(self, t, state, rate);
-    return bough_is_ok(&status);
-}
-
 static void output(void *self, double t, const double *state, const double *input, double *out) {
     (void)self, (void)t, (void)state, (void)input, (void)out;
 }
@@ -40,8 +33,8 @@ static bool linearise(void *self, double t, const double *state, const double *i
     (void)self, (void)input;
     bough_coupled *own = factors;
     bough_coupled_inputs(own, t, state);
-    bough_status status = bough_coupled_linearise(own, t, state, own->input);
-    return bough_is_ok(&status);
+    bough_coupled_linearise(own, t, state, own->input);
+    return true;
 }
 
 static bool factor(void *self, void *factors, double gamma) {
@@ -78,7 +71,6 @@ static void project(void *self, const double *state, double *x) {
 
 static const bough_system_ops operations = {
     BOUGH_SYSTEM_REQUIRED,
-    .derivative_again = derivative_again,
     .stage = stage,
     .constrain = constrain,
     .project = project,

@@ -281,9 +281,19 @@ static void add_deficit(bough_coupling *c, int member) {
     }
 }
 
+// Members of one system have seen each other: what was applied is what is obtained.
+static void apply_obtained(bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    for (int i = 0; i < a->n_member; i++) {
+        int first = a->input_offset[i], count = a->member[i]->system.n_input;
+        bough_port_linear(&c->signal[i], 0, count, c->past[0] + first, c->input + first);
+    }
+}
+
 void bough_coupling_exchange(bough_coupling *c) {
     const bough_assembly *a = c->assembly;
     bough_assembly_outputs(a, c->t1, c->output, c->input);
+    if (c->whole) apply_obtained(c);
     for (int i = 0; i < a->n_member && c->deficit != NULL; i++) {
         if (a->stage[i] == 0) add_deficit(c, i);
     }

@@ -148,14 +148,18 @@ static void keep_own_errors(bough_error_estimate *e) {
     double *slot = e->own + (size_t)e->n_step * (size_t)a->n_state;
     for (int i = 0; i < a->n_member; i++) {
         const bough_member *m = a->member[i];
-        double *error = e->whole ? e->whole->own_error : m->own_error;
+        double *restrict error = e->whole ? e->whole->own_error : m->own_error;
         if (e->whole && error) error += a->state_offset[i];
-        double *restrict sum = slot + a->state_offset[i];
+        double *restrict sum = slot + a->state_offset[i], *restrict all = e->own_sum + a->state_offset[i];
         int n = m->system.n_state;
-        memset(sum, 0, (size_t)n * sizeof *sum);
-        for (int k = 0; k < n && error != NULL; k++) {
+        if (error == NULL) {
+            memset(sum, 0, (size_t)n * sizeof *sum);
+            continue;
+        }
+#pragma omp simd
+        for (int k = 0; k < n; k++) {
             sum[k] = share * error[k];
-            e->own_sum[a->state_offset[i] + k] += fabs(error[k]);
+            all[k] += fabs(error[k]);
             error[k] = 0;
         }
     }

@@ -3,7 +3,6 @@
 // a member what its own sub-solver would; with an implicit multistep method at a tight tolerance it
 // is the reference of every error figure.
 #include "cosim/coupled.h"
-#include "cosim/port.h"
 #include "cosim/scheme.h"
 
 #include <assert.h>
@@ -34,11 +33,6 @@ static bough_status step(bough_coupling *c) {
     }
     bough_assembly_states(a, whole->state);
     bough_coupling_begin(c);
-    bough_assembly_outputs(a, c->t1, c->end_output, c->seen);
-    for (int i = 0; i < a->n_member; i++) {
-        int first = a->input_offset[i], count = a->member[i]->system.n_input;
-        bough_port_linear(&c->signal[i], 0, count, c->input + first, c->seen + first);
-    }
     return bough_ok();
 }
 

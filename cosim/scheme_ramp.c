@@ -165,6 +165,7 @@ static void predict_follower(bough_coupling *c, int member) {
         c->status[member] = bough_coupling_not_finite(c, member);
         return;
     }
+    if (r->fresh) bough_condensed_respond(r->interface, member, &at);
     expect_inputs(c, member);
     solve(c, member, r->change + c->assembly->input_offset[member]);
 }

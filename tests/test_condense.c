@@ -249,6 +249,7 @@ static void radius_is_that_of_the_loop(void **state) {
     for (int i = 0; i < 2; i++) assert_true(bough_condensed_linearise(k, i, &at));
     assert_true(bough_condensed_factor_leader(k, 0, &at));
     assert_true(bough_condensed_factor_follower(k, 1, &at));
+    bough_condensed_respond(k, 1, &at);
     assert_true(bough_condensed_close(k));
     // the larger root of the 2 × 2 loop
     assert_true(fabs(k->loop[0]) > 1e-3);

@@ -66,7 +66,7 @@ static void stages_are_rate_and_solution(void **state) {
     halve_and_add_one(expected, 0, N);
     bough_coupled_solve(coupled, expected);
     status = bough_coupled_stage(evaluation, coupled, 0, y,
-                                 (bough_stage_terms){x, keep, halve_and_add_one}, x);
+                                 (bough_stage_terms){x, keep, halve_and_add_one, false}, x);
     assert_true(bough_is_ok(&status));
     assert_memory_equal(x, expected, sizeof x);
     bough_two_mass_destroy(&m);
