@@ -194,6 +194,43 @@ static void probing_changes_nothing(void **state) {
     free(without);
 }
 
+// A body that a joint keeps from turning, on a pendulum of 40 degrees: what is left of its directions is rounding
+// and the joint's tolerance.
+static void a_direction_that_hardly_turns_beside_an_angle_is_not_judged(void **state) {
+    (void)state;
+    static const struct {
+        double angle;  // range of the other channel [deg]
+        int worst;
+    } cases[] = {{40, 0}, {1e-4, 1}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        bough_channel channel[2] = {{.name = "topPos", .unit = "deg"}, {.name = "loadDirXy", .unit = "-"}};
+        bough_channels channels = {.channel = channel, .count = 2};
+        bough_simulation simulation = {.n_motion_channel = 2};
+        int vector[] = {0, 1};
+        double none[] = {0, 0}, high[] = {cases[k].angle, 2e-6}, error[] = {1e-3 * cases[k].angle, 5e-6};
+        double passed[] = {-1, -1};
+        bough_error_probe probe = {.simulation = &simulation, .channels = &channels, .vector = vector,
+                                   .low = none, .high = high, .true_low = none, .true_high = high,
+                                   .largest = none, .passed = passed};
+        bough_error_verdict v = bough_error_probe_verdict_of(&probe, error);
+        assert_int_equal(v.channel, cases[k].worst);
+    }
+}
+
+static void components_of_a_vector_have_one_range(void **state) {
+    (void)state;
+    bough_channel channel[] = {{"RotSpeed", "rpm"},  {"OoPDefl1", "m"},   {"IPDefl1", "m"},    {"TipDxb1", "m"},
+                               {"TipDyb1", "m"},     {"OoPDefl2", "m"},   {"IPDefl2", "m"},    {"TTDspFA", "m"},
+                               {"TTDspSS", "m"},     {"TTDspAx", "m"},    {"TTDspRoll", "deg"}, {"TTDspPtch", "deg"},
+                               {"TTDspTwst", "deg"}, {"towerTipX", "m"},  {"towerTipZ", "m"}};
+    enum { N = sizeof channel / sizeof *channel };
+    static const int expected[N] = {0, 1, 1, 3, 3, 5, 5, 7, 7, 7, 10, 10, 10, 13, 13};
+    int vector[N];
+    bough_channels channels = {.channel = channel, .count = N};
+    bough_error_probe_find_vectors(&channels, vector);
+    for (int i = 0; i < N; i++) assert_int_equal(vector[i], expected[i]);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(channels_err_by_what_is_told),
@@ -201,6 +238,8 @@ int main(void) {
         cmocka_unit_test(a_lost_second_solution_is_said),
         cmocka_unit_test(torques_of_motions_are_measured_or_unknown),
         cmocka_unit_test(a_range_seen_at_few_times_is_not_too_small),
+        cmocka_unit_test(components_of_a_vector_have_one_range),
+        cmocka_unit_test(a_direction_that_hardly_turns_beside_an_angle_is_not_judged),
         cmocka_unit_test(probing_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

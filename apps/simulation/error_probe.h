@@ -6,7 +6,7 @@
 #include "apps/simulation/simulation.h"
 
 // Judgement of the errors of motion. Channels that hardly move, by less than a thousandth of other channels
-// with the same unit, are left out, because their relative error has no meaning.
+// with the same unit (directions count as angles), are left out, because their relative error has no meaning.
 typedef struct bough_error_verdict {
     int channel;     // with the largest relative error of those that are estimated; −1: none is
     double relative; // that error

@@ -12,11 +12,25 @@ static const double least_share = 1e-3; // of the largest range with that unit: 
 
 // -- vectors --------------------------------------------------------------------------------------
 
+// OpenFAST's names of the displacement and the rotation of a tower's top, and of a blade's tip.
+static bool are_named_components(const char *x, const char *y) {
+    static const char *const names[][2] = {{"TTDspFA", "TTDspSS"}, {"TTDspFA", "TTDspAx"},
+                                           {"TTDspRoll", "TTDspPtch"}, {"TTDspRoll", "TTDspTwst"},
+                                           {"OoPDefl", "IPDefl"}};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        size_t n = strlen(names[k][0]), m = strlen(names[k][1]);
+        bool begin = strncmp(x, names[k][0], n) == 0 && strncmp(y, names[k][1], m) == 0;
+        if (begin && strcmp(x + n, y + m) == 0) return true;
+    }
+    return false;
+}
+
 // "TipX" and "TipY", "TipDxb1" and "TipDyb1": of one length, and x, y, z in one place.
 static bool are_components(const bough_channel *a, const bough_channel *b) {
     const char *x = a->name, *y = b->name;
     int differ = 0;
     if (strcmp(a->unit, b->unit) != 0) return false;
+    if (are_named_components(x, y)) return true;
     for (; *x && *y; x++, y++) {
         if (*x == *y) continue;
         bool letters = (strchr("xyz", *x) && strchr("xyz", *y)) || (strchr("XYZ", *x) && strchr("XYZ", *y));
@@ -91,12 +105,19 @@ static double in_si(const bough_channel *channel, double value) {
     return strcmp(channel->unit, "rpm") == 0 ? rpm * value : value;
 }
 
-static double largest_range(const bough_error_probe *p, const char *unit) {
+// Of one unit, or an angle and the component of a direction, which is the angle where it is small.
+static bool alike(const char *unit, const char *other) {
+    bool angle = strcmp(unit, "deg") == 0 || strcmp(unit, "-") == 0;
+    bool other_angle = strcmp(other, "deg") == 0 || strcmp(other, "-") == 0;
+    return strcmp(unit, other) == 0 || (angle && other_angle);
+}
+
+// In SI units, of the channels that are like this one.
+static double largest_range(const bough_error_probe *p, const bough_channel *one) {
     double largest = 0;
     for (int i = 0; i < p->simulation->n_motion_channel; i++) {
         const bough_channel *channel = &p->channels->channel[i];
-        if (strcmp(channel->unit, unit) != 0) continue;
-        largest = fmax(largest, own_range(p, i));
+        if (alike(channel->unit, one->unit)) largest = fmax(largest, in_si(channel, own_range(p, i)));
     }
     return largest;
 }
@@ -120,7 +141,7 @@ static bool has_say(const bough_error_probe *p, int i, double error) {
     double moves = fmax(range_of(p, i), error);
     bool moving = is_motion(channel) ? in_si(channel, moves) > rounding * largest_value(p)
                                      : moves > least_share * largest_of(p, i);
-    return moving && moves >= least_share * largest_range(p, channel->unit);
+    return moving && in_si(channel, moves) >= least_share * largest_range(p, channel);
 }
 
 // Of the errors (n_motion_channel); those of the estimate may be unknown.
