@@ -20,16 +20,25 @@ static bool has_order_three(const bough_integrator_options *o) {
     return o->kind == BOUGH_ROSENBROCK || o->kind == BOUGH_AUTOMATIC;
 }
 
+// Generalised-α takes the steps that it is given: rtol says nothing of their error.
+static bool controls_error(const bough_integrator_options *o) { return o->kind != BOUGH_GENERALIZED_ALPHA; }
+
+static double longest_step(const bough_master *m) {
+    double step = m->coupling->options.integrator.step;
+    return step > 0 ? fmin(step, m->macro_step) : m->macro_step;
+}
+
 // Beside one system under the Rosenbrock method, its own kind with other steps; beside another method,
 // or a coupling, one that is far finer.
 static bough_second_solution_def choose(const bough_master *m) {
     const bough_integrator_options *own = &m->coupling->options.integrator;
-    double most = m->macro_step, step = own->step > 0 ? fmin(own->step, most) : most;
+    double most = m->macro_step, step = longest_step(m);
     if (!m->coupling->scheme->one_system) {
         return (bough_second_solution_def){BOUGH_AUTOMATIC, second_rtol, most, {0}};
     }
     if (!has_order_three(own)) {
-        return (bough_second_solution_def){BOUGH_AUTOMATIC, fmin(second_rtol, own->rtol), most, {0}};
+        double rtol = controls_error(own) ? fmin(second_rtol, own->rtol) : second_rtol;
+        return (bough_second_solution_def){BOUGH_AUTOMATIC, rtol, most, {0}};
     }
     return (bough_second_solution_def){BOUGH_AUTOMATIC, own->rtol / finer, step / 2, {0}};
 }
@@ -68,7 +77,7 @@ static bool wants_second(const bough_master *m) {
     if (!m->coupling->scheme->one_system) {
         return !(linearised_serves(m) && m->coupling->theta > 0 && m->assembly->n_state >= many_states);
     }
-    return has_order_three(own) || own->rtol > tight;
+    return has_order_three(own) || !controls_error(own) || own->rtol > tight;
 }
 
 bool bough_master_wants_second(const bough_master *m, bough_second_solution_def *def) {
@@ -181,6 +190,9 @@ void bough_master_advise(const bough_master *m, double factor, char text[BOUGH_M
         } else {
             snprintf(text, BOUGH_MASTER_ADVICE, "scheme: monolithic");
         }
+    } else if (!controls_error(own)) {
+        double step = longest_step(m) / sqrt(2 * factor);
+        snprintf(text, BOUGH_MASTER_ADVICE, "master.step: %.2g s or master.solver: rosenbrock", step);
     } else if (has_order_three(own)) {
         snprintf(text, BOUGH_MASTER_ADVICE, "master.rtol: %.1g", 0.1 * own->rtol / fmin(factor, 1e3));
     } else {
