@@ -19,10 +19,9 @@ static double transition(const bough_controller_def *d) {
 }
 
 bough_status bough_controller_check(const bough_controller_def *d) {
-    const double positive[] = {d->corner,      d->optimal_from,    d->rated_speed,
-                               d->rated_power, d->slip,            d->most_torque,
-                               d->torque_rate, d->reference_speed, d->halving_pitch,
-                               d->pitch_rate,  d->integral};
+    const double positive[] = {d->corner,        d->optimal_from, d->rated_speed, d->rated_power,
+                               d->slip,          d->most_torque,  d->torque_rate, d->reference_speed,
+                               d->halving_pitch, d->pitch_rate,   d->integral};
     for (size_t i = 0; i < sizeof positive / sizeof *positive; i++) {
         if (positive[i] > 0 && isfinite(positive[i])) continue;
         return bough_fail(BOUGH_INVALID, "the controller's speeds, power, torque, rates, gains and "
@@ -63,8 +62,7 @@ static double schedule(const bough_controller_def *d, double pitch) {
     return 1 / (1 + fmax(pitch, 0) / d->halving_pitch);
 }
 
-static void start(const bough_controller_def *d, double speed, double pitch,
-                  bough_controller_state *s) {
+static void start(const bough_controller_def *d, double speed, double pitch, bough_controller_state *s) {
     double held = bough_clamp(pitch, d->least_pitch, d->most_pitch);
     *s = (bough_controller_state){.started = 1,
                                   .speed = speed,
@@ -73,8 +71,8 @@ static void start(const bough_controller_def *d, double speed, double pitch,
                                   .pitch = held};
 }
 
-void bough_controller_advance(const bough_controller_def *d, double speed, double pitch,
-                              double step, bough_controller_state *s) {
+void bough_controller_advance(const bough_controller_def *d, double speed, double pitch, double step,
+                              bough_controller_state *s) {
     if (s->started == 0) {
         start(d, speed, pitch, s);
         return;
@@ -85,10 +83,9 @@ void bough_controller_advance(const bough_controller_def *d, double speed, doubl
     double share = schedule(d, s->pitch), error = s->speed - d->reference_speed;
     // The integral alone must not ask for more than there is.
     double unit = share * d->integral;
-    s->integral = bough_clamp(s->integral + error * step, d->least_pitch / unit,
-                              d->most_pitch / unit);
-    double sought = bough_clamp(share * d->proportional * error + unit * s->integral,
-                                d->least_pitch, d->most_pitch);
+    s->integral = bough_clamp(s->integral + error * step, d->least_pitch / unit, d->most_pitch / unit);
+    double sought =
+        bough_clamp(share * d->proportional * error + unit * s->integral, d->least_pitch, d->most_pitch);
     double reach = d->pitch_rate * step;
     double rated = bough_clamp(sought, pitch - reach, pitch + reach);
     s->pitch = bough_clamp(rated, d->least_pitch, d->most_pitch);

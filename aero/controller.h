@@ -12,23 +12,23 @@
 typedef enum bough_above_rated { BOUGH_CONSTANT_POWER, BOUGH_CONSTANT_TORQUE } bough_above_rated;
 
 typedef struct bough_controller_def {
-    double corner;             // of the low-pass filter of the speed [rad/s]
-    double cut_in;             // no torque below [rad/s]
-    double optimal_from;       // torque = gain·speed² from here … [rad/s]
-    double optimal_gain;       // … at the best tip-speed ratio [N m s²/rad²]
-    double rated_speed;        // constant power or torque from here [rad/s]
-    int above_rated;           // bough_above_rated: which of the two
-    double rated_power;        // mechanical [W]
-    double slip;               // of the line between the two, share of its synchronous speed [-]
-    double most_torque;        // [N m]
-    double torque_rate;        // the most [N m/s]
-    double power_pitch;        // pitch above which the power is constant at any speed [rad]
-    double reference_speed;    // of the pitch [rad/s]
-    double proportional;       // gain at no pitch [s]
-    double integral;           // [-]
-    double halving_pitch;      // where both gains are halved [rad]
+    double corner;                  // of the low-pass filter of the speed [rad/s]
+    double cut_in;                  // no torque below [rad/s]
+    double optimal_from;            // torque = gain·speed² from here … [rad/s]
+    double optimal_gain;            // … at the best tip-speed ratio [N m s²/rad²]
+    double rated_speed;             // constant power or torque from here [rad/s]
+    int above_rated;                // bough_above_rated: which of the two
+    double rated_power;             // mechanical [W]
+    double slip;                    // of the line between the two, share of its synchronous speed [-]
+    double most_torque;             // [N m]
+    double torque_rate;             // the most [N m/s]
+    double power_pitch;             // pitch above which the power is constant at any speed [rad]
+    double reference_speed;         // of the pitch [rad/s]
+    double proportional;            // gain at no pitch [s]
+    double integral;                // [-]
+    double halving_pitch;           // where both gains are halved [rad]
     double least_pitch, most_pitch; // [rad]
-    double pitch_rate;         // the most [rad/s]
+    double pitch_rate;              // the most [rad/s]
 } bough_controller_def;
 
 // BOUGH_INVALID says which value makes no sense.
@@ -36,11 +36,11 @@ bough_status bough_controller_check(const bough_controller_def *def);
 
 // Doubles only, saved and restored as a row of them.
 typedef struct bough_controller_state {
-    double started;    // 0: the next advance starts from the measured values
-    double speed;      // filtered [rad/s]
-    double integral;   // of the speed error [rad]
-    double torque;     // of the generator [N m]
-    double pitch;      // demanded [rad]
+    double started;  // 0: the next advance starts from the measured values
+    double speed;    // filtered [rad/s]
+    double integral; // of the speed error [rad]
+    double torque;   // of the generator [N m]
+    double pitch;    // demanded [rad]
 } bough_controller_state;
 
 // The torque at a filtered speed and a pitch, without its limit in time [N m].
@@ -48,7 +48,7 @@ double bough_controller_torque(const bough_controller_def *def, double speed, do
 
 // Advances by `step` [s] with the measured generator speed [rad/s] and pitch [rad]. The demanded torque and
 // pitch are in the state.
-void bough_controller_advance(const bough_controller_def *def, double speed, double pitch,
-                              double step, bough_controller_state *state);
+void bough_controller_advance(const bough_controller_def *def, double speed, double pitch, double step,
+                              bough_controller_state *state);
 
 #endif

@@ -23,22 +23,36 @@ struct bough_discon {
 
 // Record numbers.
 enum {
-    STATUS = 1, TIME, STEP, PITCH,
-    SHAFT_POWER = 14, ELECTRICAL_POWER,
-    GENERATOR_SPEED = 20, ROTOR_SPEED,
-    TORQUE = 23, YAW_ERROR,
+    STATUS = 1,
+    TIME,
+    STEP,
+    PITCH,
+    SHAFT_POWER = 14,
+    ELECTRICAL_POWER,
+    GENERATOR_SPEED = 20,
+    ROTOR_SPEED,
+    TORQUE = 23,
+    YAW_ERROR,
     WIND = 27,
     PITCH_CONTROL, // 0 collective, 1 individual
     ROOT_MOMENT = 30,
-    PITCH_2 = 33, PITCH_3,
+    PITCH_2 = 33,
+    PITCH_3,
     CONTACTOR = 35, // of the generator: 1 main
     HEADING = 37,
     DEMANDED_PITCH = 42,
     COLLECTIVE_PITCH = 45,
     DEMANDED_TORQUE = 47,
-    MESSAGE_SIZE = 49, INPUT_SIZE, OUTPUT_SIZE,
-    FORE_AFT = 53, SIDE_SIDE,
-    AZIMUTH = 60, BLADES, LOG_MOST, LOG_FIRST, NAMES_SIZE,
+    MESSAGE_SIZE = 49,
+    INPUT_SIZE,
+    OUTPUT_SIZE,
+    FORE_AFT = 53,
+    SIDE_SIDE,
+    AZIMUTH = 60,
+    BLADES,
+    LOG_MOST,
+    LOG_FIRST,
+    NAMES_SIZE,
     IN_PLANE = 69,
     NODDING = 83,
     RECORDS_SIZE = 129,
@@ -161,8 +175,8 @@ static void hear(const bough_discon *d, bough_discon_demand *demand) {
     bool individual = r[PITCH_CONTROL] == 1;
     demand->torque = (double)r[DEMANDED_TORQUE];
     for (int b = 0; b < BOUGH_MOST_BLADES; b++)
-        demand->pitch[b] = (double)r[individual && b < BOUGH_DISCON_BLADES ? DEMANDED_PITCH + b
-                                                                   : COLLECTIVE_PITCH];
+        demand->pitch[b] =
+            (double)r[individual && b < BOUGH_DISCON_BLADES ? DEMANDED_PITCH + b : COLLECTIVE_PITCH];
 }
 
 static bool is_sound(const bough_discon_demand *d) {
@@ -187,13 +201,14 @@ bough_status bough_discon_call(bough_discon *d, const bough_discon_sensed *sense
     if (d->record[PITCH_CONTROL] == 1 && sensed->n_blade > BOUGH_DISCON_BLADES) {
         return bough_fail(BOUGH_FAILED,
                           "the controller %.100s pitches each blade by itself, for which its interface "
-                          "has %d blades; the rotor has %d", d->library, (int)BOUGH_DISCON_BLADES,
-                          sensed->n_blade);
+                          "has %d blades; the rotor has %d",
+                          d->library, (int)BOUGH_DISCON_BLADES, sensed->n_blade);
     }
     if (!is_sound(demand)) {
         return bough_fail(BOUGH_FAILED,
                           "the controller %.100s demands at %g s a torque of %g N m and a pitch of "
-                          "%g rad", d->library, sensed->time, demand->torque, demand->pitch[0]);
+                          "%g rad",
+                          d->library, sensed->time, demand->torque, demand->pitch[0]);
     }
     return bough_ok();
 }

@@ -20,26 +20,26 @@ enum {
 
 // The measured values for the controller; those of the generator are at the fast shaft.
 typedef struct bough_discon_sensed {
-    double time, step;       // [s]
-    bool last;               // of the run
+    double time, step; // [s]
+    bool last;         // of the run
     int n_blade;
     double pitch[BOUGH_MOST_BLADES];       // [rad]
     double root_moment[BOUGH_MOST_BLADES]; // out of plane [N m]
     double in_plane[BOUGH_MOST_BLADES];    // the other one [N m]
-    bool individual;         // each blade is to follow its own demand
-    double yaw_error;        // wind's direction less the nacelle's [rad]
-    double heading;          // of the nacelle, from ground x about z [rad]
-    double acceleration[2];  // of the nacelle's origin, fore-aft and side-side [m/s2]
-    double nodding;          // its angular acceleration about the nacelle's y [rad/s2]
-    double generator_speed, rotor_speed;     // [rad/s]
-    double torque;           // of the generator [N m]
-    double shaft_power, electrical_power;    // [W]
-    double wind;             // at the hub, along the shaft [m/s]
-    double azimuth;          // of blade 1 [rad]
+    bool individual;                       // each blade is to follow its own demand
+    double yaw_error;                      // wind's direction less the nacelle's [rad]
+    double heading;                        // of the nacelle, from ground x about z [rad]
+    double acceleration[2];                // of the nacelle's origin, fore-aft and side-side [m/s2]
+    double nodding;                        // its angular acceleration about the nacelle's y [rad/s2]
+    double generator_speed, rotor_speed;   // [rad/s]
+    double torque;                         // of the generator [N m]
+    double shaft_power, electrical_power;  // [W]
+    double wind;                           // at the hub, along the shaft [m/s]
+    double azimuth;                        // of blade 1 [rad]
 } bough_discon_sensed;
 
 typedef struct bough_discon_demand {
-    double torque;                     // of the generator [N m]
+    double torque;                   // of the generator [N m]
     double pitch[BOUGH_MOST_BLADES]; // [rad]
 } bough_discon_demand;
 

@@ -24,8 +24,8 @@ void bough_inflow_start(bough_inflow_state *state, const double sought[2]) {
 //     z = (1 − k)(q₀ + s (t − τ₁)) + C exp(−t/τ₁),
 //     v = q₀ + s (t − (1 − k) τ₁ − τ₂) + C τ₁/(τ₁ − τ₂) exp(−t/τ₁) + D exp(−t/τ₂),
 // C and D from the values at t = 0; τ₂ is between 0.13 and 0.39 τ₁.
-void bough_inflow_advance(bough_inflow_state *state, const double sought[2], double step,
-                          double tau1, double share) {
+void bough_inflow_advance(bough_inflow_state *state, const double sought[2], double step, double tau1,
+                          double share) {
     if (step > 0) {
         double s = bough_clamp(share, 0, 1), tau2 = (0.39 - 0.26 * s * s) * tau1;
         double slow_left = exp(-step / tau1), fast_left = exp(-step / tau2);
@@ -39,15 +39,14 @@ void bough_inflow_advance(bough_inflow_state *state, const double sought[2], dou
             state->reached[c] = sought[c] - lag + forced * slow_left + own * fast_left;
         }
     }
-    for (int c = 0; c < 2; c++)
-        state->sought[c] = sought[c];
+    for (int c = 0; c < 2; c++) state->sought[c] = sought[c];
 }
 
 // Slower than this an induced velocity cannot be said as a share of the inflow [m/s].
 static const double slow = 1e-3;
 
-void bough_inflow_follow(const bough_inflow_clock *clock, double step, const double inflow[2],
-                         double *axial, double *tangential, bough_inflow_station *station) {
+void bough_inflow_follow(const bough_inflow_clock *clock, double step, const double inflow[2], double *axial,
+                         double *tangential, bough_inflow_station *station) {
     const double sought[2] = {*axial * inflow[0], *tangential * inflow[1]};
     bough_inflow_state *state = &station->state;
     if (!clock->started) {

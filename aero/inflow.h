@@ -36,8 +36,8 @@ void bough_inflow_start(bough_inflow_state *state, const double sought[2]);
 
 // Advances by `step` [s], during which q changes linearly to `sought`: the exact solution for any step.
 // `share`: the station's radius divided by the rotor's, which gives τ₂ from τ₁.
-void bough_inflow_advance(bough_inflow_state *state, const double sought[2], double step,
-                          double tau1, double share);
+void bough_inflow_advance(bough_inflow_state *state, const double sought[2], double step, double tau1,
+                          double share);
 
 // What all stations of a rotor share.
 typedef struct bough_inflow_clock {

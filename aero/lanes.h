@@ -17,9 +17,7 @@ static inline double lane_round(double x) {
 }
 
 // An angle less whole turns, in [−π, π].
-static inline double lane_remainder(double x) {
-    return x - 2 * BOUGH_PI * lane_round(x / (2 * BOUGH_PI));
-}
+static inline double lane_remainder(double x) { return x - 2 * BOUGH_PI * lane_round(x / (2 * BOUGH_PI)); }
 
 static inline double lane_clamp(double x, double low, double high) {
     x = x > low ? x : low;

@@ -15,13 +15,11 @@ static void fill_rows(const bough_polar_def *def, int n, double *row) {
         const double *from = def->row + 4 * (i % def->n);
         double *to = row + ROW * i;
         to[0] = from[0] * (BOUGH_PI / 180) + (i < def->n ? 0 : turn);
-        for (int c = 1; c < 4; c++)
-            to[c] = from[c];
+        for (int c = 1; c < 4; c++) to[c] = from[c];
     }
     for (int i = 0; i + 1 < n; i++) {
         double *here = row + ROW * i, *next = here + ROW;
-        for (int c = 1; c < 4; c++)
-            here[3 + c] = (next[c] - here[c]) / (next[0] - here[0]);
+        for (int c = 1; c < 4; c++) here[3 + c] = (next[c] - here[c]) / (next[0] - here[0]);
     }
 }
 
@@ -30,8 +28,7 @@ static void fill_bins(bough_polar *polar, int *bin) {
     int knot = 0;
     for (int j = 0; j < polar->n_bin; j++) {
         double start = polar->row[0] + j / polar->bin_per_rad;
-        while (knot + 2 < polar->n && polar->row[ROW * (knot + 1)] <= start)
-            knot++;
+        while (knot + 2 < polar->n && polar->row[ROW * (knot + 1)] <= start) knot++;
         bin[j] = knot;
         if (j > 0 && knot - bin[j - 1] > polar->most) polar->most = knot - bin[j - 1];
     }
@@ -51,9 +48,7 @@ static void find_range(const bough_polar_def *def, bough_polar *polar) {
 
 // -- attached flow --------------------------------------------------------------------------------
 
-static double lift_at(const bough_polar *polar, double alpha) {
-    return bough_polar_at(polar, alpha).lift;
-}
+static double lift_at(const bough_polar *polar, double alpha) { return bough_polar_at(polar, alpha).lift; }
 
 // Where the lift grows through zero, nearest to no angle within 20°; false if nowhere.
 static bool find_zero_lift(const bough_polar *polar, double *zero) {
@@ -105,8 +100,7 @@ void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_pol
     int *bin = bough_arena_take(arena, N_BIN * sizeof *bin);
     fill_rows(def, n, row);
     row[ROW * n] = INFINITY;
-    *polar =
-        (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / turn, .bin = bin};
+    *polar = (bough_polar){.n = n, .row = row, .n_bin = N_BIN, .bin_per_rad = N_BIN / turn, .bin = bin};
     fill_bins(polar, bin);
     find_range(def, polar);
     fit_attached(polar);
@@ -119,8 +113,8 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b,
-                       double share, bough_polar *polar) {
+void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b, double share,
+                       bough_polar *polar) {
     int most = a->n + b->n, n = 0;
     double *angle = bough_arena_doubles(arena, (size_t)most);
     double *row = bough_arena_doubles(arena, 4 * (size_t)most);
@@ -160,8 +154,7 @@ void bough_polar_smoothen(bough_arena *arena, bough_polar *polar) {
         const double *before = polar->row + ROW * (k % last == 0 ? last - 1 : k % last - 1);
         for (int c = 0; c < 3; c++)
             slope[3 * k + c] =
-                monotone_slope(before[ROW] - before[0], before[4 + c], here[ROW] - here[0],
-                               here[4 + c]);
+                monotone_slope(before[ROW] - before[0], before[4 + c], here[ROW] - here[0], here[4 + c]);
     }
     for (int k = 0; k < last; k++) {
         double *row = polar->row + ROW * k, h = row[ROW] - row[0];

@@ -28,8 +28,8 @@ typedef struct bough_polar {
     const double *curve; // (n × 6) of each: quadratic and cubic coefficient; NULL: linear
     int n_bin;
     double bin_per_rad;
-    const int *bin; // (n_bin): last knot at or below the bin's start
-    int most;       // knots within a bin
+    const int *bin;   // (n_bin): last knot at or below the bin's start
+    int most;         // knots within a bin
     double low, high; // range of its rows, high at most a turn above low [rad]
     // Of attached flow; slope 0: no lift to speak of.
     double slope;     // the steepest line through zero lift that touches the polar [1/rad]
@@ -40,8 +40,8 @@ typedef struct bough_polar {
 void bough_polar_build(bough_arena *arena, const bough_polar_def *def, bough_polar *polar);
 
 // The mixture (1 − share)·a + share·b of two linear polars, exactly: with the knots of both.
-void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b,
-                       double share, bough_polar *polar);
+void bough_polar_blend(bough_arena *arena, const bough_polar *a, const bough_polar *b, double share,
+                       bough_polar *polar);
 
 // Makes a linear polar smooth: continuous slopes, between knots as monotone as the knots are.
 // F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984).
@@ -59,8 +59,7 @@ static inline int bough_polar_knot(const bough_polar *polar, double *alpha) {
     int j = (int)((x > 0 ? x : 0) * polar->bin_per_rad);
     int knot = polar->bin[j < polar->n_bin ? j : polar->n_bin - 1];
     *alpha = x + polar->row[0];
-    for (int k = 0; k < polar->most; k++)
-        knot += polar->row[BOUGH_POLAR_ROW * (knot + 1)] <= *alpha;
+    for (int k = 0; k < polar->most; k++) knot += polar->row[BOUGH_POLAR_ROW * (knot + 1)] <= *alpha;
     return knot;
 }
 
@@ -72,8 +71,7 @@ static inline bough_coefficients bough_polar_at(const bough_polar *polar, double
     bough_coefficients k = {r[1] + d * r[4], r[2] + d * r[5], r[3] + d * r[6]};
     if (!polar->curve) return k;
     const double *c = polar->curve + 6 * knot;
-    return (bough_coefficients){k.lift + d * d * (c[0] + d * c[1]),
-                                k.drag + d * d * (c[2] + d * c[3]),
+    return (bough_coefficients){k.lift + d * d * (c[0] + d * c[1]), k.drag + d * d * (c[2] + d * c[3]),
                                 k.moment + d * d * (c[4] + d * c[5])};
 }
 

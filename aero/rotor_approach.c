@@ -23,14 +23,12 @@ typedef struct element_axes {
 
 // y against the rotation, normal to shaft and arm; z as the section's, without sweep. `aside`: any
 // direction normal to the shaft, taken on it.
-static inline element_axes axes_at(bough_vec3 shaft, bough_vec3 aside, bough_vec3 arm,
-                                   bough_vec3 along) {
+static inline element_axes axes_at(bough_vec3 shaft, bough_vec3 aside, bough_vec3 arm, bough_vec3 along) {
     bough_vec3 out = bough_axpy(-bough_dot(arm, shaft), shaft, arm);
     double radius = bough_norm(out), off = radius < 1e-9 ? 0 : 1, scale = off / (radius + 1 - off);
     bough_vec3 radial = bough_axpy(1 - off, aside, bough_scale(scale, out));
     double s = lane_clamp(bough_dot(along, shaft), -1, 1), c = sqrt(1 - s * s);
-    return (element_axes){bough_axpy(-s, radial, bough_scale(c, shaft)),
-                          bough_cross(radial, shaft),
+    return (element_axes){bough_axpy(-s, radial, bough_scale(c, shaft)), bough_cross(radial, shaft),
                           bough_axpy(s, shaft, bough_scale(c, radial)), radius};
 }
 
@@ -44,15 +42,14 @@ static bough_vec3 any_normal(bough_vec3 v) {
 
 // How the vertices are turned by deformation, and its second difference along the blade. At the ends
 // that of the neighbour.
-static void turn_vertices(const bough_rotor *rotor, const double *restrict vertex,
-                          blade_rows *restrict to) {
+static void turn_vertices(const bough_rotor *rotor, const double *restrict vertex, blade_rows *restrict to) {
     int n = rotor->n_vertex;
     double *restrict turn = to->turn, *restrict bend = to->bend;
     const bough_quaternion *restrict undeformed = rotor->undeformed;
 #pragma omp simd
     for (int i = 0; i < n; i++) {
-        bough_quaternion d = bough_quaternion_product(
-            section_at(vertex, n, i), bough_quaternion_conjugate(undeformed[i]));
+        bough_quaternion d =
+            bough_quaternion_product(section_at(vertex, n, i), bough_quaternion_conjugate(undeformed[i]));
         lane_store(turn, n, i, bough_scale(copysign(2.0, d.w), bough_v3(d.x, d.y, d.z)));
     }
 #pragma omp simd
@@ -69,8 +66,7 @@ static void turn_vertices(const bough_rotor *rotor, const double *restrict verte
 
 // R turned by the small rotation phi.
 static inline bough_mat3 turned_by(bough_vec3 phi, bough_mat3 r) {
-    return (bough_mat3){bough_add(r.c1, bough_cross(phi, r.c1)),
-                        bough_add(r.c2, bough_cross(phi, r.c2)),
+    return (bough_mat3){bough_add(r.c1, bough_cross(phi, r.c1)), bough_add(r.c2, bough_cross(phi, r.c2)),
                         bough_add(r.c3, bough_cross(phi, r.c3))};
 }
 
@@ -142,8 +138,7 @@ static bough_vec3 blow(const bough_rotor *rotor, double time, blade_rows *rows) 
         lane_store(rows->wind, s, j, wind);
         sum = bough_add(sum, wind);
     }
-    for (int j = rotor->n_station; j < s; j++)
-        lane_store(rows->wind, s, j, lane_load(rows->wind, s, j - 1));
+    for (int j = rotor->n_station; j < s; j++) lane_store(rows->wind, s, j, lane_load(rows->wind, s, j - 1));
     return sum;
 }
 
@@ -158,8 +153,8 @@ static void meet_wind(const bough_rotor *rotor, const bough_rotor_motion *motion
     int s = rotor->stride;
 #pragma omp simd
     for (int j = 0; j < s; j++) {
-        bough_vec3 inflow = bough_sub(bough_mat3_tmul(frame, lane_load(r.wind, s, j)),
-                                      lane_load(r.velocity, s, j));
+        bough_vec3 inflow =
+            bough_sub(bough_mat3_tmul(frame, lane_load(r.wind, s, j)), lane_load(r.velocity, s, j));
         bough_vec3 y = lane_load(r.y, s, j), radial = bough_cross(shaft, y);
         double cone = bough_dot(radial, lane_load(r.z, s, j));
         double radius = r.radius[j] > 1e-3 ? r.radius[j] : 1e-3;
@@ -178,8 +173,7 @@ static void delay(const bough_rotor *rotor, double time, int blade, bough_rotor_
         if (rotor->station.free[j] == 0) continue;
         const double inflow[2] = {r->inflow_x[j], r->inflow_y[j]};
         bough_inflow_station *memory = data->memory.station + blade * rotor->n_station + j;
-        bough_inflow_follow(clock, time - clock->time, inflow, &r->axial[j], &r->tangential[j],
-                            memory);
+        bough_inflow_follow(clock, time - clock->time, inflow, &r->axial[j], &r->tangential[j], memory);
     }
 }
 
@@ -202,9 +196,9 @@ void bough_rotor_induce(const bough_rotor *rotor, const bough_rotor_motion *moti
                         bough_rotor_data *data) {
     const blade_rows *r = data->scratch->blade + blade;
     const station_rows *m = &rotor->station;
-    bough_elements elements = {rotor->stride, m->polar, r->solidity, m->tip_factor, m->hub_factor,
-                               r->cone,       r->twist, r->inflow_x, r->inflow_y,
-                               r->skew_normal, r->skew_chord, skew_of(rotor, motion)};
+    bough_elements elements = {rotor->stride, m->polar,       r->solidity,   m->tip_factor,
+                               m->hub_factor, r->cone,        r->twist,      r->inflow_x,
+                               r->inflow_y,   r->skew_normal, r->skew_chord, skew_of(rotor, motion)};
     bough_induction_solve(&rotor->induction, &elements, r->axial, r->tangential, r->loss);
     if (data->memory.station) delay(rotor, motion->time, blade, data);
 }

@@ -28,8 +28,8 @@ static bough_status check_spans(const bough_rotor_def *def) {
         double span = def->station[j].span;
         assert(j == 0 || span > def->station[j - 1].span);
         if (span >= def->vertex_span[0] - 1e-6 * length && span <= length * (1 + 1e-6)) continue;
-        return bough_fail(BOUGH_INVALID, "Aero station %d: span %g m is not on the blade (%g m).",
-                          j + 1, span, length);
+        return bough_fail(BOUGH_INVALID, "Aero station %d: span %g m is not on the blade (%g m).", j + 1,
+                          span, length);
     }
     return bough_ok();
 }
@@ -43,13 +43,11 @@ static bough_mat3 twisted(double twist) {
 static void place_station(const bough_rotor_def *def, const bough_station_def *from, int j,
                           bough_rotor *rotor) {
     int i = 0;
-    while (i < def->n_vertex - 2 && from->span > def->vertex_span[i + 1])
-        i++;
+    while (i < def->n_vertex - 2 && from->span > def->vertex_span[i + 1]) i++;
     double start = def->vertex_span[i], end = def->vertex_span[i + 1];
     double w = bough_clamp((from->span - start) / (end - start), 0, 1);
-    bough_mat3 structure =
-        rotation_between(bough_quaternion_of_matrix(def->vertex_rotation[i]),
-                         bough_quaternion_of_matrix(def->vertex_rotation[i + 1]), w);
+    bough_mat3 structure = rotation_between(bough_quaternion_of_matrix(def->vertex_rotation[i]),
+                                            bough_quaternion_of_matrix(def->vertex_rotation[i + 1]), w);
     bough_vec3 axis = vector_between(def->vertex_position[i], def->vertex_position[i + 1], w);
     bough_vec3 arm = bough_v3(from->centre_x - axis.x, from->centre_y - axis.y, 0);
     bough_mat3 section = bough_mat3_product(bough_mat3_transpose(structure), twisted(from->twist));
@@ -81,8 +79,7 @@ static void take_stations(bough_arena *arena, int stride, station_rows *rows) {
     rows->ends = bough_arena_doubles(arena, 3 * n);
 }
 
-static void place_stations(const bough_rotor_def *def, const bough_polar *polar,
-                           bough_rotor *rotor) {
+static void place_stations(const bough_rotor_def *def, const bough_polar *polar, bough_rotor *rotor) {
     for (int j = 0; j < rotor->stride; j++) {
         int k = j < def->n_station ? j : def->n_station - 1;
         const bough_station_def *from = def->station + k;
@@ -127,8 +124,7 @@ static void fill_mappings(const bough_rotor_def *def, const mappings *to) {
     for (int j = 0; j + 1 < def->n_station; j++) {
         double a = def->station[j].span, end = def->station[j + 1].span;
         while (a < end) {
-            while (vertex < last && def->vertex_span[vertex + 1] <= a)
-                vertex++;
+            while (vertex < last && def->vertex_span[vertex + 1] <= a) vertex++;
             double b = vertex < last ? fmin(end, def->vertex_span[vertex + 1]) : end;
             add_interval(def, a, b, vertex, j, to);
             a = b;
@@ -141,10 +137,8 @@ static void compress_rows(int n, int n_station, const double *dense, vertex_row 
     for (int i = 0; i < n; i++) {
         const double *d = dense + i * n_station;
         int first = 0, end = n_station;
-        while (first < end && d[first] == 0)
-            first++;
-        while (end > first && d[end - 1] == 0)
-            end--;
+        while (first < end && d[first] == 0) first++;
+        while (end > first && d[end - 1] == 0) end--;
         row[i] = (vertex_row){first, end - first, d + first};
     }
 }
@@ -153,21 +147,18 @@ static void compress_rows(int n, int n_station, const double *dense, vertex_row 
 static const bough_polar *build_polars(bough_arena *arena, const bough_rotor_def *def) {
     int most = def->n_polar + def->n_station;
     bough_polar *polar = bough_arena_take(arena, (size_t)most * sizeof *polar);
-    for (int i = 0; i < def->n_polar; i++)
-        bough_polar_build(arena, def->polar + i, polar + i);
+    for (int i = 0; i < def->n_polar; i++) bough_polar_build(arena, def->polar + i, polar + i);
     for (int j = 0; j < def->n_station; j++) {
         const bough_station_def *s = def->station + j;
         if (s->share == 0) continue;
-        bough_polar_blend(arena, polar + s->polar, polar + s->second, s->share,
-                          polar + def->n_polar + j);
+        bough_polar_blend(arena, polar + s->polar, polar + s->second, s->share, polar + def->n_polar + j);
     }
     for (int i = 0; i < most && def->smooth_polars; i++)
         if (polar[i].n > 0) bough_polar_smoothen(arena, polar + i);
     return polar;
 }
 
-bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def,
-                               const bough_rotor **result) {
+bough_status bough_rotor_build(bough_arena *arena, const bough_rotor_def *def, const bough_rotor **result) {
     *result = NULL;
     bough_status status = check_spans(def);
     if (!bough_is_ok(&status)) return status;
@@ -258,7 +249,6 @@ void bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor, bough_
     s->wind = bough_arena_take(arena, n_blade * sizeof *s->wind);
     s->thrust = bough_arena_doubles(arena, n_blade);
     s->torque = bough_arena_doubles(arena, n_blade);
-    for (int b = 0; b < rotor->n_blade; b++)
-        take_rows(arena, rotor, s->blade + b);
+    for (int b = 0; b < rotor->n_blade; b++) take_rows(arena, rotor, s->blade + b);
     take_memory(arena, rotor, &data->memory);
 }

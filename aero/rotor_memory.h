@@ -5,7 +5,6 @@
 #include "aero/rotor.h"
 
 // Advances the states of all stations; to be called after the stations of a sample are solved.
-void bough_rotor_remember(const bough_rotor *rotor, const bough_rotor_motion *motion,
-                          bough_rotor_data *data);
+void bough_rotor_remember(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data);
 
 #endif

@@ -11,10 +11,10 @@ typedef struct station_rows {
     const bough_polar **polar; // (stride)
     int *vertex;               // (stride) the station lies between this vertex and the next
     double *weight;            // (stride) of the next
-    double *section; // (9 × stride) aero section axes in the interpolated structural section
-    double *centre;  // (3 × stride) aerodynamic centre there, from the reference axis [m]
-    double *ends;    // (3 × stride) change of the undeformed tangent between the two vertices, there
-    double *bow;     // (stride) of an arc beside its chord by that change [m]
+    double *section;           // (9 × stride) aero section axes in the interpolated structural section
+    double *centre;            // (3 × stride) aerodynamic centre there, from the reference axis [m]
+    double *ends; // (3 × stride) change of the undeformed tangent between the two vertices, there
+    double *bow;  // (stride) of an arc beside its chord by that change [m]
     double *chord, *tip_factor, *hub_factor; // (stride)
     double *free; // (stride) 0: at the very tip or root, where the loss factor sets the induction
 } station_rows;
@@ -36,38 +36,38 @@ struct bough_rotor {
     station_rows station;
     const bough_quaternion *undeformed; // section axes of the vertices (n_vertex)
     vertex_row *row;                    // (n_vertex)
-    vertex_row *mean, *slope; // (n_vertex − 1) over a segment, weights [-], [1/m]
+    vertex_row *mean, *slope;           // (n_vertex − 1) over a segment, weights [-], [1/m]
 };
 
-enum { LOAD = 8 }; // force, moment per length and two zeros: one vector
+enum { LOAD = 8 };   // force, moment per length and two zeros: one vector
 enum { SLOPE = 16 }; // BOUGH_SLOPES and four zeros: whole vectors
 
 // Of one blade, in its frame's axes; y is tangential, x normal, z along the blade.
 typedef struct blade_rows {
-    double *arm;                     // (3 × stride) from the reference axis to the centre [m]
-    double *x, *y, *z;               // (3 × stride) axes of the blade element
-    double *velocity, *wind;         // (3 × stride) of the aerodynamic centre and there [m/s]
-    double *place;                   // (3 × stride) the centre, in ground axes [m]
+    double *arm;                      // (3 × stride) from the reference axis to the centre [m]
+    double *x, *y, *z;                // (3 × stride) axes of the blade element
+    double *velocity, *wind;          // (3 × stride) of the aerodynamic centre and there [m/s]
+    double *place;                    // (3 × stride) the centre, in ground axes [m]
     double *radius, *twist, *turning; // (stride) [m], [rad], rotation nose up [rad/s]
-    double *normal, *chord;          // (3 × stride) axes of the section, leading to trailing edge
+    double *normal, *chord;           // (3 × stride) axes of the section, leading to trailing edge
     double *solidity, *cone, *skew_normal, *skew_chord; // (stride) of the momentum balance
-    double *inflow_x, *inflow_y;     // (stride) without induction [m/s]
-    double *axial, *tangential, *loss; // (stride)
-    double *phi, *alpha, *speed;     // (stride) [rad], [rad], [m/s]
-    double *lift, *drag, *moment;    // (stride) coefficients
-    double *lift_slope, *drag_slope, *moment_slope; // (stride) by the angle [1/rad]
-    double *lift_rate, *drag_rate, *moment_rate;    // (stride) by the rotation nose up [s/rad]
-    double *static_slope;                           // (stride) of the static lift [1/rad]
-    double *force_x, *force_y;       // (stride) [N/m]
-    double *load;                    // (stride × LOAD) [N/m], [N]
-    double *slope;                   // (stride × SLOPE) bough_rotor_data.slope, per length
-    double *turn;                    // (3 × n_vertex) rotation by deformation, of vertices
-    double *bend;                    // (3 × n_vertex) its second difference
+    double *inflow_x, *inflow_y;                        // (stride) without induction [m/s]
+    double *axial, *tangential, *loss;                  // (stride)
+    double *phi, *alpha, *speed;                        // (stride) [rad], [rad], [m/s]
+    double *lift, *drag, *moment;                       // (stride) coefficients
+    double *lift_slope, *drag_slope, *moment_slope;     // (stride) by the angle [1/rad]
+    double *lift_rate, *drag_rate, *moment_rate;        // (stride) by the rotation nose up [s/rad]
+    double *static_slope;                               // (stride) of the static lift [1/rad]
+    double *force_x, *force_y;                          // (stride) [N/m]
+    double *load;                                       // (stride × LOAD) [N/m], [N]
+    double *slope; // (stride × SLOPE) bough_rotor_data.slope, per length
+    double *turn;  // (3 × n_vertex) rotation by deformation, of vertices
+    double *bend;  // (3 × n_vertex) its second difference
 } blade_rows;
 
 struct bough_rotor_scratch {
-    blade_rows *blade;     // (n_blade)
-    bough_vec3 *wind;      // (n_blade) sum over the stations, in ground axes [m/s]
+    blade_rows *blade;       // (n_blade)
+    bough_vec3 *wind;        // (n_blade) sum over the stations, in ground axes [m/s]
     double *thrust, *torque; // (n_blade)
     // what the whole rotor tells each station
     double skew;         // acute angle of the wind and the shaft [rad]
@@ -101,8 +101,7 @@ static inline bough_mat3 rotation_between(bough_quaternion p, bough_quaternion q
 }
 
 static inline bough_vec3 vector_between(bough_vec3 a, bough_vec3 b, double weight) {
-    return bough_v3(a.x + weight * (b.x - a.x), a.y + weight * (b.y - a.y),
-                    a.z + weight * (b.z - a.z));
+    return bough_v3(a.x + weight * (b.x - a.x), a.y + weight * (b.y - a.y), a.z + weight * (b.z - a.z));
 }
 
 #endif

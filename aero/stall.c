@@ -20,14 +20,11 @@ static const double turn = 2 * BOUGH_PI;
 // Closer to zero lift than this the ratio of lifts is taken here [rad].
 static const double near_zero = 1e-4;
 
-static double lift_at(const bough_polar *polar, double alpha) {
-    return bough_polar_at(polar, alpha).lift;
-}
+static double lift_at(const bough_polar *polar, double alpha) { return bough_polar_at(polar, alpha).lift; }
 
 // With r = Cl/(slope·(α − α₀)) Kirchhoff's f = (2√r − 1)² leaves the separated lift
 // slope·(α − α₀)(3√r − 1)/(4√r), which is all of it at f = 0 and half of it at f = 1.
-void bough_stall_split(const bough_polar *polar, double alpha, double *f,
-                       double *separated) {
+void bough_stall_split(const bough_polar *polar, double alpha, double *f, double *separated) {
     double lift = lift_at(polar, alpha), d = remainder(alpha - polar->zero_lift, turn);
     *f = 0;
     *separated = lift;
@@ -58,8 +55,7 @@ static void unwind(bough_stall_state *s) {
     s->alpha -= shift;
     s->pressure_sought -= shift;
     s->pressure -= shift;
-    for (int i = 0; i < 2; i++)
-        s->wake[i] -= wake_share[i] * shift * s->speed;
+    for (int i = 0; i < 2; i++) s->wake[i] -= wake_share[i] * shift * s->speed;
 }
 
 static double separation_at(const bough_polar *polar, double alpha) {
@@ -68,8 +64,7 @@ static double separation_at(const bough_polar *polar, double alpha) {
     return f;
 }
 
-static void start(const bough_polar *polar, double alpha, double speed,
-                  bough_stall_state *s) {
+static void start(const bough_polar *polar, double alpha, double speed, bough_stall_state *s) {
     double f = separation_at(polar, alpha);
     *s = (bough_stall_state){.started = 1,
                              .speed = speed,
@@ -87,13 +82,13 @@ static double effective(const bough_stall_state *s) {
     return own * s->alpha + (s->wake[0] + s->wake[1]) / s->speed;
 }
 
-static void advance(const bough_polar *polar, double semi_chords, double alpha,
-                    double speed, double mass_angle, bough_stall_state *s) {
+static void advance(const bough_polar *polar, double semi_chords, double alpha, double speed,
+                    double mass_angle, bough_stall_state *s) {
     double next = s->alpha + remainder(alpha - s->alpha, turn);
     double before = s->speed * s->alpha, after = speed * next;
     for (int i = 0; i < 2; i++) {
-        s->wake[i] = lagged(s->wake[i], wake_share[i] * before, wake_share[i] * after,
-                            wake_rate[i] * semi_chords);
+        s->wake[i] =
+            lagged(s->wake[i], wake_share[i] * before, wake_share[i] * after, wake_rate[i] * semi_chords);
     }
     s->speed = speed;
     s->alpha = next;
@@ -111,8 +106,8 @@ static void advance(const bough_polar *polar, double semi_chords, double alpha,
 // `x`: the lagging f, `angle`: the effective one, `late`: that at three quarters of the chord, `turning`
 // the rotation's part of it. The circulation's lift leans back by what the wake withholds and by the
 // rotation once more.
-static bough_coefficients dynamic(const bough_polar *polar, double x, double angle,
-                                  double late, double turning) {
+static bough_coefficients dynamic(const bough_polar *polar, double x, double angle, double late,
+                                  double turning) {
     double f, separated;
     bough_stall_split(polar, angle, &f, &separated);
     bough_coefficients k = bough_polar_at(polar, angle);
@@ -142,9 +137,8 @@ static double downwash(double chord, bough_stall_inflow inflow) {
     return bough_clamp(chord * inflow.rate / (2 * inflow.speed), -0.5, 0.5);
 }
 
-bough_coefficients bough_stall_advance(const bough_polar *polar, double chord,
-                                       bough_stall_inflow inflow, double step,
-                                       bough_stall_state *state) {
+bough_coefficients bough_stall_advance(const bough_polar *polar, double chord, bough_stall_inflow inflow,
+                                       double step, bough_stall_state *state) {
     double alpha = remainder(inflow.alpha, turn), speed = inflow.speed;
     bough_coefficients fixed = bough_polar_at(polar, alpha);
     if (polar->slope == 0 || !(speed > slow)) {
@@ -181,9 +175,8 @@ static bough_coefficients quotient(bough_coefficients a, bough_coefficients b, d
                                 (a.moment - b.moment) / step};
 }
 
-bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord,
-                                         bough_stall_inflow inflow, double step,
-                                         const bough_stall_state *state) {
+bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord, bough_stall_inflow inflow,
+                                         double step, const bough_stall_state *state) {
     const double d = 1e-4; // [rad]
     double alpha = remainder(inflow.alpha, turn), share = dynamic_share(alpha);
     bough_stall_slopes slopes = {.angle = bough_polar_slope(polar, alpha)};

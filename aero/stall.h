@@ -18,8 +18,7 @@ typedef enum bough_stall_kind {
 // Trailing-edge separation point in [0, 1], 1 attached, and the lift of fully separated flow, of
 // which the static lift is made: Cl = f·slope·(α − α₀) + (1 − f)·separated. A polar of slope 0
 // has no lift to speak of and is always static.
-void bough_stall_split(const bough_polar *polar, double alpha, double *f,
-                       double *separated);
+void bough_stall_split(const bough_polar *polar, double alpha, double *f, double *separated);
 
 // The flow at a section.
 typedef struct bough_stall_inflow {
@@ -30,11 +29,11 @@ typedef struct bough_stall_inflow {
 
 // Of one section; doubles only, so that it is saved and restored as a row of them.
 typedef struct bough_stall_state {
-    double started;    // 0: the next advance starts in equilibrium
-    double speed;      // at the last advance [m/s]
-    double alpha;      // at three quarters of the chord there [rad]
-    double wake[2];    // downwash that the shed wake still withholds, as U·x₁, U·x₂ [m rad/s]
-    double pressure_sought, pressure; // angle of the pressure's lag: input and state [rad]
+    double started; // 0: the next advance starts in equilibrium
+    double speed;   // at the last advance [m/s]
+    double alpha;   // at three quarters of the chord there [rad]
+    double wake[2]; // downwash that the shed wake still withholds, as U·x₁, U·x₂ [m rad/s]
+    double pressure_sought, pressure;     // angle of the pressure's lag: input and state [rad]
     double separation_sought, separation; // f of the lagged angle: input and state [-]
 } bough_stall_state;
 
@@ -50,8 +49,7 @@ typedef struct bough_stall_slopes {
     bough_coefficients angle, rate;
 } bough_stall_slopes;
 
-bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord,
-                                         bough_stall_inflow inflow, double step,
-                                         const bough_stall_state *state);
+bough_stall_slopes bough_stall_slopes_of(const bough_polar *polar, double chord, bough_stall_inflow inflow,
+                                         double step, const bough_stall_state *state);
 
 #endif

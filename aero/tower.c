@@ -12,8 +12,8 @@ static const double nearest = 1;
 static const double deepest_shadow = 0.5;
 
 void bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tower *tower) {
-    *tower = (bough_tower){
-        .base = def->base, .n = def->n, .influence = def->influence, .shadow = def->shadow};
+    *tower =
+        (bough_tower){.base = def->base, .n = def->n, .influence = def->influence, .shadow = def->shadow};
     if (def->n == 0) return;
     assert(def->n >= 2);
     double *height = bough_arena_doubles(arena, (size_t)def->n);
@@ -32,8 +32,7 @@ void bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tow
 // The section at or below a height, at most the last but one.
 static int section_at(const bough_tower *tower, double height) {
     int i = 1;
-    while (i < tower->n - 1 && height > tower->height[i])
-        i++;
+    while (i < tower->n - 1 && height > tower->height[i]) i++;
     return i - 1;
 }
 
@@ -109,8 +108,8 @@ bough_vec3 bough_tower_disturbed(const bough_tower *tower, bough_vec3 position, 
 }
 
 // Above the top, where a bent tower may reach, all is as at the top.
-bough_vec3 bough_tower_drag(const bough_tower *tower, double density, bough_vec3 position,
-                            bough_vec3 axis, bough_vec3 inflow) {
+bough_vec3 bough_tower_drag(const bough_tower *tower, double density, bough_vec3 position, bough_vec3 axis,
+                            bough_vec3 inflow) {
     if (tower->n == 0) return bough_v3(0, 0, 0);
     double top = tower->height[tower->n - 1];
     double height = bough_clamp(position.z - tower->base.z, tower->height[0], top);

@@ -47,8 +47,8 @@ void bough_tower_build(bough_arena *arena, const bough_tower_def *def, bough_tow
 
 // The drag on the tower at a place of its axis, unit vector `axis`, in air of that density [kg/m³]
 // and velocity relative to the tower [m/s]; only its component normal to the axis counts [N/m].
-bough_vec3 bough_tower_drag(const bough_tower *tower, double density, bough_vec3 position,
-                            bough_vec3 axis, bough_vec3 inflow);
+bough_vec3 bough_tower_drag(const bough_tower *tower, double density, bough_vec3 position, bough_vec3 axis,
+                            bough_vec3 inflow);
 
 // Whether a point is low enough for the tower to matter.
 static inline bool bough_tower_reaches(const bough_tower *tower, bough_vec3 position) {

@@ -32,8 +32,8 @@ static bough_status read_box(bough_arena *arena, bough_wind *wind) {
     if (!bough_is_ok(&status) || bough_wind_box_lasts(box, wind->def.until)) return status;
     return bough_fail(BOUGH_INVALID,
                       "%s is not periodic and too short: it has %g s, of which %g s pass before "
-                      "the box covers the rotor; %g s are needed.", wind->def.file,
-                      box->duration, box->half_width / box->mean, wind->def.until);
+                      "the box covers the rotor; %g s are needed.",
+                      wind->def.file, box->duration, box->half_width / box->mean, wind->def.until);
 }
 
 static bough_status make_standard(bough_arena *arena, bough_wind *wind) {
@@ -80,8 +80,7 @@ static double share_at(const bough_wind *wind, double height) {
     const bough_wind_def *def = &wind->def;
     switch (def->shear) {
     case BOUGH_WIND_UNIFORM: break;
-    case BOUGH_WIND_POWER:
-        return height <= 0 ? 0 : pow(height / def->reference_height, def->exponent);
+    case BOUGH_WIND_POWER: return height <= 0 ? 0 : pow(height / def->reference_height, def->exponent);
     case BOUGH_WIND_LOG:
         return height <= def->roughness ? 0 : log(height / def->roughness) * wind->shear_scale;
     }
@@ -90,13 +89,13 @@ static double share_at(const bough_wind *wind, double height) {
 
 // From ground axes to those in which a file's wind blows along x.
 static bough_vec3 to_file(const bough_wind *wind, bough_vec3 v) {
-    return bough_v3(wind->along_x * v.x + wind->along_y * v.y,
-                    wind->along_x * v.y - wind->along_y * v.x, v.z);
+    return bough_v3(wind->along_x * v.x + wind->along_y * v.y, wind->along_x * v.y - wind->along_y * v.x,
+                    v.z);
 }
 
 static bough_vec3 from_file(const bough_wind *wind, bough_vec3 v) {
-    return bough_v3(wind->along_x * v.x - wind->along_y * v.y,
-                    wind->along_x * v.y + wind->along_y * v.x, v.z);
+    return bough_v3(wind->along_x * v.x - wind->along_y * v.y, wind->along_x * v.y + wind->along_y * v.x,
+                    v.z);
 }
 
 bool bough_wind_covers(const bough_wind *wind, bough_vec3 centre, double radius) {
@@ -104,8 +103,7 @@ bool bough_wind_covers(const bough_wind *wind, bough_vec3 centre, double radius)
     if (!box) return true;
     bough_vec3 p = to_file(wind, centre);
     double top = box->bottom + box->dz * (box->n_z - 1);
-    return fabs(p.y) + radius <= box->half_width && p.z + radius <= top &&
-           p.z - radius >= box->bottom;
+    return fabs(p.y) + radius <= box->half_width && p.z + radius <= top && p.z - radius >= box->bottom;
 }
 
 // In the axes of a file, along whose x the wind blows.

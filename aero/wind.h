@@ -55,7 +55,7 @@ bough_wind_def bough_wind_def_default(void);
 typedef struct bough_wind {
     bough_wind_def def; // its tables are the model's own
     double along_x, along_y;
-    double shear_scale; // of the logarithmic law: 1/ln(z_ref/z_0)
+    double shear_scale;        // of the logarithmic law: 1/ln(z_ref/z_0)
     const bough_wind_hub *hub; // NULL: no such file
     const bough_wind_box *box; // likewise; or turbulence of the standard
     const bough_wind_iec *iec; // a condition without turbulence

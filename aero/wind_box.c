@@ -49,8 +49,7 @@ static bough_status read_counts(const char *path, const unsigned char *head, bou
     return bough_ok();
 }
 
-static bough_status read_measures(const char *path, const unsigned char *head,
-                                  bough_wind_box *box) {
+static bough_status read_measures(const char *path, const unsigned char *head, bough_wind_box *box) {
     double v[FLOATS];
     for (int i = 0; i < FLOATS; i++) {
         v[i] = f32_at(head + 2 + 4 * (COUNTS + i));
@@ -77,8 +76,8 @@ static bough_status read_measures(const char *path, const unsigned char *head,
 
 // The number of values, when the file has as many bytes as its head promises. Factors are compared
 // with the file's size before they are multiplied.
-static bough_status count_values(const char *path, const bough_wind_box *box, int64_t text,
-                                 int64_t size, int64_t *n) {
+static bough_status count_values(const char *path, const bough_wind_box *box, int64_t text, int64_t size,
+                                 int64_t *n) {
     int64_t points = (int64_t)box->n_z * box->n_y + box->n_tower;
     int64_t room = (size - HEAD - text) / 6; // of three int16
     if (text < 0 || text > MOST_TEXT) return bad(path, "the length of its text is out of range");
@@ -87,8 +86,8 @@ static bough_status count_values(const char *path, const bough_wind_box *box, in
     if (*n > 0 && HEAD + text + 2 * *n == size) return bough_ok();
     return bough_fail(BOUGH_INVALID,
                       "%s is damaged: it has %lld bytes, but its header announces %d times of %d "
-                      "x %d points and %d of the tower.", path, (long long)size, box->n_time, box->n_z,
-                      box->n_y, box->n_tower);
+                      "x %d points and %d of the tower.",
+                      path, (long long)size, box->n_time, box->n_z, box->n_y, box->n_tower);
 }
 
 static bough_status read_values(FILE *stream, const char *path, int64_t n, int16_t *value) {
@@ -96,14 +95,12 @@ static bough_status read_values(FILE *stream, const char *path, int64_t n, int16
     for (int64_t k = 0; k < n; k += PIECE) {
         size_t many = (size_t)(n - k < PIECE ? n - k : PIECE);
         if (fread(piece, 2, many, stream) != many) return bad(path, "it cannot be read to its end");
-        for (size_t i = 0; i < many; i++)
-            value[k + (int64_t)i] = i16_at(piece + 2 * i);
+        for (size_t i = 0; i < many; i++) value[k + (int64_t)i] = i16_at(piece + 2 * i);
     }
     return bough_ok();
 }
 
-static bough_status read_all(bough_arena *arena, FILE *stream, const char *path,
-                             bough_wind_box *box) {
+static bough_status read_all(bough_arena *arena, FILE *stream, const char *path, bough_wind_box *box) {
     unsigned char head[HEAD];
     if (fseek(stream, 0, SEEK_END) != 0) return bad(path, "it is no plain file");
     int64_t size = ftell(stream), n = 0;
@@ -160,8 +157,7 @@ static place time_of(const bough_wind_box *box, double x, double t) {
 static bough_vec3 point_at(const bough_wind_box *box, int time, int64_t point) {
     int64_t points = (int64_t)box->n_z * box->n_y + box->n_tower;
     const int16_t *v = box->value + 3 * (time * points + point);
-    return bough_v3((v[0] - box->offset[0]) * box->scale[0],
-                    (v[1] - box->offset[1]) * box->scale[1],
+    return bough_v3((v[0] - box->offset[0]) * box->scale[0], (v[1] - box->offset[1]) * box->scale[1],
                     (v[2] - box->offset[2]) * box->scale[2]);
 }
 
@@ -171,10 +167,8 @@ static bough_vec3 mixed(bough_vec3 a, bough_vec3 b, double w) {
 
 static bough_vec3 grid_at(const bough_wind_box *box, int time, place y, place z) {
     int64_t low = (int64_t)z.low * box->n_y, high = (int64_t)z.high * box->n_y;
-    bough_vec3 below =
-        mixed(point_at(box, time, low + y.low), point_at(box, time, low + y.high), y.weight);
-    bough_vec3 above =
-        mixed(point_at(box, time, high + y.low), point_at(box, time, high + y.high), y.weight);
+    bough_vec3 below = mixed(point_at(box, time, low + y.low), point_at(box, time, low + y.high), y.weight);
+    bough_vec3 above = mixed(point_at(box, time, high + y.low), point_at(box, time, high + y.high), y.weight);
     return mixed(below, above, z.weight);
 }
 
@@ -184,8 +178,8 @@ static bough_vec3 tower_at(const bough_wind_box *box, int time, double depth) {
     double held = fmin(depth, box->n_tower);
     int above = held < box->n_tower ? (int)held : box->n_tower - 1;
     place middle = place_of((box->n_y - 1) / 2., box->n_y), bottom = {0, 1, 0};
-    bough_vec3 upper = above == 0 ? grid_at(box, time, middle, bottom)
-                                  : point_at(box, time, first + above - 1);
+    bough_vec3 upper =
+        above == 0 ? grid_at(box, time, middle, bottom) : point_at(box, time, first + above - 1);
     return mixed(upper, point_at(box, time, first + above), held - above);
 }
 
@@ -193,8 +187,7 @@ bough_vec3 bough_wind_box_at(const bough_wind_box *box, bough_vec3 position, dou
     place time = time_of(box, position.x, t);
     double height = (position.z - box->bottom) / box->dz;
     if (height < 0 && box->n_tower > 0) {
-        return mixed(tower_at(box, time.low, -height), tower_at(box, time.high, -height),
-                     time.weight);
+        return mixed(tower_at(box, time.low, -height), tower_at(box, time.high, -height), time.weight);
     }
     place z = place_of(height, box->n_z);
     place y = place_of((position.y + box->half_width) / box->dy, box->n_y);

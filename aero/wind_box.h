@@ -19,11 +19,11 @@
 typedef struct bough_wind_box {
     bool periodic;
     int n_z, n_y, n_tower, n_time;
-    double dz, dy, dt;    // [m], [m], [s]
-    double mean;          // speed with which the box passes [m/s]
-    double hub, bottom;   // heights [m]
-    double duration;      // of the table; when periodic until it begins again [s]
-    double half_width;    // [m]; y = 0 in the middle
+    double dz, dy, dt;          // [m], [m], [s]
+    double mean;                // speed with which the box passes [m/s]
+    double hub, bottom;         // heights [m]
+    double duration;            // of the table; when periodic until it begins again [s]
+    double half_width;          // [m]; y = 0 in the middle
     double scale[3], offset[3]; // velocity = (value − offset)·scale
     const int16_t *value;       // (n_time × (n_z·n_y + n_tower) × 3)
 } bough_wind_box;

@@ -29,17 +29,17 @@ static bool is_comment(const char *line) {
 
 static bough_wind_hub_row row_of(const double *v) {
     const double degree = BOUGH_PI / 180;
-    return (bough_wind_hub_row){v[0], v[1], v[2] * degree, v[3], v[4], v[5], v[6], v[7],
-                                v[8] * degree};
+    return (bough_wind_hub_row){v[0], v[1], v[2] * degree, v[3], v[4], v[5], v[6], v[7], v[8] * degree};
 }
 
-static bough_status read_row(const char *path, const char *line, int number,
-                             const bough_wind_hub_row *before, bough_wind_hub_row *row) {
+static bough_status read_row(const char *path, const char *line, int number, const bough_wind_hub_row *before,
+                             bough_wind_hub_row *row) {
     double value[MOST] = {0};
     if (parse(line, value) < LEAST) {
         return bough_fail(BOUGH_INVALID,
                           "%s:%d: expected 8 or 9 numbers: time, speed, direction, vertical speed, "
-                          "three shears, gust, upflow.", path, number);
+                          "three shears, gust, upflow.",
+                          path, number);
     }
     *row = row_of(value);
     if (before && !(row->time > before->time)) {
@@ -49,8 +49,7 @@ static bough_status read_row(const char *path, const char *line, int number,
 }
 
 // Counts the rows, and with `row` fills at most `room` of them.
-static bough_status scan(FILE *stream, const char *path, int room, int *n,
-                         bough_wind_hub_row *row) {
+static bough_status scan(FILE *stream, const char *path, int room, int *n, bough_wind_hub_row *row) {
     char line[LINE];
     *n = 0;
     rewind(stream);
@@ -63,8 +62,7 @@ static bough_status scan(FILE *stream, const char *path, int room, int *n,
             return bough_fail(BOUGH_INVALID, "%s:%d: more than %d rows.", path, number, room);
         }
         if (row) {
-            bough_status status =
-                read_row(path, line, number, *n > 0 ? row + *n - 1 : NULL, row + *n);
+            bough_status status = read_row(path, line, number, *n > 0 ? row + *n - 1 : NULL, row + *n);
             if (!bough_is_ok(&status)) return status;
         }
         ++*n;
@@ -91,8 +89,7 @@ bough_status bough_wind_hub_read(bough_arena *arena, const char *path, bough_win
 }
 
 // All columns between two rows.
-static bough_wind_hub_row between(const bough_wind_hub_row *a, const bough_wind_hub_row *b,
-                                  double w) {
+static bough_wind_hub_row between(const bough_wind_hub_row *a, const bough_wind_hub_row *b, double w) {
     const double v = 1 - w;
     return (bough_wind_hub_row){
         .speed = v * a->speed + w * b->speed,

@@ -4,8 +4,7 @@
 #include "core/base.h"
 
 bool bough_wind_iec_is_turbulent(int condition) {
-    return condition == BOUGH_WIND_NTM || condition == BOUGH_WIND_ETM ||
-           condition == BOUGH_WIND_EWM;
+    return condition == BOUGH_WIND_NTM || condition == BOUGH_WIND_ETM || condition == BOUGH_WIND_EWM;
 }
 
 bool bough_wind_iec_is_extreme_speed(int condition) {
@@ -36,8 +35,7 @@ static double normal_deviation(const bough_wind_iec_def *d) {
 
 static double extreme_deviation(const bough_wind_iec_def *d) {
     const double c = 2, average = 0.2 * reference_speed(d);
-    return c * reference_intensity(d) *
-           (0.072 * (average / c + 3) * (d->speed / c - 4) + 10); // (19)
+    return c * reference_intensity(d) * (0.072 * (average / c + 3) * (d->speed / c - 4) + 10); // (19)
 }
 
 double bough_wind_iec_deviation(const bough_wind_iec_def *d) {
@@ -48,19 +46,18 @@ double bough_wind_iec_deviation(const bough_wind_iec_def *d) {
 
 bough_status bough_wind_iec_check(const bough_wind_iec_def *d) {
     if (!(d->height > 0 && d->diameter > 0)) {
-        return bough_fail(BOUGH_INVALID,
-                          "Wind: hub height and rotor diameter must be positive.");
+        return bough_fail(BOUGH_INVALID, "Wind: hub height and rotor diameter must be positive.");
     }
     if (!(bough_wind_iec_speed(d) > 0)) {
         return bough_fail(BOUGH_INVALID, "Wind: the mean speed must be positive.");
     }
     if (!bough_wind_iec_is_turbulent(d->condition)) return bough_ok();
-    if (d->points >= 2 && d->width >= d->diameter && d->time_step > 0 &&
-        d->period >= 4 * d->time_step) {
+    if (d->points >= 2 && d->width >= d->diameter && d->time_step > 0 && d->period >= 4 * d->time_step) {
         return bough_ok();
     }
-    return bough_fail(BOUGH_INVALID, "Wind: turbulence needs at least 2 x 2 points, a width of at "
-                                     "least the rotor's diameter, %g m, and 4 time steps.",
+    return bough_fail(BOUGH_INVALID,
+                      "Wind: turbulence needs at least 2 x 2 points, a width of at "
+                      "least the rotor's diameter, %g m, and 4 time steps.",
                       d->diameter);
 }
 
@@ -116,11 +113,11 @@ bough_vec3 bough_wind_iec_at(const bough_wind_iec *w, bough_vec3 position, doubl
     const bough_wind_iec_def *d = &w->def;
     double speed = bough_wind_iec_profile(d, position.z);
     double phase = w->length > 0 ? bough_clamp((t - d->start) / w->length, 0, 1) : 0;
-    double pulse = 1 - cos(2 * BOUGH_PI * phase);       // comes and goes
-    double step = 0.5 * (1 - cos(BOUGH_PI * phase));    // comes and stays
+    double pulse = 1 - cos(2 * BOUGH_PI * phase);    // comes and goes
+    double step = 0.5 * (1 - cos(BOUGH_PI * phase)); // comes and stays
     switch (d->condition) {
     case BOUGH_WIND_EOG: speed -= 0.37 * w->gust * sin(3 * BOUGH_PI * phase) * pulse; break; // (18)
-    case BOUGH_WIND_ECD: speed += w->gust * step; break; // (23)
+    case BOUGH_WIND_ECD: speed += w->gust * step; break;                                     // (23)
     case BOUGH_WIND_EWS:
         speed += w->gust * pulse * (d->horizontal ? position.y : position.z - d->height);
         break;

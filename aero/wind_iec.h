@@ -22,9 +22,18 @@ typedef enum bough_wind_condition {
 } bough_wind_condition;
 
 typedef enum bough_wind_class {
-    BOUGH_WIND_IA_PLUS, BOUGH_WIND_IA, BOUGH_WIND_IB, BOUGH_WIND_IC,
-    BOUGH_WIND_IIA_PLUS, BOUGH_WIND_IIA, BOUGH_WIND_IIB, BOUGH_WIND_IIC,
-    BOUGH_WIND_IIIA_PLUS, BOUGH_WIND_IIIA, BOUGH_WIND_IIIB, BOUGH_WIND_IIIC,
+    BOUGH_WIND_IA_PLUS,
+    BOUGH_WIND_IA,
+    BOUGH_WIND_IB,
+    BOUGH_WIND_IC,
+    BOUGH_WIND_IIA_PLUS,
+    BOUGH_WIND_IIA,
+    BOUGH_WIND_IIB,
+    BOUGH_WIND_IIC,
+    BOUGH_WIND_IIIA_PLUS,
+    BOUGH_WIND_IIIA,
+    BOUGH_WIND_IIIB,
+    BOUGH_WIND_IIIC,
 } bough_wind_class;
 
 typedef struct bough_wind_iec_def {

@@ -44,7 +44,7 @@ double bough_turbulence_coherence(const bough_wind_iec_def *d, double distance, 
 typedef struct maker {
     const bough_wind_iec_def *def;
     bough_wind_box *box;
-    int16_t *value;     // of the box
+    int16_t *value; // of the box
     bough_fourier *fourier;
     int n_point, n_wave; // waves 1 … n_wave
     int n_coherent;      // the slowest of them, whose points are mixed
@@ -88,8 +88,7 @@ static double share_of_band(const maker *m, int wave, double scale) {
 
 static void set_amplitudes(maker *m, int component) {
     double deviation = deviation_of(m->def, component), scale = time_scale(m->def, component);
-    for (int i = 1; i <= m->n_wave; i++)
-        m->amplitude[i] = deviation * sqrt(0.5 * share_of_band(m, i, scale));
+    for (int i = 1; i <= m->n_wave; i++) m->amplitude[i] = deviation * sqrt(0.5 * share_of_band(m, i, scale));
 }
 
 // -- coherence ------------------------------------------------------------------------------------
@@ -134,8 +133,10 @@ static bough_status mix_all(maker *m) {
         tabulate(m, i * m->step);
         fill_coherence(m);
         if (!bough_cholesky_lower(m->n_point, m->factor)) {
-            return bough_fail(BOUGH_FAILED, "Wind: the coherence of %d points at %g Hz has no "
-                                            "Cholesky factor.", m->n_point, i * m->step);
+            return bough_fail(BOUGH_FAILED,
+                              "Wind: the coherence of %d points at %g Hz has no "
+                              "Cholesky factor.",
+                              m->n_point, i * m->step);
         }
         mix_points(m, i);
     }
@@ -254,8 +255,7 @@ static void set_order(maker *m, place *scratch) {
 
 static int count_coherent(const maker *m) {
     int n = 0;
-    while (n < m->n_wave &&
-           bough_turbulence_coherence(m->def, m->box->dy, (n + 1) * m->step) > NEGLIGIBLE)
+    while (n < m->n_wave && bough_turbulence_coherence(m->def, m->box->dy, (n + 1) * m->step) > NEGLIGIBLE)
         n++;
     return n;
 }
@@ -279,13 +279,13 @@ static bough_status make_in(bough_arena *scratch, maker *m) {
     return status;
 }
 
-bough_status bough_turbulence_make(bough_arena *arena, const bough_wind_iec_def *def,
-                                   bough_wind_box *box) {
+bough_status bough_turbulence_make(bough_arena *arena, const bough_wind_iec_def *def, bough_wind_box *box) {
     maker m = {.def = def, .box = box, .n_point = def->points * def->points};
     if (!(def->period / def->time_step * m.n_point < 5e8)) {
-        return bough_fail(BOUGH_INVALID, "Wind: %d x %d points every %g s over %g s are too many: "
-                                         "take fewer points or a longer time step.", def->points,
-                          def->points, def->time_step, def->period);
+        return bough_fail(BOUGH_INVALID,
+                          "Wind: %d x %d points every %g s over %g s are too many: "
+                          "take fewer points or a longer time step.",
+                          def->points, def->points, def->time_step, def->period);
     }
     lay_out(def, box);
     size_t values = 3 * (size_t)m.n_point * (size_t)box->n_time;

@@ -20,7 +20,6 @@ double bough_turbulence_spectrum(const bough_wind_iec_def *def, int component, d
 double bough_turbulence_coherence(const bough_wind_iec_def *def, double distance, double f);
 
 // Makes the box, in which the mean wind by its profile is contained.
-bough_status bough_turbulence_make(bough_arena *arena, const bough_wind_iec_def *def,
-                                   bough_wind_box *box);
+bough_status bough_turbulence_make(bough_arena *arena, const bough_wind_iec_def *def, bough_wind_box *box);
 
 #endif

@@ -65,12 +65,10 @@ void bough_arena_destroy(bough_arena *arena) {
 
 // -- guard ----------------------------------------------------------------------------------------
 
-static bough_status out_of_memory(void) {
-    return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
-}
+static bough_status out_of_memory(void) { return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted"); }
 
-bough_status bough_arena_guard(bough_arena *arena,
-                               bough_status (*work)(bough_arena *arena, void *self), void *self) {
+bough_status bough_arena_guard(bough_arena *arena, bough_status (*work)(bough_arena *arena, void *self),
+                               void *self) {
     guard inner = {.outer = arena->guard};
     arena->guard = &inner;
     bough_status status = setjmp(inner.here) == 0 ? work(arena, self) : out_of_memory();

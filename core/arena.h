@@ -25,8 +25,8 @@ void bough_arena_destroy(bough_arena *arena);
 
 // Returns work(arena, self); BOUGH_OUT_OF_MEMORY as soon as memory of the arena or of its children
 // ends in it. Without any guard the process ends with exit code 1.
-bough_status bough_arena_guard(bough_arena *arena,
-                               bough_status (*work)(bough_arena *arena, void *self), void *self);
+bough_status bough_arena_guard(bough_arena *arena, bough_status (*work)(bough_arena *arena, void *self),
+                               void *self);
 
 // The same with a new arena, which is destroyed at the end.
 bough_status bough_arena_use(bough_status (*work)(bough_arena *arena, void *self), void *self);
@@ -38,7 +38,7 @@ void *bough_arena_take(bough_arena *arena, size_t size);
 double *bough_arena_doubles(bough_arena *arena, size_t count);
 
 // Several of that length, into the pointers at the addresses that follow.
-#define bough_arena_each(arena, count, ...) \
+#define bough_arena_each(arena, count, ...)                                                                  \
     bough_arena_arrays(arena, count, (double **const[]){__VA_ARGS__, NULL})
 void bough_arena_arrays(bough_arena *arena, size_t count, double **const *array);
 

@@ -20,9 +20,7 @@ void bough_arnoldi_create(bough_arena *arena, int length, int capacity, bough_ar
     for (int i = 0; i < length; i++) a->weight[i] = 1;
 }
 
-static double *vector_at(const bough_arnoldi *a, int k) {
-    return a->basis + (size_t)k * (size_t)a->length;
-}
+static double *vector_at(const bough_arnoldi *a, int k) { return a->basis + (size_t)k * (size_t)a->length; }
 
 double bough_arnoldi_product(const bough_arnoldi *a, const double *x, const double *y) {
     double sum = 0;

@@ -18,8 +18,8 @@ typedef struct bough_arnoldi {
     double *weight;  // of the inner product (length)
     double *image;   // (length) scratch
     // by bough_arnoldi_project: eigenvalues of the first `done` rows and columns of h
-    double *value;  // real parts (done), then imaginary parts
-    double *vector; // (done × done) column by column; of a complex pair real, then imaginary part
+    double *value;         // real parts (done), then imaginary parts
+    double *vector;        // (done × done) column by column; of a complex pair real, then imaginary part
     double *matrix, *work; // scratch
     // The operator: image = A z.
     bough_status (*apply)(void *self, const double *z, double *image);

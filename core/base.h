@@ -12,9 +12,7 @@
 // Doubles per SIMD lane group; arrays over vertices and segments are padded to a multiple of it.
 enum { BOUGH_LANES = 8 };
 
-static inline int bough_padded(int n) {
-    return (n + BOUGH_LANES - 1) / BOUGH_LANES * BOUGH_LANES;
-}
+static inline int bough_padded(int n) { return (n + BOUGH_LANES - 1) / BOUGH_LANES * BOUGH_LANES; }
 
 static inline bool bough_all_finite(int n, const double *x) {
     for (int i = 0; i < n; i++) {

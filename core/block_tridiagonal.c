@@ -22,13 +22,12 @@ void bough_block_tridiagonal_init(bough_block_tridiagonal *m, bough_arena *arena
 }
 
 // Entry i of Σ_k a_k b_k over the columns a_k, padding included.
-#define COLUMN_SUM(a, b, i)                                                                        \
-    ((a[i] * b[0] + a[W + (i)] * b[1]) + (a[2 * W + (i)] * b[2] + a[3 * W + (i)] * b[3]) +         \
+#define COLUMN_SUM(a, b, i)                                                                                  \
+    ((a[i] * b[0] + a[W + (i)] * b[1]) + (a[2 * W + (i)] * b[2] + a[3 * W + (i)] * b[3]) +                   \
      (a[4 * W + (i)] * b[4] + a[5 * W + (i)] * b[5]))
 
 // y −= A x; two chains of three fused operations are the shortest way through.
-static inline void subtract_matvec(const double *restrict a, const double *restrict x,
-                                   double *restrict y) {
+static inline void subtract_matvec(const double *restrict a, const double *restrict x, double *restrict y) {
 #pragma omp simd
     for (int i = 0; i < W; i++) {
         double rest = a[3 * W + i] * x[3] + a[4 * W + i] * x[4] + a[5 * W + i] * x[5];
@@ -44,8 +43,7 @@ static inline void multiply_in_place(const double *restrict a, double *restrict 
 }
 
 // c = a b
-static inline void product(const double *restrict a, const double *restrict b,
-                           double *restrict c) {
+static inline void product(const double *restrict a, const double *restrict b, double *restrict c) {
     for (int j = 0; j < 6; j++) {
         const double *restrict column = b + W * j;
 #pragma omp simd
@@ -54,8 +52,7 @@ static inline void product(const double *restrict a, const double *restrict b,
 }
 
 // c −= a b
-static inline void subtract_product(const double *restrict a, const double *restrict b,
-                                    double *restrict c) {
+static inline void subtract_product(const double *restrict a, const double *restrict b, double *restrict c) {
     for (int j = 0; j < 6; j++) subtract_matvec(a, b + W * j, c + W * j);
 }
 
@@ -63,8 +60,8 @@ static inline void subtract_product(const double *restrict a, const double *rest
 // entries: a column loaded after a store to one of its entries would wait for the store to reach the
 // cache.
 static inline bool eliminate_pivot(double *restrict a, int k) {
-    static const double unit[6][W] = {{1}, {0, 1}, {0, 0, 1}, {0, 0, 0, 1}, {0, 0, 0, 0, 1},
-                                      {0, 0, 0, 0, 0, 1}};
+    static const double unit[6][W] = {{1},          {0, 1},          {0, 0, 1},
+                                      {0, 0, 0, 1}, {0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 1}};
     double pivot = 1 / a[W * k + k], r[W];
     bool ok = isfinite(pivot) && pivot != 0; // zero: of an infinite entry
 #pragma omp simd
@@ -148,8 +145,7 @@ void bough_block_tridiagonal_solve(const bough_block_tridiagonal *m, double *x) 
     }
 }
 
-void bough_block_tridiagonal_subtract(const bough_block_tridiagonal *m, const double *x,
-                                      double *y) {
+void bough_block_tridiagonal_subtract(const bough_block_tridiagonal *m, const double *x, double *y) {
     for (int i = 0; i < m->n; i++) {
         size_t block = (size_t)i * BOUGH_BLOCK;
         double *row = y + (size_t)W * i;
@@ -159,10 +155,6 @@ void bough_block_tridiagonal_subtract(const bough_block_tridiagonal *m, const do
     }
 }
 
-void bough_block_product(const double *a, const double *b, double *c) {
-    product(a, b, c);
-}
+void bough_block_product(const double *a, const double *b, double *c) { product(a, b, c); }
 
-void bough_block_subtract(const double *a, const double *x, double *y) {
-    subtract_matvec(a, x, y);
-}
+void bough_block_subtract(const double *a, const double *x, double *y) { subtract_matvec(a, x, y); }

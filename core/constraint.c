@@ -13,9 +13,7 @@ static bough_vec3 normal_to(bough_vec3 a) {
     return unit(bough_axpy(-bough_dot(e, a), a, e));
 }
 
-static void add_translation(bough_constraint *c, bough_vec3 along) {
-    c->along[c->n_translation++] = along;
-}
+static void add_translation(bough_constraint *c, bough_vec3 along) { c->along[c->n_translation++] = along; }
 
 static void add_rotation(bough_constraint *c, bough_vec3 first, bough_vec3 second) {
     c->first[c->n_rotation] = first;
@@ -70,8 +68,7 @@ static bough_constraint_row translation(const relative *r, bough_vec3 along) {
         .value = bough_dot(along, r->d),
         .rate = bough_dot(along, r->d_rate),
         .bias = bough_dot(along, r->d_bias),
-        .wrench = {{bough_scale(-1, along), bough_cross(along, r->d)},
-                   {bough_mat3_tmul(r->e, along), none}},
+        .wrench = {{bough_scale(-1, along), bough_cross(along, r->d)}, {bough_mat3_tmul(r->e, along), none}},
     };
 }
 
@@ -92,8 +89,7 @@ static bough_constraint_row rotation(const relative *r, bough_vec3 a, bough_vec3
 void bough_constraint_rows(const bough_constraint *c, const bough_frame_motion *a,
                            const bough_frame_motion *b, bough_constraint_row *row) {
     relative r = relate(a, b);
-    for (int i = 0; i < c->n_translation; i++)
-        row[i] = translation(&r, c->along[i]);
+    for (int i = 0; i < c->n_translation; i++) row[i] = translation(&r, c->along[i]);
     for (int i = 0; i < c->n_rotation; i++)
         row[c->n_translation + i] = rotation(&r, c->first[i], c->second[i]);
 }

@@ -20,15 +20,14 @@ static bough_twist from_parent(const bough_tree_data *d, const bough_link *links
 }
 
 // They need coordinates, which only the kinematics see.
-static void joint_springs(const bough_tree *tree, const double *q, const double *v,
-                          bough_tree_data *d) {
+static void joint_springs(const bough_tree *tree, const double *q, const double *v, bough_tree_data *d) {
     d->elastic = 0;
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         if (link->n_speeds != 1) continue; // their passive force stays zero
         double energy;
-        d->passive[link->first_speed] = bough_joint_spring_force(
-            &link->spring, q[link->first_coordinate], v[link->first_speed], &energy);
+        d->passive[link->first_speed] =
+            bough_joint_spring_force(&link->spring, q[link->first_coordinate], v[link->first_speed], &energy);
         d->elastic += energy;
     }
 }
@@ -42,8 +41,7 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
         d->pose[i] = up < 0 ? d->relative[i] : bough_transform_compose(d->pose[up], d->relative[i]);
         // V_i = X_i V_λ + S v
         d->joint_twist[i] = bough_joint_twist(&link->joint, v + link->first_speed);
-        d->twist[i] =
-            bough_twist_add(from_parent(d, tree->links, i, d->twist, no_twist), d->joint_twist[i]);
+        d->twist[i] = bough_twist_add(from_parent(d, tree->links, i, d->twist, no_twist), d->joint_twist[i]);
         d->gravity[i] = bough_mat3_tmul(d->pose[i].rotation, tree->gravity);
     }
     joint_springs(tree, q, v, d);
@@ -66,15 +64,13 @@ static bough_wrench external_at(const bough_external *e, double t) {
     double dt = t - e->start;
     bough_vec3 force = bough_axpy(dt, e->curve.force, e->rate.force);
     bough_vec3 moment = bough_axpy(dt, e->curve.moment, e->rate.moment);
-    return (bough_wrench){bough_axpy(dt, force, e->value.force),
-                          bough_axpy(dt, moment, e->value.moment)};
+    return (bough_wrench){bough_axpy(dt, force, e->value.force), bough_axpy(dt, moment, e->value.moment)};
 }
 
 static void element_wrenches(const bough_tree *tree, bough_tree_data *d, int element) {
     double energy;
     bough_force_pair pair = bough_element_force(tree, d, element, &energy);
-    for (int end = 0; end < 2; end++)
-        subtract_at(d, bough_element_frame(tree, element, end), pair.on[end]);
+    for (int end = 0; end < 2; end++) subtract_at(d, bough_element_frame(tree, element, end), pair.on[end]);
 }
 
 // At the present multipliers.
@@ -99,8 +95,7 @@ bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data
 }
 
 // wrench_i = V ×* I V − I g − f_ext: what resists, without accelerations
-static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t,
-                          const double *input) {
+static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t, const double *input) {
     for (int i = 0; i < tree->n_links; i++) {
         const bough_inertia *inertia = &tree->links[i].inertia;
         bough_wrench momentum = bough_inertia_mul(inertia, d->twist[i]);
@@ -118,14 +113,12 @@ static void bias_wrenches(const bough_tree *tree, bough_tree_data *d, double t,
         const bough_external *e = &tree->external[m];
         if (e->active) subtract_at(d, &tree->markers[m], external_at(e, t));
     }
-    for (int k = 0; k < bough_tree_n_elements(tree); k++)
-        element_wrenches(tree, d, k);
+    for (int k = 0; k < bough_tree_n_elements(tree); k++) element_wrenches(tree, d, k);
     for (int k = 0; k < tree->n_applied; k++) {
         const bough_frame *marker = &tree->markers[tree->applied[k].marker];
         subtract_at(d, marker, bough_applied_force(tree, d, k, t));
     }
-    for (int c = 0; c < tree->n_closures; c++)
-        closure_wrenches(tree, d, &tree->closures[c]);
+    for (int c = 0; c < tree->n_closures; c++) closure_wrenches(tree, d, &tree->closures[c]);
 }
 
 // τ of the joints' springs and loads, into data->force
@@ -134,8 +127,7 @@ static void joint_loads(const bough_tree *tree, bough_tree_data *d, double t) {
     for (int k = 0; k < tree->n_loads; k++) {
         const bough_joint_load_def *load = &tree->loads[k];
         double factor = bough_ramp_factor(load->start, load->end, t);
-        double value = load->n > 0 ? bough_table_value(load->n, load->times, load->values, t)
-                                   : load->value;
+        double value = load->n > 0 ? bough_table_value(load->n, load->times, load->values, t) : load->value;
         d->force[tree->links[load->body].first_speed] += factor * value;
     }
 }
@@ -146,9 +138,8 @@ static double prescribed_acceleration(const bough_link *link, double t) {
 
 // -- inverse dynamics ------------------------------------------------------------------------
 
-void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, double t,
-                                 const double *input, const double *acceleration,
-                                 double *residual) {
+void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, double t, const double *input,
+                                 const double *acceleration, double *residual) {
     bias_wrenches(tree, d, t, input);
     joint_loads(tree, d, t);
     for (int i = 0; i < tree->n_links; i++) {
@@ -158,17 +149,15 @@ void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *d, dou
         double given = link->motion == NULL ? 0 : prescribed_acceleration(link, t);
         bough_twist own = bough_joint_twist(&link->joint, link->motion == NULL ? rate : &given);
         bough_twist turn = bough_twist_cross(d->twist[i], d->joint_twist[i]);
-        d->acceleration[i] = bough_twist_add(
-            from_parent(d, tree->links, i, d->acceleration, no_twist), bough_twist_add(turn, own));
-        d->wrench[i] =
-            bough_wrench_add(d->wrench[i], bough_inertia_mul(&link->inertia, d->acceleration[i]));
+        d->acceleration[i] = bough_twist_add(from_parent(d, tree->links, i, d->acceleration, no_twist),
+                                             bough_twist_add(turn, own));
+        d->wrench[i] = bough_wrench_add(d->wrench[i], bough_inertia_mul(&link->inertia, d->acceleration[i]));
     }
     for (int i = tree->n_links - 1; i >= 0; i--) {
         const bough_link *link = &tree->links[i];
         double *row = residual + link->first_speed;
         bough_joint_force(&link->joint, d->wrench[i], row); // Sᵀ f_i
-        for (int k = 0; k < link->n_speeds; k++)
-            row[k] -= d->force[link->first_speed + k];
+        for (int k = 0; k < link->n_speeds; k++) row[k] -= d->force[link->first_speed + k];
         if (link->motion != NULL) {
             d->drive[link->first_speed] = row[0];
             row[0] = acceleration[link->first_speed] - prescribed_acceleration(link, t);
@@ -186,8 +175,7 @@ static bough_wrench matrix_mul(const double *a, bough_twist v) {
     bough_twist_store(v, x);
     for (int r = 0; r < N; r++) {
         y[r] = 0;
-        for (int c = 0; c < N; c++)
-            y[r] += a[N * r + c] * x[c];
+        for (int c = 0; c < N; c++) y[r] += a[N * r + c] * x[c];
     }
     return bough_wrench_load(y);
 }
@@ -205,8 +193,7 @@ static void add_to_parent(const bough_transform *x, const double *a, double *up)
         double column[N];
         bough_wrench w = matrix_mul(a, bough_twist_to_child(x, bough_twist_unit(k)));
         bough_wrench_store(bough_wrench_to_parent(x, w), column);
-        for (int r = 0; r < N; r++)
-            up[N * k + r] += column[r];
+        for (int r = 0; r < N; r++) up[N * k + r] += column[r];
     }
 }
 
@@ -214,14 +201,12 @@ static void add_to_parent(const bough_transform *x, const double *a, double *up)
 static bool moves_inertia(const double *articulated, bough_twist column, double moved) {
     int first = bough_norm(column.angular) > 0 ? 3 : 0;
     double trace = 0;
-    for (int r = first; r < first + 3; r++)
-        trace += articulated[N * r + r];
+    for (int r = first; r < first + 3; r++) trace += articulated[N * r + r];
     return moved > 1e-14 * trace;
 }
 
 // U = Iᴬ S, D = Sᵀ U and its Cholesky factor
-static bool factor_joint(const bough_link *link, const double *articulated, double *gain,
-                         double *factor) {
+static bool factor_joint(const bough_link *link, const double *articulated, double *gain, double *factor) {
     int n = link->n_speeds;
     for (int k = 0; k < n; k++) {
         bough_twist column = bough_joint_column(&link->joint, k);
@@ -239,12 +224,10 @@ static void release_joint(const bough_link *link, const double *gain, const doub
     int n = link->n_speeds;
     for (int c = 0; c < N; c++) {
         double x[N];
-        for (int k = 0; k < n; k++)
-            x[k] = gain[N * k + c];
+        for (int k = 0; k < n; k++) x[k] = gain[N * k + c];
         bough_cholesky_solve(n, factor, x);
         for (int k = 0; k < n; k++) {
-            for (int r = 0; r < N; r++)
-                articulated[N * r + c] -= gain[N * k + r] * x[k];
+            for (int r = 0; r < N; r++) articulated[N * r + c] -= gain[N * k + r] * x[k];
         }
     }
 }
@@ -256,8 +239,7 @@ static bough_wrench gain_solve(const bough_link *link, const double *gain, const
     memcpy(x, u, (size_t)link->n_speeds * sizeof(double));
     bough_cholesky_solve(link->n_speeds, factor, x);
     for (int k = 0; k < link->n_speeds; k++) {
-        for (int r = 0; r < N; r++)
-            w[r] += gain[N * k + r] * x[k];
+        for (int r = 0; r < N; r++) w[r] += gain[N * k + r] * x[k];
     }
     return bough_wrench_load(w);
 }
@@ -266,8 +248,7 @@ static bough_wrench gain_solve(const bough_link *link, const double *gain, const
 static double *joint_remainder(const bough_link *link, bough_tree_data *d, int i) {
     double *u = d->force + link->first_speed, resisting[N];
     bough_joint_force(&link->joint, d->wrench[i], resisting);
-    for (int k = 0; k < link->n_speeds; k++)
-        u[k] -= resisting[k];
+    for (int k = 0; k < link->n_speeds; k++) u[k] -= resisting[k];
     return u;
 }
 
@@ -295,13 +276,12 @@ static bough_wrench pass_down(const bough_link *link, bough_tree_data *d, int i,
     }
     double *u = joint_remainder(link, d, i);
     release_joint(link, gain, factor, own);
-    return bough_wrench_add(d->wrench[i], bough_wrench_add(matrix_mul(own, turn),
-                                                           gain_solve(link, gain, factor, u)));
+    return bough_wrench_add(d->wrench[i],
+                            bough_wrench_add(matrix_mul(own, turn), gain_solve(link, gain, factor, u)));
 }
 
 // A = a' + S v̇ with v̇ as given, and what drives the joint
-static void follow(const bough_link *link, bough_tree_data *d, int i, bough_twist arriving,
-                   double given) {
+static void follow(const bough_link *link, bough_tree_data *d, int i, bough_twist arriving, double given) {
     double needed[N];
     d->acceleration[i] = bough_twist_add(arriving, bough_joint_twist(&link->joint, &given));
     bough_wrench inertial = matrix_mul(d->articulated + NN * i, d->acceleration[i]);
@@ -309,8 +289,8 @@ static void follow(const bough_link *link, bough_tree_data *d, int i, bough_twis
     d->drive[link->first_speed] = needed[0] - d->force[link->first_speed];
 }
 
-bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double t,
-                              const double *input, double *acceleration) {
+bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double t, const double *input,
+                              double *acceleration) {
     bias_wrenches(tree, d, t, input);
     joint_loads(tree, d, t);
     d->singular = -1;
@@ -349,13 +329,12 @@ bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *d, double
     return true;
 }
 
-void bough_tree_free_response(const bough_tree *tree, bough_tree_data *d,
-                              const bough_frame *frame, bough_wrench wrench, double *change) {
+void bough_tree_free_response(const bough_tree *tree, bough_tree_data *d, const bough_frame *frame,
+                              bough_wrench wrench, double *change) {
     memset(change, 0, (size_t)tree->n_v * sizeof(double));
     if (frame->link < 0) return;
     memset(d->force, 0, (size_t)tree->n_v * sizeof(double));
-    for (int i = 0; i < tree->n_links; i++)
-        d->wrench[i] = no_wrench;
+    for (int i = 0; i < tree->n_links; i++) d->wrench[i] = no_wrench;
     subtract_at(d, frame, wrench);
     for (int i = frame->link; i >= 0; i = tree->links[i].parent) { // only ancestors feel it
         const bough_link *link = &tree->links[i];
@@ -383,8 +362,8 @@ void bough_tree_free_response(const bough_tree *tree, bough_tree_data *d,
 void bough_tree_coordinate_rate(const bough_tree *tree, const double *state, double *rate) {
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
-        bough_joint_rate(&link->joint, state + link->first_coordinate,
-                         state + tree->n_q + link->first_speed, rate + link->first_coordinate);
+        bough_joint_rate(&link->joint, state + link->first_coordinate, state + tree->n_q + link->first_speed,
+                         rate + link->first_coordinate);
     }
 }
 
@@ -394,15 +373,13 @@ void bough_tree_tangent(const bough_tree *tree, const double *state, const doubl
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         double eta[N];
-        bough_joint_speed(&link->joint, state + link->first_coordinate,
-                          change + link->first_coordinate, eta);
+        bough_joint_speed(&link->joint, state + link->first_coordinate, change + link->first_coordinate, eta);
         bough_twist moved = bough_joint_twist(&link->joint, eta);
         bough_twist own = bough_joint_twist(&link->joint, dv + link->first_speed);
         bough_twist carried = from_parent(d, tree->links, i, d->twist, no_twist);
         // δV_i = X δV_λ + (X V_λ) × S δη + S δv
-        d->acceleration[i] =
-            bough_twist_add(from_parent(d, tree->links, i, d->acceleration, no_twist),
-                            bough_twist_add(bough_twist_cross(carried, moved), own));
+        d->acceleration[i] = bough_twist_add(from_parent(d, tree->links, i, d->acceleration, no_twist),
+                                             bough_twist_add(bough_twist_cross(carried, moved), own));
         bough_vec3 above = link->parent < 0 ? no_twist.linear : d->turn[link->parent];
         d->turn[i] = bough_add(bough_mat3_tmul(d->relative[i].rotation, above), moved.angular);
     }

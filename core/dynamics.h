@@ -18,14 +18,14 @@ void bough_tree_kinematics(const bough_tree *tree, const double *state, bough_tr
 // ports and ends (6 each) or NULL for none: springs, joint loads, these and external wrenches are
 // within τ and h. Of a prescribed joint it is v̇ − a(t), the others are under a(t); data->drive is
 // set.
-void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
-                                 const double *input, const double *acceleration, double *residual);
+void bough_tree_inverse_dynamics(const bough_tree *tree, bough_tree_data *data, double t, const double *input,
+                                 const double *acceleration, double *residual);
 
 // acceleration v̇ (n_v) that makes the residual zero, by articulated bodies, as if all closures were
 // cut open and the tree moved under their wrenches, whose multipliers stand in data->loops. False
 // when a joint moves no inertia. Leaves the links' accelerations, the factors and `drive` in data.
-bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
-                              const double *input, double *acceleration);
+bool bough_tree_free_dynamics(const bough_tree *tree, bough_tree_data *data, double t, const double *input,
+                              double *acceleration);
 
 // The wrench on an end in its body's axes, from the six inputs of the end.
 bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data *data, int end,
@@ -33,8 +33,8 @@ bough_wrench bough_tree_end_wrench(const bough_tree *tree, const bough_tree_data
 
 // change (n_v) of v̇ by a wrench at a frame of the tree, in frame axes, without closures. Uses the
 // factors of the last bough_tree_free_dynamics. Leaves the change of the links' accelerations in data.
-void bough_tree_free_response(const bough_tree *tree, bough_tree_data *data,
-                              const bough_frame *frame, bough_wrench wrench, double *change);
+void bough_tree_free_response(const bough_tree *tree, bough_tree_data *data, const bough_frame *frame,
+                              bough_wrench wrench, double *change);
 
 // q̇ = N(q) v for the whole state: rate (n_q)
 void bough_tree_coordinate_rate(const bough_tree *tree, const double *state, double *rate);

@@ -151,8 +151,10 @@ bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator 
     int *chosen = s.order + capacity;
     start(&s);
     if (!iterate(&s, wanted, chosen, found)) {
-        return bough_fail(BOUGH_FAILED, "%s: the %d lowest eigenvalues were not found to %g; ask"
-                          " for fewer", op->name, wanted, accuracy);
+        return bough_fail(BOUGH_FAILED,
+                          "%s: the %d lowest eigenvalues were not found to %g; ask"
+                          " for fewer",
+                          op->name, wanted, accuracy);
     }
     take_shapes(arena, op->n_shape, pair, *found);
     for (int i = 0; i < *found; i++) fill_pair(&s, chosen[i], &pair[i]);
@@ -164,8 +166,7 @@ bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator 
 // y −= M x
 static void subtract_mass(const bough_eigen_problem *problem, const double *x, double *y) {
     for (int i = 0; i < problem->stiffness->n; i++) {
-        bough_block_subtract(problem->mass + (size_t)i * BOUGH_BLOCK, x + (size_t)W8 * i,
-                             y + (size_t)W8 * i);
+        bough_block_subtract(problem->mass + (size_t)i * BOUGH_BLOCK, x + (size_t)W8 * i, y + (size_t)W8 * i);
     }
 }
 
@@ -180,8 +181,8 @@ static void apply_inverse(void *self, const double *z, double *image) {
     memcpy(image + half, z, half * sizeof *image);
 }
 
-bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem *problem,
-                                  int wanted, bough_eigen_pair *pair, int *found) {
+bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem *problem, int wanted,
+                                  bough_eigen_pair *pair, int *found) {
     int half = W8 * problem->stiffness->n;
     bough_eigen_problem self = *problem;
     bough_eigen_operator op = {.name = problem->name,
@@ -192,8 +193,10 @@ bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem 
                                .self = &self,
                                .apply = apply_inverse};
     if (!bough_block_tridiagonal_factor(problem->stiffness)) {
-        return bough_fail(BOUGH_FAILED, "%s: the stiffness about the equilibrium is singular: it"
-                          " stands at a buckling load; change the load", problem->name);
+        return bough_fail(BOUGH_FAILED,
+                          "%s: the stiffness about the equilibrium is singular: it"
+                          " stands at a buckling load; change the load",
+                          problem->name);
     }
     for (int i = 0; i < half; i++) {
         int c = i % W8;

@@ -37,15 +37,15 @@ bough_status bough_eigen_nearest(bough_arena *arena, const bough_eigen_operator 
 // with 6×6 blocks, M block diagonal, C and K block tridiagonal, so that the inverse costs one O(n)
 // solution with K's factors.
 typedef struct bough_eigen_problem {
-    const char *name;                     // for messages
-    const double *mass;                   // M (n × block)
+    const char *name;                       // for messages
+    const double *mass;                     // M (n × block)
     const bough_block_tridiagonal *damping; // C
-    bough_block_tridiagonal *stiffness;   // K, factored in place
+    bough_block_tridiagonal *stiffness;     // K, factored in place
 } bough_eigen_problem;
 
 // The pairs of smallest modulus, shapes q (n × 8). BOUGH_FAILED when K is singular or the iteration
 // does not converge.
-bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem *problem,
-                                  int wanted, bough_eigen_pair *pair, int *found);
+bough_status bough_eigen_smallest(bough_arena *arena, const bough_eigen_problem *problem, int wanted,
+                                  bough_eigen_pair *pair, int *found);
 
 #endif

@@ -16,9 +16,7 @@ typedef struct stretch {
     double length, tension;
 } stretch;
 
-static v3 velocity(const stretch *x, int end) {
-    return bough_mat3_mul(x->r[end], x->v[end].linear);
-}
+static v3 velocity(const stretch *x, int end) { return bough_mat3_mul(x->r[end], x->v[end].linear); }
 
 static stretch stretch_of(const bough_tree *tree, const bough_tree_data *d, int spring) {
     const bough_spring_def *s = &tree->springs[spring];
@@ -39,8 +37,8 @@ static stretch stretch_of(const bough_tree *tree, const bough_tree_data *d, int 
     return x;
 }
 
-double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, int spring,
-                         double *tension, bough_vec3 *direction) {
+double bough_tree_spring(const bough_tree *tree, const bough_tree_data *data, int spring, double *tension,
+                         bough_vec3 *direction) {
     stretch x = stretch_of(tree, data, spring);
     *tension = x.tension;
     *direction = x.n;
@@ -75,16 +73,14 @@ static bough_force_pair spring_change(const bough_tree *tree, const bough_tree_d
     v3 dx = bough_sub(moved[1], moved[0]), dv = bough_sub(sped[1], sped[0]);
     double dl = bough_dot(x.n, dx), inverse = x.length > 0 ? 1 / x.length : 0;
     v3 dn = bough_scale(inverse, bough_axpy(-dl, x.n, dx));
-    double dt = s->stiffness * dl +
-                s->damping * (bough_dot(dn, x.rate) + bough_dot(x.n, dv));
+    double dt = s->stiffness * dl + s->damping * (bough_dot(dn, x.rate) + bough_dot(x.n, dv));
     v3 f = bough_scale(x.tension, x.n);
     v3 df = bough_add(bough_scale(dt, x.n), bough_scale(x.tension, dn));
     bough_force_pair change;
     for (int end = 0; end < 2; end++) { // δ(Rᵀf) = Rᵀδf + Rᵀf × δ
         bough_wrench own = pull(&x, end, f);
         change.on[end] = pull(&x, end, df);
-        change.on[end].force =
-            bough_add(change.on[end].force, bough_cross(own.force, shift[end].angular));
+        change.on[end].force = bough_add(change.on[end].force, bough_cross(own.force, shift[end].angular));
     }
     return change;
 }
@@ -99,8 +95,7 @@ typedef struct relative {
     v3 v_second, w_second, w_own; // velocities of the second, angular velocity of the first
 } relative;
 
-static relative relative_of(const bough_tree *tree, const bough_tree_data *d,
-                            const bough_bushing_def *b) {
+static relative relative_of(const bough_tree *tree, const bough_tree_data *d, const bough_bushing_def *b) {
     const bough_frame *first = &tree->markers[b->marker[0]], *second = &tree->markers[b->marker[1]];
     bough_transform back = bough_transform_inverse(bough_tree_frame_pose(d, first));
     bough_transform pose = bough_transform_compose(back, bough_tree_frame_pose(d, second));
@@ -150,9 +145,8 @@ static bough_force_pair bushing_force(const bough_tree *tree, const bough_tree_d
     *energy = 0.5 * (bough_dot(x.d, scaled(b->stiffness, x.d)) +
                      bough_dot(x.theta, scaled(b->stiffness + 3, x.theta)));
     v3 moment = bough_add(w.moment, bough_cross(x.d, w.force));
-    return (bough_force_pair){
-        {{bough_scale(-1, w.force), bough_scale(-1, moment)},
-         {bough_mat3_tmul(x.r, w.force), bough_mat3_tmul(x.r, w.moment)}}};
+    return (bough_force_pair){{{bough_scale(-1, w.force), bough_scale(-1, moment)},
+                               {bough_mat3_tmul(x.r, w.force), bough_mat3_tmul(x.r, w.moment)}}};
 }
 
 // δ of the elastic moment along δθ
@@ -186,13 +180,11 @@ static bough_force_pair bushing_change(const bough_tree *tree, const bough_tree_
     dv = bough_sub(dv, bough_add(rate[0].linear, bough_cross(rate[0].angular, x.d)));
     dv = bough_sub(dv, bough_cross(x.w_own, dd));
     v3 df = bough_scale(-1, bough_add(scaled(b->stiffness, dd), scaled(b->damping, dv)));
-    v3 dm = bough_scale(-1, bough_add(moment_change(b, x.theta, dtheta),
-                                      scaled(b->damping + 3, domega)));
+    v3 dm = bough_scale(-1, bough_add(moment_change(b, x.theta, dtheta), scaled(b->damping + 3, domega)));
     v3 arm = bough_add(bough_cross(dd, w.force), bough_cross(x.d, df));
-    return (bough_force_pair){
-        {{bough_scale(-1, df), bough_scale(-1, bough_add(dm, arm))},
-         {bough_mat3_tmul(x.r, bough_sub(df, bough_cross(turn, w.force))),
-          bough_mat3_tmul(x.r, bough_sub(dm, bough_cross(turn, w.moment)))}}};
+    return (bough_force_pair){{{bough_scale(-1, df), bough_scale(-1, bough_add(dm, arm))},
+                               {bough_mat3_tmul(x.r, bough_sub(df, bough_cross(turn, w.force))),
+                                bough_mat3_tmul(x.r, bough_sub(dm, bough_cross(turn, w.moment)))}}};
 }
 
 // -- elements ------------------------------------------------------------------------------------
@@ -203,19 +195,17 @@ static const bough_bushing_def *bushing(const bough_tree *tree, int element) {
 
 const bough_frame *bough_element_frame(const bough_tree *tree, int element, int end) {
     bool spring = element < tree->n_springs;
-    return &tree->markers[spring ? tree->springs[element].marker[end]
-                                 : bushing(tree, element)->marker[end]];
+    return &tree->markers[spring ? tree->springs[element].marker[end] : bushing(tree, element)->marker[end]];
 }
 
-bough_force_pair bough_element_force(const bough_tree *tree, const bough_tree_data *data,
-                                     int element, double *energy) {
+bough_force_pair bough_element_force(const bough_tree *tree, const bough_tree_data *data, int element,
+                                     double *energy) {
     if (element < tree->n_springs) return spring_force(tree, data, element, energy);
     return bushing_force(tree, data, bushing(tree, element), energy);
 }
 
-bough_force_pair bough_element_change(const bough_tree *tree, const bough_tree_data *data,
-                                      int element, const bough_twist shift[2],
-                                      const bough_twist rate[2]) {
+bough_force_pair bough_element_change(const bough_tree *tree, const bough_tree_data *data, int element,
+                                      const bough_twist shift[2], const bough_twist rate[2]) {
     if (element < tree->n_springs) return spring_change(tree, data, element, shift, rate);
     return bushing_change(tree, data, bushing(tree, element), shift, rate);
 }
@@ -233,28 +223,29 @@ double bough_table_value(int n, const double *times, const double *values, doubl
     if (t >= times[high]) return values[high];
     while (high - low > 1) {
         int middle = (low + high) / 2;
-        if (t < times[middle]) high = middle;
-        else low = middle;
+        if (t < times[middle]) {
+            high = middle;
+        } else {
+            low = middle;
+        }
     }
     double f = (t - times[low]) / (times[high] - times[low]);
     return (1 - f) * values[low] + f * values[high];
 }
 
-bough_wrench bough_applied_force(const bough_tree *tree, const bough_tree_data *data, int k,
-                                 double t) {
+bough_wrench bough_applied_force(const bough_tree *tree, const bough_tree_data *data, int k, double t) {
     const bough_applied_def *a = &tree->applied[k];
-    double factor = a->n > 0 ? bough_table_value(a->n, a->times, a->values, t)
-                             : bough_ramp_factor(a->start, a->end, t);
+    double factor =
+        a->n > 0 ? bough_table_value(a->n, a->times, a->values, t) : bough_ramp_factor(a->start, a->end, t);
     bough_wrench w = {bough_scale(factor, a->wrench.force), bough_scale(factor, a->wrench.moment)};
     if (!a->ground) return w;
     bough_mat3 r = bough_tree_frame_pose(data, &tree->markers[a->marker]).rotation;
     return (bough_wrench){bough_mat3_tmul(r, w.force), bough_mat3_tmul(r, w.moment)};
 }
 
-bough_wrench bough_applied_change(const bough_tree *tree, const bough_tree_data *data, int k,
-                                  double t, bough_twist shift) {
+bough_wrench bough_applied_change(const bough_tree *tree, const bough_tree_data *data, int k, double t,
+                                  bough_twist shift) {
     bough_wrench w = bough_applied_force(tree, data, k, t);
     if (!tree->applied[k].ground) return (bough_wrench){{0, 0, 0}, {0, 0, 0}};
-    return (bough_wrench){bough_cross(w.force, shift.angular),
-                          bough_cross(w.moment, shift.angular)};
+    return (bough_wrench){bough_cross(w.force, shift.angular), bough_cross(w.moment, shift.angular)};
 }

@@ -22,8 +22,7 @@ static bool is_readable(int file, int64_t most, char *reason) {
                  S_ISFIFO(info.st_mode) ? "pipe" : "device");
     } else if (info.st_size > most) {
         errno = EFBIG;
-        snprintf(reason, BOUGH_INPUT_REASON, "the file is larger than %lld MB",
-                 (long long)(most >> 20));
+        snprintf(reason, BOUGH_INPUT_REASON, "the file is larger than %lld MB", (long long)(most >> 20));
     }
     return errno == 0;
 }
@@ -60,7 +59,8 @@ char *bough_input_read(bough_arena *arena, const char *path, int64_t most, size_
     errno = 0;
     *size = fread(bytes, 1, expected + 1, stream);
     bool whole = end >= 0 && !ferror(stream) && *size <= expected;
-    if (!whole) snprintf(reason, BOUGH_INPUT_REASON, "%s", errno ? strerror(errno) : "it grows while it is read");
+    if (!whole)
+        snprintf(reason, BOUGH_INPUT_REASON, "%s", errno ? strerror(errno) : "it grows while it is read");
     bytes[whole ? *size : 0] = '\0';
     bough_arena_destroy(own);
     return whole ? bytes : NULL;

@@ -18,7 +18,8 @@ enum { BOUGH_INPUT_REASON = 96 };
 // errno as of open(2), EISDIR, EINVAL for anything else that is no plain file, EFBIG.
 FILE *bough_input_open(const char *path, int64_t most, char reason[BOUGH_INPUT_REASON]);
 
-// The same file as a whole, *size bytes and a NUL behind them, in the arena's memory; NULL: `reason` as above.
+// The same file as a whole, *size bytes and a NUL behind them, in the arena's memory; NULL: `reason` as
+// above.
 char *bough_input_read(bough_arena *arena, const char *path, int64_t most, size_t *size,
                        char reason[BOUGH_INPUT_REASON]);
 

@@ -127,8 +127,7 @@ static void quaternion_rate(const double *p, const double *omega, double *rate) 
 
 // Ω = 2 vec(p̄∘δp)/|p|²
 static void quaternion_speed(const double *p, const double *change, double *omega) {
-    bough_quaternion c =
-        bough_quaternion_product(bough_quaternion_conjugate(load(p)), load(change));
+    bough_quaternion c = bough_quaternion_product(bough_quaternion_conjugate(load(p)), load(change));
     double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3];
     bough_v3_store(bough_scale(2 / square, bough_v3(c.x, c.y, c.z)), omega);
 }
@@ -178,8 +177,7 @@ static void quaternion_change(const double *p, const double *omega, double c, co
                               const double *omega_change, double *change) {
     double rate[4], square = 0;
     quaternion_rate(p, omega_change, rate);
-    for (int k = 0; k < 3; k++)
-        square += omega[k] * omega[k];
+    for (int k = 0; k < 3; k++) square += omega[k] * omega[k];
     double f = 1 / (c * c + 0.25 * square);
     bough_quaternion side = {r[0] + rate[0], r[1] + rate[1], r[2] + rate[2], r[3] + rate[3]};
     bough_quaternion inverse = {f * c, 0.5 * f * omega[0], 0.5 * f * omega[1], 0.5 * f * omega[2]};
@@ -204,13 +202,12 @@ static void planar_change(const double *q, const double *v, double c, const doub
     double angle = (r[2] + speed_change[2]) / c;
     const double own[3] = {speed_change[0] - angle * v[1], speed_change[1] + angle * v[0], 0};
     turn_plane(q[2], own, change);
-    for (int k = 0; k < 2; k++)
-        change[k] = (r[k] + change[k]) / c;
+    for (int k = 0; k < 2; k++) change[k] = (r[k] + change[k]) / c;
     change[2] = angle;
 }
 
-void bough_joint_change(const bough_joint *joint, const double *q, const double *v, double c,
-                        const double *r, const double *speed_change, double *change) {
+void bough_joint_change(const bough_joint *joint, const double *q, const double *v, double c, const double *r,
+                        const double *speed_change, double *change) {
     switch (joint->kind) {
     case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
     case BOUGH_JOINT_FIXED: break;
@@ -250,8 +247,7 @@ static double stop_force(double k, double w, double p, double *energy) {
     return k * (p - 0.5 * w);
 }
 
-double bough_joint_spring_force(const bough_joint_spring *spring, double q, double v,
-                                double *energy) {
+double bough_joint_spring_force(const bough_joint_spring *spring, double q, double v, double *energy) {
     double stretch = q - spring->rest, k = spring->stop_stiffness;
     double force = -spring->stiffness * stretch - spring->damping * v;
     *energy = 0.5 * spring->stiffness * stretch * stretch;
@@ -261,13 +257,10 @@ double bough_joint_spring_force(const bough_joint_spring *spring, double q, doub
     return force - stop_force(k, width, q - spring->high, energy);
 }
 
-static double stop_slope(double k, double w, double p) {
-    return p <= 0 ? 0 : p < w ? k * p / w : k;
-}
+static double stop_slope(double k, double w, double p) { return p <= 0 ? 0 : p < w ? k * p / w : k; }
 
 double bough_joint_spring_stiffness(const bough_joint_spring *spring, double q) {
     double k = spring->stop_stiffness, width = 0.01 * (spring->high - spring->low);
     if (k == 0) return spring->stiffness;
-    return spring->stiffness + stop_slope(k, width, spring->low - q) +
-           stop_slope(k, width, q - spring->high);
+    return spring->stiffness + stop_slope(k, width, spring->low - q) + stop_slope(k, width, q - spring->high);
 }

@@ -52,8 +52,7 @@ typedef struct bough_joint_spring {
 } bough_joint_spring;
 
 // The generalised force at coordinate q and speed v, and the energy stored [J].
-double bough_joint_spring_force(const bough_joint_spring *spring, double q, double v,
-                                double *energy);
+double bough_joint_spring_force(const bough_joint_spring *spring, double q, double v, double *energy);
 
 // −∂force/∂q
 double bough_joint_spring_stiffness(const bough_joint_spring *spring, double q);
@@ -90,8 +89,8 @@ void bough_joint_speed(const bough_joint *joint, const double *q, const double *
 
 // The change δq of the coordinates that solves c δq − δ(N(q) v) = r, where q and v change: r
 // (n_coordinates), the change of v (n_speeds).
-void bough_joint_change(const bough_joint *joint, const double *q, const double *v, double c,
-                        const double *r, const double *speed_change, double *change);
+void bough_joint_change(const bough_joint *joint, const double *q, const double *v, double c, const double *r,
+                        const double *speed_change, double *change);
 
 // Scales the quaternion, if there is one, to |p| = 1 within 1e-15. Doing it again changes no bit.
 void bough_joint_normalise(const bough_joint *joint, double *q);

@@ -13,26 +13,22 @@ extern void dgetrs_(const char *trans, const int *n, const int *nrhs, const doub
 extern void dgbsv_(const int *n, const int *below, const int *above, const int *nrhs, double *a,
                    const int *lda, int *pivot, double *b, const int *ldb, int *info);
 extern void dgemm_(const char *transa, const char *transb, const int *m, const int *n, const int *k,
-                   const double *alpha, const double *a, const int *lda, const double *b,
-                   const int *ldb, const double *beta, double *c, const int *ldc,
-                   size_t transa_length, size_t transb_length);
+                   const double *alpha, const double *a, const int *lda, const double *b, const int *ldb,
+                   const double *beta, double *c, const int *ldc, size_t transa_length, size_t transb_length);
 extern void zgetrf_(const int *m, const int *n, double *a, const int *lda, int *pivot, int *info);
-extern void zgetrs_(const char *trans, const int *n, const int *nrhs, const double *a,
-                    const int *lda, const int *pivot, double *b, const int *ldb, int *info,
-                    size_t trans_length);
-extern void dgeev_(const char *left, const char *right, const int *n, double *a, const int *lda,
-                   double *real, double *imaginary, double *vl, const int *ldvl, double *vr,
-                   const int *ldvr, double *work, const int *lwork, int *info, size_t left_length,
-                   size_t right_length);
-extern void dsyev_(const char *vectors, const char *triangle, const int *n, double *a,
-                   const int *lda, double *value, double *work, const int *lwork, int *info,
-                   size_t vectors_length, size_t triangle_length);
+extern void zgetrs_(const char *trans, const int *n, const int *nrhs, const double *a, const int *lda,
+                    const int *pivot, double *b, const int *ldb, int *info, size_t trans_length);
+extern void dgeev_(const char *left, const char *right, const int *n, double *a, const int *lda, double *real,
+                   double *imaginary, double *vl, const int *ldvl, double *vr, const int *ldvr, double *work,
+                   const int *lwork, int *info, size_t left_length, size_t right_length);
+extern void dsyev_(const char *vectors, const char *triangle, const int *n, double *a, const int *lda,
+                   double *value, double *work, const int *lwork, int *info, size_t vectors_length,
+                   size_t triangle_length);
 extern void dsyevr_(const char *job, const char *range, const char *uplo, const int *n, double *a,
-                    const int *lda, const double *low, const double *high, const int *first,
-                    const int *last, const double *tolerance, int *found, double *value,
-                    double *vector, const int *ldz, int *support, double *work, const int *lwork,
-                    int *iwork, const int *liwork, int *info, size_t job_length,
-                    size_t range_length, size_t uplo_length);
+                    const int *lda, const double *low, const double *high, const int *first, const int *last,
+                    const double *tolerance, int *found, double *value, double *vector, const int *ldz,
+                    int *support, double *work, const int *lwork, int *iwork, const int *liwork, int *info,
+                    size_t job_length, size_t range_length, size_t uplo_length);
 extern void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int *info,
                     size_t triangle_length);
 // Only OpenBLAS has these; other libraries leave the symbols null.
@@ -53,8 +49,7 @@ static void prepare(void) {
 // A NaN may pass LAPACK's pivot search.
 static bool all_finite(size_t count, const double *a) {
     double sum = 0;
-    for (size_t i = 0; i < count; i++)
-        sum += fabs(a[i]);
+    for (size_t i = 0; i < count; i++) sum += fabs(a[i]);
     return isfinite(sum);
 }
 
@@ -130,9 +125,7 @@ static void take_rooms(int rooms) {
 // The rooms are the process's, and so are these counts.
 static atomic_int users, rooms_taken;
 
-static void leave(void *threads) {
-    atomic_fetch_sub(&users, *(int *)threads);
-}
+static void leave(void *threads) { atomic_fetch_sub(&users, *(int *)threads); }
 
 void bough_linalg_room(bough_arena *arena, int threads) {
     int *own = bough_arena_take(arena, sizeof *own);
@@ -190,8 +183,7 @@ static void solve_small_transposed(int n, const double *factor, const int *pivot
     }
 }
 
-void bough_dense_solve_transposed(int n, int n_right, const double *factor, const int *pivot,
-                                  double *b) {
+void bough_dense_solve_transposed(int n, int n_right, const double *factor, const int *pivot, double *b) {
     if (n == 0 || n_right == 0) return;
     if (n <= SMALL) {
         for (int j = 0; j < n_right; j++) solve_small_transposed(n, factor, pivot, b + j * n);
@@ -205,8 +197,8 @@ void bough_dense_product(bough_product p, const double *a, const double *b, doub
     if (p.m == 0 || p.n == 0) return;
     prepare();
     int inner = p.k > 0 ? p.k : 1; // rows of b
-    dgemm_(p.transposed ? "T" : "N", "N", &p.m, &p.n, &p.k, &p.share, a,
-           p.transposed ? &inner : &p.m, b, &inner, &p.keep, c, &p.m, 1, 1);
+    dgemm_(p.transposed ? "T" : "N", "N", &p.m, &p.n, &p.k, &p.share, a, p.transposed ? &inner : &p.m, b,
+           &inner, &p.keep, c, &p.m, 1, 1);
 }
 
 bool bough_complex_factor(int n, double *a, int *pivot) {
@@ -229,8 +221,7 @@ bool bough_dense_eigen(int n, double *a, double *value, double *vector, double *
     prepare();
     if (!finite_matrix(n, a)) return false;
     int info = 0, one = 1, n_work = 8 * n;
-    dgeev_("N", "V", &n, a, &n, value, value + n, NULL, &one, vector, &n, work, &n_work, &info, 1,
-           1);
+    dgeev_("N", "V", &n, a, &n, value, value + n, NULL, &one, vector, &n, work, &n_work, &info, 1, 1);
     return info == 0;
 }
 
@@ -243,29 +234,27 @@ bool bough_symmetric_eigen(int n, double *a, double *value, double *work) {
     return info == 0;
 }
 
-bool bough_symmetric_smallest(int n, double *a, int count, double *value, double *vector,
-                              double *work, int *index) {
+bool bough_symmetric_smallest(int n, double *a, int count, double *value, double *vector, double *work,
+                              int *index) {
     if (n == 0 || count == 0) return true;
     prepare();
     if (!finite_matrix(n, a)) return false;
     int info = 0, one = 1, found = 0, n_work = 26 * n, n_index = 10 * n;
     double none = 0;
-    dsyevr_("V", "I", "L", &n, a, &n, &none, &none, &one, &count, &none, &found, value, vector, &n,
-            index, work, &n_work, index + 2 * n, &n_index, &info, 1, 1, 1);
+    dsyevr_("V", "I", "L", &n, a, &n, &none, &none, &one, &count, &none, &found, value, vector, &n, index,
+            work, &n_work, index + 2 * n, &n_index, &info, 1, 1, 1);
     return info == 0 && found == count;
 }
 
 bool bough_cholesky_factor(int n, double *a) {
     for (int j = 0; j < n; j++) {
         double diagonal = a[n * j + j], pivot = diagonal;
-        for (int k = 0; k < j; k++)
-            pivot -= a[n * j + k] * a[n * j + k];
+        for (int k = 0; k < j; k++) pivot -= a[n * j + k] * a[n * j + k];
         if (!(pivot > 1e-12 * diagonal) || !isfinite(pivot)) return false;
         a[n * j + j] = sqrt(pivot);
         for (int i = j + 1; i < n; i++) {
             double s = a[n * i + j];
-            for (int k = 0; k < j; k++)
-                s -= a[n * i + k] * a[n * j + k];
+            for (int k = 0; k < j; k++) s -= a[n * i + k] * a[n * j + k];
             a[n * i + j] = s / a[n * j + j];
         }
     }
@@ -283,13 +272,11 @@ bool bough_cholesky_lower(int n, double *a) {
 
 void bough_cholesky_solve(int n, const double *factor, double *b) {
     for (int i = 0; i < n; i++) {
-        for (int k = 0; k < i; k++)
-            b[i] -= factor[n * i + k] * b[k];
+        for (int k = 0; k < i; k++) b[i] -= factor[n * i + k] * b[k];
         b[i] /= factor[n * i + i];
     }
     for (int i = n - 1; i >= 0; i--) {
-        for (int k = i + 1; k < n; k++)
-            b[i] -= factor[n * k + i] * b[k];
+        for (int k = i + 1; k < n; k++) b[i] -= factor[n * k + i] * b[k];
         b[i] /= factor[n * i + i];
     }
 }

@@ -25,8 +25,7 @@ bool bough_band_solve(int n, int width, double *a, int *pivot, double *b);
 void bough_dense_solve(int n, int n_right, const double *factor, const int *pivot, double *b);
 
 // Solves aᵀ x = b in place with them.
-void bough_dense_solve_transposed(int n, int n_right, const double *factor, const int *pivot,
-                                  double *b);
+void bough_dense_solve_transposed(int n, int n_right, const double *factor, const int *pivot, double *b);
 
 // c ← share a b + keep c, all column-major: a (m × k), or its transpose where a is given (k × m), b (k × n),
 // c (m × n).
@@ -56,8 +55,8 @@ bool bough_symmetric_eigen(int n, double *a, double *value, double *work);
 // The `count` smallest eigenvalues of a symmetric matrix (n × n, its lower triangle by columns;
 // overwritten), ascending, in value (n, the rest is scratch), and their orthonormal eigenvectors in
 // vector (n × count, column-major). work (26 n), index (12 n). False as above.
-bool bough_symmetric_smallest(int n, double *a, int count, double *value, double *vector,
-                              double *work, int *index);
+bool bough_symmetric_smallest(int n, double *a, int count, double *value, double *vector, double *work,
+                              int *index);
 
 // The Cholesky factor L of a symmetric matrix (n × n, row-major; its lower triangle) in place,
 // a = L Lᵀ. False unless it is positive definite, with every pivot above 1e-12 of its diagonal.

@@ -76,25 +76,21 @@ void bough_loops_rows(const bough_tree *tree, bough_tree_data *d) {
 
 int bough_loops_of_row(const bough_tree *tree, int row) {
     int c = tree->n_closures - 1;
-    while (tree->closures[c].first_row > row)
-        c--;
+    while (tree->closures[c].first_row > row) c--;
     return c;
 }
 
 static bough_twist rate_of(const bough_tree_data *d, const bough_frame *frame) {
     static const bough_twist none;
-    return frame->link < 0 ? none
-                           : bough_twist_to_child(&frame->placement, d->acceleration[frame->link]);
+    return frame->link < 0 ? none : bough_twist_to_child(&frame->placement, d->acceleration[frame->link]);
 }
 
 // x = G v̇ with the links' accelerations that stand in the data
 static void find_rates(const bough_tree *tree, const bough_tree_data *d, double *x) {
     for (int c = 0; c < tree->n_closures; c++) {
-        bough_twist a = rate_of(d, bough_loops_end(tree, c, 0)),
-                    b = rate_of(d, bough_loops_end(tree, c, 1));
+        bough_twist a = rate_of(d, bough_loops_end(tree, c, 0)), b = rate_of(d, bough_loops_end(tree, c, 1));
         int first = tree->closures[c].first_row;
-        for (int k = first; k < first + bough_constraint_n_rows(&tree->closures[c].constraint);
-             k++) {
+        for (int k = first; k < first + bough_constraint_n_rows(&tree->closures[c].constraint); k++) {
             const bough_wrench *w = d->loops->row[k].wrench;
             x[k] = bough_power(a, w[0]) + bough_power(b, w[1]);
         }
@@ -107,8 +103,7 @@ static void find_rates(const bough_tree *tree, const bough_tree_data *d, double 
 static void respond(const bough_tree *tree, bough_tree_data *d, int row) {
     bough_loops *l = d->loops;
     int c = bough_loops_of_row(tree, row), m = tree->n_rows, n = tree->n_v;
-    double *sum = l->response + (size_t)row * (size_t)n,
-           *column = l->matrix + (size_t)row * (size_t)m;
+    double *sum = l->response + (size_t)row * (size_t)n, *column = l->matrix + (size_t)row * (size_t)m;
     memset(sum, 0, (size_t)n * sizeof(double));
     memset(column, 0, (size_t)m * sizeof(double));
     for (int end = 0; end < 2; end++) {
@@ -116,10 +111,8 @@ static void respond(const bough_tree *tree, bough_tree_data *d, int row) {
         if (frame->link < 0) continue;
         bough_tree_free_response(tree, d, frame, l->row[row].wrench[end], l->speed);
         find_rates(tree, d, l->work);
-        for (int k = 0; k < n; k++)
-            sum[k] += l->speed[k];
-        for (int k = 0; k < m; k++)
-            column[k] += l->work[k];
+        for (int k = 0; k < n; k++) sum[k] += l->speed[k];
+        for (int k = 0; k < m; k++) column[k] += l->work[k];
     }
 }
 
@@ -150,8 +143,7 @@ bool bough_loops_factor(const bough_tree *tree, bough_loops *l) {
         l->scale[k] = diagonal > rigid * largest[turns(tree, k)] ? 1 / sqrt(diagonal) : 0;
     }
     for (int j = 0; j < m; j++) {
-        for (int k = 0; k < m; k++)
-            l->matrix[j * m + k] *= l->scale[j] * l->scale[k];
+        for (int k = 0; k < m; k++) l->matrix[j * m + k] *= l->scale[j] * l->scale[k];
     }
     if (!bough_symmetric_eigen(m, l->matrix, l->value, l->work)) return false;
     l->rank = 0;
@@ -163,8 +155,7 @@ bool bough_loops_factor(const bough_tree *tree, bough_loops *l) {
 
 // After kinematics, bough_loops_rows and free dynamics at this state.
 bool bough_loops_mobility(const bough_tree *tree, bough_tree_data *d) {
-    for (int k = 0; k < tree->n_rows; k++)
-        respond(tree, d, k);
+    for (int k = 0; k < tree->n_rows; k++) respond(tree, d, k);
     return bough_loops_factor(tree, d->loops);
 }
 
@@ -175,33 +166,29 @@ void bough_loops_solve(const bough_tree *tree, const bough_loops *l, double *x) 
     for (int i = 0; i < m; i++) {
         part[i] = 0;
         if (l->value[i] <= dependent * l->value[m - 1]) continue;
-        for (int k = 0; k < m; k++)
-            part[i] += l->matrix[i * m + k] * l->scale[k] * x[k];
+        for (int k = 0; k < m; k++) part[i] += l->matrix[i * m + k] * l->scale[k] * x[k];
         part[i] /= l->value[i];
     }
     for (int k = 0; k < m; k++) {
         double sum = 0;
-        for (int i = 0; i < m; i++)
-            sum += l->matrix[i * m + k] * part[i];
+        for (int i = 0; i < m; i++) sum += l->matrix[i * m + k] * part[i];
         x[k] = l->scale[k] * sum;
     }
 }
 
 // speed (n_v) = M⁻¹Gᵀ x
-void bough_loops_spread(const bough_tree *tree, const bough_loops *l, const double *x,
-                        double *speed) {
+void bough_loops_spread(const bough_tree *tree, const bough_loops *l, const double *x, double *speed) {
     int n = tree->n_v;
     memset(speed, 0, (size_t)n * sizeof(double));
     for (int j = 0; j < tree->n_rows; j++) {
-        for (int k = 0; k < n; k++)
-            speed[k] += x[j] * l->response[(size_t)j * (size_t)n + (size_t)k];
+        for (int k = 0; k < n; k++) speed[k] += x[j] * l->response[(size_t)j * (size_t)n + (size_t)k];
     }
 }
 
 // -- dynamics ---------------------------------------------------------------------------------
 
-bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, double t,
-                                 const double *input, double *acceleration) {
+bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, double t, const double *input,
+                                 double *acceleration) {
     bough_loops *l = d->loops;
     if (l == NULL) return bough_tree_free_dynamics(tree, d, t, input, acceleration);
     int m = tree->n_rows;
@@ -214,8 +201,7 @@ bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *d, dou
         l->multiplier[k] = -(x[k] + l->row[k].bias + l->row[k].rate / tree->closure_time);
     if (!bough_loops_mobility(tree, d)) return false;
     bough_loops_solve(tree, l, l->multiplier);
-    for (int k = 0; k < m; k++)
-        x[k] = l->row[k].value / tree->closure_time;
+    for (int k = 0; k < m; k++) x[k] = l->row[k].value / tree->closure_time;
     bough_loops_solve(tree, l, x);
     bough_loops_spread(tree, l, x, l->correction);
     return bough_tree_free_dynamics(tree, d, t, input, acceleration);
@@ -230,8 +216,7 @@ void bough_tree_response(const bough_tree *tree, bough_tree_data *d, const bough
     find_rates(tree, d, x);
     bough_loops_solve(tree, l, x);
     bough_loops_spread(tree, l, x, l->speed);
-    for (int k = 0; k < tree->n_v; k++)
-        change[k] -= l->speed[k];
+    for (int k = 0; k < tree->n_v; k++) change[k] -= l->speed[k];
 }
 
 void bough_loops_correct(const bough_tree *tree, const bough_tree_data *d, const double *state,
@@ -241,8 +226,7 @@ void bough_loops_correct(const bough_tree *tree, const bough_tree_data *d, const
         double own[BOUGH_JOINT_COORDINATES];
         bough_joint_rate(&link->joint, state + link->first_coordinate,
                          d->loops->correction + link->first_speed, own);
-        for (int k = 0; k < link->n_coordinates; k++)
-            rate[link->first_coordinate + k] -= own[k];
+        for (int k = 0; k < link->n_coordinates; k++) rate[link->first_coordinate + k] -= own[k];
     }
 }
 

@@ -24,8 +24,8 @@ bough_loops *bough_loops_create(bough_arena *arena, const bough_tree *tree);
 // acceleration v̇ (n_v) that makes the residual zero with all closures closed; without closures
 // bough_tree_free_dynamics. False when a joint moves no inertia. Leaves the links' accelerations, the
 // factors and `drive` in data.
-bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *data, double t,
-                                 const double *input, double *acceleration);
+bool bough_tree_forward_dynamics(const bough_tree *tree, bough_tree_data *data, double t, const double *input,
+                                 double *acceleration);
 
 // change (n_v) of v̇ by a wrench at a frame of the tree, in frame axes. Uses the factors of the
 // last bough_tree_forward_dynamics.

@@ -6,7 +6,7 @@
 #include <string.h>
 
 enum { MOST_ITERATIONS = 60 };
-static const double longest = 0.05; // step of a coordinate [rad, m]: a shallow arch turns over else
+static const double longest = 0.05;    // step of a coordinate [rad, m]: a shallow arch turns over else
 static const double near_enough = 0.1; // of the mechanism's extent, and in equations of directions
 static const double satisfied = 1e-10;
 
@@ -40,8 +40,7 @@ static int worst_row(const bough_tree *tree, const bough_tree_data *d, bool of_r
     return worst;
 }
 
-static bough_status refuse(const bough_tree *tree, const bough_tree_data *d, int row,
-                           bool of_rate) {
+static bough_status refuse(const bough_tree *tree, const bough_tree_data *d, int row, bool of_rate) {
     const bough_closure *c = &tree->closures[bough_loops_of_row(tree, row)];
     bool turns = row - c->first_row >= c->constraint.n_translation;
     if (of_rate) {
@@ -50,11 +49,10 @@ static bough_status refuse(const bough_tree *tree, const bough_tree_data *d, int
                           "leave out the speeds that should follow the others",
                           c->name, fabs(d->loops->row[row].rate), turns ? "rad/s" : "m/s");
     }
-    return bough_fail(
-        BOUGH_INVALID,
-        "closure '%s': its ends are %.4g %s apart, from where it cannot be assembled; "
-        "correct the joints' initial positions, the closure's placements or its axis",
-        c->name, fabs(d->loops->row[row].value), turns ? "(sine of an angle)" : "m");
+    return bough_fail(BOUGH_INVALID,
+                      "closure '%s': its ends are %.4g %s apart, from where it cannot be assembled; "
+                      "correct the joints' initial positions, the closure's placements or its axis",
+                      c->name, fabs(d->loops->row[row].value), turns ? "(sine of an angle)" : "m");
 }
 
 // One step of Newton's method, the least in the measure of the inertias.
@@ -66,21 +64,17 @@ static bool approach(bough_tree *tree, bough_tree_data *d) {
         return false;
     }
     double *x = l->work + 4 * tree->n_rows;
-    for (int k = 0; k < tree->n_rows; k++)
-        x[k] = l->row[k].value;
+    for (int k = 0; k < tree->n_rows; k++) x[k] = l->row[k].value;
     bough_loops_solve(tree, l, x);
     bough_loops_spread(tree, l, x, l->correction);
     double largest = 0;
-    for (int k = 0; k < tree->n_v; k++)
-        largest = fmax(largest, fabs(l->correction[k]));
-    for (int k = 0; k < tree->n_v && largest > longest; k++)
-        l->correction[k] *= longest / largest;
+    for (int k = 0; k < tree->n_v; k++) largest = fmax(largest, fabs(l->correction[k]));
+    for (int k = 0; k < tree->n_v && largest > longest; k++) l->correction[k] *= longest / largest;
     for (int i = 0; i < tree->n_links; i++) {
         const bough_link *link = &tree->links[i];
         double *own = q + link->first_coordinate;
         bough_joint_rate(&link->joint, own, l->correction + link->first_speed, step);
-        for (int k = 0; k < link->n_coordinates; k++)
-            own[k] -= step[k];
+        for (int k = 0; k < link->n_coordinates; k++) own[k] -= step[k];
         bough_joint_normalise(&link->joint, own);
     }
     for (int k = 0; k < tree->n_v; k++)
@@ -111,8 +105,7 @@ static void jacobian_row(const bough_tree *tree, const bough_tree_data *d, int r
             const bough_link *link = &tree->links[i];
             double own[BOUGH_JOINT_SPEEDS];
             bough_joint_force(&link->joint, w, own);
-            for (int k = 0; k < link->n_speeds; k++)
-                g[link->first_speed + k] += own[k];
+            for (int k = 0; k < link->n_speeds; k++) g[link->first_speed + k] += own[k];
             w = bough_wrench_to_parent(&d->relative[i], w);
         }
     }
@@ -137,25 +130,21 @@ static bool follow(bough_tree *tree, bough_tree_data *d, bool all) {
     for (int i = 0; i < m; i++) {
         for (int j = 0; j < m; j++) {
             double sum = 0;
-            for (int k = 0; k < n; k++)
-                sum += l->response[i * n + k] * l->response[j * n + k];
+            for (int k = 0; k < n; k++) sum += l->response[i * n + k] * l->response[j * n + k];
             l->matrix[i * m + j] = sum;
         }
     }
     if (!bough_loops_factor(tree, l)) return false;
-    for (int j = 0; j < m; j++)
-        x[j] = l->row[j].rate;
+    for (int j = 0; j < m; j++) x[j] = l->row[j].rate;
     bough_loops_solve(tree, l, x);
     bough_loops_spread(tree, l, x, l->speed);
-    for (int k = 0; k < n; k++)
-        v[k] -= l->speed[k];
+    for (int k = 0; k < n; k++) v[k] -= l->speed[k];
     return true;
 }
 
 static bough_status assemble_speeds(bough_tree *tree, bough_tree_data *d, double size) {
     double violation, fastest = 0;
-    for (int k = 0; k < tree->n_v; k++)
-        fastest = fmax(fastest, fabs(tree->initial[tree->n_q + k]));
+    for (int k = 0; k < tree->n_v; k++) fastest = fmax(fastest, fabs(tree->initial[tree->n_q + k]));
     for (int attempt = 0;; attempt++) {
         bough_tree_kinematics(tree, tree->initial, d);
         bough_loops_rows(tree, d);

@@ -24,7 +24,6 @@ bool bough_loops_factor(const bough_tree *tree, bough_loops *loops);
 void bough_loops_solve(const bough_tree *tree, const bough_loops *loops, double *x);
 
 // speed (n_v) = responseᵀ x
-void bough_loops_spread(const bough_tree *tree, const bough_loops *loops, const double *x,
-                        double *speed);
+void bough_loops_spread(const bough_tree *tree, const bough_loops *loops, const double *x, double *speed);
 
 #endif

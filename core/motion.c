@@ -35,12 +35,11 @@ static bough_motion_point unit_ramp(const bough_motion *m, double t) {
 
 bough_motion_point bough_motion_at(const bough_motion *m, double t) {
     int i = 0;
-    while (i < m->n && t >= m->times[i])
-        i++;
+    while (i < m->n && t >= m->times[i]) i++;
     double d = t - (m->n == 0 ? 0 : m->times[i == 0 ? 0 : i - 1]);
     const double *c = m->piece + 4 * i;
-    bough_motion_point p = {c[0] + d * (c[1] + d * (c[2] + d * c[3])),
-                            c[1] + d * (2 * c[2] + d * 3 * c[3]), 2 * c[2] + d * 6 * c[3]};
+    bough_motion_point p = {c[0] + d * (c[1] + d * (c[2] + d * c[3])), c[1] + d * (2 * c[2] + d * 3 * c[3]),
+                            2 * c[2] + d * 6 * c[3]};
     if (m->rise == 0) return p;
     bough_motion_point r = unit_ramp(m, t);
     return (bough_motion_point){p.q + m->rise * r.q, p.v + m->rise * r.v, p.a + m->rise * r.a};
@@ -78,8 +77,7 @@ static void spline_slopes(const bough_motion_def *def, double *slope, double *ga
         gain[i] = right / pivot;
         slope[i] = (side - left * slope[i - 1]) / pivot;
     }
-    for (int i = last - 1; i > 0; i--)
-        slope[i] -= gain[i] * slope[i + 1];
+    for (int i = last - 1; i > 0; i--) slope[i] -= gain[i] * slope[i + 1];
 }
 
 static void fit_positions(const bough_motion_def *def, bough_motion *m, double *slope) {
@@ -99,8 +97,7 @@ static void fit_positions(const bough_motion_def *def, bough_motion *m, double *
 
 // -- construction ----------------------------------------------------------------------------
 
-bough_motion *bough_motion_create(bough_arena *arena, const bough_motion_def *def,
-                                  double initial) {
+bough_motion *bough_motion_create(bough_arena *arena, const bough_motion_def *def, double initial) {
     size_t n = (size_t)def->n;
     bough_motion *m = bough_arena_take(arena, sizeof *m);
     size_t room = n > 0 ? n : 1; // what is steered has a break
@@ -120,8 +117,7 @@ bough_motion *bough_motion_create(bough_arena *arena, const bough_motion_def *de
         }
     }
     double shift = def->speed ? initial - bough_motion_at(m, 0).q : 0;
-    for (int i = 0; i <= def->n; i++)
-        piece[4 * i] += shift;
+    for (int i = 0; i <= def->n; i++) piece[4 * i] += shift;
     return m;
 }
 

@@ -9,22 +9,22 @@
 #include <stdbool.h>
 
 typedef struct bough_motion_def {
-    bool given;        // false: the joint moves by its forces, all else is void
-    bool speed;        // what is given is q̇ [rad/s, m/s], else q [rad, m]
-    double from, to;   // of the ramp; equal for a constant
-    double start, end; // of the ramp [s]
-    int n;             // rows of a table in place of the ramp, 0: none
+    bool given;                   // false: the joint moves by its forces, all else is void
+    bool speed;                   // what is given is q̇ [rad/s, m/s], else q [rad, m]
+    double from, to;              // of the ramp; equal for a constant
+    double start, end;            // of the ramp [s]
+    int n;                        // rows of a table in place of the ramp, 0: none
     const double *times, *values; // (n) times increasing [s]; copied. Between them a speed is
                                   // linear, q a cubic spline at rest at both ends; held outside
 } bough_motion_def;
 
 typedef struct bough_motion {
-    int n;         // breaks; n + 1 pieces
-    double *times; // (n) where pieces meet [s]
-    double *piece; // (n + 1) × 4: q by powers of the time since the piece's start; the first two
-                   // pieces start at times[0], without breaks at 0
-    double rise;   // what the ramp adds to q or q̇
-    bool of_speed; // to q̇
+    int n;             // breaks; n + 1 pieces
+    double *times;     // (n) where pieces meet [s]
+    double *piece;     // (n + 1) × 4: q by powers of the time since the piece's start; the first two
+                       // pieces start at times[0], without breaks at 0
+    double rise;       // what the ramp adds to q or q̇
+    bool of_speed;     // to q̇
     double start, end; // [s]
 } bough_motion;
 

@@ -18,13 +18,9 @@ static int matrix_zero(SUNMatrix a) {
 
 static SUNMatrix matrix_create(bough_newton_handle *handle);
 
-static SUNMatrix matrix_clone(SUNMatrix a) {
-    return matrix_create(a->content);
-}
+static SUNMatrix matrix_clone(SUNMatrix a) { return matrix_create(a->content); }
 
-static void matrix_destroy(SUNMatrix a) {
-    SUNMatFreeEmpty(a);
-}
+static void matrix_destroy(SUNMatrix a) { SUNMatFreeEmpty(a); }
 
 static SUNMatrix matrix_create(bough_newton_handle *handle) {
     SUNMatrix a = SUNMatNewEmpty(handle->context);
@@ -86,8 +82,7 @@ bool bough_newton_handle_create(bough_newton_handle *handle, const bough_ode *od
     handle->weight = bough_vector_create(ode->n, handle->context);
     handle->matrix = matrix_create(handle);
     handle->solver = solver_create(handle);
-    bool ok = handle->y != NULL && handle->weight != NULL && handle->matrix != NULL &&
-              handle->solver != NULL;
+    bool ok = handle->y != NULL && handle->weight != NULL && handle->matrix != NULL && handle->solver != NULL;
     if (!ok) return false;
     double *weight = bough_vector_data(handle->weight);
     for (int i = 0; i < ode->n; i++) weight[i] = 1 / (rtol * ode->scale[i]);
@@ -104,8 +99,7 @@ void bough_newton_handle_destroy(bough_newton_handle *handle) {
 
 int bough_newton_handle_rate(sunrealtype t, N_Vector y, N_Vector rate, void *user) {
     bough_newton_handle *handle = user;
-    bool ok = handle->ode.derivative(handle->ode.self, t, bough_vector_data(y),
-                                     bough_vector_data(rate));
+    bool ok = handle->ode.derivative(handle->ode.self, t, bough_vector_data(y), bough_vector_data(rate));
     handle->refused = handle->refused || !ok;
     return ok ? 0 : 1;
 }
@@ -124,8 +118,8 @@ void bough_newton_handle_message(int code, const char *module, const char *funct
     if (code < 0) snprintf(handle->text, sizeof handle->text, "%s", message);
 }
 
-int bough_newton_handle_system(bough_newton_handle *handle, double t, N_Vector y,
-                               sunbooleantype jok, sunbooleantype *jcur, double gamma) {
+int bough_newton_handle_system(bough_newton_handle *handle, double t, N_Vector y, sunbooleantype jok,
+                               sunbooleantype *jcur, double gamma) {
     handle->gamma = gamma;
     *jcur = !jok;
     if (jok) return 0;
@@ -138,8 +132,7 @@ int bough_newton_handle_system(bough_newton_handle *handle, double t, N_Vector y
 enum { MOST_STEPS = 20000 }; // per macro step
 
 bough_newton_run *bough_newton_run_create(bough_arena *arena, const bough_ode *ode, double rtol,
-                                          const bough_newton_library *library,
-                                          void (*destroy)(void *run)) {
+                                          const bough_newton_library *library, void (*destroy)(void *run)) {
     bough_newton_run *run = bough_arena_take(arena, sizeof *run);
     bough_arena_on_destroy(arena, destroy, run);
     run->library = library;
@@ -219,8 +212,8 @@ bough_status bough_newton_run_advance(void *self, double *t, double pause, doubl
     int flag = cross(run, t1, &reached);
     if (flag < 0) {
         run->library->current_time(run->memory, &reached);
-        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot go on: %s", newton->ode.name,
-                          reached, run->library->title, reason(newton, flag));
+        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot go on: %s", newton->ode.name, reached,
+                          run->library->title, reason(newton, flag));
     }
     *t = t1;
     memcpy(y, own, (size_t)newton->ode.n * sizeof *own);

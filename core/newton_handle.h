@@ -34,8 +34,8 @@ void bough_newton_handle_message(int code, const char *module, const char *funct
                                  void *handle);
 
 // Linearises unless `jok` says that the last tangents serve, and notes γ: 0, or 1 without a value.
-int bough_newton_handle_system(bough_newton_handle *handle, double t, N_Vector y,
-                               sunbooleantype jok, sunbooleantype *jcur, double gamma);
+int bough_newton_handle_system(bough_newton_handle *handle, double t, N_Vector y, sunbooleantype jok,
+                               sunbooleantype *jcur, double gamma);
 
 // -- integrators that take one step a call --------------------------------------------------------
 
@@ -46,7 +46,7 @@ typedef struct bough_newton_library {
     int (*stop_at)(void *memory, double t);
     int (*evolve)(void *memory, double t1, N_Vector y, double *reached, int task);
     int (*current_time)(void *memory, double *t);
-    int (*local_error)(void *memory, N_Vector error); // of the last step; NULL: not told
+    int (*local_error)(void *memory, N_Vector error);   // of the last step; NULL: not told
     void (*count)(void *memory, bough_statistics *sum); // since the last start, added
 } bough_newton_library;
 
@@ -62,13 +62,11 @@ typedef struct bough_newton_run {
 
 // A run without the library's memory, which the caller creates and destroys.
 bough_newton_run *bough_newton_run_create(bough_arena *arena, const bough_ode *ode, double rtol,
-                                          const bough_newton_library *library,
-                                          void (*destroy)(void *run));
+                                          const bough_newton_library *library, void (*destroy)(void *run));
 void bough_newton_run_destroy(bough_newton_run *run);
 
 // As in bough_integrator_ops.
-bough_status bough_newton_run_advance(void *run, double *t, double pause, double t1, bool restart,
-                                      double *y);
+bough_status bough_newton_run_advance(void *run, double *t, double pause, double t1, bool restart, double *y);
 void bough_newton_run_statistics(const void *run, bough_statistics *sum);
 double *bough_newton_run_own_error(void *run);
 

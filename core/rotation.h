@@ -8,16 +8,13 @@ typedef struct bough_quaternion {
     double w, x, y, z;
 } bough_quaternion;
 
-static inline bough_quaternion bough_quaternion_identity(void) {
-    return (bough_quaternion){1, 0, 0, 0};
-}
+static inline bough_quaternion bough_quaternion_identity(void) { return (bough_quaternion){1, 0, 0, 0}; }
 
 // p ∘ q
 static inline bough_quaternion bough_quaternion_product(bough_quaternion p, bough_quaternion q) {
-    return (bough_quaternion){p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z,
-                              p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
-                              p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x,
-                              p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w};
+    return (bough_quaternion){
+        p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z, p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
+        p.w * q.y - p.x * q.z + p.y * q.w + p.z * q.x, p.w * q.z + p.x * q.y - p.y * q.x + p.z * q.w};
 }
 
 static inline bough_quaternion bough_quaternion_conjugate(bough_quaternion p) {

@@ -72,16 +72,14 @@ static inline bough_wrench bough_wrench_to_parent(const bough_transform *x, boug
 
 // V × U: the rate of a twist U that is carried along by a frame moving with V.
 static inline bough_twist bough_twist_cross(bough_twist v, bough_twist u) {
-    return (bough_twist){
-        bough_add(bough_cross(v.angular, u.linear), bough_cross(v.linear, u.angular)),
-        bough_cross(v.angular, u.angular)};
+    return (bough_twist){bough_add(bough_cross(v.angular, u.linear), bough_cross(v.linear, u.angular)),
+                         bough_cross(v.angular, u.angular)};
 }
 
 // V ×* f: the rate of a wrench (or momentum) f that is carried along by a frame moving with V.
 static inline bough_wrench bough_wrench_cross(bough_twist v, bough_wrench f) {
-    return (bough_wrench){
-        bough_cross(v.angular, f.force),
-        bough_add(bough_cross(v.angular, f.moment), bough_cross(v.linear, f.force))};
+    return (bough_wrench){bough_cross(v.angular, f.force),
+                          bough_add(bough_cross(v.angular, f.moment), bough_cross(v.linear, f.force))};
 }
 
 // Vᵀ f: power [W]
@@ -125,8 +123,8 @@ static inline bough_inertia bough_inertia_to_parent(const bough_transform *x, bo
     bough_vec3 first = bough_mat3_mul(x->rotation, i.first);
     // Σ m (|ρ|²E − ρρᵀ) with ρ = r + R ρ'
     bough_vec3 arm = bough_axpy(0.5 * i.mass, x->position, first);
-    bough_mat3 turned = bough_mat3_product(
-        x->rotation, bough_mat3_product(i.rotational, bough_mat3_transpose(x->rotation)));
+    bough_mat3 turned =
+        bough_mat3_product(x->rotation, bough_mat3_product(i.rotational, bough_mat3_transpose(x->rotation)));
     return (bough_inertia){i.mass, bough_axpy(i.mass, x->position, first),
                            bough_mat3_add(turned, bough_steiner(arm, x->position))};
 }

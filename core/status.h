@@ -27,12 +27,9 @@ typedef struct bough_status {
 bough_status bough_ok(void);
 
 // A failure with a printf-style message. One that is too long ends after a whole word, with " ...".
-bough_status bough_fail(bough_code code, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+bough_status bough_fail(bough_code code, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-static inline bool bough_is_ok(const bough_status *status) {
-    return status->code == BOUGH_OK;
-}
+static inline bool bough_is_ok(const bough_status *status) { return status->code == BOUGH_OK; }
 
 // The exit code of the process for a final status.
 int bough_exit_code(bough_code code);

@@ -4,8 +4,7 @@
 #include "core/base.h"
 
 bough_body_def bough_body_def_default(void) {
-    bough_body_def def = {.name = "", .parent = BOUGH_GROUND, .axis = {0, 0, 1},
-                          .second_axis = {1, 0, 0}};
+    bough_body_def def = {.name = "", .parent = BOUGH_GROUND, .axis = {0, 0, 1}, .second_axis = {1, 0, 0}};
     def.joint = bough_transform_identity();
     return def;
 }
@@ -61,8 +60,7 @@ void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_m
     bough_motion_steer(tree->links[tree->bodies[body].link].motion, t, span, from, to);
 }
 
-void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from,
-                           double to) {
+void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from, double to) {
     bough_joint_load_def *l = &tree->loads[load];
     double *times = (double *)l->times, *values = (double *)l->values; // the tree's own copies
     times[0] = t;

@@ -26,12 +26,12 @@ enum {
 
 typedef struct bough_body_def {
     const char *name;
-    int parent;            // index of a body, in any order, or BOUGH_GROUND
-    bough_joint_kind kind; // the joint to the parent
-    bough_transform joint; // joint frame in the parent's body frame
-    bough_vec3 axis;       // in joint axes, scaled to length 1; of those that have one
-    bough_vec3 second_axis; // normal to it, scaled to length 1; universal and planar
-    bough_joint_spring spring;  // of a revolute or prismatic joint; zero: none
+    int parent;                     // index of a body, in any order, or BOUGH_GROUND
+    bough_joint_kind kind;          // the joint to the parent
+    bough_transform joint;          // joint frame in the parent's body frame
+    bough_vec3 axis;                // in joint axes, scaled to length 1; of those that have one
+    bough_vec3 second_axis;         // normal to it, scaled to length 1; universal and planar
+    bough_joint_spring spring;      // of a revolute or prismatic joint; zero: none
     bough_motion_def motion;        // of the first coordinate of a joint of one or two; zero: moved
                                     // by forces
     bough_motion_def second_motion; // of the second, of a universal or cylindrical joint
@@ -77,10 +77,10 @@ typedef struct bough_end_def {
 // A load along a joint's axis: value × factor, factor rising linearly from 0 at `start` to 1 at
 // `end`; end <= start means constant from the beginning.
 typedef struct bough_joint_load_def {
-    int body;          // whose joint; revolute or prismatic
-    double value;      // [N m] or [N]
-    double start, end; // [s]
-    int n;             // rows of a table in place of the value, 0: none
+    int body;                     // whose joint; revolute or prismatic
+    double value;                 // [N m] or [N]
+    double start, end;            // [s]
+    int n;                        // rows of a table in place of the value, 0: none
     const double *times, *values; // (n) times increasing [s], the value linear between them and
                                   // held before and after; copied
 } bough_joint_load_def;
@@ -111,11 +111,11 @@ typedef struct bough_bushing_def {
 // A wrench on a marker: value × factor, factor rising linearly from 0 at `start` to 1 at `end`
 // (end <= start: always 1), or from a table.
 typedef struct bough_applied_def {
-    int marker; // index
-    bough_wrench wrench; // [N, N m]
-    bool ground;         // in ground axes, else in the marker's
-    double start, end;   // [s]
-    int n;               // rows of a table in place of the ramp, 0: none
+    int marker;                   // index
+    bough_wrench wrench;          // [N, N m]
+    bool ground;                  // in ground axes, else in the marker's
+    double start, end;            // [s]
+    int n;                        // rows of a table in place of the ramp, 0: none
     const double *times, *values; // (n) times increasing [s], factors; copied
 } bough_applied_def;
 
@@ -163,7 +163,7 @@ typedef struct bough_frame {
 
 typedef struct bough_external {
     bool active;
-    double start;             // [s]
+    double start;                    // [s]
     bough_wrench value, rate, curve; // in marker axes [N, N m; per s; per s²]
 } bough_external;
 
@@ -184,21 +184,21 @@ typedef struct bough_tree {
     bough_frame *ports;          // (n_ports), as in the def, the marker's placement
     bough_joint_load_def *loads; // (n_loads), body replaced by the link's index
     int n_springs;
-    bough_spring_def *springs;   // (n_springs), as in the def
-    int n_closures, n_rows;      // n_rows: equations of all closures
-    bough_closure *closures;     // (n_closures), as in the def
-    double closure_time;         // [s]
-    int closure_rank;            // how many of the equations are independent at the start
-    double closure_moved;        // how far assembly moved a coordinate [rad, m]
+    bough_spring_def *springs; // (n_springs), as in the def
+    int n_closures, n_rows;    // n_rows: equations of all closures
+    bough_closure *closures;   // (n_closures), as in the def
+    double closure_time;       // [s]
+    int closure_rank;          // how many of the equations are independent at the start
+    double closure_moved;      // how far assembly moved a coordinate [rad, m]
     int n_bushings, n_applied;
     bough_bushing_def *bushings; // (n_bushings), as in the def
     bough_applied_def *applied;  // (n_applied), as in the def
     int n_ends;
-    bough_frame *ends;           // (n_ends), as in the def, the body's frame
+    bough_frame *ends; // (n_ends), as in the def, the body's frame
     int n_axes;
-    int *axes;                   // (n_axes) the ports that have these outputs
-    bough_external *external;    // (n_markers), changed by bough_tree_set_wrench only
-    double *initial;             // initial state (n_q + n_v)
+    int *axes;                // (n_axes) the ports that have these outputs
+    bough_external *external; // (n_markers), changed by bough_tree_set_wrench only
+    double *initial;          // initial state (n_q + n_v)
 } bough_tree;
 
 // Sizes of the input and the output of all ports and ends.
@@ -223,8 +223,7 @@ void bough_tree_steer(bough_tree *tree, int body, double t, double span, bough_m
                       bough_motion_point to);
 
 // A load with a table of two rows goes linearly from one value to another in [t, t + span].
-void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from,
-                           double to);
+void bough_tree_steer_load(bough_tree *tree, int load, double t, double span, double from, double to);
 
 // The external wrench on the tree at a marker from now on: value + τ (rate + τ curve), τ = t − start,
 // each (6), force then moment, in marker axes at the marker's origin. NULL for zero.

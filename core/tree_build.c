@@ -86,8 +86,8 @@ static int add_link(bough_tree *tree, int body, int parent, bough_joint joint) {
 // A universal joint has no constant motion subspace; two revolute ones have. A coordinate is driven
 // that has a link of its own.
 static int add_links(bough_tree *tree, const bough_body_def *b, int body, bough_frame parent) {
-    bough_joint joint = {b->kind, bough_transform_compose(parent.placement, b->joint),
-                         direction(b->axis), direction(b->second_axis)};
+    bough_joint joint = {b->kind, bough_transform_compose(parent.placement, b->joint), direction(b->axis),
+                         direction(b->second_axis)};
     bool universal = b->kind == BOUGH_JOINT_UNIVERSAL;
     bool driven = b->motion.given || b->second_motion.given;
     if (!universal && !(driven && b->kind == BOUGH_JOINT_CYLINDRICAL)) {
@@ -213,8 +213,8 @@ static void take_model(bough_arena *arena, const bough_tree_def *def, bough_tree
     tree->bushings = bough_arena_take(arena, (size_t)def->n_bushings * sizeof(bough_bushing_def));
     tree->n_applied = def->n_applied;
     tree->applied = bough_arena_take(arena, (size_t)def->n_applied * sizeof(bough_applied_def));
-    tree->initial = bough_arena_doubles(arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) *
-                                                   (size_t)def->n_bodies);
+    tree->initial =
+        bough_arena_doubles(arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) * (size_t)def->n_bodies);
 }
 
 static void take_names(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
@@ -233,8 +233,7 @@ static void take_names(bough_arena *arena, const bough_tree_def *def, bough_tree
 }
 
 // A joint that moves no inertia has no acceleration; loops must close.
-static bough_status check_dynamics(bough_arena *arena, const bough_tree_def *def,
-                                   bough_tree *tree) {
+static bough_status check_dynamics(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     bough_tree_data *data = bough_tree_data_create(arena, tree);
     double *acceleration = bough_arena_doubles(arena, (size_t)tree->n_v);
     bough_tree_kinematics(tree, tree->initial, data);
@@ -257,13 +256,10 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     bough_tree *tree = bough_arena_take(arena, sizeof *tree);
     take_model(arena, def, tree);
     take_names(arena, def, tree);
-    for (int k = 0; k < def->n_bodies; k++)
-        place_body(tree, &def->bodies[order[k]], order[k]);
+    for (int k = 0; k < def->n_bodies; k++) place_body(tree, &def->bodies[order[k]], order[k]);
     place_attachments(tree, def);
-    for (int k = 0; k < def->n_springs; k++)
-        tree->springs[k] = def->springs[k];
-    for (int k = 0; k < def->n_bushings; k++)
-        tree->bushings[k] = def->bushings[k];
+    for (int k = 0; k < def->n_springs; k++) tree->springs[k] = def->springs[k];
+    for (int k = 0; k < def->n_bushings; k++) tree->bushings[k] = def->bushings[k];
     take_tables(arena, def, tree);
     create_motions(arena, def, tree);
     set_initial(tree, def);
@@ -288,4 +284,3 @@ bough_tree_data *bough_tree_data_create(bough_arena *arena, const bough_tree *tr
     d->loops = bough_loops_create(arena, tree);
     return d;
 }
-

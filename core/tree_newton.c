@@ -37,8 +37,7 @@ static wrench times(const double *matrix, change z) {
     double x[Z], y[N] = {0};
     store(z, x);
     for (int r = 0; r < N; r++) {
-        for (int k = 0; k < Z; k++)
-            y[r] += matrix[Z * r + k] * x[k];
+        for (int k = 0; k < Z; k++) y[r] += matrix[Z * r + k] * x[k];
     }
     return bough_wrench_load(y);
 }
@@ -47,8 +46,7 @@ static wrench times(const double *matrix, change z) {
 
 // 𝒳 ζ_λ: δA_i has X δA_λ and, from V_i × S v, (X δV_λ) × S v
 static change carry(const node *n, change z) {
-    change own = {bough_twist_to_child(&n->relative, z.pose),
-                  bough_twist_to_child(&n->relative, z.speed),
+    change own = {bough_twist_to_child(&n->relative, z.pose), bough_twist_to_child(&n->relative, z.speed),
                   bough_twist_to_child(&n->relative, z.acceleration)};
     own.acceleration = bough_twist_add(own.acceleration, bough_twist_cross(own.speed, n->joint));
     return own;
@@ -59,8 +57,7 @@ static change carry(const node *n, change z) {
 static change move(const node *n, twist eta, twist speed, twist acceleration) {
     change z = {.pose = eta};
     z.speed = bough_twist_add(bough_twist_cross(n->carried, eta), speed);
-    z.acceleration = bough_twist_add(bough_twist_cross(n->pulled, eta),
-                                     bough_twist_cross(z.speed, n->joint));
+    z.acceleration = bough_twist_add(bough_twist_cross(n->pulled, eta), bough_twist_cross(z.speed, n->joint));
     z.acceleration = bough_twist_add(z.acceleration, bough_twist_cross(n->speed, speed));
     z.acceleration = bough_twist_add(z.acceleration, acceleration);
     return z;
@@ -80,8 +77,7 @@ static void find_columns(const bough_tree_newton *w, const bough_link *link, nod
         bough_joint_change(&link->joint, q, v, w->c, w->zero, unit, dq);
         bough_joint_speed(&link->joint, q, dq, eta);
         twist own = bough_joint_column(&link->joint, k);
-        store(move(n, bough_joint_twist(&link->joint, eta), own, scaled(w->c, own)),
-              n->column + Z * k);
+        store(move(n, bough_joint_twist(&link->joint, eta), own, scaled(w->c, own)), n->column + Z * k);
     }
 }
 
@@ -100,9 +96,7 @@ static void remember(const bough_tree_newton *w, const bough_tree_data *d, int i
     n->relative = d->relative[i];
     n->speed = d->twist[i];
     n->joint = d->joint_twist[i];
-    n->carried = link->parent < 0
-                     ? no_twist
-                     : bough_twist_to_child(&n->relative, d->twist[link->parent]);
+    n->carried = link->parent < 0 ? no_twist : bough_twist_to_child(&n->relative, d->twist[link->parent]);
     n->pulled = bough_twist_to_child(&n->relative, pull);
     n->force = d->wrench[i];
     n->end_force = no_wrench;
@@ -123,11 +117,9 @@ static void own_matrix(const bough_inertia *inertia, node *n) {
         wrench turning = bough_wrench_add(bough_wrench_cross(bough_twist_unit(k), momentum),
                                           bough_wrench_cross(n->speed, inertial));
         bough_wrench_store(turning, column);
-        for (int r = 0; r < N; r++)
-            n->matrix[Z * r + N + k] = column[r];
+        for (int r = 0; r < N; r++) n->matrix[Z * r + N + k] = column[r];
         bough_wrench_store(inertial, column);
-        for (int r = 0; r < N; r++)
-            n->matrix[Z * r + 2 * N + k] = column[r];
+        for (int r = 0; r < N; r++) n->matrix[Z * r + 2 * N + k] = column[r];
     }
 }
 
@@ -141,8 +133,7 @@ static void add_applied(const bough_tree_newton *w, const bough_tree_data *d, do
             twist shift = bough_twist_to_child(&frame->placement, bough_twist_unit(k));
             wrench by = bough_applied_change(w->tree, d, a, t, shift);
             bough_wrench_store(bough_wrench_to_parent(&frame->placement, by), column);
-            for (int r = 0; r < N; r++)
-                w->node[frame->link].matrix[Z * r + k] -= column[r];
+            for (int r = 0; r < N; r++) w->node[frame->link].matrix[Z * r + k] -= column[r];
         }
     }
 }
@@ -169,8 +160,7 @@ static bool factor_joint(const bough_link *link, node *n) {
         wrench by = bough_wrench_add(times(n->matrix, load(n->column + Z * k)), turned_end(n, eta));
         bough_joint_force(&link->joint, by, n->factor + m * k); // column k
         // the wrench turns with the joint on its way to the parent
-        bough_wrench_store(bough_wrench_add(by, bough_wrench_cross(eta, n->force)),
-                           n->gain + N * k);
+        bough_wrench_store(bough_wrench_add(by, bough_wrench_cross(eta, n->force)), n->gain + N * k);
     }
     if (m == 1) n->factor[0] += n->tau_q * n->coordinate[0] + n->tau_v;
     return bough_dense_factor(m, n->factor, n->pivot);
@@ -180,12 +170,10 @@ static bool factor_joint(const bough_link *link, node *n) {
 static void find_back(const bough_link *link, node *n) {
     for (int k = 0; k < Z; k++) {
         double column[N], own[N];
-        for (int r = 0; r < N; r++)
-            column[r] = n->matrix[Z * r + k];
+        for (int r = 0; r < N; r++) column[r] = n->matrix[Z * r + k];
         bough_joint_force(&link->joint, bough_wrench_load(column), own);
         bough_dense_solve(link->n_speeds, 1, n->factor, n->pivot, own);
-        for (int j = 0; j < link->n_speeds; j++)
-            n->back[Z * j + k] = own[j];
+        for (int j = 0; j < link->n_speeds; j++) n->back[Z * j + k] = own[j];
     }
 }
 
@@ -197,24 +185,20 @@ static void pass_matrix(const bough_link *link, const node *n, double *up) {
         double row[Z];
         memcpy(row, n->matrix + Z * r, sizeof row);
         for (int j = 0; link->motion == NULL && j < link->n_speeds; j++) {
-            for (int k = 0; k < Z; k++)
-                row[k] -= n->gain[N * j + r] * n->back[Z * j + k];
+            for (int k = 0; k < Z; k++) row[k] -= n->gain[N * j + r] * n->back[Z * j + k];
         }
         wrench pose = bough_wrench_load(row), speed = bough_wrench_load(row + N);
         wrench acceleration = bough_wrench_load(row + 2 * N);
         speed = bough_wrench_add(speed, bough_wrench_cross(n->joint, acceleration));
         bough_wrench_store(bough_wrench_to_parent(&n->relative, pose), passed + Z * r);
         bough_wrench_store(bough_wrench_to_parent(&n->relative, speed), passed + Z * r + N);
-        bough_wrench_store(bough_wrench_to_parent(&n->relative, acceleration),
-                           passed + Z * r + 2 * N);
+        bough_wrench_store(bough_wrench_to_parent(&n->relative, acceleration), passed + Z * r + 2 * N);
     }
     for (int k = 0; k < Z; k++) {
         double column[N];
-        for (int r = 0; r < N; r++)
-            column[r] = passed[Z * r + k];
+        for (int r = 0; r < N; r++) column[r] = passed[Z * r + k];
         bough_wrench_store(bough_wrench_to_parent(&n->relative, bough_wrench_load(column)), column);
-        for (int r = 0; r < N; r++)
-            up[Z * r + k] += column[r];
+        for (int r = 0; r < N; r++) up[Z * r + k] += column[r];
     }
 }
 
@@ -235,8 +219,7 @@ static bool factor_tree(const bough_tree_newton *w) {
 // -- solution --------------------------------------------------------------------------------
 
 // ζ⁰ and what it asks of the joint: from r_q, the known v̇ and, of a prescribed joint, r_v
-static void find_known(const bough_tree_newton *w, const double *a, const double *x, int i,
-                       double eta[N]) {
+static void find_known(const bough_tree_newton *w, const double *a, const double *x, int i, double eta[N]) {
     const bough_link *link = &w->tree->links[i];
     node *n = &w->node[i];
     const double *q = w->state + link->first_coordinate;
@@ -300,10 +283,8 @@ static void substitute(const bough_tree_newton *w) {
         store(carried, from);
         store(n->total, sum);
         for (int k = 0; k < link->n_speeds; k++) {
-            for (int j = 0; j < Z; j++)
-                n->speeds[k] -= n->back[Z * k + j] * from[j];
-            for (int j = 0; j < Z; j++)
-                sum[j] += n->column[Z * k + j] * n->speeds[k];
+            for (int j = 0; j < Z; j++) n->speeds[k] -= n->back[Z * k + j] * from[j];
+            for (int j = 0; j < Z; j++) sum[j] += n->column[Z * k + j] * n->speeds[k];
         }
         n->total = load(sum);
     }
@@ -311,8 +292,7 @@ static void substitute(const bough_tree_newton *w) {
 
 void bough_newton_sweep(const bough_tree_newton *w, const double *coupling, const double *a,
                         const double *x) {
-    for (int i = 0; i < w->tree->n_links; i++)
-        w->node[i].load = no_wrench;
+    for (int i = 0; i < w->tree->n_links; i++) w->node[i].load = no_wrench;
     for (int e = 0; coupling != NULL && e < w->n_ends; e++) {
         wrench by = bough_wrench_load(coupling + N * e);
         wrench *sum = &w->node[w->ends[e].link].load;
@@ -325,9 +305,8 @@ void bough_newton_sweep(const bough_tree_newton *w, const double *coupling, cons
 // -- the whole -------------------------------------------------------------------------------
 
 // NOLINTNEXTLINE(readability-function-size): a point of the motion has that many parts
-bool bough_tree_newton_setup(bough_tree_newton *w, bough_tree_data *data, double t,
-                             const double *input, const double *state, const double *acceleration,
-                             double c) {
+bool bough_tree_newton_setup(bough_tree_newton *w, bough_tree_data *data, double t, const double *input,
+                             const double *state, const double *acceleration, double c) {
     const bough_tree *tree = w->tree;
     size_t n = (size_t)(tree->n_q + tree->n_v);
     w->c = c;

@@ -20,9 +20,8 @@ bough_tree_newton *bough_tree_newton_create(bough_arena *arena, const bough_tree
 // Linearises at (t, state, v̇ = acceleration, input) and factors
 //     c δq − δ(N(q) v) = r_q ,   δ(M v̇ + h − τ) with δv̇ = c δv + a = r_v ;
 // of prescribed joints δq = r_q, δv = r_v. Overwrites the data. False when singular.
-bool bough_tree_newton_setup(bough_tree_newton *newton, bough_tree_data *data, double t,
-                             const double *input, const double *state, const double *acceleration,
-                             double c);
+bool bough_tree_newton_setup(bough_tree_newton *newton, bough_tree_data *data, double t, const double *input,
+                             const double *state, const double *acceleration, double c);
 
 // Solves in place: x (n_q + n_v) holds r, then (δq, δv). The known change `a` of v̇ (n_v) may be
 // NULL for none.

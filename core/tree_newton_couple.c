@@ -67,8 +67,7 @@ bool bough_newton_factor_coupling(const bough_tree_newton *w) {
         w->coupling[j] = 1;
         bough_newton_sweep(w, w->coupling, NULL, w->zero);
         find_coupling(w, column);
-        for (int i = 0; i < m; i++)
-            column[i] = (i == j ? 1 : 0) - column[i];
+        for (int i = 0; i < m; i++) column[i] = (i == j ? 1 : 0) - column[i];
     }
     return bough_dense_factor(m, w->matrix, w->pivot);
 }

@@ -16,16 +16,16 @@ enum { BOUGH_NEWTON_ROWS = BOUGH_TWIST * BOUGH_CHANGE, BOUGH_NEWTON_BLOCK = 24 *
 // A link's part of the factors, in its own axes
 typedef struct bough_newton_node {
     bough_transform relative;
-    bough_twist speed, joint, carried, pulled; // V, S v, X V_λ, X (A_λ − g)
-    bough_wrench force;                        // through the joint, F
-    bough_wrench end_force; // of an end, which keeps its direction when the link turns
-    double tau_q, tau_v;    // −∂τ/∂q, −∂τ/∂v
-    double matrix[BOUGH_NEWTON_ROWS];              // 𝒜 (6 × 18)
-    double column[BOUGH_NEWTON_ROWS];              // Σ, a row per speed
-    double back[BOUGH_NEWTON_ROWS];                // D⁻¹ Sᵀ𝒜, a row per speed
-    double gain[BOUGH_TWIST * BOUGH_TWIST];        // what x gives the parent, a row per speed
-    double coordinate[BOUGH_TWIST * BOUGH_TWIST];  // δη along each speed, a row per speed
-    double factor[BOUGH_TWIST * BOUGH_TWIST];      // D
+    bough_twist speed, joint, carried, pulled;    // V, S v, X V_λ, X (A_λ − g)
+    bough_wrench force;                           // through the joint, F
+    bough_wrench end_force;                       // of an end, which keeps its direction when the link turns
+    double tau_q, tau_v;                          // −∂τ/∂q, −∂τ/∂v
+    double matrix[BOUGH_NEWTON_ROWS];             // 𝒜 (6 × 18)
+    double column[BOUGH_NEWTON_ROWS];             // Σ, a row per speed
+    double back[BOUGH_NEWTON_ROWS];               // D⁻¹ Sᵀ𝒜, a row per speed
+    double gain[BOUGH_TWIST * BOUGH_TWIST];       // what x gives the parent, a row per speed
+    double coordinate[BOUGH_TWIST * BOUGH_TWIST]; // δη along each speed, a row per speed
+    double factor[BOUGH_TWIST * BOUGH_TWIST];     // D
     int pivot[BOUGH_TWIST];
     // of the present solution
     bough_newton_change known, total; // ζ⁰, ζ
@@ -46,12 +46,12 @@ struct bough_tree_newton {
     double *state;           // (n_q + n_v) where it is linearised
     int n_ends, n_rows;      // n_rows = 6 n_ends
     bough_newton_end *ends;  // (n_ends)
-    double *block;    // J of each element: ∂(both wrenches)/∂(poses, twists), 24 rows of 12
-    double *matrix;   // E − J T⁻¹ Eᵀ (n_rows × n_rows, column-major)
-    int *pivot;       // (n_rows)
-    double *coupling; // (n_rows) changes of the ends' wrenches
-    double *zero;     // (n_q + n_v) zeros
-    double *keep;     // (n_q + n_v) scratch
+    double *block;           // J of each element: ∂(both wrenches)/∂(poses, twists), 24 rows of 12
+    double *matrix;          // E − J T⁻¹ Eᵀ (n_rows × n_rows, column-major)
+    int *pivot;              // (n_rows)
+    double *coupling;        // (n_rows) changes of the ends' wrenches
+    double *zero;            // (n_q + n_v) zeros
+    double *keep;            // (n_q + n_v) scratch
 };
 
 // Solves without the springs and bushings, into the nodes' speeds and total changes: r as in

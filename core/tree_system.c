@@ -46,8 +46,7 @@ static const double *place(tree_system *s, double t, const double *state) {
     return s->placed;
 }
 
-static bool derivative(void *self, double t, const double *state, const double *input,
-                       double *rate) {
+static bool derivative(void *self, double t, const double *state, const double *input, double *rate) {
     tree_system *s = self;
     state = place(s, t, state);
     bough_tree_kinematics(s->tree, state, s->data);
@@ -75,8 +74,7 @@ static void end_outputs(const tree_system *s, const double *state, double *out) 
 }
 
 // δ(R u) = R (δu + δη × u); the links' tangents stand in the data.
-static void end_tangents(const tree_system *s, const double *state, const double *change,
-                         double *out) {
+static void end_tangents(const tree_system *s, const double *state, const double *change, double *out) {
     for (int e = 0; e < s->tree->n_ends; e++, out += BOUGH_END_OUTPUTS) {
         int i = s->tree->ends[e].link;
         const bough_link *link = &s->tree->links[i];
@@ -134,16 +132,14 @@ static void output(void *self, double t, const double *state, const double *inpu
 }
 
 // Of the outputs with a change of the state: out (n_output).
-static void outputs_change(tree_system *s, const double *state, const double *change,
-                           double *out) {
+static void outputs_change(tree_system *s, const double *state, const double *change, double *out) {
     memset(out, 0, (size_t)bough_tree_n_outputs(s->tree) * sizeof(double));
     bough_tree_kinematics(s->tree, state, s->data);
     bough_tree_tangent(s->tree, state, change, s->data);
     for (int p = 0; p < s->tree->n_ports; p++, out += BOUGH_PORT_OUTPUTS) {
         const bough_frame *port = &s->tree->ports[p];
         if (port->link < 0) continue;
-        bough_twist_store(bough_twist_to_child(&port->placement, s->data->acceleration[port->link]),
-                          out);
+        bough_twist_store(bough_twist_to_child(&port->placement, s->data->acceleration[port->link]), out);
         bough_vec3 g = bough_cross(s->data->gravity[port->link], s->data->turn[port->link]);
         bough_v3_store(bough_mat3_tmul(port->placement.rotation, g), out + 6);
     }
@@ -156,10 +152,8 @@ static void select_states(const tree_system *s, bool given, double *x) {
     for (int i = 0; i < s->tree->n_links; i++) {
         const bough_link *link = &s->tree->links[i];
         if ((link->motion != NULL) == given) continue;
-        for (int k = 0; k < link->n_coordinates; k++)
-            x[link->first_coordinate + k] = 0;
-        for (int k = 0; k < link->n_speeds; k++)
-            x[s->tree->n_q + link->first_speed + k] = 0;
+        for (int k = 0; k < link->n_coordinates; k++) x[link->first_coordinate + k] = 0;
+        for (int k = 0; k < link->n_speeds; k++) x[s->tree->n_q + link->first_speed + k] = 0;
     }
 }
 
@@ -181,8 +175,7 @@ static void output_tangent(void *self, double t, const double *state, const doub
 }
 
 // ∂h/∂t, by prescribed joints.
-static void output_drift(void *self, double t, const double *state, const double *input,
-                         double *drift) {
+static void output_drift(void *self, double t, const double *state, const double *input, double *drift) {
     tree_system *s = self;
     if (!s->prescribed || !derivative(s, t, state, input, s->y)) {
         memset(drift, 0, (size_t)bough_tree_n_outputs(s->tree) * sizeof(double));
@@ -192,8 +185,7 @@ static void output_drift(void *self, double t, const double *state, const double
     outputs_change(s, s->placed, s->y, drift);
 }
 
-static void input_columns(void *self, double t, const double *state, const double *input,
-                          double *column) {
+static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
     tree_system *s = self;
     const bough_tree *tree = s->tree;
     bough_tree_kinematics(tree, place(s, t, state), s->data);
@@ -203,8 +195,8 @@ static void input_columns(void *self, double t, const double *state, const doubl
         int port = j / BOUGH_PORT_INPUTS, end = port - tree->n_ports; // six inputs of either
         unit[j % BOUGH_PORT_INPUTS] = 1;
         const bough_frame *frame = end < 0 ? &tree->ports[port] : &tree->ends[end];
-        bough_wrench wrench = end < 0 ? bough_wrench_load(unit)
-                                      : bough_tree_end_wrench(tree, s->data, end, unit);
+        bough_wrench wrench =
+            end < 0 ? bough_wrench_load(unit) : bough_tree_end_wrench(tree, s->data, end, unit);
         memset(column, 0, (size_t)tree->n_q * sizeof(double));
         bough_tree_response(tree, s->data, frame, wrench, column + tree->n_q);
     }
@@ -230,8 +222,7 @@ static bool find_jacobian(tree_system *s, tree_factors *k) {
         s->y[j] = y;
         if (!ok) return false;
         double *column = k->jacobian + (size_t)n * (size_t)j;
-        for (int i = 0; i < n; i++)
-            column[i] = (s->plus[i] - s->minus[i]) / (high - low);
+        for (int i = 0; i < n; i++) column[i] = (s->plus[i] - s->minus[i]) / (high - low);
     }
     return true;
 }
@@ -253,8 +244,7 @@ static void *factors(void *self, bough_arena *arena) {
     return k;
 }
 
-static bool linearise(void *self, double t, const double *state, const double *input,
-                      void *factors) {
+static bool linearise(void *self, double t, const double *state, const double *input, void *factors) {
     tree_system *s = self;
     tree_factors *k = factors;
     k->time = t;
@@ -272,14 +262,11 @@ static bool factor(void *self, void *factors, double gamma) {
     int n = s->n;
     k->gamma = gamma;
     if (k->newton != NULL) {
-        return bough_tree_newton_setup(k->newton, s->data, k->time, k->input,
-                                       place(s, k->time, k->state), k->rate + s->tree->n_q,
-                                       1 / gamma);
+        return bough_tree_newton_setup(k->newton, s->data, k->time, k->input, place(s, k->time, k->state),
+                                       k->rate + s->tree->n_q, 1 / gamma);
     }
-    for (int i = 0; i < n * n; i++)
-        k->matrix[i] = -gamma * k->jacobian[i];
-    for (int i = 0; i < n; i++)
-        k->matrix[(size_t)n * (size_t)i + (size_t)i] += 1;
+    for (int i = 0; i < n * n; i++) k->matrix[i] = -gamma * k->jacobian[i];
+    for (int i = 0; i < n; i++) k->matrix[(size_t)n * (size_t)i + (size_t)i] += 1;
     return bough_dense_factor(n, k->matrix, k->pivot);
 }
 
@@ -296,13 +283,11 @@ static void solve_tree(tree_system *s, const tree_factors *k, double *x) {
         s->r[i] = -c * x[tree->n_q + i];
         x[tree->n_q + i] = 0;
     }
-    for (int i = 0; i < tree->n_q; i++)
-        x[i] *= c;
+    for (int i = 0; i < tree->n_q; i++) x[i] *= c;
     bough_tree_newton_solve(k->newton, s->r, x);
     if (!s->prescribed) return;
     select_states(s, true, s->y);
-    for (int i = 0; i < s->n; i++)
-        x[i] += s->y[i];
+    for (int i = 0; i < s->n; i++) x[i] += s->y[i];
 }
 
 static void solve(void *self, void *factors, double *x) {
@@ -355,12 +340,11 @@ bough_system bough_tree_system_create(bough_arena *arena, bough_tree *tree, cons
     tree_system *s = bough_arena_take(arena, sizeof *s);
     s->tree = tree;
     s->n = tree->n_q + tree->n_v;
-    for (int i = 0; i < tree->n_links; i++)
-        s->prescribed = s->prescribed || tree->links[i].motion != NULL;
+    for (int i = 0; i < tree->n_links; i++) s->prescribed = s->prescribed || tree->links[i].motion != NULL;
     s->data = bough_tree_data_create(arena, tree);
-    bough_arena_each(arena, (size_t)s->n, &s->initial, &s->scale, &s->placed, &s->y, &s->r, &s->plus, &s->minus);
-    for (int i = 0; i < s->n; i++)
-        s->scale[i] = 1;
+    bough_arena_each(arena, (size_t)s->n, &s->initial, &s->scale, &s->placed, &s->y, &s->r, &s->plus,
+                     &s->minus);
+    for (int i = 0; i < s->n; i++) s->scale[i] = 1;
     memcpy(s->initial, tree->initial, (size_t)s->n * sizeof(double));
     return (bough_system){.name = bough_arena_string(arena, name),
                           .kind = "tree",

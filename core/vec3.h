@@ -13,9 +13,7 @@ typedef struct bough_mat3 {
     bough_vec3 c1, c2, c3;
 } bough_mat3;
 
-static inline bough_vec3 bough_v3(double x, double y, double z) {
-    return (bough_vec3){x, y, z};
-}
+static inline bough_vec3 bough_v3(double x, double y, double z) { return (bough_vec3){x, y, z}; }
 static inline void bough_v3_store(bough_vec3 v, double *out) {
     out[0] = v.x;
     out[1] = v.y;
@@ -35,15 +33,11 @@ static inline bough_vec3 bough_scale(double s, bough_vec3 a) {
 static inline bough_vec3 bough_axpy(double s, bough_vec3 b, bough_vec3 a) {
     return (bough_vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
-static inline double bough_dot(bough_vec3 a, bough_vec3 b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
+static inline double bough_dot(bough_vec3 a, bough_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 static inline bough_vec3 bough_cross(bough_vec3 a, bough_vec3 b) {
     return (bough_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-static inline double bough_norm(bough_vec3 a) {
-    return sqrt(bough_dot(a, a));
-}
+static inline double bough_norm(bough_vec3 a) { return sqrt(bough_dot(a, a)); }
 
 // A v and Aᵀ v
 static inline bough_vec3 bough_mat3_mul(bough_mat3 a, bough_vec3 v) {
@@ -60,8 +54,6 @@ static inline bough_mat3 bough_mat3_product(bough_mat3 a, bough_mat3 b) {
 static inline bough_mat3 bough_mat3_transpose(bough_mat3 a) {
     return (bough_mat3){{a.c1.x, a.c2.x, a.c3.x}, {a.c1.y, a.c2.y, a.c3.y}, {a.c1.z, a.c2.z, a.c3.z}};
 }
-static inline bough_mat3 bough_mat3_identity(void) {
-    return (bough_mat3){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-}
+static inline bough_mat3 bough_mat3_identity(void) { return (bough_mat3){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}; }
 
 #endif

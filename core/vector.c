@@ -41,16 +41,14 @@ static void linear_sum(double a, N_Vector vx, double b, N_Vector vy, N_Vector vz
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++)
-        z[i] = a * x[i] + b * y[i];
+    for (int i = 0; i < n; i++) z[i] = a * x[i] + b * y[i];
 }
 
 static void constant(double c, N_Vector vz) {
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++)
-        z[i] = c;
+    for (int i = 0; i < n; i++) z[i] = c;
 }
 
 static void product(N_Vector vx, N_Vector vy, N_Vector vz) {
@@ -58,8 +56,7 @@ static void product(N_Vector vx, N_Vector vy, N_Vector vz) {
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++)
-        z[i] = x[i] * y[i];
+    for (int i = 0; i < n; i++) z[i] = x[i] * y[i];
 }
 
 static void scale(double c, N_Vector vx, N_Vector vz) {
@@ -67,8 +64,7 @@ static void scale(double c, N_Vector vx, N_Vector vz) {
     double *z = bough_vector_data(vz);
     int n = length(vz);
 #pragma omp simd
-    for (int i = 0; i < n; i++)
-        z[i] = c * x[i];
+    for (int i = 0; i < n; i++) z[i] = c * x[i];
 }
 
 static double dot(N_Vector vx, N_Vector vy) {
@@ -76,8 +72,7 @@ static double dot(N_Vector vx, N_Vector vy) {
     double sum = 0;
     int n = length(vx);
 #pragma omp simd reduction(+ : sum)
-    for (int i = 0; i < n; i++)
-        sum += x[i] * y[i];
+    for (int i = 0; i < n; i++) sum += x[i] * y[i];
     return sum;
 }
 
@@ -86,8 +81,7 @@ static double max_norm(N_Vector vx) {
     double most = 0;
     int n = length(vx);
 #pragma omp simd reduction(max : most)
-    for (int i = 0; i < n; i++)
-        most = fabs(x[i]) > most ? fabs(x[i]) : most;
+    for (int i = 0; i < n; i++) most = fabs(x[i]) > most ? fabs(x[i]) : most;
     return most;
 }
 
@@ -96,16 +90,14 @@ static double wrms_norm(N_Vector vx, N_Vector vw) {
     double sum = 0;
     int n = length(vx);
 #pragma omp simd reduction(+ : sum)
-    for (int i = 0; i < n; i++)
-        sum += (x[i] * w[i]) * (x[i] * w[i]);
+    for (int i = 0; i < n; i++) sum += (x[i] * w[i]) * (x[i] * w[i]);
     return sqrt(sum / n);
 }
 
 // z += a x + b y
 static void add_two(double a, const double *x, double b, const double *y, double *z, int n) {
 #pragma omp simd
-    for (int i = 0; i < n; i++)
-        z[i] += a * x[i] + b * y[i];
+    for (int i = 0; i < n; i++) z[i] += a * x[i] + b * y[i];
 }
 
 // z = Σ c_k X_k, two at a time; z may be X_0, which is read first.

@@ -25,9 +25,9 @@ struct bough_accelerator {
     int evaluations;
     double norm[RECENT]; // newest first
     double smallest;
-    double factor;                           // of Aitken, in use
-    double *residual, *image;                // (n) of the evaluation taken
-    double *residual_before, *image_before;  // (n) of the one before
+    double factor;                          // of Aitken, in use
+    double *residual, *image;               // (n) of the evaluation taken
+    double *residual_before, *image_before; // (n) of the one before
     int capacity, n_column;
     double *v[MOST_COLUMNS], *w[MOST_COLUMNS]; // (n each) differences, newest first
     double *q[MOST_COLUMNS];                   // (n each) orthonormal
@@ -42,8 +42,7 @@ const char *const bough_acceleration_names[] = {[BOUGH_ACCELERATE_NONE] = "none"
                                                 [BOUGH_ACCELERATE_NEWTON] = "interface-newton",
                                                 NULL};
 
-bough_accelerator *bough_accelerator_create(bough_arena *arena,
-                                            const bough_accelerator_def *def) {
+bough_accelerator *bough_accelerator_create(bough_arena *arena, const bough_accelerator_def *def) {
     assert(def->relaxation > 0 && def->relaxation <= 1);
     bough_accelerator *a = bough_arena_take(arena, sizeof *a);
     size_t n = (size_t)def->n;

@@ -31,8 +31,7 @@ typedef struct bough_accelerator bough_accelerator;
 extern const char *const bough_acceleration_names[];
 
 // Takes all memory from the arena; iterating takes none.
-bough_accelerator *bough_accelerator_create(bough_arena *arena,
-                                            const bough_accelerator_def *def);
+bough_accelerator *bough_accelerator_create(bough_arena *arena, const bough_accelerator_def *def);
 
 // Forgets everything: a new problem begins.
 void bough_accelerator_start(bough_accelerator *a);

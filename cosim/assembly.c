@@ -185,8 +185,7 @@ void bough_assembly_scales(const bough_assembly *a, double *scale) {
     }
 }
 
-void bough_assembly_gather(const bough_assembly *a, int member, const double *output,
-                           double *input) {
+void bough_assembly_gather(const bough_assembly *a, int member, const double *output, double *input) {
     for (int j = a->input_offset[member]; j < a->input_offset[member + 1]; j++) {
         input[j] = output[a->source[j]];
     }

@@ -48,10 +48,10 @@ typedef struct bough_assembly {
     int *source;                    // (n_input) the output that feeds each input
     int *source_member;             // (n_input) the member it belongs to
     bool *kinematic;                // (n_input)
-    int *vector;       // (n_input) first of the up to three inputs that form a vector with this one
-    bool *feedthrough; // (n_member) whether outputs depend on inputs directly
-    int *order;        // (n_member) outputs evaluated in this order need no iteration
-    bool *leads;       // (n_member) those of stage 0, and others connected with one that is not of it
+    int *vector;         // (n_input) first of the up to three inputs that form a vector with this one
+    bool *feedthrough;   // (n_member) whether outputs depend on inputs directly
+    int *order;          // (n_member) outputs evaluated in this order need no iteration
+    bool *leads;         // (n_member) those of stage 0, and others connected with one that is not of it
     bool followers_last; // no outputs of leaders depend on those of followers directly
     int n_interface;
     bough_interface *interface; // (n_interface)
@@ -73,7 +73,6 @@ void bough_assembly_states(const bough_assembly *a, double *state);
 void bough_assembly_scales(const bough_assembly *a, double *scale);
 
 // input[j] = output[source[j]] for the inputs of one member.
-void bough_assembly_gather(const bough_assembly *a, int member, const double *output,
-                           double *input);
+void bough_assembly_gather(const bough_assembly *a, int member, const double *output, double *input);
 
 #endif

@@ -74,6 +74,6 @@ bough_status bough_breakdown_explain(bough_breakdown *b, bough_coupling *c,
     bough_stability_advice advice = *before;
     if (!advice.unstable && !c->scheme->one_system) advice = judge_again(b, c);
     advise(c, &advice, text);
-    return bough_fail(BOUGH_FAILED, "%s (scheme %s, macro step %.6g s from %.6g s)%s",
-                      cause.message, c->scheme->name, c->t1 - c->t0, c->t0, text);
+    return bough_fail(BOUGH_FAILED, "%s (scheme %s, macro step %.6g s from %.6g s)%s", cause.message,
+                      c->scheme->name, c->t1 - c->t0, c->t0, text);
 }

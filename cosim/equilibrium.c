@@ -10,7 +10,7 @@
 // a refusal by `cautious`.
 static const double contracting = 0.5, aim = 0.2, growth = 8, shrink = 0.1, cautious = 1.5;
 
-static const double shortest = 1e-9;  // γ below which there is no hope [s]
+static const double shortest = 1e-9; // γ below which there is no hope [s]
 static const double rounding = 1e-6; // changes that only rounding keeps from contracting
 static const double most_turn = 1;   // of a vertex or body in a correction [rad]
 
@@ -21,7 +21,7 @@ bough_equilibrium_def bough_equilibrium_def_default(void) {
 typedef struct search {
     bough_coupled *coupled;
     const bough_equilibrium_def *def;
-    int n;                                // states
+    int n;                                         // states
     double *scale, *rate, *first, *second, *trial; // (n)
     double gamma;
 } search;
@@ -49,8 +49,7 @@ static double size_of(const search *s, const double *x, int *row) {
 // moved ← state after the change, by the caller's rule; the largest turn in it [rad].
 static double move(const search *s, const double *state, const double *change, double *moved) {
     if (s->def->move) return s->def->move(s->def->self, state, change, moved);
-    for (int k = 0; k < s->n; k++)
-        moved[k] = state[k] + change[k];
+    for (int k = 0; k < s->n; k++) moved[k] = state[k] + change[k];
     return 0;
 }
 
@@ -58,8 +57,7 @@ static double move(const search *s, const double *state, const double *change, d
 // is of the first, infinite when the step leads nowhere. s->rate belongs to `state`.
 static double step(search *s, const double *state, bough_equilibrium_report *report) {
     int row = 0;
-    bough_status status =
-        bough_coupled_setup(s->coupled, s->def->time, state, s->coupled->input, s->gamma);
+    bough_status status = bough_coupled_setup(s->coupled, s->def->time, state, s->coupled->input, s->gamma);
     if (!bough_is_ok(&status)) return INFINITY;
     for (int k = 0; k < s->n; k++) s->first[k] = s->gamma * s->rate[k];
     bough_coupled_solve(s->coupled, s->first);

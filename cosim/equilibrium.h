@@ -9,8 +9,8 @@
 #include "cosim/coupled.h"
 
 typedef struct bough_equilibrium_def {
-    double time;     // [s]
-    double step;     // the first γ [s]
+    double time;      // [s]
+    double step;      // the first γ [s]
     double tolerance; // of the last step, in units of the members' scales
     int steps;        // most, refused ones among them
     void *self;

@@ -10,9 +10,9 @@ enum { MOST_AGE = 12 }; // steps: as the ramp keeps its tangents
 struct bough_interface_newton {
     int n_span;
     bough_coupled **coupled; // (n_span)
-    double *state;       // (n_state) where
-    double length;       // of the macro step they were made for [s]; 0: none
-    int age;             // steps since
+    double *state;           // (n_state) where
+    double length;           // of the macro step they were made for [s]; 0: none
+    int age;                 // steps since
 };
 
 bough_interface_newton *bough_interface_newton_create(bough_arena *arena, const bough_coupling *c,
@@ -27,8 +27,7 @@ bough_interface_newton *bough_interface_newton_create(bough_arena *arena, const 
     return n;
 }
 
-bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coupling *c,
-                                           const double *span) {
+bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coupling *c, const double *span) {
     double length = c->t1 - c->t0;
     bool same = !c->restart && fabs(length - n->length) <= 1e-9 * length;
     n->age++;

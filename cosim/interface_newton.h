@@ -14,8 +14,7 @@ bough_interface_newton *bough_interface_newton_create(bough_arena *arena, const 
 
 // Makes the Jacobians for a step: anew when the macro step changes, loads jump, and every few steps.
 // Members must be at t0.
-bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coupling *c,
-                                           const double *span);
+bough_status bough_interface_newton_update(bough_interface_newton *n, bough_coupling *c, const double *span);
 
 // The next update makes them anew.
 void bough_interface_newton_forget(bough_interface_newton *n);

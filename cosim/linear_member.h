@@ -12,8 +12,7 @@
 // Builds the linear member in the arena: at the member's current time and state and the input given
 // (n_input), copied. The perturbation starts at 0. `sub_step` is the longest step [s]. The linear
 // member must stay where it is.
-void bough_linear_member_create(bough_arena *arena, const bough_member *real,
-                                        const double *input, double sub_step,
-                                        bough_member *linear);
+void bough_linear_member_create(bough_arena *arena, const bough_member *real, const double *input,
+                                double sub_step, bough_member *linear);
 
 #endif

@@ -17,8 +17,7 @@ typedef struct modes {
     bool diverged;
 } modes;
 
-void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary,
-                          double share[2]) {
+void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary, double share[2]) {
     share[0] = share[1] = 0;
     for (int k = 0; k < n; k++) {
         double angle = -2 * BOUGH_PI * h * k / n, c = cos(angle), s = sin(angle);
@@ -91,9 +90,8 @@ static void take(bough_arena *arena, modes *m, bough_eigen_operator *op) {
     for (size_t k = 0; k < n; k++) op->weight[k] = 1 / (op->weight[k] * op->weight[k]);
 }
 
-bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled,
-                              const bough_modes_def *def, int wanted, bough_eigen_pair *pair,
-                              int *found) {
+bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled, const bough_modes_def *def,
+                              int wanted, bough_eigen_pair *pair, int *found) {
     modes m = {.coupled = coupled, .def = def};
     bough_eigen_operator op = {.name = "whole scene",
                                .length = coupled->assembly->n_state,
@@ -107,8 +105,10 @@ bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled,
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
     status = bough_eigen_nearest(arena, &op, wanted, pair, found);
     if (m.diverged) {
-        return bough_fail(BOUGH_FAILED, "the rotation is too fast for the transform's"
-                          " series about %g /s", def->point);
+        return bough_fail(BOUGH_FAILED,
+                          "the rotation is too fast for the transform's"
+                          " series about %g /s",
+                          def->point);
     }
     return status;
 }

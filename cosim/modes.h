@@ -26,16 +26,14 @@ typedef struct bough_modes_def {
 
 // The share of harmonic h in a pattern over n parts, complex: (1/n) Σ_k y_k exp(−i 2πhk/n), y (n)
 // given and share returned as real and imaginary part.
-void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary,
-                          double share[2]);
+void bough_modes_harmonic(int n, int h, const double *real, const double *imaginary, double share[2]);
 
 // S of the parts, rate (n_part × n_part), row-major.
 void bough_modes_rate(const bough_modes_def *def, double *rate);
 
 // Finds `wanted` pairs as bough_eigen_nearest does, shapes (n_state). BOUGH_FAILED also where the
 // spin is too fast for the point: it should be several times the largest h Ω.
-bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled,
-                              const bough_modes_def *def, int wanted, bough_eigen_pair *pair,
-                              int *found);
+bough_status bough_modes_find(bough_arena *arena, bough_coupled *coupled, const bough_modes_def *def,
+                              int wanted, bough_eigen_pair *pair, int *found);
 
 #endif

@@ -11,10 +11,10 @@ enum { CORRECTIONS = 30, FEW = 16, PARABOLAS = 5 };
 // γ is as long as makes steps of Newton's method of those of implicit Euler: until the answer to the loads
 // changes by no more than this when it is taken four times as long.
 static const double shift = 0.03, longer = 4, longest = 1e6; // [-, -, s]
-static const double most_turn = 0.5;     // of a vertex or body in a correction [rad]
-static const double rounding = 1e-5;     // corrections that only rounding keeps from contracting
-static const double smooth = 0.97;       // least cosine between the tangents of neighbouring points
-static const double straight = 0.995;    // cosine from which steps grow
+static const double most_turn = 0.5;                         // of a vertex or body in a correction [rad]
+static const double rounding = 1e-5;  // corrections that only rounding keeps from contracting
+static const double smooth = 0.97;    // least cosine between the tangents of neighbouring points
+static const double straight = 0.995; // cosine from which steps grow
 static const double growth = 1.6, shrink = 0.4, least_step = 1e-9;
 
 bough_path_def bough_path_def_default(void) {
@@ -29,11 +29,11 @@ typedef struct place {
 typedef struct path {
     bough_coupled *coupled;
     const bough_path_def *def;
-    int n;                                         // states
-    double *scale, *rate, *full, *load, *change;   // (n); load: (I − γJ)⁻¹ γ ∂F/∂λ
-    double *moved;                                 // (n)
+    int n;                                       // states
+    double *scale, *rate, *full, *load, *change; // (n); load: (I − γJ)⁻¹ γ ∂F/∂λ
+    double *moved;                               // (n)
     place here, next, limit, next_limit;
-    double gamma;                                  // [s]
+    double gamma; // [s]
 } path;
 
 static void take_place(bough_arena *arena, size_t n, place *p) {
@@ -45,22 +45,19 @@ static void take(path *p, bough_arena *arena) {
     size_t n = (size_t)p->n;
     bough_arena_each(arena, n, &p->scale, &p->rate, &p->full, &p->load, &p->change, &p->moved);
     place *const places[] = {&p->here, &p->next, &p->limit, &p->next_limit};
-    for (int i = 0; i < 4; i++)
-        take_place(arena, n, places[i]);
+    for (int i = 0; i < 4; i++) take_place(arena, n, places[i]);
 }
 
 // Mean over the states in units of their scales, and shares.
 static double product(const path *p, const double *a, double a_share, const double *b, double b_share) {
     double sum = 0;
-    for (int k = 0; k < p->n; k++)
-        sum += a[k] / p->scale[k] * (b[k] / p->scale[k]);
+    for (int k = 0; k < p->n; k++) sum += a[k] / p->scale[k] * (b[k] / p->scale[k]);
     return sum / p->n + a_share * b_share;
 }
 
 static double largest(const path *p, const double *x) {
     double size = 0;
-    for (int k = 0; k < p->n; k++)
-        size = fmax(size, fabs(x[k]) / p->scale[k]);
+    for (int k = 0; k < p->n; k++) size = fmax(size, fabs(x[k]) / p->scale[k]);
     return size;
 }
 
@@ -69,8 +66,7 @@ static bool add(path *p, place *at, const double *change, double share) {
     if (p->def->move) {
         turn = p->def->move(p->def->self, at->state, change, p->moved);
     } else {
-        for (int k = 0; k < p->n; k++)
-            p->moved[k] = at->state[k] + change[k];
+        for (int k = 0; k < p->n; k++) p->moved[k] = at->state[k] + change[k];
     }
     if (!(turn < most_turn)) return false;
     memcpy(at->state, p->moved, (size_t)p->n * sizeof *p->moved);
@@ -100,8 +96,7 @@ static bool linearise(path *p, const place *at) {
 static bool choose_gamma(path *p, const place *at) {
     for (p->gamma = BOUGH_EQUILIBRIUM_LONGEST; linearise(p, at); p->gamma *= longer) {
         double change = 0, size = largest(p, p->load);
-        for (int k = 0; k < p->n; k++)
-            change = fmax(change, fabs(p->load[k] - p->change[k]) / p->scale[k]);
+        for (int k = 0; k < p->n; k++) change = fmax(change, fabs(p->load[k] - p->change[k]) / p->scale[k]);
         bool same = change <= shift * size;
         memcpy(p->change, p->load, (size_t)p->n * sizeof *p->load);
         if (same || p->gamma > longest) return true;
@@ -113,8 +108,7 @@ static bool choose_gamma(path *p, const place *at) {
 static void direct(path *p, const double *before, double *tangent) {
     double norm = sqrt(product(p, p->load, 1, p->load, 1)), sign = 1;
     if (before) sign = copysign(1, product(p, p->load, 1, before, before[p->n]));
-    for (int k = 0; k < p->n; k++)
-        tangent[k] = sign * p->load[k] / norm;
+    for (int k = 0; k < p->n; k++) tangent[k] = sign * p->load[k] / norm;
     tangent[p->n] = sign / norm;
 }
 
@@ -124,13 +118,11 @@ static int correct(path *p, const double *tangent, bool fixed, place *at) {
     double before = INFINITY;
     for (int i = 1; i <= CORRECTIONS; i++) {
         if (!linearise(p, at)) return 0;
-        for (int k = 0; k < p->n; k++)
-            p->change[k] = p->gamma * p->rate[k];
+        for (int k = 0; k < p->n; k++) p->change[k] = p->gamma * p->rate[k];
         bough_coupled_solve(p->coupled, p->change);
         double along = product(p, p->change, 0, tangent, tangent[p->n]);
         double share = fixed ? 0 : -along / product(p, p->load, 1, tangent, tangent[p->n]);
-        for (int k = 0; k < p->n; k++)
-            p->change[k] += share * p->load[k];
+        for (int k = 0; k < p->n; k++) p->change[k] += share * p->load[k];
         double size = fmax(largest(p, p->change), fabs(share));
         if (!isfinite(size) || !add(p, at, p->change, share)) return 0;
         if (size < p->def->tolerance || (size < rounding && !(size < 0.5 * before))) return i;
@@ -149,8 +141,7 @@ static void copy_place(const path *p, const place *from, place *to) {
 // From `here` by a step along its tangent to `to`, with the direction there. The corrections, 0: none.
 static int go(path *p, double step, place *to) {
     copy_place(p, &p->here, to);
-    for (int k = 0; k < p->n; k++)
-        p->change[k] = step * p->here.tangent[k];
+    for (int k = 0; k < p->n; k++) p->change[k] = step * p->here.tangent[k];
     if (!add(p, to, p->change, step * p->here.tangent[p->n])) return 0;
     int corrections = correct(p, p->here.tangent, false, to);
     if (corrections > 0) direct(p, p->here.tangent, to->tangent);
@@ -199,8 +190,7 @@ static bool finish(path *p, double share) {
     double ahead = share - p->here.share, slope = p->here.tangent[p->n];
     copy_place(p, &p->here, &p->limit);
     if (!(ahead * slope > 0)) return ahead == 0;
-    for (int k = 0; k < p->n; k++)
-        p->change[k] = ahead / slope * p->here.tangent[k];
+    for (int k = 0; k < p->n; k++) p->change[k] = ahead / slope * p->here.tangent[k];
     return add(p, &p->limit, p->change, ahead) && correct(p, p->here.tangent, true, &p->limit) > 0;
 }
 

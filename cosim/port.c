@@ -3,8 +3,7 @@
 #include "core/base.h"
 
 bough_signal bough_port_signal(bough_arena *arena, int n) {
-    return (bough_signal){
-        .n = n, .t0 = 0, .t1 = 1, .coefficient = bough_arena_doubles(arena, 4 * (size_t)n)};
+    return (bough_signal){.n = n, .t0 = 0, .t1 = 1, .coefficient = bough_arena_doubles(arena, 4 * (size_t)n)};
 }
 
 static void set(bough_signal *s, int j, double c0, double c1, double c2, double c3) {
@@ -19,19 +18,16 @@ void bough_port_hold(bough_signal *s, int first, int count, const double *value)
     for (int j = 0; j < count; j++) set(s, first + j, value[j], 0, 0, 0);
 }
 
-void bough_port_hold_rate(bough_signal *s, int first, int count, const double *value,
-                          const double *rate) {
+void bough_port_hold_rate(bough_signal *s, int first, int count, const double *value, const double *rate) {
     double length = s->t1 - s->t0;
     for (int j = 0; j < count; j++) set(s, first + j, value[j], length * rate[j], 0, 0);
 }
 
-void bough_port_linear(bough_signal *s, int first, int count, const double *start,
-                       const double *end) {
+void bough_port_linear(bough_signal *s, int first, int count, const double *start, const double *end) {
     for (int j = 0; j < count; j++) set(s, first + j, start[j], end[j] - start[j], 0, 0);
 }
 
-void bough_port_hermite(bough_signal *s, int first, int count, bough_port_end start,
-                        bough_port_end end) {
+void bough_port_hermite(bough_signal *s, int first, int count, bough_port_end start, bough_port_end end) {
     double length = s->t1 - s->t0;
     for (int j = 0; j < count; j++) {
         double jump = end.value[j] - start.value[j];

@@ -14,8 +14,7 @@ bough_signal bough_port_signal(bough_arena *arena, int n);
 void bough_port_hold(bough_signal *s, int first, int count, const double *value);
 
 // value(t) = value + rate (t − t0)
-void bough_port_hold_rate(bough_signal *s, int first, int count, const double *value,
-                          const double *rate);
+void bough_port_hold_rate(bough_signal *s, int first, int count, const double *value, const double *rate);
 
 // The polynomial of degree n_point − 1 <= 3 through n_point values: at times time[p] the values
 // value[p][0 … count − 1]. Extrapolates when the times are before t0, interpolates otherwise.
@@ -23,14 +22,12 @@ void bough_port_polynomial(bough_signal *s, int first, int count, int n_point, c
                            const double *const *value);
 
 // Linear from `start` at t0 to `end` at t1.
-void bough_port_linear(bough_signal *s, int first, int count, const double *start,
-                       const double *end);
+void bough_port_linear(bough_signal *s, int first, int count, const double *start, const double *end);
 
 // The cubic with these values and rates (2 × count each: at t0, at t1).
 typedef struct bough_port_end {
     const double *value, *rate; // (count)
 } bough_port_end;
-void bough_port_hermite(bough_signal *s, int first, int count, bough_port_end start,
-                        bough_port_end end);
+void bough_port_hermite(bough_signal *s, int first, int count, bough_port_end start, bough_port_end end);
 
 #endif

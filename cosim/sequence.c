@@ -9,8 +9,8 @@ void bough_sequence_extrapolate(bough_coupling *c, int member, int j, int degree
     int n_point = degree < c->n_past ? degree + 1 : c->n_past;
     const double *value[BOUGH_HISTORY];
     for (int p = 0; p < n_point; p++) value[p] = c->past[p] + j;
-    bough_port_polynomial(&c->signal[member], j - c->assembly->input_offset[member], 1, n_point,
-                          c->past_time, value);
+    bough_port_polynomial(&c->signal[member], j - c->assembly->input_offset[member], 1, n_point, c->past_time,
+                          value);
 }
 
 bool bough_sequence_before(const bough_coupling *c, int stage, int other) {

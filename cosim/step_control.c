@@ -41,9 +41,7 @@ void bough_step_control_snapshot(bough_step_control *s, bough_snapshot *snapshot
 
 // -- decisions ------------------------------------------------------------------------------------
 
-bool bough_step_control_exhausted(const bough_step_control *s) {
-    return s->level >= s->most;
-}
+bool bough_step_control_exhausted(const bough_step_control *s) { return s->level >= s->most; }
 
 static void refine(bough_step_control *s) {
     s->level++;

@@ -19,9 +19,9 @@ typedef struct bough_step_control {
     int level, part;        // the next step is the part-th of 2^level of the span
     double from, to;        // the span [s]
     long accepted, rejected;
-    long forced;            // accepted above the tolerance, because it was the shortest
-    double shortest;        // step accepted [s]
-    char *copy;             // of the coupling at the start of the step
+    long forced;     // accepted above the tolerance, because it was the shortest
+    double shortest; // step accepted [s]
+    char *copy;      // of the coupling at the start of the step
 } bough_step_control;
 
 // `order`: of the defects in the macro step. Takes the memory for the copy from the arena.

@@ -33,15 +33,13 @@ void bough_ground_body_turn(bough_ground_body *b, const double *axis) {
 
 // -- the contract ---------------------------------------------------------------------------------
 
-static bool derivative(void *self, double t, const double *state, const double *input,
-                       double *rate) {
+static bool derivative(void *self, double t, const double *state, const double *input, double *rate) {
     bough_ground_body *b = self;
     bough_ground_body_turn(b, input + b->inner.n_input);
     return b->inner.ops->derivative(b->inner.self, t, state, input, rate);
 }
 
-static bool derivative_again(void *self, double t, const double *state, const double *input,
-                             double *rate) {
+static bool derivative_again(void *self, double t, const double *state, const double *input, double *rate) {
     bough_ground_body *b = self;
     bough_ground_body_turn(b, input + b->inner.n_input);
     return b->inner.ops->derivative_again(b->inner.self, t, state, input, rate);
@@ -74,8 +72,7 @@ static void output_tangent(void *self, double t, const double *state, const doub
     }
 }
 
-static void input_columns(void *self, double t, const double *state, const double *input,
-                          double *column) {
+static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
     bough_ground_body *b = self;
     bough_ground_body_turn(b, input + b->inner.n_input);
     b->inner.ops->input_columns(b->inner.self, t, state, input, column);
@@ -94,8 +91,7 @@ static void *factors(void *self, bough_arena *arena) {
     return b->inner.ops->factors(b->inner.self, arena);
 }
 
-static bool linearise(void *self, double t, const double *state, const double *input,
-                      void *factors) {
+static bool linearise(void *self, double t, const double *state, const double *input, void *factors) {
     bough_ground_body *b = self;
     bough_ground_body_turn(b, input + b->inner.n_input);
     return b->inner.ops->linearise(b->inner.self, t, state, input, factors);
@@ -164,15 +160,12 @@ static void add_axis(const bough_ground_body *b, const bough_ground_load_def *de
     bough_rod_lump_line(b->mesh, to);
 }
 
-void bough_ground_body_load(bough_ground_body *b, bough_arena *arena,
-                            const bough_ground_load_def *def) {
+void bough_ground_body_load(bough_ground_body *b, bough_arena *arena, const bough_ground_load_def *def) {
     size_t size = 6 * (size_t)b->mesh->stride;
     ground_load *l = bough_arena_take(arena, sizeof *l);
-    *l = (ground_load){.next = b->first,
-                       .by_axis = bough_arena_doubles(arena, BOUGH_GROUND_AXES * size)};
+    *l = (ground_load){.next = b->first, .by_axis = bough_arena_doubles(arena, BOUGH_GROUND_AXES * size)};
     b->first = l;
-    l->resolved = bough_rod_loads_tabled(b->loads, arena, b->mesh, false, def->n, def->times,
-                                         def->factors);
+    l->resolved = bough_rod_loads_tabled(b->loads, arena, b->mesh, false, def->n, def->times, def->factors);
     l->resolved->start = def->ramp[0];
     l->resolved->end = def->ramp[1];
     for (int j = 0; j < BOUGH_GROUND_AXES; j++) {

@@ -26,8 +26,7 @@ typedef struct bough_ground_load_def {
     int n;                    // 0: no table
     const double *times, *factors;
 } bough_ground_load_def;
-void bough_ground_body_load(bough_ground_body *body, bough_arena *arena,
-                            const bough_ground_load_def *def);
+void bough_ground_body_load(bough_ground_body *body, bough_arena *arena, const bough_ground_load_def *def);
 
 // Resolves all loads for these axes (9), for those who read the body's loads.
 void bough_ground_body_turn(bough_ground_body *body, const double *axes);

@@ -11,8 +11,8 @@
 static void mass_matrix(const bough_vertex_inertia *v, double *upper) {
     const double *j = v->inertia;
     bough_vec3 s = v->moment;
-    const double rows[21] = {v->mass, 0,    0,   0,    s.z,  -s.y, v->mass, 0, -s.z, 0, s.x,
-                             v->mass, s.y,  -s.x, 0,   j[0], j[3], j[4], j[1], j[5], j[2]};
+    const double rows[21] = {v->mass, 0,   0,    0, s.z,  -s.y, v->mass, 0,    -s.z, 0,   s.x,
+                             v->mass, s.y, -s.x, 0, j[0], j[3], j[4],    j[1], j[5], j[2]};
     memcpy(upper, rows, sizeof rows);
 }
 
@@ -68,8 +68,10 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
         return bough_fail(BOUGH_INVALID, "rod %s: segment %d has length %g m", m->name, n + 1, h);
     }
     if (!bough_symmetric6_inverse(def->stiffness + 21 * n, compliance)) {
-        return bough_fail(BOUGH_INVALID, "rod %s: the stiffness of segment %d is not positive"
-                          " definite", m->name, n + 1);
+        return bough_fail(BOUGH_INVALID,
+                          "rod %s: the stiffness of segment %d is not positive"
+                          " definite",
+                          m->name, n + 1);
     }
     m->length[n] = h;
     m->inverse_length[n] = 1 / h;
@@ -82,14 +84,16 @@ static bough_status set_segment(bough_rod_model *m, const bough_rod_def *def, in
     vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
     segment_geometry shape = segment_shape(left, right, 1 / h);
     if (shape.w < 0.5) {
-        return bough_fail(BOUGH_INVALID, "rod %s: the undeformed section turns by more than 120°"
-                          " over segment %d; use more segments", m->name, n + 1);
+        return bough_fail(BOUGH_INVALID,
+                          "rod %s: the undeformed section turns by more than 120°"
+                          " over segment %d; use more segments",
+                          m->name, n + 1);
     }
     bough_vec3 bend = bough_sub(bough_rotation_matrix(right.p).c3, bough_rotation_matrix(left.p).c3);
     bend = bough_mat3_tmul(shape.r, bend);
     const double bend0[3] = {bend.x, bend.y, bend.z};
     for (int k = 0; k < 3; k++) m->bend0[k * s + n] = bend0[k];
-    const double e0[6] = {shape.stretch.x,  shape.stretch.y,  shape.stretch.z,
+    const double e0[6] = {shape.stretch.x, shape.stretch.y, shape.stretch.z,
                           shape.phi.x / h, shape.phi.y / h, shape.phi.z / h};
     for (int k = 0; k < 6; k++) m->strain0[k * s + n] = e0[k];
     set_gradient(m, def, n, compliance);
@@ -102,8 +106,10 @@ static bough_status set_vertex(bough_rod_model *m, const bough_rod_def *def, int
     double mass[21], inverse[21];
     mass_matrix(v, mass);
     if (!bough_symmetric6_inverse(mass, inverse)) {
-        return bough_fail(BOUGH_INVALID, "rod %s: the inertia of vertex %d is not positive"
-                          " definite", m->name, i);
+        return bough_fail(BOUGH_INVALID,
+                          "rod %s: the inertia of vertex %d is not positive"
+                          " definite",
+                          m->name, i);
     }
     for (int k = 0; k < 21; k++) m->inverse_mass[k * s + i - 1] = inverse[k];
     for (int k = 0; k < 6; k++) m->inertia[k * s + i - 1] = v->inertia[k];
@@ -114,16 +120,14 @@ static bough_status set_vertex(bough_rod_model *m, const bough_rod_def *def, int
     return bough_ok();
 }
 
-bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
-                              bough_rod_model **model) {
+bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def, bough_rod_model **model) {
     bough_rod_model *m = bough_arena_take(arena, sizeof *m);
     m->name = bough_arena_string(arena, def->name);
     m->n_segment = def->n_segment;
     m->n = def->carries ? def->n_segment - 1 : def->n_segment;
     if (m->n < 1) {
         return bough_fail(BOUGH_INVALID, "rod %s: %d segments; a rod%s has at least %d", m->name,
-                          m->n_segment, def->carries ? " that carries bodies" : "",
-                          def->carries ? 2 : 1);
+                          m->n_segment, def->carries ? " that carries bodies" : "", def->carries ? 2 : 1);
     }
     m->stride = bough_padded(m->n_segment + BOUGH_LANES); // vertices go by lanes from 1 on
     take_arrays(m, arena);
@@ -147,8 +151,7 @@ double *bough_rod_vertex_rows(bough_arena *arena, const bough_rod_model *model, 
     return bough_arena_doubles(arena, room) + BOUGH_LANES - 1;
 }
 
-void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
-                            const bough_rod_model *model) {
+void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena, const bough_rod_model *model) {
     scratch->vertex = bough_rod_vertex_rows(arena, model, BOUGH_ROD_STATES);
     for (int i = 0; i < model->stride; i++) {
         scratch->vertex[BOUGH_ROD_P * model->stride + i] = 1; // beyond the last: no rotation
@@ -164,8 +167,7 @@ void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
     scratch->own_rest = bough_arena_doubles(arena, 6 * (size_t)model->stride);
 }
 
-void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
-                          const bough_rod_model *model) {
+void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena, const bough_rod_model *model) {
     loads->start = 0;
     loads->value = bough_rod_vertex_rows(arena, model, 6);
     loads->rate = bough_rod_vertex_rows(arena, model, 6);

@@ -38,52 +38,52 @@ enum { BOUGH_ROD_X = 0, BOUGH_ROD_P = 3, BOUGH_ROD_U = 7, BOUGH_ROD_W = 10 };
 
 // Inertia lumped at a vertex, in section axes about the vertex.
 typedef struct bough_vertex_inertia {
-    double mass;         // [kg]
-    bough_vec3 moment;   // first moment mζ [kg m]
-    double inertia[6];   // Ixx Iyy Izz Ixy Ixz Iyz, tensor entries [kg m²]
+    double mass;       // [kg]
+    bough_vec3 moment; // first moment mζ [kg m]
+    double inertia[6]; // Ixx Iyy Izz Ixy Ixz Iyz, tensor entries [kg m²]
 } bough_vertex_inertia;
 
 // What is discretised: filled by bough_section_discretise or by hand.
 typedef struct bough_rod_def {
     const char *name;
-    int n_segment;                        // N
-    const double *span;                   // arc length of the vertices (N + 1) [m]
-    const bough_vec3 *position;           // undeformed, in the BRF (N + 1) [m]
-    const bough_quaternion *rotation;     // undeformed, section axes in the BRF (N + 1)
-    const double *stiffness;              // per segment, symmetric 6×6 upper triangle by rows
-                                          // (N × 21) [N, N m, N m²]; order V₁V₂V₃U₁U₂U₃
-    const double *damping;                // likewise (N × 21) [N s, N m s, N m² s]
-    const bough_vertex_inertia *inertia;  // (N + 1)
-    const double *line;                   // D per segment, 6×12 in two 6×6 by rows (N × 72): mean
-                                          // strain per load along it and per slope of the load
-                                          // [1/N, 1/N m …]; NULL: none
-    const double *taper;                  // per segment, how the sections' compliance in bending and
-                                          // twist changes along it (N × 9) [1/(N m³)]; NULL: not
+    int n_segment;                       // N
+    const double *span;                  // arc length of the vertices (N + 1) [m]
+    const bough_vec3 *position;          // undeformed, in the BRF (N + 1) [m]
+    const bough_quaternion *rotation;    // undeformed, section axes in the BRF (N + 1)
+    const double *stiffness;             // per segment, symmetric 6×6 upper triangle by rows
+                                         // (N × 21) [N, N m, N m²]; order V₁V₂V₃U₁U₂U₃
+    const double *damping;               // likewise (N × 21) [N s, N m s, N m² s]
+    const bough_vertex_inertia *inertia; // (N + 1)
+    const double *line;                  // D per segment, 6×12 in two 6×6 by rows (N × 72): mean
+                                         // strain per load along it and per slope of the load
+                                         // [1/N, 1/N m …]; NULL: none
+    const double *taper;                 // per segment, how the sections' compliance in bending and
+                                         // twist changes along it (N × 9) [1/(N m³)]; NULL: not
     bool carries; // bodies at its end: the last vertex belongs to them as the root to the carrier
 } bough_rod_def;
 
 typedef struct bough_rod_model {
     const char *name;
-    int n;         // moving vertices
-    int n_segment; // N: n, or n + 1 if the rod carries bodies
-    int stride;    // of the arrays over vertices and segments below: padded, more than N + 7
-    double *span;               // (N + 1) [m]
-    bough_vec3 *position0;      // undeformed (N + 1) [m]
-    bough_quaternion *rotation0; // undeformed (N + 1)
-    bough_mat3 root;            // the first of them as a matrix
-    double *length;             // segment length h (stride) [m]
-    double *inverse_length;     // 1/h (stride) [1/m]
-    double *strain0;            // V⁰, U⁰ (6 × stride)
-    double *bend0;              // change of the undeformed tangent over a segment (3 × stride)
-    double *stiffness;          // C (21 × stride)
-    double *damping;            // (21 × stride)
-    double *line;               // D (72 × stride), two 6×6 by rows
-    double *gradient;           // L (18 × stride), 3×6 by rows, G (6 × stride) and R (stride):
-                                // rod_elastic.h
-    double *mass;               // of moving vertices (stride) [kg]
-    double *moment;             // first moment s = mζ of moving vertices (3 × stride) [kg m]
-    double *inertia;            // of moving vertices (6 × stride) [kg m²]
-    double *inverse_mass;       // of the 6×6 mass in section axes (21 × stride)
+    int n;                        // moving vertices
+    int n_segment;                // N: n, or n + 1 if the rod carries bodies
+    int stride;                   // of the arrays over vertices and segments below: padded, more than N + 7
+    double *span;                 // (N + 1) [m]
+    bough_vec3 *position0;        // undeformed (N + 1) [m]
+    bough_quaternion *rotation0;  // undeformed (N + 1)
+    bough_mat3 root;              // the first of them as a matrix
+    double *length;               // segment length h (stride) [m]
+    double *inverse_length;       // 1/h (stride) [1/m]
+    double *strain0;              // V⁰, U⁰ (6 × stride)
+    double *bend0;                // change of the undeformed tangent over a segment (3 × stride)
+    double *stiffness;            // C (21 × stride)
+    double *damping;              // (21 × stride)
+    double *line;                 // D (72 × stride), two 6×6 by rows
+    double *gradient;             // L (18 × stride), 3×6 by rows, G (6 × stride) and R (stride):
+                                  // rod_elastic.h
+    double *mass;                 // of moving vertices (stride) [kg]
+    double *moment;               // first moment s = mζ of moving vertices (3 × stride) [kg m]
+    double *inertia;              // of moving vertices (6 × stride) [kg m²]
+    double *inverse_mass;         // of the 6×6 mass in section axes (21 × stride)
     bough_vertex_inertia *vertex; // (N + 1); vertex 0 belongs to the carrier
 } bough_rod_model;
 
@@ -116,8 +116,8 @@ static inline int bough_rod_n_outputs(const bough_rod_model *m) {
 // vertex and segment, with which they turn.
 typedef struct bough_rod_ramped_load {
     struct bough_rod_ramped_load *next;
-    double start, end; // of the ramp [s]
-    int n;             // rows of a table in place of the ramp, 0: none
+    double start, end;             // of the ramp [s]
+    int n;                         // rows of a table in place of the ramp, 0: none
     const double *times, *factors; // (n) times increasing [s]; borrowed
     bool follower;
     double *value; // on vertices: force then moment (6 × stride), vertex 0 included [N, N m]
@@ -129,16 +129,16 @@ typedef struct bough_rod_ramped_load {
 // Loads on the vertices: value + τ·(rate + τ·curve), τ = t − start, resolved in BRF axes, what the
 // vertices' own motion adds to them (`damped`), and all ramped loads.
 typedef struct bough_rod_loads {
-    double start;  // [s]
-    double *value; // force then moment (6 × stride), vertex 0 included [N, N m]
-    double *rate;  // (6 × stride) [N/s, N m/s]
-    double *curve; // (6 × stride) [N/s², N m/s²]
-    bool damped;   // forces along x and y and moment about z of the BRF, c, follow the vertex' velocity
-                   // along x and y, its section's rotation about the normal and W₃, j …
-    double *slope; // … by this, row 4 c + j (12 × stride) [N s/m, N, N s; N s, N m, N m s]; 0 at
-                   // vertices that move as the input says
-    double *angle; // that rotation is this row times the vertex' quaternion (4 × stride)
-    double *rest;  // strains without stress: e⁰ + D q of loads along the segments (6 × stride) …
+    double start;      // [s]
+    double *value;     // force then moment (6 × stride), vertex 0 included [N, N m]
+    double *rate;      // (6 × stride) [N/s, N m/s]
+    double *curve;     // (6 × stride) [N/s², N m/s²]
+    bool damped;       // forces along x and y and moment about z of the BRF, c, follow the vertex' velocity
+                       // along x and y, its section's rotation about the normal and W₃, j …
+    double *slope;     // … by this, row 4 c + j (12 × stride) [N s/m, N, N s; N s, N m, N m s]; 0 at
+                       // vertices that move as the input says
+    double *angle;     // that rotation is this row times the vertex' quaternion (4 × stride)
+    double *rest;      // strains without stress: e⁰ + D q of loads along the segments (6 × stride) …
     double *rest_rate; // … and its rate [1/s, 1/(m s)], both set by bough_rod_loads_along
     bool moving;       // the rate is not zero
     bough_rod_ramped_load *ramped; // NULL: none
@@ -146,10 +146,10 @@ typedef struct bough_rod_loads {
 
 // Work arrays of one evaluation; every array is (· × stride).
 typedef struct bough_rod_scratch {
-    double *vertex;  // x p u W of vertices 0..N, p normalised (13 × stride)
-    double *segment; // force on the left vertex in BRF axes, moments on the left and the right
-                     // vertex in their section axes (9 × stride), zero at N
-    double *load;    // loads at the time of evaluation (6 × stride), in BRF axes
+    double *vertex;   // x p u W of vertices 0..N, p normalised (13 × stride)
+    double *segment;  // force on the left vertex in BRF axes, moments on the left and the right
+                      // vertex in their section axes (9 × stride), zero at N
+    double *load;     // loads at the time of evaluation (6 × stride), in BRF axes
     double *follower; // the followers among them in section axes (6 × stride); set if there are any
     // set with the loads:
     double time;        // of the last bough_rod_derivative [s]
@@ -161,17 +161,14 @@ typedef struct bough_rod_scratch {
 } bough_rod_scratch;
 
 // Builds the constant model. BOUGH_INVALID names the segment or vertex that is not usable.
-bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def,
-                              bough_rod_model **model);
+bough_status bough_rod_create(bough_arena *arena, const bough_rod_def *def, bough_rod_model **model);
 
 // An array over the vertices (rows × stride) in which those of vertex 1 begin vector registers: loops
 // over moving vertices load and store aligned ones.
 double *bough_rod_vertex_rows(bough_arena *arena, const bough_rod_model *model, int rows);
 
-void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena,
-                            const bough_rod_model *model);
-void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena,
-                          const bough_rod_model *model);
+void bough_rod_scratch_init(bough_rod_scratch *scratch, bough_arena *arena, const bough_rod_model *model);
+void bough_rod_loads_init(bough_rod_loads *loads, bough_arena *arena, const bough_rod_model *model);
 
 // The ramped load of this kind and ramp, a new one of zeros if there is none yet.
 bough_rod_ramped_load *bough_rod_loads_ramped(bough_rod_loads *loads, bough_arena *arena,
@@ -215,16 +212,15 @@ bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_s
 
 // (8, 9, 11): rate (13 n). False when a value is not finite or a segment over-rotates.
 bool bough_rod_derivative(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                          const double *state, const double *input, bough_rod_scratch *scratch,
-                          double *rate);
+                          const double *state, const double *input, bough_rod_scratch *scratch, double *rate);
 
 // The same at another time and input, `state` being that of the last bough_rod_derivative with this
 // scratch: only segments that touch the input, or have ramped loads, are evaluated anew. In the others
 // the forces change by what loads along them do to an unbent segment, for the derivative
 // by time: it errs by a share of the segment's own turn.
 bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                                const double *state, const double *input,
-                                bough_rod_scratch *scratch, double *rate);
+                                const double *state, const double *input, bough_rod_scratch *scratch,
+                                double *rate);
 
 // The root wrench (6).
 void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
@@ -240,8 +236,7 @@ void bough_rod_end_wrench(const bough_rod_model *m, const bough_rod_loads *loads
 // Both where scratch has the forces and loads of a derivative.
 void bough_rod_present_root_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch,
                                    double *wrench);
-void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch,
-                                  double *wrench);
+void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scratch *scratch, double *wrench);
 
 // Loads at time t into scratch, after a gathering.
 void bough_rod_load(const bough_rod_model *m, const bough_rod_loads *loads, double t,
@@ -252,7 +247,6 @@ double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratc
 
 // Elastic force and moment (6) in the middle of segment n, in section axes there, of the
 // configuration in scratch->vertex, under the loads that scratch had last [N, N m].
-void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n,
-                      double stress[6]);
+void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n, double stress[6]);
 
 #endif

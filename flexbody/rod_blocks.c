@@ -41,8 +41,7 @@ static inline void put_tile(const tile *t, lanes at, int column, bool added, dou
 // and by the left end's (`other`); or the same of the left end. A shift counts as Δx of the segment
 // on the left, −Δx of the one on the right; a segment pulls its left vertex by f and its right one
 // by −f; moments are those on either vertex.
-static inline void fill_column(const double *restrict t, int j, bool right_end, tile *own,
-                               tile *other) {
+static inline void fill_column(const double *restrict t, int j, bool right_end, tile *own, tile *other) {
     bool shift = j < 3;
     int left = (shift ? DELTA : LEFT) + j % 3, right = (shift ? DELTA : RIGHT) + j % 3;
     int mine = right_end ? right : left, its = right_end ? left : right;
@@ -87,8 +86,7 @@ static inline void put_column(const double *t, int j, lanes left, lanes right, c
     put_tile(&beside, left, j, false, b->upper);
 }
 
-void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k,
-                           const bough_rod_eight *eight) {
+void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k, const bough_rod_eight *eight) {
     int s = m->stride, v = eight->first + 1;
     const double *position = k->variation + (size_t)TANGENTS * eight->first;
     lanes left = lanes_from(m, v - 1), right = lanes_from(m, v);

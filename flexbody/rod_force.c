@@ -6,8 +6,7 @@
 #include <string.h>
 
 // Vertices that move as the input says: the root, and the last one of a rod that carries bodies.
-static void gather_input(const bough_rod_model *m, const double *input,
-                         bough_rod_scratch *scratch) {
+static void gather_input(const bough_rod_model *m, const double *input, bough_rod_scratch *scratch) {
     int s = m->stride;
     double *vertex = scratch->vertex;
     bough_quaternion p0 = m->rotation0[0];
@@ -19,10 +18,9 @@ static void gather_input(const bough_rod_model *m, const double *input,
     if (!bough_rod_carries(m)) return;
     const double *u = input + BOUGH_ROD_INPUTS, *p = u + 9; // u W x p
     double scale = 1 / sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2] + p[3] * p[3]);
-    const double end[BOUGH_ROD_STATES] = {u[6],         u[7],         u[8],         scale * p[0],
-                                          scale * p[1], scale * p[2], scale * p[3], u[0],
-                                          u[1],         u[2],         u[3],         u[4],
-                                          u[5]};
+    const double end[BOUGH_ROD_STATES] = {u[6],         u[7],         u[8], scale * p[0], scale * p[1],
+                                          scale * p[2], scale * p[3], u[0], u[1],         u[2],
+                                          u[3],         u[4],         u[5]};
     for (int c = 0; c < BOUGH_ROD_STATES; c++) vertex[c * s + m->n + 1] = end[c];
 }
 
@@ -254,18 +252,16 @@ static void vertex_accelerations(const bough_rod_model *m, const bough_rod_scrat
     for (int i = 1; i <= n; i++) {
         vertex_state a = load_vertex(v, s, i);
         bough_mat3 r = bough_rotation_matrix(a.p);
-        bough_vec3 force = bough_add(bough_sub(load3(f, s, i), load3(f, s, i - 1)),
-                                     load3(load, s, i));
+        bough_vec3 force = bough_add(bough_sub(load3(f, s, i), load3(f, s, i - 1)), load3(load, s, i));
         bough_vec3 moment = bough_add(bough_add(load3(f + 3 * s, s, i), load3(f + 6 * s, s, i - 1)),
                                       bough_mat3_tmul(r, load3(load + 3 * s, s, i)));
         bough_vec3 offset = load3(first, s, i - 1);
         bough_vec3 centrifugal = bough_cross(a.w, bough_cross(a.w, offset));
         bough_vec3 gyroscopic = bough_cross(a.w, inertia_times(inertia, s, i - 1, a.w));
-        strain h = {bough_sub(bough_mat3_tmul(r, force), centrifugal),
-                    bough_sub(moment, gyroscopic)};
+        strain h = {bough_sub(bough_mat3_tmul(r, force), centrifugal), bough_sub(moment, gyroscopic)};
         strain q = symmetric_times(inverse, s, i - 1, h);
-        bough_vec3 acceleration = bough_sub(bough_add(bough_mat3_mul(r, q.v), gravity),
-                                            bough_cross(omega, a.u));
+        bough_vec3 acceleration =
+            bough_sub(bough_add(bough_mat3_mul(r, q.v), gravity), bough_cross(omega, a.u));
         store3(rate + BOUGH_ROD_U * n, n, i - 1, acceleration);
         store3(rate + BOUGH_ROD_W * n, n, i - 1, q.u);
     }
@@ -280,8 +276,7 @@ static void vertex_kinematics(int n, const double *restrict state, const double 
     for (int i = 0; i < n; i++) {
         bough_vec3 x = load3(state, n, i), u = load3(state + 7 * n, n, i);
         bough_vec3 w = load3(state + 10 * n, n, i);
-        bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i],
-                              state[6 * n + i]};
+        bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]};
         bough_vec3 v = {p.x, p.y, p.z};
         bough_vec3 difference = bough_sub(w, omega), sum = bough_add(w, omega);
         bough_vec3 turn = bough_axpy(p.w, difference, bough_cross(v, sum));
@@ -329,8 +324,7 @@ static void add_drift(const bough_rod_model *m, const bough_rod_loads *loads, do
         bough_quaternion p = load_vertex(vertex, s, n).p, q = load_vertex(vertex, s, n + 1).p;
         double w = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
         bough_mat3 r = mid_frame(p, q, copysign(1.0, w), 1 / (1 + fabs(w)));
-        strain e = {bough_scale(elapsed, load3(rate, s, n)),
-                    bough_scale(elapsed, load3(rate + 3 * s, s, n))};
+        strain e = {bough_scale(elapsed, load3(rate, s, n)), bough_scale(elapsed, load3(rate + 3 * s, s, n))};
         strain stress = symmetric_times(c, s, n, e);
         bough_vec3 tau = bough_scale(0.5 * length[n], bough_cross(stress.v, load3(e0, s, n)));
         store3(out, s, n, bough_sub(load3(out, s, n), bough_mat3_mul(r, stress.v)));
@@ -340,8 +334,8 @@ static void add_drift(const bough_rod_model *m, const bough_rod_loads *loads, do
 }
 
 bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                                const double *state, const double *input,
-                                bough_rod_scratch *scratch, double *rate) {
+                                const double *state, const double *input, bough_rod_scratch *scratch,
+                                double *rate) {
     int n = m->n_segment;
     double before = scratch->time;
     gather_input(m, input, scratch);
@@ -390,8 +384,7 @@ void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scra
     bough_vec3 force = bough_sub(load3(load, s, 0), load3(f, s, 0));
     bough_vec3 moment = bough_mat3_tmul(r, load3(load + 3 * s, s, 0));
     moment = bough_add(moment, load3(f + 6 * s, s, 0));
-    const double values[BOUGH_ROD_END_OUTPUTS] = {force.x,  force.y,  force.z,
-                                                  moment.x, moment.y, moment.z};
+    const double values[BOUGH_ROD_END_OUTPUTS] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
     memcpy(wrench, values, sizeof values);
 }
 
@@ -414,8 +407,7 @@ double bough_rod_elastic_energy(const bough_rod_model *m, const bough_rod_scratc
 
 // By the balance of the segment's left half: pretwist and curvature make it differ a little from what
 // the strains are conjugate to.
-void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n,
-                      double stress[6]) {
+void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch, int n, double stress[6]) {
     vertex_state l = load_vertex(scratch->vertex, m->stride, n);
     vertex_state r = load_vertex(scratch->vertex, m->stride, n + 1);
     segment_geometry shape = segment_shape(l, r, m->inverse_length[n]);

@@ -34,24 +34,21 @@ static inline bough_vec3 inertia_times(const double *restrict j, int s, int i, b
                         xz * w.x + yz * w.y + zz * w.z};
 }
 
-static inline bough_vec3 unit_vector(int j) {
-    return (bough_vec3){j == 0, j == 1, j == 2};
-}
+static inline bough_vec3 unit_vector(int j) { return (bough_vec3){j == 0, j == 1, j == 2}; }
 
 // e − e⁰ − D q of a segment, `rest` the strains without stress
-static inline strain elastic_strain(segment_geometry shape, double inverse_h,
-                                    const double *restrict rest, int s, int n) {
+static inline strain elastic_strain(segment_geometry shape, double inverse_h, const double *restrict rest,
+                                    int s, int n) {
     return (strain){bough_sub(shape.stretch, load3(rest, s, n)),
-                    bough_axpy(inverse_h, shape.phi,
-                               bough_scale(-1, load3(rest + 3 * s, s, n)))};
+                    bough_axpy(inverse_h, shape.phi, bough_scale(-1, load3(rest + 3 * s, s, n)))};
 }
 
 // D q of a load per length in the axes of the segment's middle: force, moment, and their slopes
 static inline strain line_strain(const double *restrict line, int s, int n, const bough_vec3 q[4]) {
 #define D(part, i, j) line[(36 * (part) + 6 * (i) + (j)) * s + n]
-#define HALF(part, i, f, m)                                                                        \
-    (D(part, i, 0) * (f).x + D(part, i, 1) * (f).y + D(part, i, 2) * (f).z +                       \
-     D(part, i, 3) * (m).x + D(part, i, 4) * (m).y + D(part, i, 5) * (m).z)
+#define HALF(part, i, f, m)                                                                                  \
+    (D(part, i, 0) * (f).x + D(part, i, 1) * (f).y + D(part, i, 2) * (f).z + D(part, i, 3) * (m).x +         \
+     D(part, i, 4) * (m).y + D(part, i, 5) * (m).z)
 #define ROW(i) (HALF(0, i, q[0], q[1]) + HALF(1, i, q[2], q[3]))
     return (strain){{ROW(0), ROW(1), ROW(2)}, {ROW(3), ROW(4), ROW(5)}};
 #undef HALF
@@ -60,12 +57,11 @@ static inline strain line_strain(const double *restrict line, int s, int n, cons
 }
 
 // Change of the elastic strain where dead loads `along` the segment turn against its middle.
-static inline strain add_turned(strain change, const double *restrict line,
-                                const double *restrict along, int s, int n, bough_vec3 middle) {
-    const bough_vec3 q[4] = {bough_cross(load3(along, s, n), middle),
-                             bough_cross(load3(along + 3 * s, s, n), middle),
-                             bough_cross(load3(along + 6 * s, s, n), middle),
-                             bough_cross(load3(along + 9 * s, s, n), middle)};
+static inline strain add_turned(strain change, const double *restrict line, const double *restrict along,
+                                int s, int n, bough_vec3 middle) {
+    const bough_vec3 q[4] = {
+        bough_cross(load3(along, s, n), middle), bough_cross(load3(along + 3 * s, s, n), middle),
+        bough_cross(load3(along + 6 * s, s, n), middle), bough_cross(load3(along + 9 * s, s, n), middle)};
     strain e = line_strain(line, s, n, q);
     return (strain){bough_sub(change.v, e.v), bough_sub(change.u, e.u)};
 }
@@ -103,10 +99,8 @@ static inline segment_force add_chord_moments(segment_force f, segment_geometry 
 }
 
 // Derivative of the forces of segment n along variations of its vertices.
-static inline segment_force segment_tangent(const bough_rod_model *m,
-                                            const bough_rod_scratch *scratch, int n,
-                                            const vertex_variation *dl,
-                                            const vertex_variation *dr) {
+static inline segment_force segment_tangent(const bough_rod_model *m, const bough_rod_scratch *scratch, int n,
+                                            const vertex_variation *dl, const vertex_variation *dr) {
     int s = m->stride;
     double h = m->length[n], inverse = m->inverse_length[n];
     vertex_state l = load_vertex(scratch->vertex, s, n), r = load_vertex(scratch->vertex, s, n + 1);

@@ -35,16 +35,14 @@ static void slide(const double *input, const double *state, int n, int i, double
 }
 
 // to = −(position + velocity B) for one block of B's column
-static void stiffness_block(const double *position, const double *velocity, const double *b,
-                            double *to) {
+static void stiffness_block(const double *position, const double *velocity, const double *b, double *to) {
     double product[BOUGH_BLOCK];
     bough_block_product(velocity, b, product);
     for (int j = 0; j < BOUGH_BLOCK; j++) to[j] = -(position[j] + product[j]);
 }
 
-void bough_rod_linear_stiffness(const bough_rod_model *m, const bough_rod_blocks *blocks,
-                                const double *input, const double *state,
-                                bough_block_tridiagonal *stiffness) {
+void bough_rod_linear_stiffness(const bough_rod_model *m, const bough_rod_blocks *blocks, const double *input,
+                                const double *state, bough_block_tridiagonal *stiffness) {
     const bough_block_tridiagonal *p = &blocks->position, *v = &blocks->velocity;
     for (int i = 0; i < m->n; i++) {
         double b[BOUGH_BLOCK];
@@ -60,9 +58,8 @@ void bough_rod_linear_stiffness(const bough_rod_model *m, const bough_rod_blocks
     }
 }
 
-void bough_rod_linear_damping(const bough_rod_model *m, const bough_rod_blocks *blocks,
-                              const double *input, const double *state,
-                              bough_block_tridiagonal *damping) {
+void bough_rod_linear_damping(const bough_rod_model *m, const bough_rod_blocks *blocks, const double *input,
+                              const double *state, bough_block_tridiagonal *damping) {
     size_t count = (size_t)m->n * BOUGH_BLOCK;
     for (size_t j = 0; j < count; j++) {
         damping->lower[j] = -blocks->velocity.lower[j];

@@ -13,13 +13,11 @@
 void bough_rod_ride(const bough_rod_model *m, const double *input, double *state);
 
 // K from the blocks of the linearisation at a state that rides with the BRF; input as there.
-void bough_rod_linear_stiffness(const bough_rod_model *m, const bough_rod_blocks *blocks,
-                                const double *input, const double *state,
-                                bough_block_tridiagonal *stiffness);
+void bough_rod_linear_stiffness(const bough_rod_model *m, const bough_rod_blocks *blocks, const double *input,
+                                const double *state, bough_block_tridiagonal *stiffness);
 
 // C likewise. M is blocks->mass.
-void bough_rod_linear_damping(const bough_rod_model *m, const bough_rod_blocks *blocks,
-                              const double *input, const double *state,
-                              bough_block_tridiagonal *damping);
+void bough_rod_linear_damping(const bough_rod_model *m, const bough_rod_blocks *blocks, const double *input,
+                              const double *state, bough_block_tridiagonal *damping);
 
 #endif

@@ -12,9 +12,7 @@ typedef struct shares {
 
 // At ξ = (s − s_left)/h: 1 − ξ, ξ and ½ h ξ (1 − ξ), the shape of linked interpolation
 // w = (1 − ξ) w_left + ξ w_right + ½ h ξ (1 − ξ)(θ_left − θ_right).
-static shares point_shares(double h, double xi) {
-    return (shares){1 - xi, xi, 0.5 * h * xi * (1 - xi)};
-}
+static shares point_shares(double h, double xi) { return (shares){1 - xi, xi, 0.5 * h * xi * (1 - xi)}; }
 
 // Their integrals over s from ξ = 0.
 static shares line_shares(double h, double xi) {
@@ -33,8 +31,8 @@ static void add_to_vertex(const bough_rod_model *m, int i, double share, bough_v
 }
 
 // The moment arm × force of a couple about vertex i's end of segment n.
-static bough_vec3 couple_at(const bough_rod_model *m, int n, int i, double arm,
-                            const double *wrench, bool follower) {
+static bough_vec3 couple_at(const bough_rod_model *m, int n, int i, double arm, const double *wrench,
+                            bool follower) {
     bough_vec3 along = bough_sub(m->position0[n + 1], m->position0[n]);
     along = bough_scale(arm / bough_norm(along), along);
     if (follower) along = bough_mat3_tmul(bough_rotation_matrix(m->rotation0[i]), along);
@@ -64,18 +62,16 @@ static shares slope_shares(double h, double xi) {
     double first = 0.5 * h * square, second = h * cube / 3;
     double couple = 0.5 * h * h * (cube / 3 - 0.25 * square * square);
     shares even = line_shares(h, xi);
-    return (shares){first - second - 0.5 * even.left, second - 0.5 * even.right,
-                    couple - 0.5 * even.couple};
+    return (shares){first - second - 0.5 * even.left, second - 0.5 * even.right, couple - 0.5 * even.couple};
 }
 
 // What a line from `from` to `to` in the segment has; the whole of it has no couples.
 static shares between(shares high, shares low, bool whole) {
-    return (shares){high.left - low.left, high.right - low.right,
-                    whole ? 0 : high.couple - low.couple};
+    return (shares){high.left - low.left, high.right - low.right, whole ? 0 : high.couple - low.couple};
 }
 
-void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const double *wrench,
-                    const double *end, bough_rod_ramped_load *load) {
+void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const double *wrench, const double *end,
+                    bough_rod_ramped_load *load) {
     if (reach.to == reach.from) {
         lump_point(m, reach.from, wrench, load);
         return;
@@ -108,8 +104,7 @@ void bough_rod_lump(const bough_rod_model *m, bough_rod_reach reach, const doubl
 
 // The stress −C D q of segment n on its two vertices, in BRF or, of a follower, in section axes, added
 // to value.
-static void lump_stress(const bough_rod_model *m, int n, strain line, bool follower,
-                        double *value) {
+static void lump_stress(const bough_rod_model *m, int n, strain line, bool follower, double *value) {
     int s = m->stride;
     vertex_state l = {.x = m->position0[n], .p = m->rotation0[n]};
     vertex_state r = {.x = m->position0[n + 1], .p = m->rotation0[n + 1]};
@@ -168,8 +163,8 @@ static inline bough_vec3 tangent_of(bough_quaternion p) {
 
 // Segments first..first + count − 1: their lines of load turned, and their moments about the chords.
 static inline void turn_line(const bough_rod_model *m, const double *restrict rotation,
-                             const double *restrict line, int first, int count,
-                             double *restrict turned, double *restrict moment) {
+                             const double *restrict line, int first, int count, double *restrict turned,
+                             double *restrict moment) {
     int n = m->n_segment, v = n + 1, s = m->stride;
     const double *restrict bend = m->bend0 + first, *restrict h = m->length + first;
 #pragma omp simd
@@ -179,8 +174,7 @@ static inline void turn_line(const bough_rod_model *m, const double *restrict ro
         double dot = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
         bough_mat3 r = mid_frame(p, q, copysign(1.0, dot), 1 / (1 + fabs(dot)));
         for (int part = 0; part < 4; part++) {
-            store3(turned + 3 * part * n, n, k,
-                   bough_mat3_tmul(r, load3(line + 3 * part * n, n, k)));
+            store3(turned + 3 * part * n, n, k, bough_mat3_tmul(r, load3(line + 3 * part * n, n, k)));
         }
         bough_vec3 turn = bough_sub(tangent_of(q), tangent_of(p));
         turn = bough_sub(turn, bough_mat3_mul(r, load3(bend, s, l)));
@@ -188,8 +182,8 @@ static inline void turn_line(const bough_rod_model *m, const double *restrict ro
     }
 }
 
-void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const double *line,
-                         double *turned, double *load) {
+void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const double *line, double *turned,
+                         double *load) {
     int n = m->n_segment, v = n + 1;
     for (int first = 0; first < n; first += BOUGH_LANES) {
         int count = n - first < BOUGH_LANES ? n - first : BOUGH_LANES;

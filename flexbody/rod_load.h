@@ -29,7 +29,7 @@ void bough_rod_lump_strain(const bough_rod_model *m, const double *line_strain, 
 // `rotation` are the vertices' quaternions, of about unit length (4 × (n_segment + 1)). Adds to the
 // loads on the vertices (6 × (n_segment + 1), BRF axes) the moments about the segments' chords of what
 // acts on the axis, which bends away from them under load.
-void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const double *line,
-                         double *turned, double *load);
+void bough_rod_take_line(const bough_rod_model *m, const double *rotation, const double *line, double *turned,
+                         double *load);
 
 #endif

@@ -11,8 +11,7 @@ static double square_of(const bough_eigen_pair *pair, int k) {
     return pair->shape_real[k] * pair->shape_real[k] + pair->shape_imag[k] * pair->shape_imag[k];
 }
 
-static void set_shares(const bough_rod_model *m, const bough_eigen_pair *pair,
-                       bough_rod_mode *mode) {
+static void set_shares(const bough_rod_model *m, const bough_eigen_pair *pair, bough_rod_mode *mode) {
     double sum = 0;
     for (int i = 0; i < m->n; i++) {
         const bough_vertex_inertia *v = &m->vertex[i + 1];
@@ -27,8 +26,7 @@ static void set_shares(const bough_rod_model *m, const bough_eigen_pair *pair,
 }
 
 // The entry that becomes 1.
-static int reference_of(const bough_rod_model *m, const bough_eigen_pair *pair,
-                        const bough_rod_mode *mode) {
+static int reference_of(const bough_rod_model *m, const bough_eigen_pair *pair, const bough_rod_mode *mode) {
     bool torsion = mode->dominant == BOUGH_ROD_TORSION;
     int at = torsion ? 5 : 0;
     for (int i = 0; i < m->n; i++) {
@@ -79,9 +77,8 @@ static void fill_mode(bough_arena *arena, const bough_rod_model *m, const bough_
 }
 
 // K into the tangent's matrix and C, from the linearisation at the equilibrium.
-static bough_status linearise(const bough_rod_model *m, bough_rod_static *work,
-                              const double *input, const double *state,
-                              bough_block_tridiagonal *damping) {
+static bough_status linearise(const bough_rod_model *m, bough_rod_static *work, const double *input,
+                              const double *state, bough_block_tridiagonal *damping) {
     if (!bough_rod_linearise(m, &work->scaled, 0, state, input, &work->scratch, &work->tangent)) {
         return bough_fail(BOUGH_FAILED, "rod %s: no linearisation at its equilibrium", m->name);
     }

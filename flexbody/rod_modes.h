@@ -15,9 +15,9 @@ typedef enum bough_rod_direction {
 } bough_rod_direction;
 
 typedef struct bough_rod_mode {
-    double frequency;        // natural, |λ|/2π [Hz]
-    double damped_frequency; // Im λ/2π [Hz]; 0: it grows without oscillating
-    double damping;          // ratio −Re λ/|λ|; negative: it grows
+    double frequency;                   // natural, |λ|/2π [Hz]
+    double damped_frequency;            // Im λ/2π [Hz]; 0: it grows without oscillating
+    double damping;                     // ratio −Re λ/|λ|; negative: it grows
     double share[BOUGH_ROD_DIRECTIONS]; // of the energy, sum 1
     bough_rod_direction dominant;
     double *real, *imaginary; // shape, displacement and rotation of vertices 1..n in body axes
@@ -26,8 +26,8 @@ typedef struct bough_rod_mode {
 } bough_rod_mode;
 
 typedef struct bough_rod_mode_list {
-    int wanted; // set before
-    int found;  // fewer only if the rod has fewer
+    int wanted;           // set before
+    int found;            // fewer only if the rod has fewer
     bough_rod_mode *mode; // (found), ascending in frequency
 } bough_rod_mode_list;
 

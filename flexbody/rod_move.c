@@ -21,17 +21,15 @@ static bough_quaternion quaternion_in(vertex_row r) {
     return (bough_quaternion){p[0], p[r.stride], p[2 * r.stride], p[3 * r.stride]};
 }
 
-static bough_vec3 position_in(vertex_row r) {
-    return bough_v3(r.at[0], r.at[r.stride], r.at[2 * r.stride]);
-}
+static bough_vec3 position_in(vertex_row r) { return bough_v3(r.at[0], r.at[r.stride], r.at[2 * r.stride]); }
 
-void bough_rod_change(const bough_rod_model *m, const double *state, const double *end,
-                      const double *rate, const double *end_rate, double *change) {
+void bough_rod_change(const bough_rod_model *m, const double *state, const double *end, const double *rate,
+                      const double *end_rate, double *change) {
     for (int i = 0; i < m->n_segment; i++, change += BOUGH_ROD_CHANGE) {
         vertex_row at = row_of(m, state, end, i), by = row_of(m, rate, end_rate, i);
         bough_vec3 shift = position_in(by);
-        bough_quaternion turn = bough_quaternion_product(
-            bough_quaternion_conjugate(quaternion_in(at)), quaternion_in(by));
+        bough_quaternion turn =
+            bough_quaternion_product(bough_quaternion_conjugate(quaternion_in(at)), quaternion_in(by));
         const double values[BOUGH_ROD_CHANGE] = {shift.x,    shift.y,    shift.z, 2 * turn.x,
                                                  2 * turn.y, 2 * turn.z, 0,       0};
         memcpy(change, values, sizeof values);
@@ -63,8 +61,7 @@ static bough_vec3 stretched(const segment_geometry *before, const segment_geomet
 
 static void put_vertex(double *to, int stride, const vertex_state *v) {
     const double values[7] = {v->x.x, v->x.y, v->x.z, v->p.w, v->p.x, v->p.y, v->p.z};
-    for (int c = 0; c < 7; c++)
-        to[c * stride] = values[c];
+    for (int c = 0; c < 7; c++) to[c * stride] = values[c];
 }
 
 void bough_rod_move(const bough_rod_model *m, const double *change, double share, double *state,
@@ -75,8 +72,8 @@ void bough_rod_move(const bough_rod_model *m, const double *change, double share
         vertex_row row = row_of(m, state, end, i);
         vertex_state r = {.x = position_in(row), .p = quaternion_in(row)}, moved = r;
         vertex_variation dr = variation_of(change, share);
-        moved.p = bough_quaternion_normalised(
-            bough_quaternion_product(r.p, bough_quaternion_exponential(dr.phi)));
+        moved.p =
+            bough_quaternion_normalised(bough_quaternion_product(r.p, bough_quaternion_exponential(dr.phi)));
         segment_geometry before = segment_shape(old, r, m->inverse_length[i]);
         segment_geometry after = segment_shape(now, moved, m->inverse_length[i]);
         bough_vec3 chord = stretched(&before, &after, m->length[i], dl, dr);

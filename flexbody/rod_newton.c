@@ -50,7 +50,7 @@ typedef struct elimination {
     double shift[3][3]; // by columns
     const double *turn; // row 3 i + k of A_φ at [(3 i + k)·stride]
     int stride;
-    double square;      // γ²
+    double square; // γ²
 } elimination;
 
 // Column j of mass − γ Dᵥ − γ² K A for one block; the mass is NULL off the diagonal.
@@ -69,12 +69,11 @@ static inline void form_column(const elimination *e, int v, int j, const double 
     }
 }
 
-static inline void form_block(const elimination *e, int v, const double *position,
-                              const double *velocity, const double *mass, double gamma,
-                              double *out) {
+static inline void form_block(const elimination *e, int v, const double *position, const double *velocity,
+                              const double *mass, double gamma, double *out) {
     for (int j = 0; j < 6; j++) {
-        form_column(e, v, j, position, velocity + W8 * j, mass == NULL ? NULL : mass + W8 * j,
-                    gamma, out + W8 * j);
+        form_column(e, v, j, position, velocity + W8 * j, mass == NULL ? NULL : mass + W8 * j, gamma,
+                    out + W8 * j);
     }
 }
 
@@ -82,9 +81,7 @@ static inline void form_block(const elimination *e, int v, const double *positio
 static void form_matrix(const bough_rod_model *m, bough_rod_tangent *k) {
     const bough_block_tridiagonal *p = &k->blocks.position, *d = &k->blocks.velocity;
     double g = k->gamma;
-    elimination e = {.turn = k->vertex + (size_t)KEPT_TURN * m->stride,
-                     .stride = m->stride,
-                     .square = g * g};
+    elimination e = {.turn = k->vertex + (size_t)KEPT_TURN * m->stride, .stride = m->stride, .square = g * g};
     for (int j = 0; j < 3; j++) {
         bough_vec3 column = solve_cross(bough_scale(g, k->omega), unit_vector(j));
         e.shift[j][0] = e.square * column.x;
@@ -111,8 +108,8 @@ bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gam
 // -- solution -------------------------------------------------------------------------------------
 
 // A r_q of every vertex and the scalar part of the quaternion residual p⁻¹∘r.
-static void eliminate_residual(const bough_rod_model *m, const bough_rod_tangent *k,
-                               const double *restrict x, double *restrict q) {
+static void eliminate_residual(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict x,
+                               double *restrict q) {
     int n = m->n, s = m->stride;
     const double *restrict kept = k->vertex, *restrict turn = kept + KEPT_TURN * s;
     bough_vec3 g = bough_scale(k->gamma, k->omega);
@@ -126,8 +123,7 @@ static void eliminate_residual(const bough_rod_model *m, const bough_rod_tangent
         double scalar = inverse * (pw * rw + bough_dot(p, rp));
         bough_vec3 rho = bough_axpy(pw, rp, bough_axpy(-rw, p, bough_cross(rp, p)));
         rho = bough_scale(2 * inverse, rho);
-        bough_vec3 slip = bough_sub(load3(kept + KEPT_W * s, s, v),
-                                    load3(kept + KEPT_OMEGA * s, s, v));
+        bough_vec3 slip = bough_sub(load3(kept + KEPT_W * s, s, v), load3(kept + KEPT_OMEGA * s, s, v));
         rho = bough_axpy(gamma * scalar * kept[KEPT_SCALE * s + v], slip, rho);
         bough_vec3 shift = bough_axpy(bough_dot(g, rx), g, bough_sub(rx, bough_cross(g, rx)));
         store3(q, s, v, bough_scale(gg, shift));
@@ -152,16 +148,16 @@ static inline void gather_directions(const double *restrict q, int s, double *re
 }
 
 // γ K A r_q of every segment.
-static void segment_residual(const bough_rod_model *m, const bough_rod_tangent *k,
-                             const double *restrict q, double *restrict force) {
+static void segment_residual(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict q,
+                             double *restrict force) {
     int s = m->stride;
     double gamma = k->gamma;
     for (int first = 0; first < m->n_segment; first += LANES) {
         _Alignas(64) double d[DIRECTIONS * LANES];
         gather_directions(q + first, s, d);
         for (int f = 0; f < FORCES; f++) {
-            const double *restrict t = k->variation + (size_t)TANGENTS * first +
-                                       (size_t)LANES * DIRECTIONS * f;
+            const double *restrict t =
+                k->variation + (size_t)TANGENTS * first + (size_t)LANES * DIRECTIONS * f;
             double *restrict out = force + f * s + first;
 #define TERM(j) t[LANES * (j) + l] * d[LANES * (j) + l]
 #pragma omp simd
@@ -175,8 +171,8 @@ static void segment_residual(const bough_rod_model *m, const bough_rod_tangent *
 }
 
 // M r_v + γ K A r_q of every vertex; M as in the tangent, but from its few numbers.
-static void velocity_residual(const bough_rod_model *m, const bough_rod_tangent *k,
-                              const double *restrict x, double *restrict work) {
+static void velocity_residual(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict x,
+                              double *restrict work) {
     int n = m->n, s = m->stride;
     const double *restrict kept = k->vertex, *restrict own = k->local_position;
     const double *restrict mass = m->mass, *restrict first = m->moment;
@@ -190,8 +186,8 @@ static void velocity_residual(const bough_rod_model *m, const bough_rod_tangent 
         bough_vec3 offset = load3(first, s, v - 1), phi = load3(work + (WORK_Q + 3) * s, s, v);
         phi = bough_scale(gamma, phi);
         bough_vec3 f = bough_axpy(mass[v - 1], ru, bough_mat3_mul(r, bough_cross(rw, offset)));
-        bough_vec3 l = bough_add(bough_cross(offset, bough_mat3_tmul(r, ru)),
-                                 inertia_times(inertia, s, v - 1, rw));
+        bough_vec3 l =
+            bough_add(bough_cross(offset, bough_mat3_tmul(r, ru)), inertia_times(inertia, s, v - 1, rw));
         bough_vec3 pull = bough_sub(load3(force, s, v), load3(force, s, v - 1));
         bough_vec3 turn = bough_add(load3(force + 3 * s, s, v), load3(force + 6 * s, s, v - 1));
         f = bough_add(f, bough_axpy(phi.x, load3(own, s, v), pull));
@@ -227,8 +223,8 @@ static void unpack(int n, int s, const double *packed, double *velocity) {
 }
 
 // Velocities and the configuration that belongs to them back into the state's layout.
-static void recover(const bough_rod_model *m, const bough_rod_tangent *k,
-                    const double *restrict q, double *restrict x) {
+static void recover(const bough_rod_model *m, const bough_rod_tangent *k, const double *restrict q,
+                    double *restrict x) {
     int n = m->n, s = m->stride;
     const double *restrict velocity = q + WORK_VELOCITY * s;
     const double *restrict kept = k->vertex, *restrict turn = kept + KEPT_TURN * s;
@@ -246,8 +242,7 @@ static void recover(const bough_rod_model *m, const bough_rod_tangent *k,
                           turn[3 * s + v] * dw.x + turn[4 * s + v] * dw.y + turn[5 * s + v] * dw.z,
                           turn[6 * s + v] * dw.x + turn[7 * s + v] * dw.y + turn[8 * s + v] * dw.z};
         phi = bough_add(phi, load3(q + 3 * s, s, v));
-        bough_vec3 slip = bough_sub(load3(kept + KEPT_W * s, s, v),
-                                    load3(kept + KEPT_OMEGA * s, s, v));
+        bough_vec3 slip = bough_sub(load3(kept + KEPT_W * s, s, v), load3(kept + KEPT_OMEGA * s, s, v));
         double scalar = q[WORK_SCALAR * s + v] - 0.25 * gamma * bough_dot(slip, phi);
         scalar *= kept[KEPT_SCALE * s + v];
         bough_vec3 p = load3(kept + (KEPT_P + 1) * s, s, v), half = bough_scale(0.5, phi);

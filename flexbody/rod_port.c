@@ -25,8 +25,8 @@ static vertex_variation root_variation(const bough_rod_model *m, const double *d
 }
 
 // Of the moving vertex i + 1, along the variation d of the state.
-static vertex_variation state_variation(const bough_rod_model *m, const double *state,
-                                        const double *d, int i) {
+static vertex_variation state_variation(const bough_rod_model *m, const double *state, const double *d,
+                                        int i) {
     int n = m->n;
     return (vertex_variation){.x = load3(d, n, i),
                               .phi = turn_of(state + 3 * n + i, n, d + 3 * n + i, n),
@@ -36,17 +36,15 @@ static vertex_variation state_variation(const bough_rod_model *m, const double *
 
 // Of the last vertex, whose quaternion is p; its motion: u, W, x, p.
 static vertex_variation end_variation(const double *p, const double *d) {
-    return (vertex_variation){.u = vector_at(d),
-                              .w = vector_at(d + 3),
-                              .x = vector_at(d + 6),
-                              .phi = turn_of(p, 1, d + 9, 1)};
+    return (vertex_variation){
+        .u = vector_at(d), .w = vector_at(d + 3), .x = vector_at(d + 6), .phi = turn_of(p, 1, d + 9, 1)};
 }
 
 // -- the wrenches ---------------------------------------------------------------------------------
 
 void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, const double *input,
-                              const double *state_rate, const double *input_rate,
-                              bough_rod_scratch *scratch, double *wrench) {
+                              const double *state_rate, const double *input_rate, bough_rod_scratch *scratch,
+                              double *wrench) {
     bough_rod_gather_root(m, state, input, scratch);
     bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
     vertex_variation l = {0}, r = {0};
@@ -86,19 +84,18 @@ void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, 
 }
 
 // Of the moving vertex i + 1, where k was linearised.
-static vertex_variation kept_variation(const bough_rod_model *m, const bough_rod_tangent *k,
-                                       const double *d, int i) {
+static vertex_variation kept_variation(const bough_rod_model *m, const bough_rod_tangent *k, const double *d,
+                                       int i) {
     int n = m->n, s = m->stride;
-    return (vertex_variation){
-        .x = load3(d, n, i),
-        .phi = turn_of(k->vertex + (size_t)KEPT_P * s + i + 1, s, d + 3 * n + i, n),
-        .u = load3(d + (size_t)BOUGH_ROD_U * n, n, i),
-        .w = load3(d + (size_t)BOUGH_ROD_W * n, n, i)};
+    return (vertex_variation){.x = load3(d, n, i),
+                              .phi = turn_of(k->vertex + (size_t)KEPT_P * s + i + 1, s, d + 3 * n + i, n),
+                              .u = load3(d + (size_t)BOUGH_ROD_U * n, n, i),
+                              .w = load3(d + (size_t)BOUGH_ROD_W * n, n, i)};
 }
 
 // A segment's forces by the motion of its vertices, `position` being in lanes.
-static segment_force kept_force(const double *position, const double *velocity,
-                                vertex_variation l, vertex_variation r) {
+static segment_force kept_force(const double *position, const double *velocity, vertex_variation l,
+                                vertex_variation r) {
     double q[DIRECTIONS], v[DIRECTIONS], force[FORCES];
     store3(q + DELTA, 1, 0, bough_sub(r.x, l.x));
     store3(q + LEFT, 1, 0, l.phi);
@@ -115,8 +112,8 @@ static segment_force kept_force(const double *position, const double *velocity,
     return (segment_force){vector_at(force + F), vector_at(force + LL), vector_at(force + LR)};
 }
 
-static void kept_end_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
-                             const double *state_rate, const double *input_rate, double *wrench) {
+static void kept_end_tangent(const bough_rod_model *m, const bough_rod_tangent *k, const double *state_rate,
+                             const double *input_rate, double *wrench) {
     int lane = m->n % LANES;
     const double *position = k->variation + (size_t)TANGENTS * (m->n - lane) + lane;
     vertex_variation l = {0}, r = {0};
@@ -129,8 +126,7 @@ static void kept_end_tangent(const bough_rod_model *m, const bough_rod_tangent *
 }
 
 void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
-                                   const double *state_rate, const double *input_rate,
-                                   double *wrench) {
+                                   const double *state_rate, const double *input_rate, double *wrench) {
     bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
     vertex_variation l = {0}, r = {0};
     if (input_rate != NULL) l = root_variation(m, input_rate);
@@ -143,8 +139,7 @@ void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tan
 }
 
 void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                           const bough_rod_variation *at, bough_rod_scratch *scratch,
-                           double *wrench) {
+                           const bough_rod_variation *at, bough_rod_scratch *scratch, double *wrench) {
     double now[BOUGH_ROD_END_OUTPUTS]; // leaves vertices and loads in scratch
     bough_rod_end_wrench(m, loads, t, at->state, at->input, scratch, now);
     vertex_variation l = {0}, r = {0};
@@ -155,8 +150,7 @@ void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *load
     segment_force f = segment_tangent(m, scratch, m->n, &l, &r);
     segment_force load = load_variation(m, loads, scratch, r.phi);
     bough_vec3 force = bough_sub(load.f, f.f), moment = bough_add(load.lr, f.lr);
-    const double values[BOUGH_ROD_END_OUTPUTS] = {force.x,  force.y,  force.z,
-                                                  moment.x, moment.y, moment.z};
+    const double values[BOUGH_ROD_END_OUTPUTS] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
     memcpy(wrench, values, sizeof values);
 }
 
@@ -180,8 +174,7 @@ static void frame_column(const bough_rod_model *m, const double *state, int kind
     int n = m->n;
     for (int i = 0; i < n; i++) {
         bough_vec3 x = load3(state, n, i), u = load3(state + (size_t)BOUGH_ROD_U * n, n, i);
-        bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i],
-                              state[6 * n + i]};
+        bough_quaternion p = {state[3 * n + i], state[4 * n + i], state[5 * n + i], state[6 * n + i]};
         if (kind == 0) store3(column, n, i, bough_scale(-1, e));
         if (kind == 2) store3(column + (size_t)BOUGH_ROD_U * n, n, i, e);
         if (kind != 1) continue;
@@ -194,8 +187,8 @@ static void frame_column(const bough_rod_model *m, const double *state, int kind
 }
 
 // The root's motion strains the first segment.
-static void root_columns(const bough_rod_model *m, const double *state,
-                         const bough_rod_scratch *scratch, double *column) {
+static void root_columns(const bough_rod_model *m, const double *state, const bough_rod_scratch *scratch,
+                         double *column) {
     const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int j = 0; j < BOUGH_ROD_INPUTS; j++, column += (size_t)BOUGH_ROD_STATES * m->n) {
         double e[6] = {0};
@@ -209,8 +202,8 @@ static void root_columns(const bough_rod_model *m, const double *state,
 }
 
 // The end's motion strains the last one.
-static void end_columns(const bough_rod_model *m, const double *end,
-                        const bough_rod_scratch *scratch, double *column) {
+static void end_columns(const bough_rod_model *m, const double *end, const bough_rod_scratch *scratch,
+                        double *column) {
     for (int j = 0; j < BOUGH_ROD_END_INPUTS; j++, column += (size_t)BOUGH_ROD_STATES * m->n) {
         double e[BOUGH_ROD_END_INPUTS] = {0};
         e[j] = 1;

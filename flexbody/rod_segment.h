@@ -30,20 +30,20 @@ typedef struct strain {
 } strain;
 
 typedef struct segment_geometry {
-    bough_mat3 r;    // R_mid
-    bough_vec3 v, t; // sin θ/2 n, tan θ/4 n
-    double w, c, g;  // cos θ/2 >= 0
-    double e, slope; // 1/(1 + w), dg/dw
+    bough_mat3 r;       // R_mid
+    bough_vec3 v, t;    // sin θ/2 n, tan θ/4 n
+    double w, c, g;     // cos θ/2 >= 0
+    double e, slope;    // 1/(1 + w), dg/dw
     bough_vec3 chord;   // R_midᵀ Δx/h
     bough_vec3 stretch; // V
     bough_vec3 phi;     // φ
 } segment_geometry;
 
 typedef struct segment_rate {
-    bough_vec3 du;      // R_midᵀ (uₙ₊₁ − uₙ)
-    bough_vec3 middle;  // angular velocity of the mid frame
+    bough_vec3 du;       // R_midᵀ (uₙ₊₁ − uₙ)
+    bough_vec3 middle;   // angular velocity of the mid frame
     bough_vec3 relative; // b − a of the angular velocities
-    bough_vec3 wl, wr;  // section-axes angular velocities of the two vertices
+    bough_vec3 wl, wr;   // section-axes angular velocities of the two vertices
 } segment_rate;
 
 typedef struct segment_force {
@@ -55,9 +55,9 @@ typedef struct segment_force {
 // 13 in 1 − w, relative error 3e-15.
 #define GEOMETRY_DEGREE 13
 static const double geometry_g[GEOMETRY_DEGREE + 1] = {
-    0.3333333333333328,   0.30000000000042426, 0.20714285708788696,   0.128968256765497,
-    0.07602806449043223,  0.0433432440191777,  0.0241455286901389,    0.013330651083026,
-    0.006789708601738262, 0.0051402607408433205, -0.000883989726343168, 0.00555548493648075,
+    0.3333333333333328,    0.30000000000042426,   0.20714285708788696,   0.128968256765497,
+    0.07602806449043223,   0.0433432440191777,    0.0241455286901389,    0.013330651083026,
+    0.006789708601738262,  0.0051402607408433205, -0.000883989726343168, 0.00555548493648075,
     -0.003622265067882274, 0.0022922422065466564};
 
 static inline double geometry_value(double w) {
@@ -111,8 +111,7 @@ static inline bough_vec3 bow_moment(bough_vec3 v, bough_vec3 y, bough_vec3 n) {
     return bough_axpy(-1. / 6, sum, bough_scale(1. / 3 * bough_dot(y, n), v));
 }
 
-static inline bough_vec3 along_axis_variation(bough_vec3 v, bough_vec3 dv, bough_vec3 y,
-                                              bough_vec3 dy) {
+static inline bough_vec3 along_axis_variation(bough_vec3 v, bough_vec3 dv, bough_vec3 y, bough_vec3 dy) {
     return bough_add(along_axis(v, dy), along_axis_turned(v, dv, y));
 }
 
@@ -165,7 +164,7 @@ static inline strain strain_rate(segment_geometry s, segment_rate m, double inve
 
 // C e for the symmetric matrix of segment n, stored as 21 arrays of the given stride.
 static inline strain symmetric_times(const double *c, int stride, int n, strain e) {
-#define C(k) c[(k) * stride + n]
+#define C(k) c[(k)*stride + n]
     strain y;
     y.v.x = C(0) * e.v.x + C(1) * e.v.y + C(2) * e.v.z + C(3) * e.u.x + C(4) * e.u.y + C(5) * e.u.z;
     y.v.y = C(1) * e.v.x + C(6) * e.v.y + C(7) * e.v.z + C(8) * e.u.x + C(9) * e.u.y + C(10) * e.u.z;
@@ -203,15 +202,15 @@ typedef struct segment_variation {
 } segment_variation;
 
 // δ of half_forward(v, t, y) and half_backward with δy given
-static inline bough_vec3 half_forward_variation(segment_geometry s, segment_variation d,
-                                                bough_vec3 y, bough_vec3 dy) {
+static inline bough_vec3 half_forward_variation(segment_geometry s, segment_variation d, bough_vec3 y,
+                                                bough_vec3 dy) {
     bough_vec3 z = bough_cross(s.v, y);
     bough_vec3 dz = bough_add(bough_cross(d.v, y), bough_cross(s.v, dy));
     return bough_add(bough_add(dy, dz), bough_add(bough_cross(d.t, z), bough_cross(s.t, dz)));
 }
 
-static inline bough_vec3 half_backward_variation(segment_geometry s, segment_variation d,
-                                                 bough_vec3 y, bough_vec3 dy) {
+static inline bough_vec3 half_backward_variation(segment_geometry s, segment_variation d, bough_vec3 y,
+                                                 bough_vec3 dy) {
     bough_vec3 z = bough_cross(s.v, y);
     bough_vec3 dz = bough_add(bough_cross(d.v, y), bough_cross(s.v, dy));
     return bough_add(bough_sub(dy, dz), bough_add(bough_cross(d.t, z), bough_cross(s.t, dz)));
@@ -226,8 +225,8 @@ static inline bough_vec3 tangent_variation(segment_geometry s, segment_variation
     return bough_scale(0.5, bough_axpy(-s.g * vy, d.v, sum));
 }
 
-static inline segment_variation shape_variation(segment_geometry s, vertex_variation l,
-                                                vertex_variation r, double inverse_h) {
+static inline segment_variation shape_variation(segment_geometry s, vertex_variation l, vertex_variation r,
+                                                double inverse_h) {
     segment_variation d;
     bough_vec3 a = half_backward(s.v, s.t, l.phi), b = half_forward(s.v, s.t, r.phi);
     bough_vec3 turn = bough_sub(b, a);
@@ -238,8 +237,8 @@ static inline segment_variation shape_variation(segment_geometry s, vertex_varia
     d.c = (s.g - s.c * s.e) * d.w;
     d.g = s.slope * d.w;
     d.phi = rotation_tangent(s.c, s.g, s.v, turn);
-    d.chord = bough_axpy(inverse_h, bough_mat3_tmul(s.r, bough_sub(r.x, l.x)),
-                         bough_cross(s.chord, d.middle));
+    d.chord =
+        bough_axpy(inverse_h, bough_mat3_tmul(s.r, bough_sub(r.x, l.x)), bough_cross(s.chord, d.middle));
     d.stretch = along_axis_variation(s.v, d.v, s.chord, d.chord);
     return d;
 }
@@ -253,17 +252,15 @@ static inline bough_vec3 half_turn_variation(segment_geometry s, segment_variati
 }
 
 static inline strain rate_variation(segment_geometry s, segment_rate m, segment_variation d,
-                                    const vertex_variation *l, const vertex_variation *r,
-                                    double inverse_h) {
+                                    const vertex_variation *l, const vertex_variation *r, double inverse_h) {
     bough_vec3 da = half_backward_variation(s, d, m.wl, l->w);
     bough_vec3 db = half_forward_variation(s, d, m.wr, r->w);
     bough_vec3 relative = bough_sub(db, da);
     bough_vec3 twist = bough_add(bough_cross(relative, s.t), bough_cross(m.relative, d.t));
     bough_vec3 middle = bough_scale(0.5, bough_add(bough_add(da, db), twist));
-    bough_vec3 du = bough_add(bough_mat3_tmul(s.r, bough_sub(r->u, l->u)),
-                              bough_cross(m.du, d.middle));
-    bough_vec3 y = bough_axpy(inverse_h, du, bough_add(bough_cross(d.chord, m.middle),
-                                                       bough_cross(s.chord, middle)));
+    bough_vec3 du = bough_add(bough_mat3_tmul(s.r, bough_sub(r->u, l->u)), bough_cross(m.du, d.middle));
+    bough_vec3 y =
+        bough_axpy(inverse_h, du, bough_add(bough_cross(d.chord, m.middle), bough_cross(s.chord, middle)));
     bough_vec3 turning = half_turn(s.v, s.t, m.relative);
     bough_vec3 dturning = half_turn_variation(s, d, m.relative, relative);
     bough_vec3 v = along_axis_variation(s.v, d.v, chord_rate(s, m, inverse_h), y);
@@ -280,8 +277,7 @@ static inline segment_force force_variation(segment_geometry s, segment_variatio
     bough_vec3 n = along_axis(s.v, stress.v);
     bough_vec3 dn = along_axis_variation(s.v, d.v, stress.v, dstress.v);
     bough_vec3 tau = bough_scale(0.5 * h, bough_cross(n, s.chord));
-    bough_vec3 dtau = bough_scale(0.5 * h, bough_add(bough_cross(dn, s.chord),
-                                                     bough_cross(n, d.chord)));
+    bough_vec3 dtau = bough_scale(0.5 * h, bough_add(bough_cross(dn, s.chord), bough_cross(n, d.chord)));
     bough_vec3 bow = bow_moment(s.v, s.chord, stress.v), dbow = bow_moment(d.v, s.chord, stress.v);
     dbow = bough_add(dbow, bow_moment(s.v, d.chord, stress.v));
     dbow = bough_add(dbow, bow_moment(s.v, s.chord, dstress.v));

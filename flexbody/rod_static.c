@@ -65,8 +65,8 @@ static double residual(const bough_rod_model *m, bough_rod_static *w, double ref
     double largest = 0;
     for (int i = 0; i < n; i++) {
         double *row = w->step + (size_t)W8 * i;
-        const double minus[W8] = {-a[i],         -a[n + i],     -a[2 * n + i], -a[3 * n + i],
-                                  -a[4 * n + i], -a[5 * n + i], 0,             0};
+        const double minus[W8] = {
+            -a[i], -a[n + i], -a[2 * n + i], -a[3 * n + i], -a[4 * n + i], -a[5 * n + i], 0, 0};
         memset(row, 0, W8 * sizeof *row);
         bough_block_subtract(w->tangent.blocks.mass + (size_t)i * BOUGH_BLOCK, minus, row);
         for (int c = 0; c < 6; c++) largest = fmax(largest, fabs(row[c]));
@@ -95,8 +95,7 @@ static bough_vec3 step_of(const double *step, int i, int from) {
 // largest change, lengths measured against the rod's.
 static double update(const bough_rod_model *m, const double *step, double *state) {
     double turn = bough_rod_turn(m, step), shift = 0;
-    for (int i = 0; i < m->n; i++)
-        shift = fmax(shift, bough_norm(step_of(step, i, 0)) / m->span[m->n]);
+    for (int i = 0; i < m->n; i++) shift = fmax(shift, bough_norm(step_of(step, i, 0)) / m->span[m->n]);
     bough_rod_move(m, step, turn > most_turn ? most_turn / turn : 1, state, NULL);
     return fmax(turn, shift);
 }
@@ -129,8 +128,8 @@ static bool newton_step(const bough_rod_model *m, bough_rod_static *w, const dou
 }
 
 // Newton's method under w->scaled. False when it does not converge.
-static bool converge(const bough_rod_model *m, const double *input,
-                     const bough_rod_static_options *options, bough_rod_static *w, double *state) {
+static bool converge(const bough_rod_model *m, const double *input, const bough_rod_static_options *options,
+                     bough_rod_static *w, double *state) {
     int shortened = 0;
     for (int k = 0; k < options->iterations; k++) {
         w->iterations++;
@@ -203,14 +202,15 @@ static bough_status not_found(const bough_rod_model *m, double reached) {
                           " the rounding of positions bends the rod; with EA = %.0e EI/L² it bends the same",
                           m->name, ratio, slender, 1e8);
     }
-    return bough_fail(BOUGH_FAILED, "rod %s: no static equilibrium found beyond %.4g %% of"
-                      " the load; the rod may buckle there, or more segments are needed", m->name,
-                      100 * reached);
+    return bough_fail(BOUGH_FAILED,
+                      "rod %s: no static equilibrium found beyond %.4g %% of"
+                      " the load; the rod may buckle there, or more segments are needed",
+                      m->name, 100 * reached);
 }
 
-bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *loads,
-                              const double *input, const bough_rod_static_options *options,
-                              bough_rod_static *work, double *state) {
+bough_status bough_rod_steady(const bough_rod_model *m, const bough_rod_loads *loads, const double *input,
+                              const bough_rod_static_options *options, bough_rod_static *work,
+                              double *state) {
     size_t bytes = (size_t)BOUGH_ROD_STATES * m->n * sizeof *state;
     double reached = 0, largest = 1.0 / options->increments, increment = largest;
     double least = ldexp(largest, -options->halvings);

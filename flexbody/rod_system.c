@@ -8,36 +8,31 @@
 struct bough_rod_body {
     const bough_rod_model *model;
     bough_rod_loads loads;
-    double *initial;         // (13 n)
-    double *scale;           // (13 n)
+    double *initial; // (13 n)
+    double *scale;   // (13 n)
     bough_rod_scratch scratch;
 };
 
 // -- the contract -----------------------------------------------------------------------------------
 
-static bool derivative(void *self, double t, const double *state, const double *input,
-                       double *rate) {
+static bool derivative(void *self, double t, const double *state, const double *input, double *rate) {
     bough_rod_body *b = self;
     return bough_rod_derivative(b->model, &b->loads, t, state, input, &b->scratch, rate);
 }
 
-static bool derivative_again(void *self, double t, const double *state, const double *input,
-                             double *rate) {
+static bool derivative_again(void *self, double t, const double *state, const double *input, double *rate) {
     bough_rod_body *b = self;
     return bough_rod_derivative_again(b->model, &b->loads, t, state, input, &b->scratch, rate);
 }
 
-static void output(void *self, double t, const double *state, const double *input,
-                   double *wrench) {
+static void output(void *self, double t, const double *state, const double *input, double *wrench) {
     bough_rod_body *b = self;
     bough_rod_root_wrench(b->model, &b->loads, t, state, input, &b->scratch, wrench);
     if (!bough_rod_carries(b->model)) return;
-    bough_rod_end_wrench(b->model, &b->loads, t, state, input, &b->scratch,
-                         wrench + BOUGH_ROD_OUTPUTS);
+    bough_rod_end_wrench(b->model, &b->loads, t, state, input, &b->scratch, wrench + BOUGH_ROD_OUTPUTS);
 }
 
-static void output_again(void *self, double t, const double *state, const double *input,
-                         double *wrench) {
+static void output_again(void *self, double t, const double *state, const double *input, double *wrench) {
     (void)t, (void)state, (void)input;
     const bough_rod_body *b = self;
     bough_rod_present_root_wrench(b->model, &b->scratch, wrench);
@@ -54,15 +49,14 @@ static void output_tangent(void *self, double t, const double *state, const doub
     bough_rod_end_tangent(b->model, &b->loads, t, &at, &b->scratch, rate + BOUGH_ROD_OUTPUTS);
 }
 
-static bool kept_tangent(void *self, const void *factors, const double *state_rate,
-                         const double *input_rate, double *rate) {
+static bool kept_tangent(void *self, const void *factors, const double *state_rate, const double *input_rate,
+                         double *rate) {
     const bough_rod_body *b = self;
     bough_rod_kept_wrench_tangent(b->model, factors, state_rate, input_rate, rate);
     return true;
 }
 
-static void input_columns(void *self, double t, const double *state, const double *input,
-                          double *column) {
+static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
     (void)t;
     bough_rod_body *b = self;
     bough_rod_input_columns(b->model, state, input, &b->scratch, column);
@@ -75,8 +69,7 @@ static void *factors(void *self, bough_arena *arena) {
     return k;
 }
 
-static bool linearise(void *self, double t, const double *state, const double *input,
-                      void *factors) {
+static bool linearise(void *self, double t, const double *state, const double *input, void *factors) {
     bough_rod_body *b = self;
     return bough_rod_linearise(b->model, &b->loads, t, state, input, &b->scratch, factors);
 }
@@ -135,11 +128,9 @@ static void take_memory(bough_rod_body *b, bough_arena *arena) {
     bough_rod_scratch_init(&b->scratch, arena, b->model);
 }
 
-bough_rod_body *bough_rod_body_create(bough_arena *arena, const bough_rod_model *model,
-                                   const double *input) {
+bough_rod_body *bough_rod_body_create(bough_arena *arena, const bough_rod_model *model, const double *input) {
     // error scales of x, p, u, W: a tenth of a radian weighs as a metre
-    static const double scale[BOUGH_ROD_STATES] = {1, 1, 1, 0.1, 0.1, 0.1, 0.1,
-                                                   1, 1, 1, 0.1, 0.1, 0.1};
+    static const double scale[BOUGH_ROD_STATES] = {1, 1, 1, 0.1, 0.1, 0.1, 0.1, 1, 1, 1, 0.1, 0.1, 0.1};
     bough_rod_body *b = bough_arena_take(arena, sizeof *b);
     b->model = model;
     take_memory(b, arena);
@@ -151,12 +142,9 @@ bough_rod_body *bough_rod_body_create(bough_arena *arena, const bough_rod_model 
 
 bough_system bough_rod_body_system(bough_rod_body *body) {
     static const bough_system_ops ops = {
-        BOUGH_SYSTEM_REQUIRED,
-        .derivative_again = derivative_again,
-        .output_again = output_again,
-        .kept_tangent = kept_tangent,
-        .constrain = constrain,
-        .project = project,
+        BOUGH_SYSTEM_REQUIRED,        .derivative_again = derivative_again,
+        .output_again = output_again, .kept_tangent = kept_tangent,
+        .constrain = constrain,       .project = project,
     };
     return (bough_system){.name = body->model->name,
                           .kind = "rod",
@@ -169,10 +157,6 @@ bough_system bough_rod_body_system(bough_rod_body *body) {
                           .self = body};
 }
 
-bough_rod_loads *bough_rod_body_loads(bough_rod_body *body) {
-    return &body->loads;
-}
+bough_rod_loads *bough_rod_body_loads(bough_rod_body *body) { return &body->loads; }
 
-const bough_rod_model *bough_rod_body_model(const bough_rod_body *body) {
-    return body->model;
-}
+const bough_rod_model *bough_rod_body_model(const bough_rod_body *body) { return body->model; }

@@ -67,8 +67,8 @@ static void mass_columns(const bough_rod_model *m, const bough_rod_tangent *k, i
 }
 
 // What the velocities change in (11) beyond the segments' forces.
-static void velocity_columns(const bough_rod_model *m, const bough_rod_tangent *k, int first,
-                             int j, double *restrict out) {
+static void velocity_columns(const bough_rod_model *m, const bough_rod_tangent *k, int first, int j,
+                             double *restrict out) {
     int s = m->stride;
     const double *restrict kept = k->vertex + first + 1, *restrict moment = m->moment + first;
     const double *restrict inertia = m->inertia + first, *restrict weight = m->mass + first;
@@ -77,8 +77,8 @@ static void velocity_columns(const bough_rod_model *m, const bough_rod_tangent *
     for (int l = 0; l < LANES; l++) {
         bough_mat3 r = load_matrix(kept + KEPT_R * s, s, l);
         bough_vec3 offset = load3(moment, s, l), w = load3(kept + KEPT_W * s, s, l);
-        bough_vec3 centrifugal = bough_add(bough_cross(e, bough_cross(w, offset)),
-                                           bough_cross(w, bough_cross(e, offset)));
+        bough_vec3 centrifugal =
+            bough_add(bough_cross(e, bough_cross(w, offset)), bough_cross(w, bough_cross(e, offset)));
         bough_vec3 gyroscopic = bough_add(bough_cross(e, inertia_times(inertia, s, l, w)),
                                           bough_cross(w, inertia_times(inertia, s, l, e)));
         store_column(out, l, 0, j, bough_scale(-weight[l], turn));
@@ -121,9 +121,8 @@ static void damping_columns(const bough_rod_model *m, const bough_rod_loads *loa
 
 // What the rotation of a vertex changes, from the accelerations `rate` (6 n: u̇, Ẇ): the moment of
 // a load in BRF axes and the first moment's forces turn with it.
-static void rotation_columns(const bough_rod_model *m, const double *restrict rate,
-                             const double *input, const bough_rod_scratch *scratch,
-                             bough_rod_tangent *k) {
+static void rotation_columns(const bough_rod_model *m, const double *restrict rate, const double *input,
+                             const bough_rod_scratch *scratch, bough_rod_tangent *k) {
     int n = m->n, s = m->stride;
     const double *restrict kept = k->vertex, *restrict first = m->moment;
     const double *restrict vertex = scratch->vertex, *restrict load = scratch->load;
@@ -138,13 +137,11 @@ static void rotation_columns(const bough_rod_model *m, const double *restrict ra
         bough_vec3 felt = bough_sub(bough_add(udot, bough_cross(omega, u)), gravity);
         bough_vec3 c = bough_mat3_tmul(r, felt);
         bough_vec3 moment = bough_mat3_tmul(r, load3(load + 3 * s, s, v));
-        bough_vec3 shift = bough_add(bough_cross(wdot, offset),
-                                     bough_cross(w, bough_cross(w, offset)));
+        bough_vec3 shift = bough_add(bough_cross(wdot, offset), bough_cross(w, bough_cross(w, offset)));
         for (int j = 0; j < 3; j++) {
             bough_vec3 e = unit_vector(j);
             bough_vec3 force = bough_mat3_mul(r, bough_cross(shift, e));
-            bough_vec3 turned = bough_sub(bough_cross(moment, e),
-                                          bough_cross(offset, bough_cross(c, e)));
+            bough_vec3 turned = bough_sub(bough_cross(moment, e), bough_cross(offset, bough_cross(c, e)));
             store3(out + 6 * j * s, s, v, force);
             store3(out + (6 * j + 3) * s, s, v, turned);
         }
@@ -153,8 +150,7 @@ static void rotation_columns(const bough_rod_model *m, const double *restrict ra
 
 // Followers turn with their vertex: δ(R f) = R (δφ×f), and the moment in section axes stays, where
 // rotation_columns took it for a dead one.
-static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scratch,
-                          bough_rod_tangent *k) {
+static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scratch, bough_rod_tangent *k) {
     int s = m->stride;
     double *out = k->local_position;
     for (int v = 1; v <= m->n; v++) {
@@ -173,8 +169,7 @@ static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scr
 }
 
 // Adds what they change with the rotation about the section's normal.
-static void add_turning(const bough_rod_model *m, const bough_rod_loads *loads,
-                        bough_rod_tangent *k) {
+static void add_turning(const bough_rod_model *m, const bough_rod_loads *loads, bough_rod_tangent *k) {
     int s = m->stride;
     const double *restrict kept = k->vertex, *restrict slope = loads->slope;
     double *restrict out = k->local_position + 12 * s;

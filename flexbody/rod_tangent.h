@@ -36,9 +36,9 @@ typedef struct bough_rod_tangent {
     // computed by bough_rod_factor
     double gamma;
     bough_block_tridiagonal matrix;
-    double *force;          // γ K A r_q of the segments (9 × stride)
-    double *work;           // of a solution
-    double *packed;         // (padded n × 8)
+    double *force;  // γ K A r_q of the segments (9 × stride)
+    double *work;   // of a solution
+    double *packed; // (padded n × 8)
 } bough_rod_tangent;
 
 void bough_rod_tangent_init(bough_rod_tangent *k, bough_arena *arena, const bough_rod_model *m);
@@ -51,15 +51,14 @@ bool bough_rod_linearise(const bough_rod_model *m, const bough_rod_loads *loads,
 
 // What goes into the blocks of eight segments and the vertices at their right ends only, rows of 8.
 typedef struct bough_rod_eight {
-    int first;                               // segment
-    _Alignas(64) double velocity[81 * 8];    // of segment forces, by velocities: as `variation`
-    _Alignas(64) double mass[36 * 8];        // of (11) with force in BRF axes
+    int first;                                // segment
+    _Alignas(64) double velocity[81 * 8];     // of segment forces, by velocities: as `variation`
+    _Alignas(64) double mass[36 * 8];         // of (11) with force in BRF axes
     _Alignas(64) double own_velocity[36 * 8]; // tangents of a vertex' own terms, by u, W
 } bough_rod_eight;
 
 // Puts them and the tangents by configuration into blocks. To be called in the order of segments.
-void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k,
-                           const bough_rod_eight *eight);
+void bough_rod_form_blocks(const bough_rod_model *m, bough_rod_tangent *k, const bough_rod_eight *eight);
 
 // Factors I − γ ∂f/∂y of the last linearisation. False when singular.
 bool bough_rod_factor(const bough_rod_model *m, bough_rod_tangent *k, double gamma);
@@ -73,8 +72,8 @@ void bough_rod_input_columns(const bough_rod_model *m, const double *state, cons
 
 // Derivative of the root wrench (6) along state and input variations; either may be NULL for zero.
 void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, const double *input,
-                              const double *state_rate, const double *input_rate,
-                              bough_rod_scratch *scratch, double *wrench);
+                              const double *state_rate, const double *input_rate, bough_rod_scratch *scratch,
+                              double *wrench);
 
 // Into a linearisation of a rod that carries bodies: what the turn of the last vertex, whose motion is
 // `end`, changes in the loads in scratch.
@@ -83,8 +82,7 @@ void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, 
 
 // The same where `k` was linearised, from its tangents, and of the wrench at the end.
 void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
-                                   const double *state_rate, const double *input_rate,
-                                   double *wrench);
+                                   const double *state_rate, const double *input_rate, double *wrench);
 
 // Where and along what the wrench at the end is differentiated; rates as above.
 typedef struct bough_rod_variation {
@@ -93,7 +91,6 @@ typedef struct bough_rod_variation {
 
 // The same of bough_rod_end_wrench.
 void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
-                           const bough_rod_variation *at, bough_rod_scratch *scratch,
-                           double *wrench);
+                           const bough_rod_variation *at, bough_rod_scratch *scratch, double *wrench);
 
 #endif

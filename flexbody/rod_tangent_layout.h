@@ -25,8 +25,8 @@ enum {
 
 // Rows of `work`.
 enum {
-    WORK_Q = 0,      // eliminated configuration residual A r_q
-    WORK_SCALAR = 6, // of the quaternion residual
+    WORK_Q = 0,        // eliminated configuration residual A r_q
+    WORK_SCALAR = 6,   // of the quaternion residual
     WORK_VELOCITY = 7, // residual, then increments of the velocities
     WORK = WORK_VELOCITY + W8,
 };

@@ -14,7 +14,7 @@ enum {
     BASE_MIDDLE = 21,
     BASE_DU = 24,
     BASE_STRESS = 27,
-    BASE_W = 33, // then c, g, 1/(1 + w), dg/dw
+    BASE_W = 33,       // then c, g, 1/(1 + w), dg/dw
     BASE_ELASTIC = 38, // the elastic law's state
 };
 
@@ -58,8 +58,7 @@ static inline void store_elastic(double *restrict base, int l, elastic_state s) 
 static inline elastic_state load_elastic(const double *restrict base, int l) {
     const double *restrict from = base + LANES * BASE_ELASTIC;
     return (elastic_state){.stress.u = load3(from, LANES, l),
-                           .bent = {load3(from + LANES * 3, LANES, l),
-                                    load3(from + LANES * 6, LANES, l)},
+                           .bent = {load3(from + LANES * 3, LANES, l), load3(from + LANES * 6, LANES, l)},
                            .kappa = load3(from + LANES * 9, LANES, l),
                            .b = load3(from + LANES * 12, LANES, l),
                            .value = from[LANES * 15 + l],
@@ -67,8 +66,7 @@ static inline elastic_state load_elastic(const double *restrict base, int l) {
                            .slope = from[LANES * 17 + l]};
 }
 
-void bough_rod_base(const bough_rod_model *m, const bough_rod_scratch *scratch, int first,
-                    double *base) {
+void bough_rod_base(const bough_rod_model *m, const bough_rod_scratch *scratch, int first, double *base) {
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict c = m->stiffness + first;
     const double *restrict d = m->damping + first, *restrict rest = scratch->rest + first;
@@ -112,8 +110,7 @@ static inline void store_force(double *restrict column, int l, segment_force f) 
 // `turning`: D q turns as well, and the moments of loads along the segment beside its chord.
 static inline void position_direction(const bough_rod_model *m, const bough_rod_scratch *scratch,
                                       bool turning, int first, const double *restrict base,
-                                      vertex_variation dl, vertex_variation dr,
-                                      double *restrict column) {
+                                      vertex_variation dl, vertex_variation dr, double *restrict column) {
     int s = m->stride;
     const double *restrict at = scratch->vertex + first, *restrict along = scratch->along + first;
     const double *restrict line = m->line + first, *restrict bend = m->bend0 + first;
@@ -150,8 +147,8 @@ static inline void position_direction(const bough_rod_model *m, const bough_rod_
     }
 }
 
-void bough_rod_position_variation(const bough_rod_model *m, const bough_rod_scratch *scratch,
-                                  int first, const double *base, double *variation) {
+void bough_rod_position_variation(const bough_rod_model *m, const bough_rod_scratch *scratch, int first,
+                                  const double *base, double *variation) {
     for (int k = 0; k < DIRECTIONS; k++) {
         vertex_variation dl, dr;
         double *column = variation + LANES * k;
@@ -165,9 +162,8 @@ void bough_rod_position_variation(const bough_rod_model *m, const bough_rod_scra
 }
 
 // The shape does not vary, the stress varies by D ė.
-static inline void velocity_direction(const bough_rod_model *m, int first,
-                                      const double *restrict base, vertex_variation dl,
-                                      vertex_variation dr, double *restrict column) {
+static inline void velocity_direction(const bough_rod_model *m, int first, const double *restrict base,
+                                      vertex_variation dl, vertex_variation dr, double *restrict column) {
     int s = m->stride;
     const double *restrict damping = m->damping + first, *restrict h = m->length + first;
     const double *restrict inverse = m->inverse_length + first;

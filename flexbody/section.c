@@ -70,9 +70,9 @@ static void line_stress(double sigma, double h, bool slope, matrix6 stress) {
 // What lies between the left end of a segment and s.
 typedef struct mass_sum {
     const bough_section_axis *axis;
-    double to, twist;    // s; of the segment's mid frame
-    double mass, arm;    // ∫ρ, ∫ρ (s − s′)
-    bough_vec3 offset;   // ∫ρ c in the mid frame
+    double to, twist;  // s; of the segment's mid frame
+    double mass, arm;  // ∫ρ, ∫ρ (s − s′)
+    bough_vec3 offset; // ∫ρ c in the mid frame
 } mass_sum;
 
 static void add_mass(void *context, double s, double weight) {
@@ -80,8 +80,8 @@ static void add_mass(void *context, double s, double weight) {
     bough_section_station x = bough_section_at(c->axis, s);
     double turn = -(x.twist - c->twist), mass = weight * x.mass;
     double cosine = cos(turn), sine = sin(turn);
-    bough_vec3 centre = {cosine * x.centre[0] - sine * x.centre[1],
-                         sine * x.centre[0] + cosine * x.centre[1], 0};
+    bough_vec3 centre = {cosine * x.centre[0] - sine * x.centre[1], sine * x.centre[0] + cosine * x.centre[1],
+                         0};
     c->mass += mass;
     c->arm += mass * (c->to - s);
     c->offset = bough_axpy(mass, centre, c->offset);
@@ -118,14 +118,14 @@ static void share_stress(bough_section_share x, matrix6 stress) {
 
 typedef struct segment_sum {
     const bough_section_axis *axis;
-    double from, length;  // [m]
+    double from, length;      // [m]
     bough_section_share left; // of the left vertex by hat functions
-    double middle, twist; // of the segment's mid frame [m, rad]
-    double compliance[21]; // ∫ Tᵀ F T
-    double loss[21];       // ∫ Tᵀ F D F T
-    matrix6 line[2];       // ∫ Tᵀ F S, S of line_stress
-    double taper[9];       // ∫ F (s − s_mid) of bending and twist
-    matrix6 weight;        // the same of weight_stress, three columns
+    double middle, twist;     // of the segment's mid frame [m, rad]
+    double compliance[21];    // ∫ Tᵀ F T
+    double loss[21];          // ∫ Tᵀ F D F T
+    matrix6 line[2];          // ∫ Tᵀ F S, S of line_stress
+    double taper[9];          // ∫ F (s − s_mid) of bending and twist
+    matrix6 weight;           // the same of weight_stress, three columns
     bool definite;
 } segment_sum;
 
@@ -208,8 +208,8 @@ static bough_section_share best_gain(segment_sum *c) {
     enum { UNKNOWNS = 4 };
     matrix6 compliance, stress[UNKNOWNS];
     double normal[UNKNOWNS * UNKNOWNS], gain[UNKNOWNS];
-    const bough_section_share unit[UNKNOWNS] = {{1, {0, 0, -0.5 * c->length}},
-                                                {0, {1, 0, 0}}, {0, {0, 1, 0}}, {0, {0, 0, 1}}};
+    const bough_section_share unit[UNKNOWNS] = {
+        {1, {0, 0, -0.5 * c->length}}, {0, {1, 0, 0}}, {0, {0, 1, 0}}, {0, {0, 0, 1}}};
     unpack(c->compliance, compliance);
     for (int k = 0; k < UNKNOWNS; k++) share_stress(unit[k], stress[k]);
     for (int k = 0; k < UNKNOWNS; k++) {
@@ -238,8 +238,7 @@ static void strain_map(segment_geometry shape, double h, matrix6 q) {
         bough_vec3 turn = half_turn(shape.v, shape.t, unit[j]);
         bough_vec3 shear = along_axis_variation(shape.v, turn, shape.chord, bough_scale(0.5, chord));
         bough_vec3 bend = rotation_tangent(shape.c, shape.g, shape.v, unit[j]);
-        const double column[6] = {h * shear.x, h * shear.y, h * shear.z,
-                                  bend.x, bend.y, bend.z};
+        const double column[6] = {h * shear.x, h * shear.y, h * shear.z, bend.x, bend.y, bend.z};
         q[0][j] = own.x;
         q[1][j] = own.y;
         q[2][j] = own.z;
@@ -279,16 +278,12 @@ typedef struct segment_law {
 // through the section tables. Bending within the segment appears as compliance in shear
 // (MacNeal's residual bending flexibility). Damping dissipates what the sections would. `line` is the
 // mean strain that a load along the segment makes (docs/theory.md, "Section tables to segments").
-static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *def, int n,
-                             segment_law law) {
+static bool segment_matrices(const bough_section_axis *a, const bough_rod_def *def, int n, segment_law law) {
     double from = def->span[n], to = def->span[n + 1];
     vertex_state left = {.x = def->position[n], .p = def->rotation[n]};
     vertex_state right = {.x = def->position[n + 1], .p = def->rotation[n + 1]};
-    segment_sum c = {.axis = a,
-                     .from = from,
-                     .length = to - from,
-                     .middle = 0.5 * (from + to),
-                     .definite = true};
+    segment_sum c = {
+        .axis = a, .from = from, .length = to - from, .middle = 0.5 * (from + to), .definite = true};
     matrix6 q, k, loss;
     c.twist = 0.5 * (bough_section_at(a, from).twist + bough_section_at(a, to).twist);
     share_left(&c);
@@ -330,8 +325,8 @@ static arrays take_arrays(bough_arena *arena, int n) {
     return a;
 }
 
-bough_status bough_section_discretise(bough_arena *arena, const bough_section_table *table,
-                                      int n_segment, bough_rod_def *def) {
+bough_status bough_section_discretise(bough_arena *arena, const bough_section_table *table, int n_segment,
+                                      bough_rod_def *def) {
     bough_section_axis a;
     bough_section_axis_init(&a, arena, table);
     arrays m = take_arrays(arena, n_segment);
@@ -351,11 +346,13 @@ bough_status bough_section_discretise(bough_arena *arena, const bough_section_ta
         m.rotation[i] = bough_section_rotation(&a, m.span[i]);
     }
     for (int k = 0; k < n_segment; k++) {
-        segment_law law = {m.stiffness + 21 * (size_t)k, m.damping + 21 * (size_t)k,
-                           m.line + 72 * (size_t)k, m.taper + 9 * (size_t)k, m.gain + k};
+        segment_law law = {m.stiffness + 21 * (size_t)k, m.damping + 21 * (size_t)k, m.line + 72 * (size_t)k,
+                           m.taper + 9 * (size_t)k, m.gain + k};
         if (!segment_matrices(&a, def, k, law)) {
-            return bough_fail(BOUGH_INVALID, "rod %s: the stiffness between %g m and %g m is not"
-                              " positive definite", table->name, m.span[k], m.span[k + 1]);
+            return bough_fail(BOUGH_INVALID,
+                              "rod %s: the stiffness between %g m and %g m is not"
+                              " positive definite",
+                              table->name, m.span[k], m.span[k + 1]);
         }
     }
     bough_section_lump(arena, &a, def, m.gain, m.inertia);

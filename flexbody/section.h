@@ -24,8 +24,8 @@ typedef struct bough_section_table {
 } bough_section_table;
 
 // A definition with `n_segment` equal segments in the arena.
-bough_status bough_section_discretise(bough_arena *arena, const bough_section_table *table,
-                                      int n_segment, bough_rod_def *def);
+bough_status bough_section_discretise(bough_arena *arena, const bough_section_table *table, int n_segment,
+                                      bough_rod_def *def);
 
 // The whole rod as one rigid body, in the BRF about its origin: first moment and tensor.
 bough_vertex_inertia bough_section_rigid(const bough_rod_def *def);

@@ -8,17 +8,14 @@ enum { MOST_HALVINGS = 40 };
 
 enum { POINTS = 8 }; // of Gauss–Legendre quadrature on each stretch without a station inside
 
-static const double gauss_at[POINTS] = {-0.9602898564975363, -0.7966664774136267,
-                                        -0.5255324099163290, -0.1834346424956498,
-                                        0.1834346424956498,  0.5255324099163290,
+static const double gauss_at[POINTS] = {-0.9602898564975363, -0.7966664774136267, -0.5255324099163290,
+                                        -0.1834346424956498, 0.1834346424956498,  0.5255324099163290,
                                         0.7966664774136267,  0.9602898564975363};
-static const double gauss_weight[POINTS] = {0.1012285362903763, 0.2223810344533745,
-                                            0.3137066458778873, 0.3626837833783620,
-                                            0.3626837833783620, 0.3137066458778873,
+static const double gauss_weight[POINTS] = {0.1012285362903763, 0.2223810344533745, 0.3137066458778873,
+                                            0.3626837833783620, 0.3626837833783620, 0.3137066458778873,
                                             0.2223810344533745, 0.1012285362903763};
 
-void bough_section_axis_init(bough_section_axis *a, bough_arena *arena,
-                             const bough_section_table *table) {
+void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bough_section_table *table) {
     a->table = table;
     a->n = table->n_station;
     a->station = table->station;
@@ -37,9 +34,7 @@ void bough_section_axis_init(bough_section_axis *a, bough_arena *arena,
     }
 }
 
-double bough_section_length(const bough_section_axis *a) {
-    return a->arc[a->n - 1];
-}
+double bough_section_length(const bough_section_axis *a) { return a->arc[a->n - 1]; }
 
 // The interval that holds s and the share of its upper station.
 static int locate(const bough_section_axis *a, double s, double *share) {
@@ -49,9 +44,7 @@ static int locate(const bough_section_axis *a, double s, double *share) {
     return k;
 }
 
-static double mix(double share, double low, double high) {
-    return low + share * (high - low);
-}
+static double mix(double share, double low, double high) { return low + share * (high - low); }
 
 static bough_vec3 mix3(double share, bough_vec3 low, bough_vec3 high) {
     return bough_axpy(share, bough_sub(high, low), low);
@@ -73,8 +66,8 @@ static bool is_positive(const double central[4]) {
 
 // Between stations that lie far apart, mass and offset that are linear may need more inertia than the
 // linear one: there it is linear about the mass centre.
-static void mend_inertia(const bough_section_station *low, const bough_section_station *high,
-                         double share, bough_section_station *x) {
+static void mend_inertia(const bough_section_station *low, const bough_section_station *high, double share,
+                         bough_section_station *x) {
     double central[4], below[4], above[4];
     central_inertia(x, central);
     if (is_positive(central)) return;
@@ -163,8 +156,8 @@ static void integrate_stretch(const bough_section_axis *a, double from, double t
     integrate_piece(high, to, visit, context);
 }
 
-void bough_section_integrate(const bough_section_axis *a, double from, double to,
-                             bough_section_visitor visit, void *context) {
+void bough_section_integrate(const bough_section_axis *a, double from, double to, bough_section_visitor visit,
+                             void *context) {
     for (int k = 0; k < a->n && from < to; k++) {
         double end = k + 1 < a->n ? a->arc[k + 1] : to;
         if (end <= from) continue;

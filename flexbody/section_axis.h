@@ -8,13 +8,12 @@
 // The table with the arc length of each station.
 typedef struct bough_section_axis {
     const bough_section_table *table;
-    int n;       // stations, 2 or more
+    int n; // stations, 2 or more
     const bough_section_station *station;
     double *arc; // (n) [m]
 } bough_section_axis;
 
-void bough_section_axis_init(bough_section_axis *a, bough_arena *arena,
-                             const bough_section_table *table);
+void bough_section_axis_init(bough_section_axis *a, bough_arena *arena, const bough_section_table *table);
 
 double bough_section_length(const bough_section_axis *a);
 
@@ -25,8 +24,8 @@ bough_quaternion bough_section_rotation(const bough_section_axis *a, double s);
 // Calls visit(context, s, weight) at the points of a quadrature from one arc length to another: exact
 // for polynomials of degree 15 between stations, and for compliances to 1e-9.
 typedef void (*bough_section_visitor)(void *context, double s, double weight);
-void bough_section_integrate(const bough_section_axis *a, double from, double to,
-                             bough_section_visitor visit, void *context);
+void bough_section_integrate(const bough_section_axis *a, double from, double to, bough_section_visitor visit,
+                             void *context);
 
 // A vertex' share of a segment's mass and first moment, in the axes of the segment's middle.
 typedef struct bough_section_share {

@@ -60,7 +60,7 @@ typedef struct element {
     double mass;
     bough_vec3 offset, centre; // of the axis from the vertex or the chord, of the mass centre from it
     bough_mat3 turn;
-    double inertia[4];         // about the mass centre
+    double inertia[4]; // about the mass centre
 } element;
 
 static void lump(const element *e, double share, double turned, bough_vertex_inertia *v) {
@@ -231,8 +231,8 @@ static bool positive(const bough_vertex_inertia *v) {
     const double most = 1.03; // of the first moment
     bough_vec3 s = bough_scale(most, v->moment);
     const double *j = v->inertia;
-    const double upper[21] = {v->mass, 0,   0,    0,    s.z,  -s.y, v->mass, 0,    -s.z, 0,   s.x,
-                              v->mass, s.y, -s.x, 0,    j[0], j[3], j[4],    j[1], j[5], j[2]};
+    const double upper[21] = {v->mass, 0,   0,    0, s.z,  -s.y, v->mass, 0,    -s.z, 0,   s.x,
+                              v->mass, s.y, -s.x, 0, j[0], j[3], j[4],    j[1], j[5], j[2]};
     double inverse[21];
     return bough_symmetric6_inverse(upper, inverse);
 }
