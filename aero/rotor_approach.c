@@ -94,7 +94,7 @@ static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *mo
         bough_mat3 structure = turned_by(beside, rotation_between(p, q, w));
         bough_mat3 section = bough_mat3_product(structure, load_matrix(m.section, s, j));
         bough_vec3 arm = bough_mat3_mul(structure, lane_load(m.centre, s, j));
-        bough_vec3 axis = vector_between(lane_load(vertex, n, a), lane_load(vertex, n, b), w);
+        bough_vec3 axis = bough_between(lane_load(vertex, n, a), lane_load(vertex, n, b), w);
         bough_vec3 ends = bough_sub(bough_rotation_matrix(q).c3, bough_rotation_matrix(p).c3);
         ends = bough_sub(ends, bough_mat3_mul(structure, lane_load(m.ends, s, j)));
         bough_vec3 bow = bough_scale(m.bow[j], ends); // of the axis from the chord, by bending
@@ -102,9 +102,9 @@ static void move_stations(const bough_rotor *rotor, const bough_rotor_motion *mo
         bough_vec3 centre = bough_add(axis, arm);
         element_axes e = axes_at(shaft, aside, bough_sub(centre, hub), section.c3);
         bough_vec3 turning =
-            vector_between(bough_mat3_mul(bough_rotation_matrix(p), lane_load(spin, n, a)),
+            bough_between(bough_mat3_mul(bough_rotation_matrix(p), lane_load(spin, n, a)),
                            bough_mat3_mul(bough_rotation_matrix(q), lane_load(spin, n, b)), w);
-        bough_vec3 moving = vector_between(lane_load(velocity, n, a), lane_load(velocity, n, b), w);
+        bough_vec3 moving = bough_between(lane_load(velocity, n, a), lane_load(velocity, n, b), w);
         lane_store(r.arm, s, j, arm);
         lane_store(r.x, s, j, e.x);
         lane_store(r.y, s, j, e.y);

@@ -48,7 +48,7 @@ static void place_station(const bough_rotor_def *def, const bough_station_def *f
     double w = bough_clamp((from->span - start) / (end - start), 0, 1);
     bough_mat3 structure = rotation_between(bough_quaternion_of_matrix(def->vertex_rotation[i]),
                                             bough_quaternion_of_matrix(def->vertex_rotation[i + 1]), w);
-    bough_vec3 axis = vector_between(def->vertex_position[i], def->vertex_position[i + 1], w);
+    bough_vec3 axis = bough_between(def->vertex_position[i], def->vertex_position[i + 1], w);
     bough_vec3 arm = bough_v3(from->centre_x - axis.x, from->centre_y - axis.y, 0);
     bough_mat3 section = bough_mat3_product(bough_mat3_transpose(structure), twisted(from->twist));
     double radius = def->hub_radius + from->span;

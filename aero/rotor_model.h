@@ -100,8 +100,4 @@ static inline bough_mat3 rotation_between(bough_quaternion p, bough_quaternion q
         unit_quaternion(wp * p.w + wq * q.w, wp * p.x + wq * q.x, wp * p.y + wq * q.y, wp * p.z + wq * q.z));
 }
 
-static inline bough_vec3 vector_between(bough_vec3 a, bough_vec3 b, double weight) {
-    return bough_v3(a.x + weight * (b.x - a.x), a.y + weight * (b.y - a.y), a.z + weight * (b.z - a.z));
-}
-
 #endif

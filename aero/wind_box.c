@@ -161,15 +161,11 @@ static bough_vec3 point_at(const bough_wind_box *box, int time, int64_t point) {
                     (v[2] - box->offset[2]) * box->scale[2]);
 }
 
-static bough_vec3 mixed(bough_vec3 a, bough_vec3 b, double w) {
-    return bough_v3(a.x + w * (b.x - a.x), a.y + w * (b.y - a.y), a.z + w * (b.z - a.z));
-}
-
 static bough_vec3 grid_at(const bough_wind_box *box, int time, place y, place z) {
     int64_t low = (int64_t)z.low * box->n_y, high = (int64_t)z.high * box->n_y;
-    bough_vec3 below = mixed(point_at(box, time, low + y.low), point_at(box, time, low + y.high), y.weight);
-    bough_vec3 above = mixed(point_at(box, time, high + y.low), point_at(box, time, high + y.high), y.weight);
-    return mixed(below, above, z.weight);
+    bough_vec3 below = bough_between(point_at(box, time, low + y.low), point_at(box, time, low + y.high), y.weight);
+    bough_vec3 above = bough_between(point_at(box, time, high + y.low), point_at(box, time, high + y.high), y.weight);
+    return bough_between(below, above, z.weight);
 }
 
 // `depth` below the grid in points; the grid's middle column goes on in the tower points.
@@ -180,16 +176,16 @@ static bough_vec3 tower_at(const bough_wind_box *box, int time, double depth) {
     place middle = place_of((box->n_y - 1) / 2., box->n_y), bottom = {0, 1, 0};
     bough_vec3 upper =
         above == 0 ? grid_at(box, time, middle, bottom) : point_at(box, time, first + above - 1);
-    return mixed(upper, point_at(box, time, first + above), held - above);
+    return bough_between(upper, point_at(box, time, first + above), held - above);
 }
 
 bough_vec3 bough_wind_box_at(const bough_wind_box *box, bough_vec3 position, double t) {
     place time = time_of(box, position.x, t);
     double height = (position.z - box->bottom) / box->dz;
     if (height < 0 && box->n_tower > 0) {
-        return mixed(tower_at(box, time.low, -height), tower_at(box, time.high, -height), time.weight);
+        return bough_between(tower_at(box, time.low, -height), tower_at(box, time.high, -height), time.weight);
     }
     place z = place_of(height, box->n_z);
     place y = place_of((position.y + box->half_width) / box->dy, box->n_y);
-    return mixed(grid_at(box, time.low, y, z), grid_at(box, time.high, y, z), time.weight);
+    return bough_between(grid_at(box, time.low, y, z), grid_at(box, time.high, y, z), time.weight);
 }

@@ -20,6 +20,9 @@ static inline void bough_v3_store(bough_vec3 v, double *out) {
     out[2] = v.z;
 }
 
+// The unit vector along axis k = 0, 1, 2.
+static inline bough_vec3 bough_unit3(int k) { return (bough_vec3){k == 0, k == 1, k == 2}; }
+
 static inline bough_vec3 bough_add(bough_vec3 a, bough_vec3 b) {
     return (bough_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -32,6 +35,10 @@ static inline bough_vec3 bough_scale(double s, bough_vec3 a) {
 // a + s b
 static inline bough_vec3 bough_axpy(double s, bough_vec3 b, bough_vec3 a) {
     return (bough_vec3){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+// Part way from a to b.
+static inline bough_vec3 bough_between(bough_vec3 a, bough_vec3 b, double share) {
+    return (bough_vec3){a.x + share * (b.x - a.x), a.y + share * (b.y - a.y), a.z + share * (b.z - a.z)};
 }
 static inline double bough_dot(bough_vec3 a, bough_vec3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 static inline bough_vec3 bough_cross(bough_vec3 a, bough_vec3 b) {

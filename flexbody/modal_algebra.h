@@ -56,8 +56,6 @@ static inline void clear(const bough_modal_piece *p, int rows, double *x) {
 
 static inline double component(bough_vec3 v, int k) { return k == 0 ? v.x : k == 1 ? v.y : v.z; }
 
-static inline bough_vec3 unit_vector3(int k) { return bough_v3(k == 0, k == 1, k == 2); }
-
 // The products of three rows with x, and their sum weighted by c.
 static inline bough_vec3 dot3(const bough_modal_piece *p, const double *rows, const double *x) {
     const double *restrict a = rows, *restrict b = rows + p->stride;

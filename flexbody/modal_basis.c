@@ -159,8 +159,7 @@ static bool add_modes(basis *b, int wanted) {
 // -- rigid motions and static answers -------------------------------------------------------------
 
 static void rigid_motion(const bough_rod_model *rod, int k, double *x) {
-    const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    bough_vec3 e = unit[k % 3];
+    bough_vec3 e = bough_unit3(k % 3);
     for (int i = 0; i < rod->n; i++) {
         bough_twist v = {e, {0, 0, 0}};
         if (k >= 3) {

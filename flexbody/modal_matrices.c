@@ -22,8 +22,6 @@ typedef struct fields {
     double *rest[3];     // what of the turning shapes no shape has (6 n × stride)
 } fields;
 
-static const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-
 // -- fields ---------------------------------------------------------------------------------------
 
 static bough_twist load(const fields *f, const double *field, int i, int k) {
@@ -84,7 +82,7 @@ static void set_rigid(const fields *f) {
     for (int i = 0; i < p->n; i++) {
         const vertex_mass *v = &f->vertex[i];
         for (int k = 0; k < p->m; k++) {
-            bough_twist x = momentum(v, unit[0], load(f, f->shape, i, k));
+            bough_twist x = momentum(v, bough_unit3(0), load(f, f->shape, i, k));
             bough_vec3 moment = bough_add(x.angular, bough_cross(v->position, x.linear));
             const double values[6] = {x.linear.x, x.linear.y, x.linear.z, moment.x, moment.y, moment.z};
             for (int c = 0; c < 6; c++) p->rigid[c * p->stride + k] += values[c];
@@ -98,10 +96,10 @@ static void set_turning(const fields *f, int a) {
     bough_modal_piece *p = f->piece;
     int s = p->stride;
     double *turn = p->turn + (size_t)a * p->m * s, *rest = f->rest[a];
-    map_field(f, turned, unit[a], f->shape, rest);
-    map_field(f, momentum, unit[a], rest, f->product);
+    map_field(f, turned, bough_unit3(a), f->shape, rest);
+    map_field(f, momentum, bough_unit3(a), rest, f->product);
     add_projection(f, f->product, 1, turn);
-    map_field(f, gyroscopic, unit[a], f->shape, f->product);
+    map_field(f, gyroscopic, bough_unit3(a), f->shape, f->product);
     add_projection(f, f->product, 1, p->gyroscopic + (size_t)a * p->m * s);
     for (int row = 0; row < 6 * p->n; row++) {
         for (int k = 0; k < p->m; k++) {
@@ -122,7 +120,7 @@ static void set_softening(const fields *f, int j) {
     for (int order = 0; order < 2; order++) {
         int a = square_of[j][order], b = square_of[j][1 - order];
         if (order == 1 && a == b) continue;
-        map_field(f, gyroscopic, unit[b], f->rest[a], f->product);
+        map_field(f, gyroscopic, bough_unit3(b), f->rest[a], f->product);
         add_projection(f, f->product, -1, field_matrix(f, j));
     }
 }
@@ -135,8 +133,8 @@ static void set_centrifugal(const fields *f, int j) {
         for (int order = 0; order < 2; order++) {
             int a = square_of[j][order], b = square_of[j][1 - order];
             if (order == 1 && a == b) continue;
-            bough_vec3 h = bough_mat3_mul(f->vertex[i].inertia, unit[b]);
-            spin = bough_add(spin, bough_cross(unit[a], h));
+            bough_vec3 h = bough_mat3_mul(f->vertex[i].inertia, bough_unit3(b));
+            spin = bough_add(spin, bough_cross(bough_unit3(a), h));
         }
         for (int k = 0; k < p->m; k++) {
             p->centrifugal[j * p->stride + k] += bough_dot(load(f, f->shape, i, k).angular, spin);
@@ -149,13 +147,13 @@ static void set_centrifugal(const fields *f, int j) {
 // The force on vertex i (from 0, of the moving ones) that belongs to field j, per unit of it.
 static bough_vec3 field_force(const fields *f, int j, int i) {
     const vertex_mass *v = &f->vertex[i];
-    if (j >= 9) return i == f->piece->n - 1 ? unit[j - 9] : bough_v3(0, 0, 0);
-    if (j >= BOUGH_MODAL_SQUARES) return bough_scale(-v->mass, unit[j - BOUGH_MODAL_SQUARES]);
+    if (j >= 9) return i == f->piece->n - 1 ? bough_unit3(j - 9) : bough_v3(0, 0, 0);
+    if (j >= BOUGH_MODAL_SQUARES) return bough_scale(-v->mass, bough_unit3(j - BOUGH_MODAL_SQUARES));
     bough_vec3 sum = {0, 0, 0};
     for (int order = 0; order < 2; order++) {
         int a = square_of[j][order], b = square_of[j][1 - order];
         if (order == 1 && a == b) continue;
-        sum = bough_add(sum, bough_cross(unit[a], bough_cross(unit[b], v->position)));
+        sum = bough_add(sum, bough_cross(bough_unit3(a), bough_cross(bough_unit3(b), v->position)));
     }
     return bough_scale(-v->mass, sum);
 }

@@ -16,7 +16,7 @@ static void combine(const bough_modal_piece *p, int count, const double *c, cons
 static void add_lever(const bough_modal_piece *p, int i, bough_vec3 f, double *lever) {
     const double *rows = p->shape + (size_t)6 * (i - 1) * p->stride;
     for (int a = 0; a < 3; a++) {
-        add3(p, 1, rows, bough_cross(f, unit_vector3(a)), lever + a * p->stride);
+        add3(p, 1, rows, bough_cross(f, bough_unit3(a)), lever + a * p->stride);
     }
 }
 
@@ -41,8 +41,8 @@ static void set_load_turns(bough_modal_point *at, const double *load, int stride
         bough_vec3 sum = {0, 0, 0};
         for (int i = 1; i <= p->n; i++) {
             bough_wrench w = vertex_load(at, load, stride, i);
-            w.force = bough_cross(w.force, unit_vector3(a));
-            w.moment = bough_cross(w.moment, unit_vector3(a));
+            w.force = bough_cross(w.force, bough_unit3(a));
+            w.moment = bough_cross(w.moment, bough_unit3(a));
             add_force(p, i, w, at->force_turn + a * p->stride);
             bough_vec3 x = bough_add(p->rod->position0[i], vertex_of(p, i, at->q).linear);
             sum = bough_add(sum, bough_add(w.moment, bough_cross(x, w.force)));

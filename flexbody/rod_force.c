@@ -322,8 +322,7 @@ static void add_drift(const bough_rod_model *m, const bough_rod_loads *loads, do
 #pragma omp simd
     for (int n = 1; n < last; n++) {
         bough_quaternion p = load_vertex(vertex, s, n).p, q = load_vertex(vertex, s, n + 1).p;
-        double w = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
-        bough_mat3 r = mid_frame(p, q, copysign(1.0, w), 1 / (1 + fabs(w)));
+        bough_mat3 r = mid_frame_between(p, q);
         strain e = {bough_scale(elapsed, load3(rate, s, n)), bough_scale(elapsed, load3(rate + 3 * s, s, n))};
         strain stress = symmetric_times(c, s, n, e);
         bough_vec3 tau = bough_scale(0.5 * length[n], bough_cross(stress.v, load3(e0, s, n)));
@@ -381,11 +380,9 @@ void bough_rod_present_end_wrench(const bough_rod_model *m, const bough_rod_scra
     int s = m->stride, end = m->n_segment;
     bough_mat3 r = bough_rotation_matrix(load_vertex(scratch->vertex, s, end).p);
     const double *f = scratch->segment + end - 1, *load = scratch->load + end;
-    bough_vec3 force = bough_sub(load3(load, s, 0), load3(f, s, 0));
     bough_vec3 moment = bough_mat3_tmul(r, load3(load + 3 * s, s, 0));
-    moment = bough_add(moment, load3(f + 6 * s, s, 0));
-    const double values[BOUGH_ROD_END_OUTPUTS] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
-    memcpy(wrench, values, sizeof values);
+    store3(wrench, 1, 0, bough_sub(load3(load, s, 0), load3(f, s, 0)));
+    store3(wrench + 3, 1, 0, bough_add(moment, load3(f + 6 * s, s, 0)));
 }
 
 static strain strain_of(const bough_rod_model *m, const bough_rod_scratch *scratch, int n) {
@@ -417,6 +414,6 @@ void bough_rod_stress(const bough_rod_model *m, const bough_rod_scratch *scratch
     bough_vec3 half = bough_scale(0.5 * m->length[n], shape.chord);
     bough_vec3 force = along_axis(shape.v, s.v);
     bough_vec3 moment = bough_sub(half_backward(shape.v, shape.t, f.ll), bough_cross(half, force));
-    const double values[6] = {s.v.x, s.v.y, s.v.z, moment.x, moment.y, moment.z};
-    memcpy(stress, values, sizeof values);
+    store3(stress, 1, 0, s.v);
+    store3(stress + 3, 1, 0, moment);
 }

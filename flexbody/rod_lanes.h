@@ -34,8 +34,6 @@ static inline bough_vec3 inertia_times(const double *restrict j, int s, int i, b
                         xz * w.x + yz * w.y + zz * w.z};
 }
 
-static inline bough_vec3 unit_vector(int j) { return (bough_vec3){j == 0, j == 1, j == 2}; }
-
 // e − e⁰ − D q of a segment, `rest` the strains without stress
 static inline strain elastic_strain(segment_geometry shape, double inverse_h, const double *restrict rest,
                                     int s, int n) {

@@ -171,8 +171,7 @@ static inline void turn_line(const bough_rod_model *m, const double *restrict ro
     for (int l = 0; l < count; l++) {
         int k = first + l;
         bough_quaternion p = section_at(v, rotation, k), q = section_at(v, rotation, k + 1);
-        double dot = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
-        bough_mat3 r = mid_frame(p, q, copysign(1.0, dot), 1 / (1 + fabs(dot)));
+        bough_mat3 r = mid_frame_between(p, q);
         for (int part = 0; part < 4; part++) {
             store3(turned + 3 * part * n, n, k, bough_mat3_tmul(r, load3(line + 3 * part * n, n, k)));
         }

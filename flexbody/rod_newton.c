@@ -34,7 +34,7 @@ static void eliminate_rotations(const bough_rod_model *m, bough_rod_tangent *k) 
         bough_vec3 bq = bough_scale(1 / e, solve_cross(a, q));
         double weight = 1 / (f + bough_dot(q, bq));
         for (int j = 0; j < 3; j++) {
-            bough_vec3 b = bough_scale(1 / e, solve_cross(a, unit_vector(j)));
+            bough_vec3 b = bough_scale(1 / e, solve_cross(a, bough_unit3(j)));
             b = bough_axpy(-weight * bough_dot(q, b), bq, b);
             kept[(KEPT_TURN + j) * s + v] = b.x;
             kept[(KEPT_TURN + 3 + j) * s + v] = b.y;
@@ -83,7 +83,7 @@ static void form_matrix(const bough_rod_model *m, bough_rod_tangent *k) {
     double g = k->gamma;
     elimination e = {.turn = k->vertex + (size_t)KEPT_TURN * m->stride, .stride = m->stride, .square = g * g};
     for (int j = 0; j < 3; j++) {
-        bough_vec3 column = solve_cross(bough_scale(g, k->omega), unit_vector(j));
+        bough_vec3 column = solve_cross(bough_scale(g, k->omega), bough_unit3(j));
         e.shift[j][0] = e.square * column.x;
         e.shift[j][1] = e.square * column.y;
         e.shift[j][2] = e.square * column.z;

@@ -20,18 +20,32 @@ static bough_vec3 turn_of(const double *p, int p_stride, const double *r, int st
 // -- variations of vertices -----------------------------------------------------------------------
 
 static vertex_variation root_variation(const bough_rod_model *m, const double *d) {
-    bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
-    return (vertex_variation){.u = vector_at(d), .w = bough_mat3_tmul(r0, vector_at(d + 3))};
+    return (vertex_variation){.u = vector_at(d), .w = bough_mat3_tmul(m->root, vector_at(d + 3))};
 }
 
-// Of the moving vertex i + 1, along the variation d of the state.
-static vertex_variation state_variation(const bough_rod_model *m, const double *state, const double *d,
-                                        int i) {
+// Of the moving vertex i + 1, whose quaternion is p, along the variation d of the state.
+static vertex_variation state_variation(const bough_rod_model *m, const double *p, int stride,
+                                        const double *d, int i) {
     int n = m->n;
     return (vertex_variation){.x = load3(d, n, i),
-                              .phi = turn_of(state + 3 * n + i, n, d + 3 * n + i, n),
+                              .phi = turn_of(p, stride, d + 3 * n + i, n),
                               .u = load3(d + (size_t)BOUGH_ROD_U * n, n, i),
                               .w = load3(d + (size_t)BOUGH_ROD_W * n, n, i)};
+}
+
+// Of the first and the last one, by the quaternions in a state.
+static vertex_variation first_variation(const bough_rod_model *m, const double *state, const double *d) {
+    return state_variation(m, state + 3 * m->n, m->n, d, 0);
+}
+
+static vertex_variation last_variation(const bough_rod_model *m, const double *state, const double *d) {
+    return state_variation(m, state + 4 * m->n - 1, m->n, d, m->n - 1);
+}
+
+// The same where k was linearised.
+static vertex_variation kept_variation(const bough_rod_model *m, const bough_rod_tangent *k, const double *d,
+                                       int i) {
+    return state_variation(m, k->vertex + (size_t)KEPT_P * m->stride + i + 1, m->stride, d, i);
 }
 
 // Of the last vertex, whose quaternion is p; its motion: u, W, x, p.
@@ -46,14 +60,12 @@ void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, con
                               const double *state_rate, const double *input_rate, bough_rod_scratch *scratch,
                               double *wrench) {
     bough_rod_gather_root(m, state, input, scratch);
-    bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
     vertex_variation l = {0}, r = {0};
     if (input_rate != NULL) l = root_variation(m, input_rate);
-    if (state_rate != NULL) r = state_variation(m, state, state_rate, 0);
+    if (state_rate != NULL) r = first_variation(m, state, state_rate);
     segment_force f = segment_tangent(m, scratch, 0, &l, &r);
-    bough_vec3 moment = bough_mat3_mul(r0, f.ll);
-    const double values[BOUGH_ROD_OUTPUTS] = {f.f.x, f.f.y, f.f.z, moment.x, moment.y, moment.z};
-    memcpy(wrench, values, sizeof values);
+    store3(wrench, 1, 0, f.f);
+    store3(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
 }
 
 // What turning the last vertex by phi changes in the loads on it: in section axes a dead moment
@@ -77,20 +89,10 @@ void bough_rod_keep_end(const bough_rod_model *m, const bough_rod_loads *loads, 
                         const bough_rod_scratch *scratch, bough_rod_tangent *k) {
     memcpy(k->end_rotation, end + 9, 4 * sizeof(double));
     for (int j = 0; j < 3; j++) {
-        segment_force load = load_variation(m, loads, scratch, unit_vector(j));
+        segment_force load = load_variation(m, loads, scratch, bough_unit3(j));
         store3(k->end_load + 3 * j, 1, 0, load.f);
         store3(k->end_load + 9 + 3 * j, 1, 0, load.lr);
     }
-}
-
-// Of the moving vertex i + 1, where k was linearised.
-static vertex_variation kept_variation(const bough_rod_model *m, const bough_rod_tangent *k, const double *d,
-                                       int i) {
-    int n = m->n, s = m->stride;
-    return (vertex_variation){.x = load3(d, n, i),
-                              .phi = turn_of(k->vertex + (size_t)KEPT_P * s + i + 1, s, d + 3 * n + i, n),
-                              .u = load3(d + (size_t)BOUGH_ROD_U * n, n, i),
-                              .w = load3(d + (size_t)BOUGH_ROD_W * n, n, i)};
 }
 
 // A segment's forces by the motion of its vertices, `position` being in lanes.
@@ -127,13 +129,12 @@ static void kept_end_tangent(const bough_rod_model *m, const bough_rod_tangent *
 
 void bough_rod_kept_wrench_tangent(const bough_rod_model *m, const bough_rod_tangent *k,
                                    const double *state_rate, const double *input_rate, double *wrench) {
-    bough_mat3 r0 = bough_rotation_matrix(m->rotation0[0]);
     vertex_variation l = {0}, r = {0};
     if (input_rate != NULL) l = root_variation(m, input_rate);
     if (state_rate != NULL) r = kept_variation(m, k, state_rate, 0);
     segment_force f = kept_force(k->variation, k->root, l, r);
     store3(wrench, 1, 0, f.f);
-    store3(wrench + 3, 1, 0, bough_mat3_mul(r0, f.ll));
+    store3(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
     if (!bough_rod_carries(m)) return;
     kept_end_tangent(m, k, state_rate, input_rate, wrench + BOUGH_ROD_OUTPUTS);
 }
@@ -143,15 +144,14 @@ void bough_rod_end_tangent(const bough_rod_model *m, const bough_rod_loads *load
     double now[BOUGH_ROD_END_OUTPUTS]; // leaves vertices and loads in scratch
     bough_rod_end_wrench(m, loads, t, at->state, at->input, scratch, now);
     vertex_variation l = {0}, r = {0};
-    if (at->state_rate != NULL) l = state_variation(m, at->state, at->state_rate, m->n - 1);
+    if (at->state_rate != NULL) l = last_variation(m, at->state, at->state_rate);
     if (at->input_rate != NULL) {
         r = end_variation(at->input + BOUGH_ROD_INPUTS + 9, at->input_rate + BOUGH_ROD_INPUTS);
     }
     segment_force f = segment_tangent(m, scratch, m->n, &l, &r);
     segment_force load = load_variation(m, loads, scratch, r.phi);
-    bough_vec3 force = bough_sub(load.f, f.f), moment = bough_add(load.lr, f.lr);
-    const double values[BOUGH_ROD_END_OUTPUTS] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
-    memcpy(wrench, values, sizeof values);
+    store3(wrench, 1, 0, bough_sub(load.f, f.f));
+    store3(wrench + 3, 1, 0, bough_add(load.lr, f.lr));
 }
 
 // -- the rate -------------------------------------------------------------------------------------
@@ -189,10 +189,9 @@ static void frame_column(const bough_rod_model *m, const double *state, int kind
 // The root's motion strains the first segment.
 static void root_columns(const bough_rod_model *m, const double *state, const bough_rod_scratch *scratch,
                          double *column) {
-    const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     for (int j = 0; j < BOUGH_ROD_INPUTS; j++, column += (size_t)BOUGH_ROD_STATES * m->n) {
         double e[6] = {0};
-        frame_column(m, state, j / 3, unit[j % 3], column);
+        frame_column(m, state, j / 3, bough_unit3(j % 3), column);
         if (j / 3 == 2) continue;
         e[j] = 1;
         vertex_variation l = root_variation(m, e), r = {0};

@@ -96,6 +96,11 @@ static inline bough_mat3 mid_frame(bough_quaternion l, bough_quaternion r, doubl
                         {s * (x * z + w * y), s * (y * z - w * x), 1 - s * (x * x + y * y)}};
 }
 
+static inline bough_mat3 mid_frame_between(bough_quaternion l, bough_quaternion r) {
+    double w = l.w * r.w + l.x * r.x + l.y * r.y + l.z * r.z;
+    return mid_frame(l, r, copysign(1.0, w), 1 / (1 + fabs(w)));
+}
+
 // y − v×(v×y)/6, and its variations with y and with v, that with v also as what n works on δv.
 static inline bough_vec3 along_axis(bough_vec3 v, bough_vec3 y) {
     return bough_axpy(-1. / 6 * bough_dot(v, y), v, bough_scale(1 + 1. / 6 * bough_dot(v, v), y));

@@ -54,7 +54,7 @@ static void mass_columns(const bough_rod_model *m, const bough_rod_tangent *k, i
     int s = m->stride;
     const double *restrict kept = k->vertex + first + 1, *restrict moment = m->moment + first;
     const double *restrict inertia = m->inertia + first, *restrict weight = m->mass + first;
-    bough_vec3 e = unit_vector(j);
+    bough_vec3 e = bough_unit3(j);
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
         bough_mat3 r = load_matrix(kept + KEPT_R * s, s, l);
@@ -72,7 +72,7 @@ static void velocity_columns(const bough_rod_model *m, const bough_rod_tangent *
     int s = m->stride;
     const double *restrict kept = k->vertex + first + 1, *restrict moment = m->moment + first;
     const double *restrict inertia = m->inertia + first, *restrict weight = m->mass + first;
-    bough_vec3 e = unit_vector(j), turn = bough_cross(k->omega, e);
+    bough_vec3 e = bough_unit3(j), turn = bough_cross(k->omega, e);
 #pragma omp simd
     for (int l = 0; l < LANES; l++) {
         bough_mat3 r = load_matrix(kept + KEPT_R * s, s, l);
@@ -139,7 +139,7 @@ static void rotation_columns(const bough_rod_model *m, const double *restrict ra
         bough_vec3 moment = bough_mat3_tmul(r, load3(load + 3 * s, s, v));
         bough_vec3 shift = bough_add(bough_cross(wdot, offset), bough_cross(w, bough_cross(w, offset)));
         for (int j = 0; j < 3; j++) {
-            bough_vec3 e = unit_vector(j);
+            bough_vec3 e = bough_unit3(j);
             bough_vec3 force = bough_mat3_mul(r, bough_cross(shift, e));
             bough_vec3 turned = bough_sub(bough_cross(moment, e), bough_cross(offset, bough_cross(c, e)));
             store3(out + 6 * j * s, s, v, force);
@@ -158,8 +158,8 @@ static void add_followers(const bough_rod_model *m, const bough_rod_scratch *scr
         bough_vec3 force = load3(scratch->follower, s, v);
         bough_vec3 moment = load3(scratch->follower + 3 * s, s, v);
         for (int j = 0; j < 3; j++) {
-            bough_vec3 pull = bough_mat3_mul(r, bough_cross(unit_vector(j), force));
-            bough_vec3 turn = bough_cross(unit_vector(j), moment);
+            bough_vec3 pull = bough_mat3_mul(r, bough_cross(bough_unit3(j), force));
+            bough_vec3 turn = bough_cross(bough_unit3(j), moment);
             bough_vec3 old_pull = load3(out + 6 * j * s, s, v);
             bough_vec3 old_turn = load3(out + (6 * j + 3) * s, s, v);
             store3(out + 6 * j * s, s, v, bough_add(old_pull, pull));

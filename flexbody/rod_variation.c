@@ -98,7 +98,7 @@ void bough_rod_base(const bough_rod_model *m, const bough_rod_scratch *scratch, 
 static void unit_variation(int k, bool velocity, vertex_variation *l, vertex_variation *r) {
     *l = *r = (vertex_variation){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     bough_vec3 *const part[6] = {&r->x, &l->phi, &r->phi, &r->u, &l->w, &r->w};
-    *part[(velocity ? 3 : 0) + k / 3] = unit_vector(k % 3);
+    *part[(velocity ? 3 : 0) + k / 3] = bough_unit3(k % 3);
 }
 
 static inline void store_force(double *restrict column, int l, segment_force f) {

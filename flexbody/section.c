@@ -27,15 +27,19 @@ static void unpack(const double *upper, matrix6 full) {
     }
 }
 
-// sum += weight·aᵀ b a for symmetric b, upper triangle only
-static void add_congruent(double weight, matrix6 a, matrix6 b, double *sum) {
-    matrix6 ba;
+// sum += weight·aᵀ b
+static void add_product(double weight, matrix6 a, matrix6 b, matrix6 sum) {
     for (int i = 0; i < 6; i++) {
         for (int j = 0; j < 6; j++) {
-            ba[i][j] = 0;
-            for (int k = 0; k < 6; k++) ba[i][j] += b[i][k] * a[k][j];
+            for (int k = 0; k < 6; k++) sum[i][j] += weight * a[k][i] * b[k][j];
         }
     }
+}
+
+// sum += weight·aᵀ b a for symmetric b, upper triangle only
+static void add_congruent(double weight, matrix6 a, matrix6 b, double *sum) {
+    matrix6 ba = {{0}};
+    add_product(1, b, a, ba);
     for (int i = 0; i < 6; i++) {
         for (int j = i; j < 6; j++) {
             double entry = 0;
@@ -151,15 +155,6 @@ static void share_left(segment_sum *c) {
     c->left.moment.z += 0.5 * left.curvature / c->length;
 }
 
-// sum += weight·aᵀ b
-static void add_product(double weight, matrix6 a, matrix6 b, matrix6 sum) {
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) {
-            for (int k = 0; k < 6; k++) sum[i][j] += weight * a[k][i] * b[k][j];
-        }
-    }
-}
-
 // Σ aᵢⱼ bᵢⱼ
 static double trace(matrix6 a, matrix6 b) {
     double sum = 0;
@@ -171,7 +166,7 @@ static void add_compliance(void *context, double s, double weight) {
     segment_sum *c = context;
     bough_section_station x = bough_section_at(c->axis, s);
     double compliance[21], damping[21], turn = -(x.twist - c->twist);
-    matrix6 t, f, d, ft, line;
+    matrix6 t, f, d, line, ft = {{0}};
     if (!bough_symmetric6_inverse(x.stiffness, compliance)) {
         c->definite = false;
         return;
@@ -185,12 +180,7 @@ static void add_compliance(void *context, double s, double weight) {
     unpack(damping, d);
     carry(s - c->middle, t);
     add_congruent(weight, t, f, c->compliance);
-    for (int i = 0; i < 6; i++) {
-        for (int j = 0; j < 6; j++) {
-            ft[i][j] = 0;
-            for (int k = 0; k < 6; k++) ft[i][j] += f[i][k] * t[k][j];
-        }
-    }
+    add_product(1, f, t, ft);
     add_congruent(weight, ft, d, c->loss);
     for (int slope = 0; slope < 2; slope++) {
         line_stress(s - c->middle, c->length, slope == 1, line);
@@ -230,14 +220,13 @@ static bough_section_share best_gain(segment_sum *c) {
 //     κ = (b − a)/h,  U = H κ,  γ = Δx/h + y×(a + b)/2,  y = γ + (h/2) y×(κ×t),
 // and V by y and by δv of h κ (rod_segment.h).
 static void strain_map(segment_geometry shape, double h, matrix6 q) {
-    const bough_vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     memset(q, 0, sizeof(matrix6));
     for (int j = 0; j < 3; j++) {
-        bough_vec3 own = along_axis(shape.v, unit[j]);
-        bough_vec3 chord = bough_cross(shape.chord, bough_cross(unit[j], shape.t));
-        bough_vec3 turn = half_turn(shape.v, shape.t, unit[j]);
+        bough_vec3 own = along_axis(shape.v, bough_unit3(j));
+        bough_vec3 chord = bough_cross(shape.chord, bough_cross(bough_unit3(j), shape.t));
+        bough_vec3 turn = half_turn(shape.v, shape.t, bough_unit3(j));
         bough_vec3 shear = along_axis_variation(shape.v, turn, shape.chord, bough_scale(0.5, chord));
-        bough_vec3 bend = rotation_tangent(shape.c, shape.g, shape.v, unit[j]);
+        bough_vec3 bend = rotation_tangent(shape.c, shape.g, shape.v, bough_unit3(j));
         const double column[6] = {h * shear.x, h * shear.y, h * shear.z, bend.x, bend.y, bend.z};
         q[0][j] = own.x;
         q[1][j] = own.y;

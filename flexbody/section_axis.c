@@ -46,12 +46,7 @@ static int locate(const bough_section_axis *a, double s, double *share) {
 
 static double mix(double share, double low, double high) { return low + share * (high - low); }
 
-static bough_vec3 mix3(double share, bough_vec3 low, bough_vec3 high) {
-    return bough_axpy(share, bough_sub(high, low), low);
-}
-
-// Inertia about the mass centre (Ixx Iyy Ixy Izz) of a section whose inertia is about its axis.
-static void central_inertia(const bough_section_station *x, double central[4]) {
+void bough_section_central(const bough_section_station *x, double central[4]) {
     double cx = x->centre[0], cy = x->centre[1];
     central[0] = x->inertia[0] - x->mass * cy * cy;
     central[1] = x->inertia[1] - x->mass * cx * cx;
@@ -69,10 +64,10 @@ static bool is_positive(const double central[4]) {
 static void mend_inertia(const bough_section_station *low, const bough_section_station *high, double share,
                          bough_section_station *x) {
     double central[4], below[4], above[4];
-    central_inertia(x, central);
+    bough_section_central(x, central);
     if (is_positive(central)) return;
-    central_inertia(low, below);
-    central_inertia(high, above);
+    bough_section_central(low, below);
+    bough_section_central(high, above);
     for (int i = 0; i < 4; i++) x->inertia[i] += mix(share, below[i], above[i]) - central[i];
 }
 
@@ -81,7 +76,7 @@ bough_section_station bough_section_at(const bough_section_axis *a, double s) {
     int k = locate(a, s, &f);
     const bough_section_station *l = &a->station[k], *h = l + 1;
     bough_section_station x;
-    x.position = mix3(f, l->position, h->position);
+    x.position = bough_between(l->position, h->position, f);
     x.twist = mix(f, l->twist, h->twist);
     x.mass = mix(f, l->mass, h->mass);
     for (int i = 0; i < 21; i++) x.stiffness[i] = mix(f, l->stiffness[i], h->stiffness[i]);

@@ -21,6 +21,9 @@ double bough_section_length(const bough_section_axis *a);
 bough_section_station bough_section_at(const bough_section_axis *a, double s);
 bough_quaternion bough_section_rotation(const bough_section_axis *a, double s);
 
+// Its inertia about the mass centre: central (Ixx Iyy Ixy Izz) [kg m].
+void bough_section_central(const bough_section_station *x, double central[4]);
+
 // Calls visit(context, s, weight) at the points of a quadrature from one arc length to another: exact
 // for polynomials of degree 15 between stations, and for compliances to 1e-9.
 typedef void (*bough_section_visitor)(void *context, double s, double weight);

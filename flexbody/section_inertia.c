@@ -80,9 +80,8 @@ static element element_of(const lumping *c, const bough_section_station *x, doub
     double cx = x->centre[0], cy = x->centre[1];
     e.offset = bough_mat3_mul(axes, bough_sub(x->position, from));
     e.centre = bough_mat3_mul(e.turn, bough_v3(cx, cy, 0));
-    const double central[4] = {x->inertia[0] - x->mass * cy * cy, x->inertia[1] - x->mass * cx * cx,
-                               x->inertia[2] + x->mass * cx * cy,
-                               x->inertia[3] - x->mass * (cx * cx + cy * cy)};
+    double central[4];
+    bough_section_central(x, central);
     for (int i = 0; i < 4; i++) e.inertia[i] = weight * central[i];
     return e;
 }
@@ -148,9 +147,7 @@ static void add_end_terms(lumping *c) {
 static void add_gain(lumping *c, bough_section_share gain) {
     const bough_rod_def *def = c->def;
     int k = c->segment;
-    bough_quaternion p = def->rotation[k], q = def->rotation[k + 1];
-    double dot = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z;
-    bough_mat3 middle = mid_frame(p, q, copysign(1.0, dot), 1 / (1 + fabs(dot)));
+    bough_mat3 middle = mid_frame_between(def->rotation[k], def->rotation[k + 1]);
     bough_vec3 chord = bough_sub(def->position[k + 1], def->position[k]);
     bough_vec3 left = bough_mat3_mul(middle, gain.moment);
     const bough_vec3 moment[2] = {left, bough_axpy(gain.mass, chord, bough_scale(-1, left))};
