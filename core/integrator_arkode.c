@@ -14,8 +14,12 @@ static int linear_system(sunrealtype t, N_Vector y, N_Vector fy, SUNMatrix m, SU
     return bough_newton_handle_system(user, t, y, jok, jcur, gamma);
 }
 
-static int restart(void *memory, double t, N_Vector y) {
-    return ARKStepReInit(memory, NULL, bough_newton_handle_rate, t, y);
+static int restart(bough_newton_run *run, double t) {
+    return ARKStepReInit(run->memory, NULL, bough_newton_handle_rate, t, run->newton.y);
+}
+
+static int step(bough_newton_run *run, double t1, double *reached) {
+    return ARKStepEvolve(run->memory, t1, run->newton.y, reached, ARK_ONE_STEP);
 }
 
 static void count(void *memory, bough_statistics *sum) {
@@ -36,7 +40,7 @@ static const bough_newton_library library = {
     .title = "ARKODE ESDIRK",
     .restart = restart,
     .stop_at = ARKStepSetStopTime,
-    .evolve = ARKStepEvolve,
+    .step = step,
     .current_time = ARKStepGetCurrentTime,
     .count = count,
 };

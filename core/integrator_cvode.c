@@ -24,12 +24,18 @@ static void count(void *memory, bough_statistics *sum) {
     sum->iterations += iterations;
 }
 
+static int restart(bough_newton_run *run, double t) { return CVodeReInit(run->memory, t, run->newton.y); }
+
+static int step(bough_newton_run *run, double t1, double *reached) {
+    return CVode(run->memory, t1, run->newton.y, reached, CV_ONE_STEP);
+}
+
 static const bough_newton_library library = {
     .name = "CVODE",
     .title = "CVODE BDF",
-    .restart = CVodeReInit,
+    .restart = restart,
     .stop_at = CVodeSetStopTime,
-    .evolve = CVode,
+    .step = step,
     .current_time = CVodeGetCurrentTime,
     .local_error = CVodeGetEstLocalErrors,
     .count = count,

@@ -129,42 +129,50 @@ int bough_newton_handle_system(bough_newton_handle *handle, double t, N_Vector y
 
 // -- integrators that take one step a call --------------------------------------------------------
 
-enum { MOST_STEPS = 20000 }; // per macro step
+enum { MOST_STEPS = 20000 };
 
 bough_newton_run *bough_newton_run_create(bough_arena *arena, const bough_ode *ode, double rtol,
                                           const bough_newton_library *library, void (*destroy)(void *run)) {
     bough_newton_run *run = bough_arena_take(arena, sizeof *run);
     bough_arena_on_destroy(arena, destroy, run);
     run->library = library;
+    run->most_steps = MOST_STEPS;
     run->own_error = bough_arena_doubles(arena, (size_t)ode->n);
     if (!bough_newton_handle_create(&run->newton, ode, rtol)) bough_arena_leave(arena);
-    run->step_error = bough_vector_create(ode->n, run->newton.context);
-    if (run->step_error == NULL) bough_arena_leave(arena);
+    run->beside = bough_vector_create(ode->n, run->newton.context);
+    if (run->beside == NULL) bough_arena_leave(arena);
     return run;
 }
 
 void bough_newton_run_destroy(bough_newton_run *run) {
-    if (run->step_error != NULL) N_VDestroy(run->step_error);
+    if (run->beside != NULL) N_VDestroy(run->beside);
     bough_newton_handle_destroy(&run->newton);
 }
 
 static bough_status start(bough_newton_run *run, double t) {
     const bough_newton_handle *newton = &run->newton;
     if (run->started) run->library->count(run->memory, &run->past); // counters restart from zero
-    if (run->library->restart(run->memory, t, newton->y) != CV_SUCCESS) {
+    run->started = run->library->restart(run, t) == CV_SUCCESS;
+    if (!run->started) {
         return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot start: %s", newton->ode.name, t,
                           run->library->name, newton->text);
     }
-    if (run->started) run->past.restarts++;
-    run->started = true;
+    if (run->counts_start) run->past.restarts++;
+    run->counts_start = true;
     return bough_ok();
 }
 
-static const char *reason(const bough_newton_handle *newton, int flag) {
+static const char *reason(bough_newton_run *run, int flag) {
+    bough_newton_handle *newton = &run->newton;
     // ever smaller steps towards a state without forces end in several ways
     if (newton->refused) flag = CV_RHSFUNC_FAIL;
     switch (flag) {
-    case CV_TOO_MUCH_WORK: return "it took 20000 steps in one macro step";
+    case CV_TOO_MUCH_WORK:
+        snprintf(newton->text, sizeof newton->text,
+                 "%d steps do not reach the end of the macro step: it follows vibrations that fast, which"
+                 " damping of rods or a larger rtol would end",
+                 run->most_steps);
+        return newton->text;
     case CV_TOO_MUCH_ACC: return "the tolerance is below rounding error";
     case CV_ERR_FAILURE: return "the error test failed down to the smallest step";
     case CV_CONV_FAILURE: return "Newton's method did not converge down to the smallest step";
@@ -186,11 +194,11 @@ static int cross(bough_newton_run *run, double t1, double *reached) {
     const bough_newton_library *library = run->library;
     int flag = CV_SUCCESS;
     for (int k = 0; flag >= 0 && *reached < t1; k++) {
-        if (k == MOST_STEPS) return CV_TOO_MUCH_WORK;
-        flag = library->evolve(run->memory, t1, run->newton.y, reached, CV_ONE_STEP);
+        if (k == run->most_steps) return CV_TOO_MUCH_WORK;
+        flag = library->step(run, t1, reached);
         if (flag < 0 || library->local_error == NULL) continue;
-        if (library->local_error(run->memory, run->step_error) != 0) break;
-        const double *error = bough_vector_data(run->step_error);
+        if (library->local_error(run->memory, run->beside) != 0) break;
+        const double *error = bough_vector_data(run->beside);
         for (int i = 0; i < run->newton.ode.n; i++) run->own_error[i] += error[i];
     }
     return flag;
@@ -208,12 +216,15 @@ bough_status bough_newton_run_advance(void *self, double *t, double pause, doubl
         if (!bough_is_ok(&status)) return status;
     }
     newton->refused = false;
+    newton->text[0] = 0;
     run->library->stop_at(run->memory, t1);
     int flag = cross(run, t1, &reached);
     if (flag < 0) {
-        run->library->current_time(run->memory, &reached);
-        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot go on: %s", newton->ode.name, reached,
-                          run->library->title, reason(newton, flag));
+        run->library->current_time(run->memory, t);
+        run->library->count(run->memory, &run->past);
+        run->started = false;
+        return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot go on: %s", newton->ode.name, *t,
+                          run->library->title, reason(run, flag));
     }
     *t = t1;
     memcpy(y, own, (size_t)newton->ode.n * sizeof *own);

@@ -1,6 +1,6 @@
 // What SUNDIALS wants of a matrix and a linear solver, for a system that factors and solves its own
-// Newton matrix I − γ ∂f/∂y: handles only, for IDA, CVODE and ARKODE. The steps of the latter two, which
-// are asked alike.
+// Newton matrix I − γ ∂f/∂y: handles only, for IDA, CVODE and ARKODE, and their steps, which are asked
+// for alike.
 #ifndef BOUGH_CORE_NEWTON_HANDLE_H
 #define BOUGH_CORE_NEWTON_HANDLE_H
 
@@ -39,26 +39,30 @@ int bough_newton_handle_system(bough_newton_handle *handle, double t, N_Vector y
 
 // -- integrators that take one step a call --------------------------------------------------------
 
-// CVODE and ARKODE, whose flags are the same numbers.
+typedef struct bough_newton_run bough_newton_run;
+
+// CVODE, ARKODE and IDA, whose flags are the same numbers.
 typedef struct bough_newton_library {
     const char *name, *title; // in messages
-    int (*restart)(void *memory, double t, N_Vector y);
+    int (*restart)(bough_newton_run *run, double t);
     int (*stop_at)(void *memory, double t);
-    int (*evolve)(void *memory, double t1, N_Vector y, double *reached, int task);
+    int (*step)(bough_newton_run *run, double t1, double *reached); // one, to t1 at most
     int (*current_time)(void *memory, double *t);
     int (*local_error)(void *memory, N_Vector error);   // of the last step; NULL: not told
     void (*count)(void *memory, bough_statistics *sum); // since the last start, added
 } bough_newton_library;
 
-typedef struct bough_newton_run {
+struct bough_newton_run {
     bough_newton_handle newton;
     const bough_newton_library *library;
     void *memory;
+    int most_steps; // in a macro step
     bool started;
+    bool counts_start;     // the next start is counted
     double *own_error;     // (n)
-    N_Vector step_error;   // (n)
+    N_Vector beside;       // (n) errors of the last step; of IDA ẏ
     bough_statistics past; // of the integrations before the last start
-} bough_newton_run;
+};
 
 // A run without the library's memory, which the caller creates and destroys.
 bough_newton_run *bough_newton_run_create(bough_arena *arena, const bough_ode *ode, double rtol,
