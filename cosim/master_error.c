@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double second_rtol = 1e-5; // of the second solution, at most
-static const double finer = 64;         // times the run's, where both are of the Rosenbrock method
+static const double second_rtol = 1e-5; // of the second solution beside a coupling
+static const double finer = 64;         // times the tolerance of a run as one system, or that above
 static const double tight = 1e-7; // tolerance of other monolithic methods from which on it is a reference
 
 // Above so many states a second solution costs what people notice. On a heavy interface, under sub-solvers
@@ -28,19 +28,17 @@ static double longest_step(const bough_master *m) {
     return step > 0 ? fmin(step, m->macro_step) : m->macro_step;
 }
 
-// Beside one system under the Rosenbrock method, its own kind with other steps; beside another method,
-// or a coupling, one that is far finer.
+// Beside one system the same method, finer: another one might lose more than the run. What methods of higher
+// order lose at a loose tolerance does not follow it.
 static bough_second_solution_def choose(const bough_master *m) {
     const bough_integrator_options *own = &m->coupling->options.integrator;
-    double most = m->macro_step, step = longest_step(m);
     if (!m->coupling->scheme->one_system) {
-        return (bough_second_solution_def){BOUGH_AUTOMATIC, second_rtol, most, {0}};
+        return (bough_second_solution_def){BOUGH_AUTOMATIC, second_rtol, m->macro_step, {0}};
     }
-    if (!has_order_three(own)) {
-        double rtol = controls_error(own) ? fmin(second_rtol, own->rtol) : second_rtol;
-        return (bough_second_solution_def){BOUGH_AUTOMATIC, rtol, most, {0}};
-    }
-    return (bough_second_solution_def){BOUGH_AUTOMATIC, own->rtol / finer, step / 2, {0}};
+    double step = longest_step(m) / 2, bounded = fmin(own->rtol, second_rtol);
+    if (has_order_three(own)) return (bough_second_solution_def){BOUGH_AUTOMATIC, own->rtol / finer, step, {0}};
+    if (controls_error(own)) return (bough_second_solution_def){own->kind, bounded / finer, step, {0}};
+    return (bough_second_solution_def){BOUGH_AUTOMATIC, second_rtol / finer, step, {0}};
 }
 
 static bool members_tell(const bough_assembly *a) {

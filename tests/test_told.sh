@@ -51,6 +51,8 @@ bodies:
            damping: [0, 0, 0, 0, 0, 0], mass: [13.59, 0, 0, 0.000453, 0.000453, 0]}}
 END
 run 0 '^error: 0\.00[5-9][0-9]* of the range of hubVel' lost.yaml
+run 0 '^error: 0\.00[5-9][0-9]* of the range of hubVel' lost.yaml --set "$coupled" \
+    --set 'simulation.master={solver: radau5, rtol: 1e-4}' # 0.03 % with a second solution at 1e-5
 
 # Generalised-alpha is no reference, however small its rtol, which is that of Newton's method: shorter steps help.
 alpha='generalized-alpha, rtol: 1e-8'
