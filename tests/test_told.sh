@@ -2,7 +2,7 @@
 # What a run tells of its error decides: test_told.sh PROGRAM SOURCE_FOLDER. Scenes whose coupling fails
 # in ways that interface defects do not show, made small.
 set -u
-bough=$1
+bough=$1 source=$2
 . "$(dirname "$0")/scratch.sh"
 
 # run CODE PATTERN SCENE [ARGUMENT]...: a line of what the run says matches.
@@ -84,6 +84,12 @@ run 0 '^error: ' carrying.yaml
 
 # Linearised members tell a hundredth of errors like this one; where they are not measured, the second solution serves.
 run 0 '^error: .* by second solution' carrying.yaml --set simulation.error_estimate=linearised
+land() { # rtol, source of the estimate
+    run 0 "^error: .* by $2" "$source/apps/turbine/land.yaml" --set 'simulation.duration=0.1 s' --threads 1 \
+        --set "simulation.master.rtol=$1" --set simulation.error_bound=0
+}
+land 3e-4 'linearised members'
+land 3e-3 'second solution'
 
 # A step whose repetitions end before they agree goes on, because the run tells what it errs by; else it stops.
 noisy='simulation.coupling={scheme: iterated, tolerance: 1e-12, iterations: 5}'
