@@ -10,14 +10,14 @@ static const char turbine[] = "apps/turbine/land.yaml";
 
 #define FEW "simulation.threads=1", "bodies[0].rod.segments=10", "bodies[4].rod.segments=12",     \
             "bodies[5].rod.segments=12", "bodies[6].rod.segments=12"
-#define DRAG "aero.ramp=[0 s, 0 s]", "aero.tower.body=tower", "aero.tower.drag=[0.8]"
+#define DRAG "aero.ramp=[0 s, 0 s]", "aero.tower.body=tower", "aero.tower.def.drag=[0.8]"
 
 // ½ρ c V² ∫D dz of the scene's tower, at 20 m/s [N].
 static double whole_tower(const bough_scene *scene) {
     const bough_scene_tower *t = &scene->aero.tower;
     double area = 0;
-    for (int i = 1; i < t->n_height; i++)
-        area += (t->diameter[i] + t->diameter[i - 1]) / 2 * (t->height[i] - t->height[i - 1]);
+    for (int i = 1; i < t->def.n; i++)
+        area += (t->def.diameter[i] + t->def.diameter[i - 1]) / 2 * (t->def.height[i] - t->def.height[i - 1]);
     return 0.5 * 1.225 * 0.8 * 400 * area;
 }
 

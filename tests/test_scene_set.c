@@ -18,7 +18,7 @@ static void values_can_be_replaced_and_added(void **state) {
     assert_int_equal(f.scene->simulation.coupling.options.order, 2);
     check_near(f.scene->body[3].pitch, 5 * degree, 1e-15, 0);
     check_near(f.scene->body[4].pitch, 6.5 * degree, 1e-15, 0);
-    check_near(f.scene->aero.wind.speed, 9, 0, 0);
+    check_near(f.scene->aero.wind.def.speed, 9, 0, 0);
     stop(&f);
 }
 

@@ -78,29 +78,29 @@ static void print_wind(const bough_simulation *s, const bough_rotor_place *r, FI
         [BOUGH_SCENE_WIND_BTS] = "box file",
         [BOUGH_SCENE_WIND_IEC] = "IEC 61400-1",
     };
-    const bough_scene_wind *def = &s->scene->aero.wind;
+    const bough_scene_wind *given = &s->scene->aero.wind;
     const bough_wind *wind = bough_rotor_wind(bough_aero_link_rotor(s->aero));
-    const bough_scene_wind_table *table = &def->table;
-    bool from_file = def->kind == BOUGH_SCENE_WIND_WND || def->kind == BOUGH_SCENE_WIND_BTS;
-    fprintf(stream, "wind: %s", kinds[def->kind]);
-    if (from_file) fprintf(stream, " %s", def->file);
+    const bough_scene_wind_table *table = &given->table;
+    bool from_file = given->kind == BOUGH_SCENE_WIND_WND || given->kind == BOUGH_SCENE_WIND_BTS;
+    fprintf(stream, "wind: %s", kinds[given->kind]);
+    if (from_file) fprintf(stream, " %s", given->def.file);
     if (table->node) {
         fprintf(stream, ", %d speeds from %.6g s to %.6g s", table->n_time, table->time[0],
                 table->time[table->n_time - 1]);
     } else if (!from_file) {
-        fprintf(stream, ", %.6g m/s", def->speed);
+        fprintf(stream, ", %.6g m/s", given->def.speed);
     }
     if (wind->box) print_box(s, wind->box, r, stream);
     if (wind->hub) print_hub_file(s, wind->hub, stream);
-    fprintf(stream, ", to %.6g deg from x, %.6g m/s upwards", def->direction / degree,
-            def->vertical);
+    fprintf(stream, ", to %.6g deg from x, %.6g m/s upwards", given->def.direction / degree,
+            given->def.vertical);
     bough_vec3 hub = bough_aero_link_hub_wind(s->aero, 0);
     fprintf(stream, "; at the hub at 0 s [%.6g, %.6g, %.6g] m/s\n", hub.x, hub.y, hub.z);
 }
 
 static const char *tower_words(const bough_scene_tower *tower) {
     if (!tower->node) return "off";
-    return tower->influence == BOUGH_TOWER_BAK ? "on (Bak)" : "on";
+    return tower->def.influence == BOUGH_TOWER_BAK ? "on (Bak)" : "on";
 }
 
 static void print_aero(const bough_simulation *s, const bough_rotor_place *r, FILE *stream) {
@@ -116,7 +116,7 @@ static void print_aero(const bough_simulation *s, const bough_rotor_place *r, FI
             s->scene->turbine.n_blade, aero->blade.n_station, aero->polars.n_polar, aero->rate,
             every, every == 1 ? "" : "s", aero->hold == BOUGH_SCENE_LINEAR ? "linear" : "constant",
             tower_words(&aero->tower),
-            aero->tower.shadow == BOUGH_TOWER_SHADOW_POWLES ? ", Powles shadow" : "",
+            aero->tower.def.shadow == BOUGH_TOWER_SHADOW_POWLES ? ", Powles shadow" : "",
             aero->induction.inflow.kind == BOUGH_INFLOW_OYE ? ", dynamic inflow" : "",
             aero->dynamic_stall != BOUGH_STALL_NONE ? ", dynamic stall" : "");
     print_wind(s, r, stream);

@@ -61,7 +61,7 @@ static void list_files(export *x) {
     }
     if (scene->aero.blade.node) add_path(x, scene->aero.blade.node->file);
     if (scene->aero.polars.node) add_path(x, scene->aero.polars.node->file);
-    if (scene->aero.wind.file) add_path(x, scene->aero.wind.file);
+    if (scene->aero.wind.def.file) add_path(x, scene->aero.wind.def.file);
     if (scene->control.kind == BOUGH_SCENE_BLADED && scene->control.node) {
         add_path(x, scene->control.library);
         if (scene->control.input[0]) add_path(x, scene->control.input);

@@ -31,7 +31,7 @@ void bough_mix_scene(uint64_t *hash, const bough_scene *scene) {
         mix_node_file(hash, scene->body[i].rod.structure.node);
     mix_node_file(hash, scene->aero.blade.node);
     mix_node_file(hash, scene->aero.polars.node);
-    if (scene->aero.wind.file) bough_mix_file(hash, scene->aero.wind.file);
+    if (scene->aero.wind.def.file) bough_mix_file(hash, scene->aero.wind.def.file);
 }
 
 void bough_mix_program(uint64_t *hash) { bough_mix_file(hash, "/proc/self/exe"); }

@@ -252,8 +252,7 @@ typedef struct bough_scene_bushing {
     const char *body_name[2];
     int body[2];     // indices, or BOUGH_GROUND
     double point[3]; // in the first one's frame [m]
-    double stiffness[3], damping[3];                       // [N/m], [N s/m]
-    double rotational_stiffness[3], rotational_damping[3]; // [N m/rad], [N m s/rad]
+    bough_bushing_def def; // but for the markers
 } bough_scene_bushing;
 
 // A point of a rigid body or the ground that is recorded.
@@ -280,7 +279,7 @@ typedef struct bough_scene_spring {
     const char *body_name[2];
     int body[2];                       // indices, or BOUGH_GROUND
     double point[2][3];                // in the body's frame [m]
-    double stiffness, damping, length; // [N/m], [N s/m], without force [m]
+    bough_spring_def def;              // but for the markers
 } bough_scene_spring;
 
 typedef struct bough_scene_placement {
@@ -310,15 +309,8 @@ typedef struct bough_scene_turbine {
 
 typedef struct bough_scene_aero_station {
     const bough_node *node;
-    double span;  // along z from the root [m]
-    double ac[2]; // aerodynamic centre x, y in blade-root axes, from the pitch axis [m]
-    double twist; // [rad], as in bough_scene_station
-    double chord; // [m]
-    const char *polar_name;
-    int polar; // index
-    const char *second_name; // NULL: the polar alone
-    int second;
-    double share; // of the second
+    bough_station_def def;
+    const char *polar_name, *second_name; // NULL second: the polar alone
 } bough_scene_aero_station;
 
 typedef struct bough_scene_aero_blade {
@@ -372,20 +364,11 @@ typedef struct bough_scene_wind_table {
 typedef struct bough_scene_wind {
     const bough_node *node;
     int kind;                     // bough_scene_wind_kind
-    double speed;                 // horizontal, at the reference height [m/s]
-    double exponent;              // of the power law [-]
-    double roughness;             // of the logarithmic law [m]
-    double reference_height;      // [m]
-    double direction;             // where it blows to, from ground x about z [rad]
-    double vertical;              // upwards [m/s]
     bough_scene_wind_table table; // in place of the speed
     const char *input;            // in place of the speed; NULL: none
-    const char *file;             // of kinds wnd and bts; once checked its path
-    double reference_length;      // of the linear shears of a wnd file [m]
-    double upflow;                // of the whole wind [rad]
-    double veer;                  // clockwise, over 100 m of height [rad]
-    // Of kind iec; speed, exponent and reference height are those above. 0: chosen ("auto").
-    bough_wind_iec_def iec;
+    // But for the kind and the table. The veer is over 100 m of height [rad]; once checked `file` is its path; of
+    // kind iec 0 is chosen ("auto"), and speed, exponent and reference height are those of the def.
+    bough_wind_def def;
 } bough_scene_wind;
 
 typedef struct bough_scene_induction {
@@ -399,13 +382,8 @@ typedef struct bough_scene_induction {
 // Vertical along ground z from the origin.
 typedef struct bough_scene_tower {
     const bough_node *node;   // NULL: no tower influence
-    int influence;            // bough_tower_influence
-    int shadow;               // bough_tower_shadow
-    int n_height, n_diameter; // equal
-    int n_drag;               // 1 or n_height
-    double *height;           // (n_height) strictly increasing [m]
-    double *diameter;         // (n_height) [m]
-    double *drag;             // (n_drag) coefficient [-]
+    bough_tower_def def;      // its drag (def.n) once checked
+    int n_diameter, n_drag;   // def.n, 1 or def.n
     const char *body_name;    // NULL: no drag on the tower
     int body;                 // index of a body with a rod
 } bough_scene_tower;

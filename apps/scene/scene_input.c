@@ -110,7 +110,7 @@ static void add_wind(bough_schema_reader *r, bough_scene *s) {
     if (s->aero.node == NULL || wind->input == NULL) return;
     bough_scene_input *input = add(s, wind->node, wind->input, BOUGH_INPUT_WIND);
     input->dimension = BOUGH_SPEED;
-    input->initial = wind->speed;
+    input->initial = wind->def.speed;
     if (wind->kind <= BOUGH_SCENE_WIND_LOG && wind->table.node == NULL) return;
     bough_link_at(r, "aero.wind");
     bough_schema_error(r, bough_node_find(wind->node, "input"), "input",

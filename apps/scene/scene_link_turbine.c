@@ -75,13 +75,14 @@ static int find_polar(bough_schema_reader *r, bough_scene *s, const char *const 
 
 static void link_polar(bough_schema_reader *r, bough_scene *s, const char *const *names, int i) {
     bough_scene_aero_station *station = &s->aero.blade.station[i];
-    station->polar = station->second = -1;
+    bough_station_def *def = &station->def;
+    def->polar = def->second = -1;
     if (station->polar_name != NULL) {
-        station->polar = find_polar(r, s, names, i, "polar", station->polar_name);
+        def->polar = find_polar(r, s, names, i, "polar", station->polar_name);
     }
     if (station->second_name != NULL) {
-        station->second = find_polar(r, s, names, i, "blend", station->second_name);
-    } else if (station->share > 0) {
+        def->second = find_polar(r, s, names, i, "blend", station->second_name);
+    } else if (def->share > 0) {
         bough_link_at(r, "stations[%d]", i);
         bough_schema_error(r, station->node, "share", "needs 'blend', which names a second polar");
     }
@@ -102,7 +103,7 @@ static void link_polars(bough_schema_reader *r, bough_scene *s) {
 static void check_blade_lengths(bough_schema_reader *r, const bough_scene *s) {
     const bough_scene_aero_blade *blade = &s->aero.blade;
     if (blade->n_station < 2) return;
-    double span = blade->station[blade->n_station - 1].span;
+    double span = blade->station[blade->n_station - 1].def.span;
     for (int k = 0; k < s->turbine.n_blade; k++) {
         if (s->turbine.blade[k] < 0) continue;
         const bough_scene_body *b = &s->body[s->turbine.blade[k]];

@@ -6,21 +6,21 @@
 
 #define FILLS bough_scene_aero_station
 static const bough_key aero_station_keys[] = {
-    {KEY(NUMBER, span), UNIT(LENGTH), .required = true, .example = "20.5 m",
+    {NAMED("span", NUMBER), AT(def.span), UNIT(LENGTH), .required = true, .example = "20.5 m",
      .help = "distance from the root, along z"},
-    {NAMED("ac_x", NUMBER), AT(ac[0]), UNIT(LENGTH), .fallback = "0", .example = "0.1 m",
+    {NAMED("ac_x", NUMBER), AT(def.centre_x), UNIT(LENGTH), .fallback = "0", .example = "0.1 m",
      .help = "aerodynamic centre from the pitch axis, blade-root x (flapwise)"},
-    {NAMED("ac_y", NUMBER), AT(ac[1]), UNIT(LENGTH), .fallback = "0", .example = "-0.5 m",
+    {NAMED("ac_y", NUMBER), AT(def.centre_y), UNIT(LENGTH), .fallback = "0", .example = "-0.5 m",
      .help = "aerodynamic centre from the pitch axis, blade-root y (edgewise)"},
-    {KEY(NUMBER, twist), UNIT(ANGLE), .fallback = "0", .example = "9 deg",
+    {NAMED("twist", NUMBER), AT(def.twist), UNIT(ANGLE), .fallback = "0", .example = "9 deg",
      .help = "the airfoil is turned by -twist about z, like pitch"},
-    {KEY(NUMBER, chord), UNIT(LENGTH), .range = "> 0", .required = true, .example = "4.2 m",
+    {NAMED("chord", NUMBER), AT(def.chord), UNIT(LENGTH), .range = "> 0", .required = true, .example = "4.2 m",
      .help = "chord"},
     {NAMED("polar", TEXT), AT(polar_name), .required = true, .example = "DU25",
      .help = "name of a polar in the polars file"},
     {NAMED("blend", TEXT), AT(second_name), .example = "DU21",
      .help = "name of a second polar, with which the first is mixed"},
-    {KEY(NUMBER, share), .range = "[0, 1]", .fallback = "0", .example = "0.4",
+    {NAMED("share", NUMBER), AT(def.share), .range = "[0, 1]", .fallback = "0", .example = "0.4",
      .help = "share of the second polar"},
 };
 #undef FILLS
@@ -88,55 +88,56 @@ static const bough_schema wind_table_schema = {
     .check = bough_scene_check_wind_table};
 
 #define FILLS bough_scene_wind
+#define DEF(member) NAMED(#member, NUMBER), AT(def.member)
 static const bough_key wind_keys[] = {
     {KEY(CHOICE, kind), CHOICES("uniform", "power", "log", "wnd", "bts", "iec"),
      .fallback = "uniform",
      .help = "uniform: the same speed at all heights; power, log: by a power or a logarithmic law; "
              "wnd: uniform wind file (hub height); bts: TurbSim's box; iec: condition of IEC "
              "61400-1"},
-    {NAMED("condition", CHOICE), AT(iec.condition),
+    {NAMED("condition", CHOICE), AT(def.iec.condition),
      CHOICES("ntm", "etm", "ewm", "ewm-steady", "nwp", "eog", "edc", "ecd", "ews"),
      .required = true, WHEN("kind", "iec"),
      .help = "ntm: normal turbulence; etm: extreme turbulence; ewm: extreme wind with turbulence; "
              "ewm-steady: steady extreme wind; nwp: normal profile; eog: extreme operating gust; "
              "edc: extreme change of direction; ecd: coherent gust with change of direction; ews: "
              "extreme shear"},
-    {NAMED("class", CHOICE), AT(iec.wind_class),
+    {NAMED("class", CHOICE), AT(def.iec.wind_class),
      CHOICES("IA+", "IA", "IB", "IC", "IIA+", "IIA", "IIB", "IIC", "IIIA+", "IIIA", "IIIB", "IIIC"),
      .fallback = "IB", WHEN("kind", "iec"),
      .help = "reference wind speed (I to III) and turbulence (A+ to C)"},
-    {NAMED("intensity", NUMBER), AT(iec.intensity), .range = "> 0", .word = "class",
+    {NAMED("intensity", NUMBER), AT(def.iec.intensity), .range = "> 0", .word = "class",
      .fallback = "class", WHEN("kind", "iec"), .example = "0.12",
      .help = "intensity of the longitudinal turbulence at this speed; class: that of the class"},
-    {NAMED("rotor_diameter", NUMBER), AT(iec.diameter), UNIT(LENGTH), .range = "> 0",
+    {NAMED("rotor_diameter", NUMBER), AT(def.iec.diameter), UNIT(LENGTH), .range = "> 0",
      .word = "auto", .fallback = "auto", WHEN("kind", "iec"), .example = "126 m",
      .help = "auto: diameter of the scene's rotor"},
-    {NAMED("start", NUMBER), AT(iec.start), UNIT(TIME), .fallback = "0", WHEN("kind", "iec"),
+    {NAMED("start", NUMBER), AT(def.iec.start), UNIT(TIME), .fallback = "0", WHEN("kind", "iec"),
      .example = "60 s", .help = "start of a gust or a change of direction"},
-    {NAMED("sense", CHOICE), AT(iec.negative), CHOICES("positive", "negative"),
+    {NAMED("sense", CHOICE), AT(def.iec.negative), CHOICES("positive", "negative"),
      .fallback = "positive", WHEN("kind", "iec"),
      .help = "sign of a change of direction (positive: clockwise seen from above) or of a shear"},
-    {NAMED("shear", CHOICE), AT(iec.horizontal), CHOICES("vertical", "horizontal"),
+    {NAMED("shear", CHOICE), AT(def.iec.horizontal), CHOICES("vertical", "horizontal"),
      .fallback = "vertical", WHEN("kind", "iec"), .help = "direction of the shear of ews"},
-    {NAMED("recurrence", CHOICE), AT(iec.yearly), CHOICES("50-years", "1-year"),
+    {NAMED("recurrence", CHOICE), AT(def.iec.yearly), CHOICES("50-years", "1-year"),
      .fallback = "50-years", WHEN("kind", "iec"),
      .help = "recurrence period of ewm and ewm-steady"},
-    {NAMED("seed", INTEGER), AT(iec.seed), .range = ">= 0", .fallback = "1", WHEN("kind", "iec"),
+    {NAMED("seed", INTEGER), AT(def.iec.seed), .range = ">= 0", .fallback = "1", WHEN("kind", "iec"),
      .example = "7", .help = "seed of the turbulence; the same seed gives the same wind"},
-    {NAMED("points", INTEGER), AT(iec.points), .range = "[2, 41]", .fallback = "15",
+    {NAMED("points", INTEGER), AT(def.iec.points), .range = "[2, 41]", .fallback = "15",
      WHEN("kind", "iec"), .example = "21",
      .help = "number of points of the turbulence's grid, in height and in width"},
-    {NAMED("width", NUMBER), AT(iec.width), UNIT(LENGTH), .range = "> 0", .word = "auto",
+    {NAMED("width", NUMBER), AT(def.iec.width), UNIT(LENGTH), .range = "> 0", .word = "auto",
      .fallback = "auto", WHEN("kind", "iec"), .example = "160 m",
      .help = "width and height of the turbulence's grid; auto: 1.15 rotor diameters"},
-    {NAMED("time_step", NUMBER), AT(iec.time_step), UNIT(TIME), .range = "> 0", .fallback = "0.05",
+    {NAMED("time_step", NUMBER), AT(def.iec.time_step), UNIT(TIME), .range = "> 0", .fallback = "0.05",
      WHEN("kind", "iec"), .example = "0.1 s", .help = "time step of the turbulence"},
-    {NAMED("period", NUMBER), AT(iec.period), UNIT(TIME), .range = "> 0", .word = "auto",
+    {NAMED("period", NUMBER), AT(def.iec.period), UNIT(TIME), .range = "> 0", .word = "auto",
      .fallback = "auto", WHEN("kind", "iec"), .example = "700 s",
      .help = "period after which the turbulence repeats; auto: the duration, at least 600 s"},
-    {KEY(TEXT, file), .required = true, WHEN("kind", "wnd|bts"), .example = "turbulence.bts",
+    {NAMED("file", TEXT), AT(def.file), .required = true, WHEN("kind", "wnd|bts"), .example = "turbulence.bts",
      .help = "relative to the scene"},
-    {KEY(NUMBER, speed), UNIT(SPEED), .range = ">= 0", .example = "11.4 m/s",
+    {DEF(speed), UNIT(SPEED), .range = ">= 0", .example = "11.4 m/s",
      .help = "horizontal speed at the reference height; required unless there is a table or a "
              "file, or the class gives the speed (ewm)"},
     {KEY(TEXT, input), .example = "wind",
@@ -144,30 +145,31 @@ static const bough_key wind_keys[] = {
              "uniform, power or log"},
     {KEY(MAPPING, table), .of = &wind_table_schema,
      .help = "speed over time, for gusts and ramps; replaces 'speed'"},
-    {KEY(NUMBER, exponent), .range = "[0, 1]", .fallback = "0.2", WHEN("kind", "power|iec"),
+    {DEF(exponent), .range = "[0, 1]", .fallback = "0.2", WHEN("kind", "power|iec"),
      .example = "0.14",
      .help = "speed grows with height^exponent; the default for the extreme wind (ewm) is 0.11"},
-    {KEY(NUMBER, roughness), UNIT(LENGTH), .range = "> 0", .fallback = "0.03", WHEN("kind", "log"),
+    {DEF(roughness), UNIT(LENGTH), .range = "> 0", .fallback = "0.03", WHEN("kind", "log"),
      .example = "0.01 m", .help = "length z0: speed grows with ln(height/z0)"},
-    {KEY(NUMBER, reference_height), UNIT(LENGTH), .range = "> 0", .required = true,
+    {DEF(reference_height), UNIT(LENGTH), .range = "> 0", .required = true,
      WHEN("kind", "power|log|wnd|iec"), .example = "90 m",
      .help = "height above ground z = 0; with kind iec the hub height"},
-    {KEY(NUMBER, reference_length), UNIT(LENGTH), .range = "> 0", .required = true,
+    {DEF(reference_length), UNIT(LENGTH), .range = "> 0", .required = true,
      WHEN("kind", "wnd"), .example = "126 m",
      .help = "length over which the file's linear shears are given: the rotor's diameter"},
-    {KEY(NUMBER, direction), UNIT(ANGLE), .fallback = "0", .example = "15 deg",
+    {DEF(direction), UNIT(ANGLE), .fallback = "0", .example = "15 deg",
      .help = "direction to which the wind blows, from ground x about z: the yaw misalignment of a "
              "rotor with its axis along x"},
-    {KEY(NUMBER, upflow), UNIT(ANGLE), .range = "[-1.5, 1.5]", .fallback = "0", .example = "8 deg",
+    {DEF(upflow), UNIT(ANGLE), .range = "[-1.5, 1.5]", .fallback = "0", .example = "8 deg",
      .help = "inclination of the whole wind, positive upwards"},
-    {KEY(NUMBER, veer), UNIT(ANGLE), .fallback = "0", .example = "10 deg",
+    {DEF(veer), UNIT(ANGLE), .fallback = "0", .example = "10 deg",
      .help = "change of the wind's direction over 100 m of height, clockwise seen from above; zero "
              "at the reference height, which for a box is its hub height, and 90 m for other winds "
              "without one"},
-    {KEY(NUMBER, vertical), UNIT(SPEED), .fallback = "0", .example = "0.5 m/s",
+    {DEF(vertical), UNIT(SPEED), .fallback = "0", .example = "0.5 m/s",
      .help = "vertical speed, upwards, at every height and time"},
 };
 #undef FILLS
+#undef DEF
 static const bough_schema wind_schema = {SCHEMA("the wind", bough_scene_wind, wind_keys),
                                          .check = bough_scene_check_wind};
 
@@ -203,16 +205,16 @@ static const bough_schema induction_schema = {
 
 #define FILLS bough_scene_tower
 static const bough_key tower_keys[] = {
-    {KEY(CHOICE, influence), CHOICES("potential", "bak"), .fallback = "potential",
+    {NAMED("influence", CHOICE), AT(def.influence), CHOICES("potential", "bak"), .fallback = "potential",
      .help = "wind in front of the tower: potential flow about a cylinder, or with Bak's "
              "correction for its drag"},
-    {KEY(CHOICE, shadow), CHOICES("none", "powles"), .fallback = "none",
+    {NAMED("shadow", CHOICE), AT(def.shadow), CHOICES("none", "powles"), .fallback = "none",
      .help = "wake behind the tower"},
-    {KEY(NUMBERS, height), UNIT(LENGTH), .range = ">= 0", .count = 2, .required = true,
-     COUNT_AT(n_height), .example = "[0, 45 m, 87.6 m]", .help = "above the ground's origin"},
-    {KEY(NUMBERS, diameter), UNIT(LENGTH), .range = "> 0", .count = 2, .required = true,
+    {NAMED("height", NUMBERS), AT(def.height), UNIT(LENGTH), .range = ">= 0", .count = 2, .required = true,
+     COUNT_AT(def.n), .example = "[0, 45 m, 87.6 m]", .help = "above the ground's origin"},
+    {NAMED("diameter", NUMBERS), AT(def.diameter), UNIT(LENGTH), .range = "> 0", .count = 2, .required = true,
      COUNT_AT(n_diameter), .example = "[6, 4.9 m, 3.87 m]", .help = "diameter at each height"},
-    {KEY(NUMBERS, drag), .range = ">= 0", .count = 1, .fallback = "[1]", COUNT_AT(n_drag),
+    {NAMED("drag", NUMBERS), AT(def.drag), .range = ">= 0", .count = 1, .fallback = "[1]", COUNT_AT(n_drag),
      .example = "[0.5]",
      .help = "drag coefficient: one for the whole tower, or one at each height; for bak, powles "
              "and the drag on a body"},

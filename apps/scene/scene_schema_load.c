@@ -63,11 +63,11 @@ static const bough_key spring_keys[] = {
      .help = "name of another rigid body, or ground"},
     {NAMED("to_point", VECTOR), AT(point[1]), .count = 3, UNIT(LENGTH), .fallback = ZERO3,
      .example = "[0, 0, 20]", .help = "in that body's frame; the two points must never coincide"},
-    {KEY(NUMBER, stiffness), UNIT(STIFFNESS), .range = ">= 0", .fallback = "0", .example = "3 kN/m",
+    {NAMED("stiffness", NUMBER), AT(def.stiffness), UNIT(STIFFNESS), .range = ">= 0", .fallback = "0", .example = "3 kN/m",
      .help = "of the spring"},
-    {KEY(NUMBER, damping), .range = ">= 0", .fallback = "0", .example = "150",
+    {NAMED("damping", NUMBER), AT(def.damping), .range = ">= 0", .fallback = "0", .example = "150",
      .help = "of the damper parallel to the spring, in N s/m"},
-    {KEY(NUMBER, length), UNIT(LENGTH), .range = ">= 0", .fallback = "0", .example = "21.5 m",
+    {NAMED("length", NUMBER), AT(def.length), UNIT(LENGTH), .range = ">= 0", .fallback = "0", .example = "21.5 m",
      .help = "length of the spring without force"},
 };
 #undef FILLS
@@ -75,8 +75,8 @@ const bough_schema bough_scene_spring_schema = {
     SCHEMA("a spring", bough_scene_spring, spring_keys)};
 
 #define FILLS bough_scene_bushing
-#define THREE(member, what)                                                                        \
-    {KEY(VECTOR, member), .count = 3, .range = ">= 0", .fallback = ZERO3,                          \
+#define THREE(key, member, what)                                                                             \
+    {NAMED(key, VECTOR), AT(def.member), .count = 3, .range = ">= 0", .fallback = ZERO3,                    \
      .example = "[1e6, 1e6, 2e6]", .help = what}
 static const bough_key bushing_keys[] = {
     {KEY(TEXT, name), .required = true, .example = "yaw_bearing",
@@ -88,11 +88,11 @@ static const bough_key bushing_keys[] = {
      .help = "name of the second body; the bushing is free of force in the initial position"},
     {KEY(VECTOR, point), .count = 3, UNIT(LENGTH), .fallback = ZERO3, .example = "[0, 0, 87.6]",
      .help = "in the first body's frame"},
-    THREE(stiffness, "along x, y, z, in N/m"),
-    THREE(damping, "along x, y, z, in N s/m"),
-    THREE(rotational_stiffness, "about x, y, z, in N m/rad, by the rotation vector (below 180 "
-                                "deg)"),
-    THREE(rotational_damping, "about x, y, z, in N m s/rad"),
+    THREE("stiffness", stiffness[0], "along x, y, z, in N/m"),
+    THREE("damping", damping[0], "along x, y, z, in N s/m"),
+    THREE("rotational_stiffness", stiffness[3],
+          "about x, y, z, in N m/rad, by the rotation vector (below 180 deg)"),
+    THREE("rotational_damping", damping[3], "about x, y, z, in N m s/rad"),
 };
 #undef THREE
 #undef FILLS

@@ -262,7 +262,7 @@ void bough_scene_check_aero_blade(bough_schema_reader *r, void *item) {
     const bough_scene_aero_blade *b = item;
     double before = NAN;
     for (int i = 0; i < b->n_station; i++) {
-        double span = b->station[i].span;
+        double span = b->station[i].def.span;
         check_next(r, &spans, b->node, b->station[i].node, i, before, span);
         before = span;
     }
@@ -339,23 +339,23 @@ void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
 // The wind of a file is all in it; its path becomes relative to where the program runs.
 static void check_wind_file(bough_schema_reader *r, bough_scene_wind *w) {
     bough_scene_refuse(r, w->node, "speed|table|vertical", "only used without a file");
-    if (w->file != NULL) w->file = bough_schema_path(r, w->file);
+    if (w->def.file != NULL) w->def.file = bough_schema_path(r, w->def.file);
 }
 
 // A condition of the standard gives the speed over time, the extreme wind its mean too.
 static void check_wind_condition(bough_schema_reader *r, bough_scene_wind *w) {
-    bool extreme = bough_wind_iec_is_extreme_speed(w->iec.condition);
+    bool extreme = bough_wind_iec_is_extreme_speed(w->def.iec.condition);
     if (extreme) {
         bough_scene_refuse(r, w->node, "table|vertical|speed", "not used with 'condition: ewm'");
     } else {
         bough_scene_refuse(r, w->node, "table|vertical", "not used with 'kind: iec'");
     }
-    if (!extreme && !(w->speed > 0)) {
+    if (!extreme && !(w->def.speed > 0)) {
         const bough_node *node = bough_node_find(w->node, "speed");
         bough_schema_error(r, node ? node : w->node, "speed",
                            "a speed above 0 is required with this condition");
     }
-    if (extreme && !bough_node_find(w->node, "exponent")) w->exponent = 0.11;
+    if (extreme && !bough_node_find(w->node, "exponent")) w->def.exponent = 0.11;
 }
 
 void bough_scene_check_wind(bough_schema_reader *r, void *item) {
@@ -375,26 +375,28 @@ void bough_scene_check_wind(bough_schema_reader *r, void *item) {
     if (speed == NULL && w->table.node == NULL) {
         bough_schema_error(r, w->node, "", "required key 'speed' is missing (without a table)");
     }
-    if (w->kind == BOUGH_SCENE_WIND_LOG && w->roughness >= w->reference_height) {
+    if (w->kind == BOUGH_SCENE_WIND_LOG && w->def.roughness >= w->def.reference_height) {
         bough_schema_error(r, bough_node_find(w->node, "reference_height"), "reference_height",
-                           "must be more than the roughness, %g m, got %g m", w->roughness,
-                           w->reference_height);
+                           "must be more than the roughness, %g m, got %g m", w->def.roughness,
+                           w->def.reference_height);
     }
 }
 
 void bough_scene_check_tower(bough_schema_reader *r, void *item) {
-    const bough_scene_tower *t = item;
-    const bough_node *diameter = bough_node_find(t->node, "diameter");
-    if (t->n_height != t->n_diameter) {
-        bough_schema_error(r, diameter, "diameter", "has %d values, but height has %d",
-                           t->n_diameter, t->n_height);
+    bough_scene_tower *t = item;
+    int n = t->def.n;
+    if (n != t->n_diameter) {
+        bough_schema_error(r, bough_node_find(t->node, "diameter"), "diameter", "has %d values, but height has %d",
+                           t->n_diameter, n);
     }
-    if (t->n_drag != 1 && t->n_drag != t->n_height) {
+    if (t->n_drag != 1 && t->n_drag != n) {
         bough_schema_error(r, bough_node_find(t->node, "drag"), "drag",
-                           "has %d values, but height has %d; give one or as many", t->n_drag,
-                           t->n_height);
+                           "has %d values, but height has %d; give one or as many", t->n_drag, n);
     }
-    check_increasing(r, t->node, "height", t->height, "m");
+    check_increasing(r, t->node, "height", t->def.height, "m");
+    double *drag = bough_arena_doubles(r->arena, (size_t)n);
+    for (int i = 0; i < n; i++) drag[i] = t->def.drag[t->n_drag == n ? i : 0];
+    t->def.drag = drag;
 }
 
 // -- rods and ramps -------------------------------------------------------------------------------

@@ -58,7 +58,6 @@ typedef struct tables {
     bough_polar_def *polar;
     bough_station_def *station;
     bough_mat3 *rotation;
-    double *drag; // of the tower
 } tables;
 
 static void take_tables(bough_arena *arena, const bough_aero_link *l, tables *t) {
@@ -66,7 +65,6 @@ static void take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
     t->polar = bough_arena_take(arena, (size_t)aero->polars.n_polar * sizeof *t->polar);
     t->station = bough_arena_take(arena, (size_t)aero->blade.n_station * sizeof *t->station);
     t->rotation = bough_arena_take(arena, (size_t)l->n_vertex * sizeof *t->rotation);
-    t->drag = bough_arena_doubles(arena, (size_t)aero->tower.n_height);
     for (int k = 0; k < aero->polars.n_polar; k++) {
         const bough_scene_polar *from = &aero->polars.polar[k];
         double *row = bough_arena_doubles(arena, 4 * (size_t)from->n_row);
@@ -77,43 +75,19 @@ static void take_tables(bough_arena *arena, const bough_aero_link *l, tables *t)
         }
         t->polar[k] = (bough_polar_def){from->name, from->n_row, row};
     }
-    for (int k = 0; k < aero->blade.n_station; k++) {
-        const bough_scene_aero_station *from = &aero->blade.station[k];
-        t->station[k] = (bough_station_def){.span = from->span,
-                                            .chord = from->chord,
-                                            .twist = from->twist,
-                                            .centre_x = from->ac[0],
-                                            .centre_y = from->ac[1],
-                                            .polar = from->polar,
-                                            .second = from->second,
-                                            .share = from->share};
-    }
-    for (int i = 0; i < aero->tower.n_height; i++) {
-        t->drag[i] = aero->tower.drag[aero->tower.n_drag == 1 ? 0 : i];
-    }
+    for (int k = 0; k < aero->blade.n_station; k++) t->station[k] = aero->blade.station[k].def;
     for (int i = 0; i < l->n_vertex; i++) {
         t->rotation[i] = bough_rotation_matrix(l->beam[0]->def.rotation[i]);
     }
 }
 
-static bough_tower_def tower_def(const bough_scene_tower *tower, const double *drag) {
-    return (bough_tower_def){
-        .n = tower->n_height,
-        .height = tower->height,
-        .diameter = tower->diameter,
-        .drag = drag,
-        .influence = (bough_tower_influence)tower->influence,
-        .shadow = (bough_tower_shadow)tower->shadow,
-    };
-}
-
 static double rotor_radius(const bough_scene_aero *aero) {
-    return aero->hub_radius + aero->blade.station[aero->blade.n_station - 1].span;
+    return aero->hub_radius + aero->blade.station[aero->blade.n_station - 1].def.span;
 }
 
 // What the scene leaves to choose.
 static bough_wind_iec_def standard_wind(const bough_scene *scene) {
-    const bough_scene_wind *wind = &scene->aero.wind;
+    const bough_wind_def *wind = &scene->aero.wind.def;
     bough_wind_iec_def def = wind->iec;
     def.speed = wind->speed;
     def.exponent = wind->exponent;
@@ -126,38 +100,26 @@ static bough_wind_iec_def standard_wind(const bough_scene *scene) {
 
 static bough_wind_def wind_def(const bough_scene *scene) {
     const bough_scene_wind *wind = &scene->aero.wind;
-    static const bough_wind_shear shears[] = {
-        [BOUGH_SCENE_WIND_UNIFORM] = BOUGH_WIND_UNIFORM,
+    static const bough_wind_shear shears[BOUGH_SCENE_WIND_IEC + 1] = {
         [BOUGH_SCENE_WIND_POWER] = BOUGH_WIND_POWER,
         [BOUGH_SCENE_WIND_LOG] = BOUGH_WIND_LOG,
-        [BOUGH_SCENE_WIND_WND] = BOUGH_WIND_UNIFORM,
-        [BOUGH_SCENE_WIND_BTS] = BOUGH_WIND_UNIFORM,
-        [BOUGH_SCENE_WIND_IEC] = BOUGH_WIND_UNIFORM,
     };
     static const bough_wind_source sources[] = {
         [BOUGH_SCENE_WIND_WND] = BOUGH_WIND_HUB_FILE,
         [BOUGH_SCENE_WIND_BTS] = BOUGH_WIND_BOX_FILE,
         [BOUGH_SCENE_WIND_IEC] = BOUGH_WIND_STANDARD,
     };
-    return (bough_wind_def){
-        .speed = wind->speed,
-        .vertical = wind->vertical,
-        .direction = wind->direction,
-        .shear = shears[wind->kind],
-        .exponent = wind->exponent,
-        .roughness = wind->roughness,
-        .reference_height = wind->reference_height > 0 ? wind->reference_height : 90,
-        .n_time = wind->table.n_time,
-        .time = wind->table.time,
-        .speed_at_time = wind->table.speed,
-        .source = sources[wind->kind],
-        .file = wind->file,
-        .reference_length = wind->reference_length,
-        .until = scene->simulation.duration,
-        .iec = wind->kind == BOUGH_SCENE_WIND_IEC ? standard_wind(scene) : wind->iec,
-        .upflow = wind->upflow,
-        .veer = wind->veer / 100,
-    };
+    bough_wind_def def = wind->def;
+    def.shear = shears[wind->kind];
+    def.source = sources[wind->kind];
+    def.n_time = wind->table.n_time;
+    def.time = wind->table.time;
+    def.speed_at_time = wind->table.speed;
+    def.until = scene->simulation.duration;
+    def.veer /= 100;
+    if (!(def.reference_height > 0)) def.reference_height = 90;
+    if (wind->kind == BOUGH_SCENE_WIND_IEC) def.iec = standard_wind(scene);
+    return def;
 }
 
 static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
@@ -176,7 +138,7 @@ static bough_rotor_def rotor_def(const bough_aero_link *l, const tables *t) {
     def.pitching_moment = aero->pitching_moment;
     def.stall = (bough_stall_kind)aero->dynamic_stall;
     def.wind = wind_def(l->simulation->scene);
-    if (aero->tower.node != NULL) def.tower = tower_def(&aero->tower, t->drag);
+    if (aero->tower.node != NULL) def.tower = aero->tower.def;
     def.n_polar = aero->polars.n_polar;
     def.polar = t->polar;
     def.n_station = aero->blade.n_station;
@@ -197,7 +159,7 @@ static bough_status check_reach(bough_aero_link *l) {
     if (bough_rotor_in_wind(l->rotor, hub, radius)) return bough_ok();
     return bough_fail(BOUGH_INVALID,
                       "aero.wind: the box of %s is too small for a rotor of %g m radius at %g m",
-                      scene->aero.wind.file ? scene->aero.wind.file : "turbulence", radius, hub.z);
+                      scene->aero.wind.def.file ? scene->aero.wind.def.file : "turbulence", radius, hub.z);
 }
 
 bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulation,

@@ -30,23 +30,18 @@ static int add_marker(bough_force_link *link, const char *name, int body, const 
 static void add_springs(const bough_scene *scene, bough_force_link *link) {
     for (int k = 0; k < scene->n_spring; k++) {
         const bough_scene_spring *from = &scene->spring[k];
-        int first = add_marker(link, from->name, from->body[0], from->point[0]);
-        int second = add_marker(link, from->name, from->body[1], from->point[1]);
-        link->spring[k] = (bough_spring_def){
-            {first, second}, from->stiffness, from->damping, from->length};
+        link->spring[k] = from->def;
+        for (int end = 0; end < 2; end++)
+            link->spring[k].marker[end] = add_marker(link, from->name, from->body[end], from->point[end]);
     }
 }
 
 static void add_bushings(const bough_scene *scene, bough_force_link *link) {
     for (int k = 0; k < scene->n_bushing; k++) {
         const bough_scene_bushing *from = &scene->bushing[k];
-        bough_bushing_def *to = &link->bushing[k];
+        link->bushing[k] = from->def;
         for (int end = 0; end < 2; end++)
-            to->marker[end] = add_marker(link, from->name, from->body[end], from->point);
-        memcpy(to->stiffness, from->stiffness, sizeof from->stiffness);
-        memcpy(to->stiffness + 3, from->rotational_stiffness, sizeof from->rotational_stiffness);
-        memcpy(to->damping, from->damping, sizeof from->damping);
-        memcpy(to->damping + 3, from->rotational_damping, sizeof from->rotational_damping);
+            link->bushing[k].marker[end] = add_marker(link, from->name, from->body[end], from->point);
     }
 }
 
