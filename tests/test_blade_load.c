@@ -43,15 +43,10 @@ static blade blade_with(int segments) {
 // Compliance at s in the blade's axes.
 static void compliance_at(const bough_scene_structure *table, double s, double full[36]) {
     int k = 0;
-    while (k < table->n_station - 2 && s >= table->station[k + 1].position[2]) k++;
-    const bough_scene_station *a = &table->station[k], *b = a + 1;
-    double share = (s - a->position[2]) / (b->position[2] - a->position[2]), upper[21];
-    for (int i = 0; i < 6; i++) {
-        for (int j = i; j < 6; j++) {
-            double low = a->stiffness[6 * i + j], high = b->stiffness[6 * i + j];
-            upper[bough_symmetric6_index(i, j)] = low + share * (high - low);
-        }
-    }
+    while (k < table->n_station - 2 && s >= table->station[k + 1].def.position.z) k++;
+    const bough_section_station *a = &table->station[k].def, *b = &table->station[k + 1].def;
+    double share = (s - a->position.z) / (b->position.z - a->position.z), upper[21];
+    for (int i = 0; i < 21; i++) upper[i] = a->stiffness[i] + share * (b->stiffness[i] - a->stiffness[i]);
     assert_true(bough_symmetric6_inverse(upper, upper));
     bough_symmetric6_turn(upper, -(a->twist + share * (b->twist - a->twist)), upper);
     for (int i = 0; i < 36; i++) full[i] = upper[bough_symmetric6_index(i / 6, i % 6)];

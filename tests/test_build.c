@@ -284,11 +284,11 @@ static bough_inertia blade_about_hub(const bough_scene_body *body, double azimut
     bough_inertia sum = {0};
     bough_mat3 lean = bough_mat3_product(about(0, azimuth), about(1, -2.5 * degree));
     for (int k = 0; k + 1 < table->n_station; k++) {
-        const bough_scene_station *low = &table->station[k], *high = low + 1;
-        double thickness = (high->position[2] - low->position[2]) / SLICES;
+        const bough_section_station *low = &table->station[k].def, *high = &table->station[k + 1].def;
+        double thickness = (high->position.z - low->position.z) / SLICES;
         for (int slice = 0; slice < SLICES; slice++) {
             double f = (slice + 0.5) / SLICES, g = 1 - f;
-            double z = g * low->position[2] + f * high->position[2];
+            double z = g * low->position.z + f * high->position.z;
             double twist = g * low->twist + f * high->twist;
             double ix = g * low->inertia[0] + f * high->inertia[0];
             double iy = g * low->inertia[1] + f * high->inertia[1];

@@ -1,4 +1,5 @@
 // What a good scene is read as, and what the program says of scenes.
+#include "core/symmetric6.h"
 #include "tests/scene_text.h"
 
 #include <sys/stat.h>
@@ -14,18 +15,18 @@ static void check_blade(const bough_scene_body *b) {
     check_near(s->length, 10, 0, 0);
     check_near(s->damping[3], 1.4e-3, 1e-15, 0);
     assert_int_equal(s->n_station, 3);
-    check_near(s->station[1].position[2], 5, 0, 0);
-    check_near(s->station[0].twist, 13.308 * degree, 1e-15, 0);
-    check_near(s->station[0].stiffness[7], 9.7e7, 0, 0);
-    check_near(s->station[0].stiffness[1], 0, 0, 0);
-    check_near(s->station[1].stiffness[6 * 3 + 4], 1e6, 0, 0);
-    check_near(s->station[1].stiffness[6 * 4 + 3], 1e6, 0, 0);
-    check_near(s->station[1].stiffness[35], 1e7, 0, 0);
-    check_near(s->station[1].mass, 40, 0, 0);
-    check_near(s->station[1].mass_centre[1], -0.02, 0, 0);
-    check_near(s->station[1].inertia[2], 0.1, 0, 0);
-    check_near(s->station[1].inertia[3], 10, 0, 0);
-    check_near(s->station[0].inertia[3], 22, 0, 0); // Ixx + Iyy
+    check_near(s->station[1].def.position.z, 5, 0, 0);
+    check_near(s->station[0].def.twist, 13.308 * degree, 1e-15, 0);
+    check_near(s->station[0].def.stiffness[bough_symmetric6_index(1, 1)], 9.7e7, 0, 0);
+    check_near(s->station[0].def.stiffness[bough_symmetric6_index(0, 1)], 0, 0, 0);
+    check_near(s->station[1].def.stiffness[bough_symmetric6_index(3, 4)], 1e6, 0, 0);
+    check_near(s->station[1].def.stiffness[bough_symmetric6_index(4, 3)], 1e6, 0, 0);
+    check_near(s->station[1].def.stiffness[bough_symmetric6_index(5, 5)], 1e7, 0, 0);
+    check_near(s->station[1].def.mass, 40, 0, 0);
+    check_near(s->station[1].def.centre[1], -0.02, 0, 0);
+    check_near(s->station[1].def.inertia[2], 0.1, 0, 0);
+    check_near(s->station[1].def.inertia[3], 10, 0, 0);
+    check_near(s->station[0].def.inertia[3], 22, 0, 0); // Ixx + Iyy
 }
 
 static void turbine_is_read(void **state) {
@@ -111,8 +112,8 @@ static void uniform_beam_needs_no_table(void **state) {
     const bough_scene_structure *beam = &s->body[0].rod.structure;
     assert_int_equal(beam->n_station, 1);
     check_near(beam->length, 2, 0, 0);
-    check_near(beam->station[0].stiffness[28], 700, 0, 0);
-    check_near(beam->station[0].mass, 1.5, 0, 0);
+    check_near(beam->station[0].def.stiffness[bough_symmetric6_index(4, 4)], 700, 0, 0);
+    check_near(beam->station[0].def.mass, 1.5, 0, 0);
     check_near(beam->damping[0], 0, 0, 0);
     check_near(s->simulation.output.interval, s->simulation.macro_step, 0, 0);
     assert_int_equal(s->simulation.threads, 0);
@@ -280,8 +281,8 @@ static void rods_may_be_curved(void **state) {
     assert_string_equal(f.printed, "");
     const bough_scene_structure *s = &f.scene->body[0].rod.structure;
     check_near(s->length, 3, 0, 0); // the last span
-    check_near(s->station[1].position[0], 0.1, 0, 0);
-    check_near(s->station[1].position[1], -0.2, 0, 0);
+    check_near(s->station[1].def.position.x, 0.1, 0, 0);
+    check_near(s->station[1].def.position.y, -0.2, 0, 0);
     check_near(s->damping[0], 0, 0, 0); // the scene's, not the table's
     check_near(s->damping[5], 2e-3, 1e-15, 0);
     stop(&f);
@@ -304,11 +305,11 @@ static void rods_may_be_parts_of_a_table(void **state) {
     check_near(s->length, 2, 0, 0);
     assert_int_equal(s->n_station, 3);
     for (int k = 0; k < 3; k++) {
-        check_near(s->station[k].position[2], span[k], 1e-15, 0);
-        check_near(s->station[k].position[0], shift[k], 1e-15, 0);
-        check_near(s->station[k].mass, mass[k], 1e-15, 0);
-        check_near(s->station[k].twist, twist[k] * degree, 1e-15, 0);
-        check_near(s->station[k].stiffness[14], axial[k], 1e-15, 0);
+        check_near(s->station[k].def.position.z, span[k], 1e-15, 0);
+        check_near(s->station[k].def.position.x, shift[k], 1e-15, 0);
+        check_near(s->station[k].def.mass, mass[k], 1e-15, 0);
+        check_near(s->station[k].def.twist, twist[k] * degree, 1e-15, 0);
+        check_near(s->station[k].def.stiffness[bough_symmetric6_index(2, 2)], axial[k], 1e-15, 0);
     }
     stop(&f);
     refuses(ROD_BODY "    rod: {table: blade.yaml, part: [1, 4]}\n",

@@ -156,15 +156,10 @@ static bough_status write_channels(const bough_static *x, const bough_error_shar
     return bough_folder_commit(path, file);
 }
 
-static bough_status write_file(const char *folder, const bough_steady *steady, int n) {
-    char path[BOUGH_PATH_MAX];
-    FILE *file = NULL;
-    bough_status status = bough_folder_make(folder);
-    if (bough_is_ok(&status)) status = bough_folder_open(folder, "static.csv", path, &file);
-    if (!bough_is_ok(&status)) return status;
+static void write_rods(const void *self, FILE *file) {
+    const bough_static *x = self;
     fputs(header, file);
-    for (int k = 0; k < n; k++) write_rod(file, &steady[k]);
-    return bough_folder_commit(path, file);
+    for (int k = 0; k < x->n; k++) write_rod(file, &x->rod[k]);
 }
 
 // -- the command ----------------------------------------------------------------------------------
@@ -208,7 +203,8 @@ bough_status bough_verb_static(bough_arena *arena, const bough_options *options)
     }
     print_modal(s);
     if (mesh.unknown[0]) printf("mesh error: not estimated: %s\n", mesh.unknown);
-    status = write_file(folder, x.rod, x.n);
+    status = bough_folder_make(folder);
+    if (bough_is_ok(&status)) status = bough_folder_write(folder, "static.csv", write_rods, &x);
     if (bough_is_ok(&status) && !x.apart) status = write_channels(&x, &mesh, folder);
     if (bough_is_ok(&status)) printf("out: %s\n", folder);
     return status;

@@ -62,6 +62,41 @@ void bough_draft_library(bough_draft *d, const char *library, const char *input,
     fputc('\n', file);
 }
 
+void bough_draft_airfoil_name(const char *text, size_t length, int number, char name[BOUGH_AIRFOIL_NAME]) {
+    int n = snprintf(name, BOUGH_AIRFOIL_NAME, "%d-", number);
+    for (size_t i = 0; i < length && n < BOUGH_AIRFOIL_NAME - 1; i++) name[n++] = bough_import_letter(text[i]);
+    name[n] = '\0';
+}
+
+static void put_row(FILE *file, double angle, const double *rest) {
+    const double value[BOUGH_POLAR_COLUMNS] = {angle, rest[0], rest[1], rest[2]};
+    fputs("        - ", file);
+    bough_import_list(file, value, BOUGH_POLAR_COLUMNS);
+    fputc('\n', file);
+}
+
+void bough_draft_polar(bough_draft *d, const char *name, const double *row, int n) {
+    const double close = 1e-3; // [deg]
+    FILE *file = d->file[BOUGH_IMPORT_POLARS];
+    const double *last = row + BOUGH_POLAR_COLUMNS * (n - 1);
+    double end[3], gap = 0;
+    for (int c = 0; c < 3; c++) {
+        end[c] = (row[1 + c] + last[1 + c]) / 2;
+        gap = fmax(gap, fabs(row[1 + c] - last[1 + c]));
+    }
+    bool whole = n > 1 && row[0] <= close - 180 && last[0] >= 180 - close;
+    fprintf(file, "  - name: %s\n    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n", name);
+    put_row(file, -180, end);
+    for (int i = 0; i < n; i++) {
+        const double *r = row + BOUGH_POLAR_COLUMNS * i;
+        if (fabs(r[0]) < 180 - close) put_row(file, r[0], r + 1);
+    }
+    put_row(file, 180, end);
+    if (whole && gap <= 1e-6) return;
+    bough_draft_note(d, BOUGH_APPROXIMATED,
+                     "%s: from %g to %g deg; the value at 180 deg is the mean of its ends", name, row[0], last[0]);
+}
+
 void bough_import_list(FILE *file, const double *value, int n) {
     for (int i = 0; i < n; i++) fprintf(file, "%s%.10g", i == 0 ? "[" : ", ", value[i] + 0.0);
     fputc(']', file);

@@ -74,6 +74,14 @@ void bough_draft_tower(bough_draft *d, double foot);
 void bough_draft_library(bough_draft *d, const char *library, const char *input, double gear_ratio,
                          double efficiency);
 
+// The name of an airfoil's polar: its number and what is known of it, in letters that a scene's names have.
+enum { BOUGH_AIRFOIL_NAME = 64, BOUGH_POLAR_COLUMNS = 4 };
+void bough_draft_airfoil_name(const char *text, size_t length, int number, char name[BOUGH_AIRFOIL_NAME]);
+
+// A polar with rows (n × BOUGH_POLAR_COLUMNS) of rising angle [deg], lift, drag and moment, written from -180 to
+// 180 deg, where the values are one: the mean of those at the table's ends.
+void bough_draft_polar(bough_draft *d, const char *name, const double *row, int n);
+
 // "[1, 2, 3]" in the scene's spelling.
 void bough_import_list(FILE *file, const double *value, int n);
 

@@ -71,9 +71,9 @@ void bough_openfast_aero_tables(bough_openfast *o);
 void bough_openfast_aero(bough_openfast *o);
 void bough_openfast_wind(bough_openfast *o);
 
-// What both AeroDyn's readers write: a polar with rows (n × BOUGH_POLAR_COLUMNS) of angle [deg], lift, drag
-// and moment, and blade elements with rows (n × BOUGH_N_ELEMENT_COLUMN); `count` is the name of their number.
-enum { BOUGH_AIRFOIL_NAME = 64, BOUGH_MOST_AIRFOILS = 200, BOUGH_POLAR_COLUMNS = 4 };
+// What both AeroDyn's readers write: blade elements with rows (n × BOUGH_N_ELEMENT_COLUMN); `count` is the name of
+// their number.
+enum { BOUGH_MOST_AIRFOILS = 200 };
 enum { // span [m], curve, sweep [m], angle of the curve [deg], twist [deg], chord [m], airfoil from 1
     BOUGH_ELEMENT_SPAN,
     BOUGH_ELEMENT_TWIST = 4,
@@ -85,7 +85,6 @@ enum { // span [m], curve, sweep [m], angle of the curve [deg], twist [deg], cho
 // scene gives to its polar. NULL: not opened, the draft's status says why.
 bough_deck *bough_openfast_open_airfoil(bough_openfast *o, int *line, int number,
                                         char name[BOUGH_AIRFOIL_NAME]);
-void bough_openfast_put_polar(bough_openfast *o, const char *name, const double *table, int n);
 void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, const char *count,
                                  const double *row, int n, char (*name)[BOUGH_AIRFOIL_NAME], int n_name);
 

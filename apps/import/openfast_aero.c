@@ -8,15 +8,6 @@ enum { MOST_ROWS = 2000, MOST_COLUMNS = 20, NAME = BOUGH_AIRFOIL_NAME };
 
 // -- airfoils -------------------------------------------------------------------------------------
 
-// The file's name without folder and ending, in letters that a scene's names have; numbered.
-static void airfoil_name(const char *path, int number, char name[NAME]) {
-    const char *slash = strrchr(path, '/');
-    int n = snprintf(name, NAME, "%d-", number);
-    for (const char *p = slash ? slash + 1 : path; *p && *p != '.' && n < NAME - 1; p++)
-        name[n++] = bough_import_letter(*p);
-    name[n] = '\0';
-}
-
 enum { POLAR = BOUGH_POLAR_COLUMNS };
 
 // The rows (n × POLAR) of a file's first table.
@@ -46,43 +37,11 @@ static double *read_polar(bough_openfast *o, const bough_deck *deck, int *n) {
     return bough_is_ok(o->draft.status) ? table : NULL;
 }
 
-static void put_row(FILE *file, double angle, const double *rest) {
-    const double value[POLAR] = {angle, rest[0], rest[1], rest[2]};
-    fputs("        - ", file);
-    bough_import_list(file, value, POLAR);
-    fputc('\n', file);
-}
-
-// From -180 to 180 deg, where the values are one: the mean of what the table's ends have.
-void bough_openfast_put_polar(bough_openfast *o, const char *name, const double *table, int n) {
-    const double close = 1e-3; // [deg]
-    FILE *file = o->draft.file[BOUGH_IMPORT_POLARS];
-    const double *first = table, *last = table + POLAR * (n - 1);
-    double end[3], gap = 0;
-    for (int c = 0; c < 3; c++) {
-        end[c] = (first[1 + c] + last[1 + c]) / 2;
-        gap = fmax(gap, fabs(first[1 + c] - last[1 + c]));
-    }
-    bool whole = n > 1 && first[0] <= close - 180 && last[0] >= 180 - close;
-    fprintf(file, "  - name: %s\n    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n", name);
-    put_row(file, -180, end);
-    for (int i = 0; i < n; i++) {
-        const double *row = table + POLAR * i;
-        if (fabs(row[0]) < 180 - close) put_row(file, row[0], row + 1);
-    }
-    put_row(file, 180, end);
-    if (!whole || gap > 1e-6) {
-        bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                         "%s: from %g to %g deg; the value at 180 deg is the mean of its ends", name,
-                         first[0], last[0]);
-    }
-}
-
 static void put_polar(bough_openfast *o, const bough_deck *deck, const char *name) {
     int n;
     const double *table = read_polar(o, deck, &n);
     if (!table) return;
-    bough_openfast_put_polar(o, name, table, n);
+    bough_draft_polar(&o->draft, name, table, n);
     if (bough_deck_whole_or(deck, "NumTabs", 1) > 1) {
         bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
                          "%s: the first of its tables is used for all Reynolds numbers", name);
@@ -93,7 +52,8 @@ bough_deck *bough_openfast_open_airfoil(bough_openfast *o, int *line, int number
     while (bough_deck_is_comment(o->aero, *line)) ++*line;
     const char *path = bough_deck_file_at(o->aero, (*line)++);
     bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
-    if (deck) airfoil_name(path, number, name);
+    const char *slash = strrchr(path, '/'), *own = slash ? slash + 1 : path;
+    if (deck) bough_draft_airfoil_name(own, strcspn(own, "."), number, name);
     return deck;
 }
 

@@ -42,7 +42,7 @@ static int put_polars(bough_openfast *o, char (*name)[NAME]) {
         bough_deck *deck = bough_openfast_open_airfoil(o, &line, i + 1, name[i]);
         if (!deck) return 0;
         const double *table = read_polar(o, deck, moments, &rows);
-        if (table) bough_openfast_put_polar(o, name[i], table, rows);
+        if (table) bough_draft_polar(&o->draft, name[i], table, rows);
     }
     bough_draft_note(&o->draft, BOUGH_TAKEN, "%d airfoils: lift, drag%s, the first table of each file", n,
                      moments ? ", moment" : "");

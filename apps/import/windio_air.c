@@ -3,78 +3,51 @@
 #include "core/base.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { NAME = 64 };
+enum { NAME = BOUGH_AIRFOIL_NAME, POLAR = BOUGH_POLAR_COLUMNS };
 
 // -- polars ---------------------------------------------------------------------------------------
 
-// Unique by its number, in letters that a scene's names have.
 static void airfoil_name(const bough_node *airfoil, int number, char name[NAME]) {
     const bough_node *own = bough_entry(airfoil, "name");
-    int n = snprintf(name, NAME, "%d-", number);
-    for (const char *p = own ? own->text : ""; *p && n < NAME - 1; p++) name[n++] = bough_import_letter(*p);
-    name[n] = '\0';
+    bough_draft_airfoil_name(own ? own->text : "", own ? strlen(own->text) : 0, number, name);
 }
 
-// A coefficient over the angle of attack [deg], from -180 to 180, where it is the mean of what the
-// file has at its ends; nothing where the file has none.
+// A coefficient over the angle of attack [deg]; nothing where the file has none. Files in radians often stop at 3.14.
 static bough_curve read_coefficient(bough_windio *w, const bough_node *from, const char *names, bool needed) {
     if (!needed && !bough_entry(from, names)) return (bough_curve){0};
     bough_curve c = bough_entry_curve(&w->draft, from, names);
-    double *x = bough_arena_doubles(w->draft.arena, (size_t)c.n + 2);
-    double *y = bough_arena_doubles(w->draft.arena, (size_t)c.n + 2);
-    if (!x || !y || c.n == 0) return (bough_curve){0};
-    double low = c.x[0] * w->degree, high = c.x[c.n - 1] * w->degree;
+    if (c.n == 0) return c;
+    double *x = bough_arena_doubles(w->draft.arena, (size_t)c.n), low = c.x[0] * w->degree;
+    double high = c.x[c.n - 1] * w->degree;
     if (low < -181 || high > 181) {
-        bough_entry_fail(&w->draft, c.node, "grid: expected angles from -180 to 180 deg, got %g to %g", low,
-                         high);
+        bough_entry_fail(&w->draft, c.node, "grid: expected angles from -180 to 180 deg, got %g to %g", low, high);
     }
-    int n = 0;
-    bool whole = low < -179 && high > 179; // files often stop at 3.14
-    for (int i = 0; i < c.n; i++) {
-        bool end = whole && (i == 0 || i == c.n - 1);
-        if (i == 0 && !whole) n++;
-        x[n] = end ? (i == 0 ? -180 : 180) : c.x[i] * w->degree;
-        y[n++] = c.y[i];
+    for (int i = 0; i < c.n; i++) x[i] = c.x[i] * w->degree;
+    if (low < -179 && high > 179) {
+        x[0] = -180;
+        x[c.n - 1] = 180;
+    } else {
+        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "line %d: from %g to %g deg, constant beyond", c.node->line,
+                         low, high);
     }
-    n += !whole;
-    x[0] = -180;
-    x[n - 1] = 180;
-    if (fabs(c.y[0] - c.y[c.n - 1]) > 1e-6 || !whole) {
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                         "line %d: %g at %.3g deg but %g at %.3g deg: the mean at 180 deg", c.node->line,
-                         c.y[0], low, c.y[c.n - 1], high);
-    }
-    y[0] = y[n - 1] = (c.y[0] + c.y[c.n - 1]) / 2;
-    return bough_curve_of(&w->draft, c.node, x, y, n);
-}
-
-static int compare(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+    c.x = x;
+    return c;
 }
 
 // One row for each angle at which one of the three has a point.
 static void put_polar(bough_windio *w, const bough_curve *c, const char *name) {
-    FILE *file = w->draft.file[BOUGH_IMPORT_POLARS];
-    int n = 0;
-    double *angle = bough_arena_doubles(w->draft.arena, (size_t)(c[0].n + c[1].n + c[2].n));
+    const bough_curve *const all[] = {&c[0], &c[1], &c[2]};
     if (!bough_is_ok(w->draft.status)) return;
-    for (int k = 0; k < 3; k++) {
-        for (int i = 0; i < c[k].n; i++) angle[n++] = c[k].x[i];
-    }
-    qsort(angle, (size_t)n, sizeof *angle, compare);
-    fprintf(file, "  - name: %s\n    table:\n      columns: [alpha deg, cl, cd, cm]\n      rows:\n", name);
+    double *angle;
+    int n = bough_curve_places(&w->draft, all, 3, 1e-9, &angle);
+    double *row = bough_arena_doubles(w->draft.arena, POLAR * (size_t)n);
     for (int i = 0; i < n; i++) {
-        if (i > 0 && angle[i] - angle[i - 1] < 1e-9) continue;
-        const double row[] = {angle[i], bough_curve_at(&c[0], angle[i]), bough_curve_at(&c[1], angle[i]),
-                              bough_curve_at(&c[2], angle[i])};
-        fputs("        - ", file);
-        bough_import_list(file, row, 4);
-        fputc('\n', file);
+        row[POLAR * i] = angle[i];
+        for (int k = 0; k < 3; k++) row[POLAR * i + 1 + k] = bough_curve_at(&c[k], angle[i]);
     }
+    bough_draft_polar(&w->draft, name, row, n);
 }
 
 static void put_airfoil(bough_windio *w, const bough_node *airfoil, int number) {

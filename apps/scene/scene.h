@@ -20,6 +20,7 @@
 #include "core/status.h"
 #include "core/tree.h"
 #include "cosim/scheme.h"
+#include "flexbody/section.h"
 
 #include <stdbool.h>
 #include <stdio.h>
@@ -120,13 +121,7 @@ typedef struct bough_scene_joint {
 // A section of a rod. Between stations everything is linear in span.
 typedef struct bough_scene_station {
     const bough_node *node;
-    double position[3];    // point of the reference axis in the body's frame [m]; [2] is the span
-    double twist;          // [rad]: the section's axes are turned by −twist about the tangent
-    double stiffness[36];  // symmetric, row by row [N, N m, N m²]
-    double mass;           // per length [kg/m]
-    double mass_centre[2]; // offset from the reference axis, x and y in section axes [m]
-    double inertia[4];     // Ixx Iyy Ixy Izz: entries of the inertia matrix per length about the
-                           // reference axis [kg m]; Ixy = −∫xy
+    bough_section_station def; // z of its position is the span
 } bough_scene_station;
 
 // The structure of a rod; a file holds one.

@@ -155,9 +155,7 @@ static double arc_length(const bough_scene_structure *s) {
     double sum = 0;
     if (s->n_station == 1) return s->length;
     for (int k = 1; k < s->n_station; k++) {
-        const double *a = s->station[k - 1].position, *b = s->station[k].position;
-        sum += sqrt((b[0] - a[0]) * (b[0] - a[0]) + (b[1] - a[1]) * (b[1] - a[1]) +
-                    (b[2] - a[2]) * (b[2] - a[2]));
+        sum += bough_norm(bough_sub(s->station[k].def.position, s->station[k - 1].def.position));
     }
     return sum;
 }

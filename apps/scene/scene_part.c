@@ -12,15 +12,15 @@ static void blend(double f, const double *a, const double *b, int n, double *to)
 }
 
 // The section at a span, linear between the stations.
-static bough_scene_station section_at(const bough_scene_structure *s, double span) {
+static bough_section_station section_at(const bough_scene_structure *s, double span) {
     int k = 0;
-    while (k < s->n_station - 2 && span > s->station[k + 1].position[2]) k++;
-    const bough_scene_station *a = &s->station[k], *b = a + 1;
-    bough_scene_station c = *a;
-    double f = (span - a->position[2]) / (b->position[2] - a->position[2]);
-    blend(f, a->position, b->position, 3, c.position);
-    blend(f, a->stiffness, b->stiffness, 36, c.stiffness);
-    blend(f, a->mass_centre, b->mass_centre, 2, c.mass_centre);
+    while (k < s->n_station - 2 && span > s->station[k + 1].def.position.z) k++;
+    const bough_section_station *a = &s->station[k].def, *b = &s->station[k + 1].def;
+    bough_section_station c;
+    double f = (span - a->position.z) / (b->position.z - a->position.z);
+    c.position = bough_add(bough_scale(1 - f, a->position), bough_scale(f, b->position));
+    blend(f, a->stiffness, b->stiffness, 21, c.stiffness);
+    blend(f, a->centre, b->centre, 2, c.centre);
     blend(f, a->inertia, b->inertia, 4, c.inertia);
     c.twist = between(f, a->twist, b->twist);
     c.mass = between(f, a->mass, b->mass);
@@ -30,16 +30,14 @@ static bough_scene_station section_at(const bough_scene_structure *s, double spa
 // Stations from one span to another, positions from the first.
 static void cut(bough_scene_structure *s, const double part[2], bough_scene_station *to) {
     int n = 0;
-    to[n++] = section_at(s, part[0]);
+    to[n++].def = section_at(s, part[0]);
     for (int k = 0; k < s->n_station; k++) {
-        double span = s->station[k].position[2];
+        double span = s->station[k].def.position.z;
         if (span > part[0] && span < part[1]) to[n++] = s->station[k];
     }
-    to[n++] = section_at(s, part[1]);
-    const double origin[3] = {to[0].position[0], to[0].position[1], to[0].position[2]};
-    for (int k = 0; k < n; k++) {
-        for (int c = 0; c < 3; c++) to[k].position[c] -= origin[c];
-    }
+    to[n++].def = section_at(s, part[1]);
+    bough_vec3 origin = to[0].def.position;
+    for (int k = 0; k < n; k++) to[k].def.position = bough_sub(to[k].def.position, origin);
     s->n_station = n;
     s->station = to;
 }

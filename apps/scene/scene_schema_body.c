@@ -19,17 +19,17 @@ static const char stiffness_help[] =
 
 #define FILLS bough_scene_station
 static const bough_key station_keys[] = {
-    {NAMED("span", NUMBER), AT(position) + 2 * sizeof(double), UNIT(LENGTH), .required = true,
+    {NAMED("span", NUMBER), AT(def.position.z), UNIT(LENGTH), .required = true,
      .example = "20.5 m", .help = "position along z, from 0 at the root to the length"},
-    {KEY(NUMBER, twist), UNIT(ANGLE), .fallback = "0", .example = "13.3 deg",
+    {NAMED("twist", NUMBER), AT(def.twist), UNIT(ANGLE), .fallback = "0", .example = "13.3 deg",
      .help = "the section's axes are turned by -twist about z, like pitch"},
-    {NAMED("axis", CUSTOM), AT(position), .read = bough_scene_read_axis_offset,
+    {NAMED("axis", CUSTOM), AT(def.position), .read = bough_scene_read_axis_offset,
      .form = "[x, y] in m", .fallback = "[0, 0]", .example = "[0.1, 0]",
      .help = "offset of the reference axis"},
-    {KEY(CUSTOM, stiffness), .read = bough_scene_read_stiffness, .form = stiffness_form,
-     .required = true, .example = "[1e9, 1e9, 9.7e9, 1.8e10, 1.8e10, 5.6e9]",
+    {NAMED("stiffness", CUSTOM), AT(def.stiffness), .read = bough_scene_read_stiffness,
+     .form = stiffness_form, .required = true, .example = "[1e9, 1e9, 9.7e9, 1.8e10, 1.8e10, 5.6e9]",
      .help = stiffness_help},
-    {NAMED("mass", CUSTOM), .read = bough_scene_read_section_mass, .form = mass_form,
+    {NAMED("mass", CUSTOM), AT(def), .read = bough_scene_read_section_mass, .form = mass_form,
      .required = true, .example = "[679, 0, 0, 970, 970, 0]", .help = mass_help},
 };
 #undef FILLS
@@ -68,12 +68,12 @@ static const bough_key rod_keys[] = {
      .example = "[0, 0, 0, 3 ms, 3 ms, 3 ms]", .help = "replaces the damping of the table"},
     {KEY(NUMBER, length), UNIT(LENGTH), .range = "> 0", .example = "2 m",
      .help = "of a uniform rod"},
-    {NAMED("twist", NUMBER), AT(uniform.twist), UNIT(ANGLE), .fallback = "0", .example = "10 deg",
+    {NAMED("twist", NUMBER), AT(uniform.def.twist), UNIT(ANGLE), .fallback = "0", .example = "10 deg",
      .help = "of a uniform rod"},
-    {NAMED("stiffness", CUSTOM), AT(uniform.stiffness), .read = bough_scene_read_stiffness,
+    {NAMED("stiffness", CUSTOM), AT(uniform.def.stiffness), .read = bough_scene_read_stiffness,
      .form = stiffness_form, .example = "[1e5, 1e5, 3e5, 20, 20, 15]",
      .help = "of a uniform rod, as in a station"},
-    {NAMED("mass", CUSTOM), AT(uniform), .read = bough_scene_read_section_mass, .form = mass_form,
+    {NAMED("mass", CUSTOM), AT(uniform.def), .read = bough_scene_read_section_mass, .form = mass_form,
      .example = "[0.8, 0, 0, 5e-5, 5e-5, 0]", .help = "of a uniform rod, as in a station"},
 };
 #undef FILLS

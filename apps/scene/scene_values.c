@@ -96,9 +96,9 @@ static bool is_positive_definite(const double *matrix, int n) {
     return bough_cholesky_factor(n, scaled);
 }
 
-// field: the matrix (36)
+// field: the upper triangle (21)
 void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, void *field) {
-    double values[21], *matrix = field;
+    double values[21], matrix[36] = {0}, *triangle = field;
     const char *what = "a list of 6 (diagonal) or 21 (upper triangle) numbers";
     int n = bough_schema_numbers(r, node, 21, values, what);
     if (n < 0) return;
@@ -106,10 +106,11 @@ void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, 
         bough_schema_error(r, node, "", "expected %s, got %d items", what, n);
         return;
     }
-    const double *next = values;
-    for (int i = 0; i < 6; i++) {
-        for (int j = i; j < (n == 6 ? i + 1 : 6); j++)
-            matrix[6 * i + j] = matrix[6 * j + i] = *next++;
+    for (int i = 0, at = 0; i < 6; i++) {
+        for (int j = i; j < 6; j++, at++) {
+            triangle[at] = n == 21 ? values[at] : i == j ? values[i] : 0;
+            matrix[6 * i + j] = matrix[6 * j + i] = triangle[at];
+        }
     }
     if (!is_positive_definite(matrix, 6)) {
         bough_schema_error(r, node, "", "the stiffness matrix must be positive definite");
@@ -117,8 +118,8 @@ void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, 
 }
 
 // Whether the inertia about the mass centre is positive definite: parallel axes removed.
-static bool has_section_inertia(const bough_scene_station *s) {
-    double cx = s->mass_centre[0], cy = s->mass_centre[1], m = s->mass;
+static bool has_section_inertia(const bough_section_station *s) {
+    double cx = s->centre[0], cy = s->centre[1], m = s->mass;
     double central[9] = {s->inertia[0] - m * cy * cy,
                          s->inertia[2] + m * cx * cy,
                          0,
@@ -133,7 +134,7 @@ static bool has_section_inertia(const bough_scene_station *s) {
 
 // field: the station
 void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *node, void *field) {
-    bough_scene_station *s = field;
+    bough_section_station *s = field;
     double v[7];
     const char *what = "a list [m, cx, cy, Ixx, Iyy, Ixy] or with Izz";
     int n = bough_schema_numbers(r, node, 7, v, what);
@@ -143,7 +144,7 @@ void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *nod
         return;
     }
     s->mass = v[0];
-    memcpy(s->mass_centre, v + 1, sizeof s->mass_centre);
+    memcpy(s->centre, v + 1, sizeof s->centre);
     memcpy(s->inertia, v + 3, 3 * sizeof *v);
     s->inertia[3] = n == 7 ? v[6] : v[3] + v[4];
     if (!(s->mass > 0)) {
@@ -234,7 +235,7 @@ static const sequence spans = {"stations", "span", 0, 1, "m"};
 
 // The last span against the length; one station holds for the whole length.
 static void check_length(bough_schema_reader *r, bough_scene_structure *s) {
-    double last = s->station[s->n_station - 1].position[2];
+    double last = s->station[s->n_station - 1].def.position.z;
     const bough_node *given = bough_node_find(s->node, "length");
     if (given == NULL && s->n_station == 1) {
         bough_schema_error(r, s->node, "", "required key 'length' is missing (with one station)");
@@ -251,7 +252,7 @@ void bough_scene_check_structure(bough_schema_reader *r, void *item) {
     double before = NAN;
     bool good = true;
     for (int i = 0; i < s->n_station; i++) {
-        double span = s->station[i].position[2];
+        double span = s->station[i].def.position.z;
         good = check_next(r, &spans, s->node, s->station[i].node, i, before, span) && good;
         before = span;
     }

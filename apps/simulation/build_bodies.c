@@ -115,18 +115,7 @@ static bough_status discretise(bough_builder *b, bough_beam *beam) {
     const bough_scene_structure *rod = &beam->body->rod.structure;
     size_t count = (size_t)rod->n_station;
     bough_section_station *station = bough_arena_take(b->arena, count * sizeof *station);
-    for (int k = 0; k < rod->n_station; k++) {
-        const bough_scene_station *from = &rod->station[k];
-        bough_section_station *to = &station[k];
-        to->position = bough_v3(from->position[0], from->position[1], from->position[2]);
-        to->twist = from->twist;
-        to->mass = from->mass;
-        memcpy(to->centre, from->mass_centre, sizeof to->centre);
-        memcpy(to->inertia, from->inertia, sizeof to->inertia);
-        for (int i = 0, at = 0; i < 6; i++) {
-            for (int j = i; j < 6; j++) to->stiffness[at++] = from->stiffness[6 * i + j];
-        }
-    }
+    for (int k = 0; k < rod->n_station; k++) station[k] = rod->station[k].def;
     bough_section_table table = {.name = beam->body->name,
                                  .n_station = rod->n_station,
                                  .station = station,

@@ -101,11 +101,6 @@ static bool turns_freely(const bough_scene_body *body) {
     return is_free(body) || body->joint.kind == BOUGH_JOINT_SPHERICAL;
 }
 
-static double *put_vector(bough_vec3 x, double unit, double *value) {
-    value[0] = x.x / unit, value[1] = x.y / unit, value[2] = x.z / unit;
-    return value + 3;
-}
-
 // Directions in place of angles: they know no jump.
 static void sample_free_bodies(void *self, double t, double *value) {
     (void)t;
@@ -117,12 +112,12 @@ static void sample_free_bodies(void *self, double t, double *value) {
         bough_transform pose = bough_tree_frame_pose(s->view, frame);
         bough_twist velocity = bough_tree_frame_velocity(s->view, frame);
         if (is_free(body)) {
-            value = put_vector(pose.position, 1, value);
-            value = put_vector(velocity.linear, 1, value);
+            value = bough_observe_vector(pose.position, 1, value);
+            value = bough_observe_vector(velocity.linear, 1, value);
         }
-        value = put_vector(pose.rotation.c1, 1, value);
-        value = put_vector(pose.rotation.c3, 1, value);
-        value = put_vector(velocity.angular, DEGREE, value);
+        value = bough_observe_vector(pose.rotation.c1, 1, value);
+        value = bough_observe_vector(pose.rotation.c3, 1, value);
+        value = bough_observe_vector(velocity.angular, DEGREE, value);
     }
 }
 
@@ -236,10 +231,9 @@ static void add_closures(bough_simulation *s, bough_channels *list) {
 static void sample_markers(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
-    for (int k = 0; k < s->scene->n_marker; k++, value += 3) {
+    for (int k = 0; k < s->scene->n_marker; k++) {
         const bough_frame *marker = &s->tree->markers[s->first_marker + k];
-        bough_vec3 x = bough_tree_frame_pose(s->view, marker).position;
-        value[0] = x.x, value[1] = x.y, value[2] = x.z;
+        value = bough_observe_vector(bough_tree_frame_pose(s->view, marker).position, 1, value);
     }
 }
 
@@ -332,10 +326,9 @@ static void sample_tower(void *self, double t, double *value) {
     bough_mat3 turned =
         bough_mat3_product(top.rotation, bough_mat3_transpose(s->tower_rest.rotation));
     bough_vec3 turn = bough_quaternion_logarithm(bough_quaternion_of_matrix(turned));
-    const double values[6] = {d.x, d.y, d.z, turn.x / DEGREE, turn.y / DEGREE, turn.z / DEGREE};
-    memcpy(value, values, sizeof values);
+    value = bough_observe_vector(turn, DEGREE, bough_observe_vector(d, 1, value));
     bough_simulation_root(s, s->tower_foot, t, root);
-    for (int k = 0; k < 6; k++) value[6 + k] = root[k] / 1e3;
+    for (int k = 0; k < 6; k++) value[k] = root[k] / 1e3;
 }
 
 static void add_tower(bough_simulation *s, bough_channels *list) {
@@ -369,10 +362,7 @@ static void sample_tips(void *self, double t, double *value) {
         tip(s, beam, &d, &turn);
         bough_vec3 x = bough_add(beam->def.position[beam->def.n_segment], d);
         x = bough_add(pose.position, bough_mat3_mul(pose.rotation, x));
-        value[0] = x.x;
-        value[1] = x.y;
-        value[2] = x.z;
-        value += 3;
+        value = bough_observe_vector(x, 1, value);
     }
 }
 

@@ -4,6 +4,12 @@
 
 #include "apps/simulation/simulation.h"
 
+// Puts a vector in this unit; what follows it.
+static inline double *bough_observe_vector(bough_vec3 x, double unit, double *value) {
+    value[0] = x.x / unit, value[1] = x.y / unit, value[2] = x.z / unit;
+    return value + 3;
+}
+
 // Motion and section loads of rods at the places of the scene's sensors.
 void bough_observe_sections(bough_simulation *s, bough_channels *list);
 

@@ -59,11 +59,8 @@ static void sample_place(const sensor *x, place at, double *value) {
     bough_mat3 axes = bough_rotation_matrix(bough_quaternion_exponential(turn));
     bough_vec3 force = bough_mat3_tmul(axes, load.force);
     bough_vec3 moment = bough_mat3_tmul(axes, load.moment);
-    const double values[PLACE_CHANNELS] = {
-        shift.x,         shift.y,         shift.z,         turn.x / degree, turn.y / degree,
-        turn.z / degree, force.x / 1e3,   force.y / 1e3,   force.z / 1e3,   moment.x / 1e3,
-        moment.y / 1e3,  moment.z / 1e3};
-    for (int k = 0; k < PLACE_CHANNELS; k++) value[k] = values[k];
+    value = bough_observe_vector(turn, degree, bough_observe_vector(shift, 1, value));
+    bough_observe_vector(moment, 1e3, bough_observe_vector(force, 1e3, value));
 }
 
 static void sample_sections(void *self, double t, double *value) {
@@ -159,10 +156,8 @@ static void sample_yaw_bearing(void *self, double t, double *value) {
     bough_vec3 moment = bough_mat3_mul(bough_rotation_matrix(p), bough_v3(-w[9], -w[10], -w[11]));
     bough_quaternion back = bough_quaternion_conjugate(top->def.rotation[top->def.n_segment]);
     bough_mat3 axes = bough_rotation_matrix(bough_quaternion_product(p, back));
-    force = bough_mat3_tmul(axes, force);
-    moment = bough_mat3_tmul(axes, moment);
-    const double values[6] = {force.x, force.y, force.z, moment.x, moment.y, moment.z};
-    for (int k = 0; k < 6; k++) value[k] = values[k] / 1e3;
+    value = bough_observe_vector(bough_mat3_tmul(axes, force), 1e3, value);
+    bough_observe_vector(bough_mat3_tmul(axes, moment), 1e3, value);
 }
 
 void bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list) {

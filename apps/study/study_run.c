@@ -9,8 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_REPEAT = 99 };
-
 typedef struct cell_run {
     const bough_study *study;
     const bough_study_cell *cell;
@@ -188,9 +186,11 @@ static int compare_numbers(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-static double median(double *values, int n) {
-    qsort(values, (size_t)n, sizeof *values, compare_numbers);
-    return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+bough_spread bough_spread_of(const double *values, int n) {
+    double sorted[BOUGH_STUDY_REPEATS];
+    memcpy(sorted, values, (size_t)n * sizeof *values);
+    qsort(sorted, (size_t)n, sizeof *sorted, compare_numbers);
+    return (bough_spread){0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]), sorted[n / 4], sorted[n - 1 - n / 4]};
 }
 
 bool bough_study_ends(bough_code code) {
@@ -200,9 +200,9 @@ bool bough_study_ends(bough_code code) {
 bough_status bough_study_run(const bough_study *study, const bough_study_cell *cell, int repeat,
                              bough_study_drive *drive, bough_study_series *series,
                              bough_study_result *result) {
-    double wall[MAX_REPEAT] = {0}, cpu[MAX_REPEAT] = {0};
+    double wall[BOUGH_STUDY_REPEATS] = {0}, cpu[BOUGH_STUDY_REPEATS] = {0};
     int n = 0;
-    assert(repeat >= 1 && repeat <= MAX_REPEAT);
+    assert(repeat >= 1 && repeat <= BOUGH_STUDY_REPEATS);
     *result = (bough_study_result){.outcome = bough_ok()};
     while (n < repeat && bough_is_ok(&result->outcome)) {
         cell_run r = {study, cell, drive, result, .series = series};
@@ -214,8 +214,8 @@ bough_status bough_study_run(const bough_study *study, const bough_study_cell *c
     if (bough_study_ends(result->outcome.code)) return result->outcome;
     // The times of a failed repeat are its own: they belong to the time it reached.
     bool good = bough_is_ok(&result->outcome);
-    result->wall = good ? median(wall, n) : wall[n - 1];
-    result->cpu = good ? median(cpu, n) : cpu[n - 1];
+    result->wall = good ? bough_spread_of(wall, n).median : wall[n - 1];
+    result->cpu = good ? bough_spread_of(cpu, n).median : cpu[n - 1];
     for (int i = 0; i < study->n_measure; i++)
         result->error[i] = (double)NAN;
     result->done = true;

@@ -26,6 +26,13 @@ typedef struct bough_study_result {
     bool done;                          // ended, well or not
 } bough_study_result;
 
+// Median and quartiles of at most BOUGH_STUDY_REPEATS values.
+enum { BOUGH_STUDY_REPEATS = 99 };
+typedef struct bough_spread {
+    double median, low, high;
+} bough_spread;
+bough_spread bough_spread_of(const double *values, int n);
+
 // How the runs are driven.
 typedef struct bough_study_drive {
     bool (*stop)(void);      // asked before each step; NULL: never stops

@@ -4,18 +4,10 @@
 #include "apps/study/study_run.h"
 #include "apps/study/study_table.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-enum { MAX_REPEAT = 99 };
-
-// Median and quartiles of a few values.
-typedef struct spread {
-    double median, low, high;
-} spread;
-
 typedef struct cell_times {
-    double wall[MAX_REPEAT], cpu[MAX_REPEAT], ratio[MAX_REPEAT]; // per turn
+    double wall[BOUGH_STUDY_REPEATS], cpu[BOUGH_STUDY_REPEATS], ratio[BOUGH_STUDY_REPEATS]; // per turn
     double error[BOUGH_STUDY_MEASURES]; // against the reference
 } cell_times;
 
@@ -26,19 +18,6 @@ typedef struct timing {
     bough_study_series reference, series;
     bough_study_drive drive;
 } timing;
-
-static int compare_numbers(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static spread spread_of(const double *values, int n) {
-    double sorted[MAX_REPEAT];
-    memcpy(sorted, values, (size_t)n * sizeof *values);
-    qsort(sorted, (size_t)n, sizeof *sorted, compare_numbers);
-    return (spread){0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]), sorted[n / 4],
-                    sorted[n - 1 - n / 4]};
-}
 
 // The cell with the first value of the last axis and this cell's values of all others: what the
 // ratios are against.
@@ -99,8 +78,8 @@ static void print_times(const void *self, FILE *f) {
     fprintf(f, "\n");
     for (int i = 0; i < s->n_cell; i++) {
         const cell_times *c = &t->cell[i];
-        spread wall = spread_of(c->wall, s->repeat), cpu = spread_of(c->cpu, s->repeat);
-        spread ratio = spread_of(c->ratio, s->repeat);
+        bough_spread wall = bough_spread_of(c->wall, s->repeat), cpu = bough_spread_of(c->cpu, s->repeat);
+        bough_spread ratio = bough_spread_of(c->ratio, s->repeat);
         double x = s->duration;
         fprintf(f, "%-52s %9.3f %9.3f %5.1f [%4.1f, %4.1f] %6.3f [%.3f, %.3f]", s->cell[i].settings,
                 cpu.median, wall.median, x / wall.median, x / wall.high, x / wall.low,
