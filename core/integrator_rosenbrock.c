@@ -11,7 +11,6 @@
 #include <string.h>
 
 enum { STAGES = 4, MOST_STEPS = 100000 };
-enum { KNOWN = 200 };   // steps after which their total number is extrapolated
 enum { YOUNG = 8 };     // age of tangents [steps] up to which a failed step keeps them
 enum { MOST_DRIFTED = 4 }; // the same of ∂f/∂t, and anew in every macro step
 enum { MOST_AGE = 24 }; // steps with the same tangents; on a blade, up to 64 cost no accuracy
@@ -42,8 +41,7 @@ typedef struct rosenbrock {
     bough_ode ode;
     double *weight; // 1/tolerance of each state (n)
     double step;    // longest [s]
-    int most_steps; // in a macro step
-    bool foresees;  // and stops once their number is clear
+    int most_steps; // in a macro step, and after a fifth of them their number is foreseen
     double longest;  // step allowed next [s]
     double factored; // γh of the factors; 0: none
     int age;         // steps since the tangents were found
@@ -69,8 +67,7 @@ static void *create(bough_arena *arena, const bough_ode *ode,
     m->ode = *ode;
     if (m->ode.derivative_again == NULL) m->ode.derivative_again = ode->derivative;
     m->step = options->step > 0 ? options->step : (double)INFINITY;
-    m->foresees = options->most_steps > 0;
-    m->most_steps = m->foresees ? options->most_steps : MOST_STEPS;
+    m->most_steps = options->most_steps > 0 ? options->most_steps : MOST_STEPS;
     bough_arena_each(arena, n, &m->weight, &m->drift, &m->error, &m->at, &m->own_error);
     for (int i = 0; i < STAGES; i++) m->stage[i] = bough_arena_doubles(arena, n);
     for (size_t k = 0; k < n; k++) m->weight[k] = 1 / (options->rtol * ode->scale[k]);
@@ -250,10 +247,12 @@ static void accept(rosenbrock *m, double *restrict y) {
 // Equal steps over the remaining time, none longer than allowed. A step that fails with old tangents is
 // first repeated with new ones. Returns NULL, or the reason of a failure.
 static const char *cross(rosenbrock *m, double *t, double pause, double t1, double *y) {
+    double begun = *t;
     for (int n = 0; *t < pause; n++) {
         double parts = ceil((t1 - *t) / m->longest * (1 - 1e-12));
         double h = (t1 - *t) / fmax(parts, 1);
-        if (n + (m->foresees && n >= KNOWN ? parts : 0) >= m->most_steps) {
+        bool known = n >= m->most_steps / 5;
+        if (known && n * (t1 - begun) >= m->most_steps * (*t - begun)) {
             return "too many steps to the end of the macro step: it follows vibrations that fast, which"
                    " damping of rods or a larger rtol would end";
         }

@@ -18,7 +18,7 @@ static const bough_key master_keys[] = {
      .help = "ida, cvode-bdf: BDF of variable order; arkode-esdirk: Runge-Kutta of order 4; "
              "radau5: Runge-Kutta of order 5, up to 400 states; generalized-alpha: order 2; "
              "rosenbrock: linearly implicit Runge-Kutta of order 3; automatic: rosenbrock, and ida "
-             "at a tenth of rtol where that would take a thousand steps in a macro step"},
+             "at a tenth of rtol where that takes fewer evaluations"},
     RTOL("1e-6"),
     {KEY(NUMBER, step), UNIT(TIME), .range = "[1e-7, 10]", .example = "10 ms",
      .help = "of generalized-alpha, rosenbrock and automatic: longest step; default the macro "
