@@ -49,12 +49,13 @@ static bough_stability_advice judge_again(bough_breakdown *b, bough_coupling *c)
     return bough_is_ok(&status) ? advice : (bough_stability_advice){0};
 }
 
-// Shorter macro steps and other tolerances seldom help a member that fails under a stable coupling; one system
-// of all members does. Of an opaque member nothing is known, and only they are left.
+// Shorter macro steps and other tolerances seldom help a member that fails under a stable coupling; one
+// system of all members does. What stops that stops every method: vibrations that nothing damps, a mesh that
+// is too coarse. Of an opaque member nothing is known.
 static void advise(const bough_coupling *c, const bough_stability_advice *advice, char *text) {
     if (!advice->unstable) {
         snprintf(text, ADVICE, "; try %s",
-                 c->scheme->one_system      ? "a smaller macro step or another master.rtol"
+                 c->scheme->one_system ? "damping of flexible bodies, more segments or another master.rtol"
                  : c->assembly->opaque ? "a smaller macro step or another micro.rtol"
                                        : "scheme: monolithic");
         return;
