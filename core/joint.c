@@ -4,19 +4,28 @@
 #include "core/base.h"
 #include "core/rotation.h"
 
+// A joint slides along none, one or two axes or anywhere, and then spins.
+typedef enum spin { NO_SPIN, ABOUT_AXIS, ALL_WAYS } spin;
+
 static const struct {
     const char *name;
     int coordinates, speeds, axes;
+    int slides; // the first coordinates and speeds
+    spin spin;
 } kinds[] = {
-    [BOUGH_JOINT_FIXED] = {"fixed", 0, 0, 0},
-    [BOUGH_JOINT_REVOLUTE] = {"revolute", 1, 1, 1},
-    [BOUGH_JOINT_PRISMATIC] = {"prismatic", 1, 1, 1},
-    [BOUGH_JOINT_SPHERICAL] = {"spherical", 4, 3, 0},
-    [BOUGH_JOINT_FREE] = {"free", 7, 6, 0},
-    [BOUGH_JOINT_CYLINDRICAL] = {"cylindrical", 2, 2, 1},
-    [BOUGH_JOINT_UNIVERSAL] = {"universal", 2, 2, 2},
-    [BOUGH_JOINT_PLANAR] = {"planar", 3, 3, 2},
+    [BOUGH_JOINT_FIXED] = {"fixed", 0, 0, 0, 0, NO_SPIN},
+    [BOUGH_JOINT_REVOLUTE] = {"revolute", 1, 1, 1, 0, ABOUT_AXIS},
+    [BOUGH_JOINT_PRISMATIC] = {"prismatic", 1, 1, 1, 1, NO_SPIN},
+    [BOUGH_JOINT_SPHERICAL] = {"spherical", 4, 3, 0, 0, ALL_WAYS},
+    [BOUGH_JOINT_FREE] = {"free", 7, 6, 0, 3, ALL_WAYS},
+    [BOUGH_JOINT_CYLINDRICAL] = {"cylindrical", 2, 2, 1, 1, ABOUT_AXIS},
+    [BOUGH_JOINT_UNIVERSAL] = {"universal", 2, 2, 2, 0, NO_SPIN}, // two revolute joints of the tree
+    [BOUGH_JOINT_PLANAR] = {"planar", 3, 3, 2, 2, ABOUT_AXIS},
 };
+
+static int slides_of(const bough_joint *joint) { return kinds[joint->kind].slides; }
+
+static spin spin_of(const bough_joint *joint) { return kinds[joint->kind].spin; }
 
 const char *bough_joint_name(bough_joint_kind kind) { return kinds[kind].name; }
 
@@ -28,7 +37,7 @@ int bough_joint_n_axes(bough_joint_kind kind) { return kinds[kind].axes; }
 
 // Where the coordinates hold the quaternion; -1 without one.
 static int quaternion_row(const bough_joint *joint) {
-    return joint->kind == BOUGH_JOINT_SPHERICAL ? 0 : joint->kind == BOUGH_JOINT_FREE ? 3 : -1;
+    return spin_of(joint) == ALL_WAYS ? slides_of(joint) : -1;
 }
 
 static bough_quaternion load(const double *p) { return (bough_quaternion){p[0], p[1], p[2], p[3]}; }
@@ -49,73 +58,46 @@ static bough_mat3 axis_rotation(bough_vec3 a, double angle) {
     };
 }
 
-// x along a planar joint's second axis, y along axis × second
-static bough_vec3 in_plane(const bough_joint *joint, double x, double y) {
-    bough_vec3 third = bough_cross(joint->axis, joint->second);
-    return bough_axpy(x, joint->second, bough_scale(y, third));
+// The vector of x along what the joint slides; of two, along the second axis and axis × second.
+static bough_vec3 slide(const bough_joint *joint, const double *x) {
+    switch (slides_of(joint)) {
+    case 1: return bough_scale(x[0], joint->axis);
+    case 2:
+        return bough_axpy(x[0], joint->second, bough_scale(x[1], bough_cross(joint->axis, joint->second)));
+    case 3: return load3(x);
+    default: return bough_v3(0, 0, 0);
+    }
 }
 
 bough_transform bough_joint_pose(const bough_joint *joint, const double *q) {
-    bough_transform moved = bough_transform_identity();
-    switch (joint->kind) {
-    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
-    case BOUGH_JOINT_FIXED: break;
-    case BOUGH_JOINT_REVOLUTE: moved.rotation = axis_rotation(joint->axis, q[0]); break;
-    case BOUGH_JOINT_PRISMATIC: moved.position = bough_scale(q[0], joint->axis); break;
-    case BOUGH_JOINT_SPHERICAL: moved.rotation = rotation_at(q); break;
-    case BOUGH_JOINT_FREE:
-        moved.position = load3(q);
-        moved.rotation = rotation_at(q + 3);
-        break;
-    case BOUGH_JOINT_CYLINDRICAL:
-        moved.position = bough_scale(q[0], joint->axis);
-        moved.rotation = axis_rotation(joint->axis, q[1]);
-        break;
-    case BOUGH_JOINT_PLANAR:
-        moved.position = in_plane(joint, q[0], q[1]);
-        moved.rotation = axis_rotation(joint->axis, q[2]);
-        break;
-    }
+    bough_transform moved = {slide(joint, q), bough_mat3_identity()};
+    q += slides_of(joint);
+    if (spin_of(joint) == ABOUT_AXIS) moved.rotation = axis_rotation(joint->axis, q[0]);
+    if (spin_of(joint) == ALL_WAYS) moved.rotation = rotation_at(q);
     return bough_transform_compose(joint->placement, moved);
 }
 
 bough_twist bough_joint_twist(const bough_joint *joint, const double *v) {
-    bough_twist t = {{0, 0, 0}, {0, 0, 0}};
-    switch (joint->kind) {
-    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
-    case BOUGH_JOINT_FIXED: break;
-    case BOUGH_JOINT_REVOLUTE: t.angular = bough_scale(v[0], joint->axis); break;
-    case BOUGH_JOINT_PRISMATIC: t.linear = bough_scale(v[0], joint->axis); break;
-    case BOUGH_JOINT_SPHERICAL: t.angular = load3(v); break;
-    case BOUGH_JOINT_FREE: t = bough_twist_load(v); break;
-    case BOUGH_JOINT_CYLINDRICAL:
-        t = (bough_twist){bough_scale(v[0], joint->axis), bough_scale(v[1], joint->axis)};
-        break;
-    case BOUGH_JOINT_PLANAR:
-        t = (bough_twist){in_plane(joint, v[0], v[1]), bough_scale(v[2], joint->axis)};
-        break;
-    }
+    bough_twist t = {slide(joint, v), {0, 0, 0}};
+    v += slides_of(joint);
+    if (spin_of(joint) == ABOUT_AXIS) t.angular = bough_scale(v[0], joint->axis);
+    if (spin_of(joint) == ALL_WAYS) t.angular = load3(v);
     return t;
 }
 
 void bough_joint_force(const bough_joint *joint, bough_wrench f, double *force) {
-    switch (joint->kind) {
-    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
-    case BOUGH_JOINT_FIXED: break;
-    case BOUGH_JOINT_REVOLUTE: force[0] = bough_dot(joint->axis, f.moment); break;
-    case BOUGH_JOINT_PRISMATIC: force[0] = bough_dot(joint->axis, f.force); break;
-    case BOUGH_JOINT_SPHERICAL: bough_v3_store(f.moment, force); break;
-    case BOUGH_JOINT_FREE: bough_wrench_store(f, force); break;
-    case BOUGH_JOINT_CYLINDRICAL:
-        force[0] = bough_dot(joint->axis, f.force);
-        force[1] = bough_dot(joint->axis, f.moment);
-        break;
-    case BOUGH_JOINT_PLANAR:
+    switch (slides_of(joint)) {
+    case 1: force[0] = bough_dot(joint->axis, f.force); break;
+    case 2:
         force[0] = bough_dot(joint->second, f.force);
         force[1] = bough_dot(bough_cross(joint->axis, joint->second), f.force);
-        force[2] = bough_dot(joint->axis, f.moment);
         break;
+    case 3: bough_v3_store(f.force, force); break;
+    default: break;
     }
+    force += slides_of(joint);
+    if (spin_of(joint) == ABOUT_AXIS) force[0] = bough_dot(joint->axis, f.moment);
+    if (spin_of(joint) == ALL_WAYS) bough_v3_store(f.moment, force);
 }
 
 // ṗ = ½ p∘(0,Ω), with p as it stands: |p| keeps its value exactly and only p/|p| is used.
@@ -132,44 +114,29 @@ static void quaternion_speed(const double *p, const double *change, double *omeg
     bough_v3_store(bough_scale(2 / square, bough_v3(c.x, c.y, c.z)), omega);
 }
 
-// Turns (x, y) by an angle; the third is the angle's own.
+// Turns (x, y) by an angle.
 static void turn_plane(double angle, const double *x, double *turned) {
     double c = cos(angle), s = sin(angle);
     turned[0] = c * x[0] - s * x[1];
     turned[1] = s * x[0] + c * x[1];
-    turned[2] = x[2];
 }
 
 void bough_joint_rate(const bough_joint *joint, const double *q, const double *v, double *rate) {
-    switch (joint->kind) {
-    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
-    case BOUGH_JOINT_FIXED: break;
-    case BOUGH_JOINT_REVOLUTE:
-    case BOUGH_JOINT_PRISMATIC: rate[0] = v[0]; break;
-    case BOUGH_JOINT_SPHERICAL: quaternion_rate(q, v, rate); break;
-    case BOUGH_JOINT_FREE:
-        bough_v3_store(bough_mat3_mul(rotation_at(q + 3), load3(v)), rate);
-        quaternion_rate(q + 3, v + 3, rate + 3);
-        break;
-    case BOUGH_JOINT_CYLINDRICAL: rate[0] = v[0], rate[1] = v[1]; break;
-    case BOUGH_JOINT_PLANAR: turn_plane(q[2], v, rate); break;
-    }
+    int n = slides_of(joint);
+    if (n == 1) rate[0] = v[0];
+    if (n == 2) turn_plane(q[2], v, rate);
+    if (n == 3) bough_v3_store(bough_mat3_mul(rotation_at(q + 3), load3(v)), rate);
+    if (spin_of(joint) == ABOUT_AXIS) rate[n] = v[n];
+    if (spin_of(joint) == ALL_WAYS) quaternion_rate(q + n, v + n, rate + n);
 }
 
 void bough_joint_speed(const bough_joint *joint, const double *q, const double *change, double *v) {
-    switch (joint->kind) {
-    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
-    case BOUGH_JOINT_FIXED: break;
-    case BOUGH_JOINT_REVOLUTE:
-    case BOUGH_JOINT_PRISMATIC: v[0] = change[0]; break;
-    case BOUGH_JOINT_SPHERICAL: quaternion_speed(q, change, v); break;
-    case BOUGH_JOINT_FREE:
-        bough_v3_store(bough_mat3_tmul(rotation_at(q + 3), load3(change)), v);
-        quaternion_speed(q + 3, change + 3, v + 3);
-        break;
-    case BOUGH_JOINT_CYLINDRICAL: v[0] = change[0], v[1] = change[1]; break;
-    case BOUGH_JOINT_PLANAR: turn_plane(-q[2], change, v); break;
-    }
+    int n = slides_of(joint);
+    if (n == 1) v[0] = change[0];
+    if (n == 2) turn_plane(-q[2], change, v);
+    if (n == 3) bough_v3_store(bough_mat3_tmul(rotation_at(q + 3), load3(change)), v);
+    if (spin_of(joint) == ABOUT_AXIS) v[n] = change[n];
+    if (spin_of(joint) == ALL_WAYS) quaternion_speed(q + n, change + n, v + n);
 }
 
 // δp∘(c − ½Ω) = r + ½ p∘δΩ
@@ -185,12 +152,11 @@ static void quaternion_change(const double *p, const double *omega, double c, co
     change[0] = d.w, change[1] = d.x, change[2] = d.y, change[3] = d.z;
 }
 
-// c δx − δ(R v) = r with δ(R v) = R (δv + δη × v)
+// c δx − δ(R v) = r with δ(R v) = R (δv + δη × v); `turn` is the change of the quaternion.
 static void free_change(const double *q, const double *v, double c, const double *r,
-                        const double *speed_change, double *change) {
+                        const double *speed_change, const double *turn, double *change) {
     double eta[3];
-    quaternion_change(q + 3, v + 3, c, r + 3, speed_change + 3, change + 3);
-    quaternion_speed(q + 3, change + 3, eta);
+    quaternion_speed(q + 3, turn, eta);
     bough_vec3 own = bough_add(load3(speed_change), bough_cross(load3(eta), load3(v)));
     bough_vec3 sum = bough_add(load3(r), bough_mat3_mul(rotation_at(q + 3), own));
     bough_v3_store(bough_scale(1 / c, sum), change);
@@ -198,26 +164,22 @@ static void free_change(const double *q, const double *v, double c, const double
 
 // The same in the plane, where δη × v is the angle's change times v turned by a right angle.
 static void planar_change(const double *q, const double *v, double c, const double *r,
-                          const double *speed_change, double *change) {
-    double angle = (r[2] + speed_change[2]) / c;
-    const double own[3] = {speed_change[0] - angle * v[1], speed_change[1] + angle * v[0], 0};
+                          const double *speed_change, double turn, double *change) {
+    const double own[2] = {speed_change[0] - turn * v[1], speed_change[1] + turn * v[0]};
     turn_plane(q[2], own, change);
     for (int k = 0; k < 2; k++) change[k] = (r[k] + change[k]) / c;
-    change[2] = angle;
 }
 
 void bough_joint_change(const bough_joint *joint, const double *q, const double *v, double c, const double *r,
                         const double *speed_change, double *change) {
-    switch (joint->kind) {
-    case BOUGH_JOINT_UNIVERSAL: // two revolute joints of the tree
-    case BOUGH_JOINT_FIXED: break;
-    case BOUGH_JOINT_CYLINDRICAL: change[1] = (r[1] + speed_change[1]) / c; // fall through
-    case BOUGH_JOINT_REVOLUTE:
-    case BOUGH_JOINT_PRISMATIC: change[0] = (r[0] + speed_change[0]) / c; break;
-    case BOUGH_JOINT_SPHERICAL: quaternion_change(q, v, c, r, speed_change, change); break;
-    case BOUGH_JOINT_FREE: free_change(q, v, c, r, speed_change, change); break;
-    case BOUGH_JOINT_PLANAR: planar_change(q, v, c, r, speed_change, change); break;
+    int n = slides_of(joint);
+    if (spin_of(joint) == ABOUT_AXIS) change[n] = (r[n] + speed_change[n]) / c;
+    if (spin_of(joint) == ALL_WAYS) {
+        quaternion_change(q + n, v + n, c, r + n, speed_change + n, change + n);
     }
+    if (n == 1) change[0] = (r[0] + speed_change[0]) / c;
+    if (n == 2) planar_change(q, v, c, r, speed_change, change[2], change);
+    if (n == 3) free_change(q, v, c, r, speed_change, change + 3, change);
 }
 
 void bough_joint_normalise(const bough_joint *joint, double *q) {
