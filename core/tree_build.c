@@ -138,10 +138,7 @@ static void place_attachments(bough_tree *tree, const bough_tree_def *def) {
         tree->ends[e].placement = bough_transform_identity();
         add_inertia(tree, &tree->ends[e], def->ends[e].inertia);
     }
-    for (int k = 0; k < def->n_loads; k++) {
-        tree->loads[k] = def->loads[k];
-        tree->loads[k].body = tree->bodies[def->loads[k].body].link;
-    }
+    for (int k = 0; k < def->n_loads; k++) tree->loads[k].body = tree->bodies[def->loads[k].body].link;
 }
 
 static void create_motions(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
@@ -168,68 +165,60 @@ static void set_initial(bough_tree *tree, const bough_tree_def *def) {
     bough_tree_prescribe(tree, 0, tree->initial);
 }
 
-// Copies a table's times and values (n each).
-static void take_table(bough_arena *arena, int n, const double **times, const double **values) {
-    if (n == 0) return;
-    size_t size = (size_t)n * sizeof(double);
-    double *copy = bough_arena_doubles(arena, 2 * (size_t)n);
-    memcpy(copy, *times, size);
-    memcpy(copy + n, *values, size);
-    *times = copy;
-    *values = copy + n;
+static void *copied(bough_arena *arena, const void *from, size_t size) {
+    void *to = bough_arena_take(arena, size);
+    if (size > 0) memcpy(to, from, size);
+    return to;
 }
 
-static void take_tables(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+// Copies a table's times and values (n each).
+static void copy_table(bough_arena *arena, int n, const double **times, const double **values) {
+    *times = copied(arena, *times, (size_t)n * sizeof(double));
+    *values = copied(arena, *values, (size_t)n * sizeof(double));
+}
+
+// What stands in the tree as in the definition, with tables of its own.
+static void copy_forces(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+    tree->gravity = def->gravity;
+    tree->n_loads = def->n_loads;
+    tree->n_springs = def->n_springs;
+    tree->n_bushings = def->n_bushings;
+    tree->n_applied = def->n_applied;
+    tree->loads = copied(arena, def->loads, (size_t)def->n_loads * sizeof *def->loads);
+    tree->springs = copied(arena, def->springs, (size_t)def->n_springs * sizeof *def->springs);
+    tree->bushings = copied(arena, def->bushings, (size_t)def->n_bushings * sizeof *def->bushings);
+    tree->applied = copied(arena, def->applied, (size_t)def->n_applied * sizeof *def->applied);
     for (int k = 0; k < def->n_loads; k++) {
         bough_joint_load_def *load = &tree->loads[k];
-        take_table(arena, load->n, &load->times, &load->values);
+        copy_table(arena, load->n, &load->times, &load->values);
     }
     for (int k = 0; k < def->n_applied; k++) {
         bough_applied_def *a = &tree->applied[k];
-        *a = def->applied[k];
-        take_table(arena, a->n, &a->times, &a->values);
+        copy_table(arena, a->n, &a->times, &a->values);
     }
 }
 
-static void take_model(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
-    tree->gravity = def->gravity;
+static void take_frames(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
+    size_t n = (size_t)def->n_bodies, n_markers = (size_t)def->n_markers, n_ports = (size_t)def->n_ports;
     tree->n_bodies = def->n_bodies;
     tree->n_markers = def->n_markers;
     tree->n_ports = def->n_ports;
-    tree->n_loads = def->n_loads;
-    // A universal joint is two links.
-    tree->links = bough_arena_take(arena, 2 * (size_t)def->n_bodies * sizeof(bough_link));
-    tree->bodies = bough_arena_take(arena, (size_t)def->n_bodies * sizeof(bough_frame));
-    tree->markers = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_frame));
-    tree->ports = bough_arena_take(arena, (size_t)def->n_ports * sizeof(bough_frame));
-    tree->axes = bough_arena_take(arena, (size_t)def->n_ports * sizeof(int));
-    tree->loads = bough_arena_take(arena, (size_t)def->n_loads * sizeof(bough_joint_load_def));
-    tree->external = bough_arena_take(arena, (size_t)def->n_markers * sizeof(bough_external));
     tree->n_ends = def->n_ends;
+    tree->links = bough_arena_take(arena, 2 * n * sizeof(bough_link)); // a universal joint is two
+    tree->bodies = bough_arena_take(arena, n * sizeof(bough_frame));
+    tree->markers = bough_arena_take(arena, n_markers * sizeof(bough_frame));
+    tree->external = bough_arena_take(arena, n_markers * sizeof(bough_external));
+    tree->ports = bough_arena_take(arena, n_ports * sizeof(bough_frame));
+    tree->axes = bough_arena_take(arena, n_ports * sizeof(int));
     tree->ends = bough_arena_take(arena, (size_t)def->n_ends * sizeof(bough_frame));
-    tree->n_springs = def->n_springs;
-    tree->springs = bough_arena_take(arena, (size_t)def->n_springs * sizeof(bough_spring_def));
-    tree->n_bushings = def->n_bushings;
-    tree->bushings = bough_arena_take(arena, (size_t)def->n_bushings * sizeof(bough_bushing_def));
-    tree->n_applied = def->n_applied;
-    tree->applied = bough_arena_take(arena, (size_t)def->n_applied * sizeof(bough_applied_def));
-    tree->initial =
-        bough_arena_doubles(arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) * (size_t)def->n_bodies);
-}
-
-static void take_names(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
-    for (int b = 0; b < def->n_bodies; b++) {
+    tree->initial = bough_arena_doubles(arena, (BOUGH_JOINT_COORDINATES + BOUGH_JOINT_SPEEDS) * n);
+    for (int b = 0; b < def->n_bodies; b++)
         tree->bodies[b].name = bough_arena_string(arena, def->bodies[b].name);
-    }
-    for (int m = 0; m < def->n_markers; m++) {
+    for (int m = 0; m < def->n_markers; m++)
         tree->markers[m].name = bough_arena_string(arena, def->markers[m].name);
-    }
-    for (int p = 0; p < def->n_ports; p++) {
+    for (int p = 0; p < def->n_ports; p++)
         tree->ports[p].name = bough_arena_string(arena, def->ports[p].name);
-    }
-    for (int e = 0; e < def->n_ends; e++) {
-        tree->ends[e].name = bough_arena_string(arena, def->ends[e].name);
-    }
+    for (int e = 0; e < def->n_ends; e++) tree->ends[e].name = bough_arena_string(arena, def->ends[e].name);
 }
 
 // A joint that moves no inertia has no acceleration; loops must close.
@@ -254,13 +243,10 @@ bough_status bough_tree_create(bough_arena *arena, const bough_tree_def *def, bo
     int *scratch = bough_arena_take(arena, (3 * n + 1) * sizeof *scratch), *order = scratch;
     order_bodies(def, scratch + n, order);
     bough_tree *tree = bough_arena_take(arena, sizeof *tree);
-    take_model(arena, def, tree);
-    take_names(arena, def, tree);
+    take_frames(arena, def, tree);
+    copy_forces(arena, def, tree);
     for (int k = 0; k < def->n_bodies; k++) place_body(tree, &def->bodies[order[k]], order[k]);
     place_attachments(tree, def);
-    for (int k = 0; k < def->n_springs; k++) tree->springs[k] = def->springs[k];
-    for (int k = 0; k < def->n_bushings; k++) tree->bushings[k] = def->bushings[k];
-    take_tables(arena, def, tree);
     create_motions(arena, def, tree);
     set_initial(tree, def);
     *out = tree;
