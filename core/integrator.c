@@ -12,17 +12,14 @@ static const bough_integrator_ops *const methods[] = {
     [BOUGH_AUTOMATIC] = &bough_integrator_automatic,
 };
 
-const bough_integrator_ops *bough_integrator_find(bough_integrator_kind kind) {
-    return methods[kind];
-}
+const bough_integrator_ops *bough_integrator_find(bough_integrator_kind kind) { return methods[kind]; }
 
 const char *bough_integrator_name(int index) {
     return index < (int)(sizeof methods / sizeof *methods) ? methods[index]->name : NULL;
 }
 
 bough_status bough_integrator_create(bough_arena *arena, const bough_ode *ode,
-                                     const bough_integrator_options *options,
-                                     bough_integrator *integrator) {
+                                     const bough_integrator_options *options, bough_integrator *integrator) {
     const bough_integrator_ops *ops = methods[options->kind];
     *integrator = (bough_integrator){.ops = ops};
     assert(options->rtol > 0);

@@ -10,31 +10,30 @@
 
 enum { MOST_ITERATIONS = 10, MOST_HALVINGS = 8 };
 
-static const double slow = 0.1;     // contraction beyond which the tangents are renewed
-static const double forget = 0.3;   // share of an earlier step's contraction that a better one keeps
+static const double slow = 0.1;         // contraction beyond which the tangents are renewed
+static const double forget = 0.3;       // share of an earlier step's contraction that a better one keeps
 static const double newton_share = 0.1; // of rtol: what Newton's method may leave
-static const double rounding = 1e-9; // of times and steps that are meant to be equal, relative
+static const double rounding = 1e-9;    // of times and steps that are meant to be equal, relative
 
 typedef struct alpha {
     bough_ode ode;
-    double *weight; // 1/scale (n)
-    double step; // longest [s]
-    double rtol; // Newton's method ends below rtol · scale
-    double am, af, gamma;  // α_m, α_f, γ
-    double factored;       // γ of I − γ ∂f/∂y in the factors; 0: none
-    bool stale;            // the tangents are to be renewed
-    double contraction;    // per iteration with these factors, 1 until it is seen
+    double *weight;       // 1/scale (n)
+    double step;          // longest [s]
+    double rtol;          // Newton's method ends below rtol · scale
+    double am, af, gamma; // α_m, α_f, γ
+    double factored;      // γ of I − γ ∂f/∂y in the factors; 0: none
+    bool stale;           // the tangents are to be renewed
+    double contraction;   // per iteration with these factors, 1 until it is seen
     bool started;
-    double *rate;          // ẏ₀ (n)
+    double *rate;                                 // ẏ₀ (n)
     double *next, *next_rate, *middle, *residual; // y₁, ẏ₁, y_f, work (n)
-    double *own_error;     // (n)
-    double *slope;         // (n) of ẏ over the last step
-    double last;           // its length, 0: there is none since the start [s]
+    double *own_error;                            // (n)
+    double *slope;                                // (n) of ẏ over the last step
+    double last;                                  // its length, 0: there is none since the start [s]
     bough_statistics sum;
 } alpha;
 
-static void *create(bough_arena *arena, const bough_ode *ode,
-                    const bough_integrator_options *options) {
+static void *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
     alpha *m = bough_arena_take(arena, sizeof *m);
     size_t n = (size_t)ode->n;
     m->ode = *ode;
@@ -179,8 +178,7 @@ static bool start(alpha *m, double t, const double *y) {
     return m->ode.derivative(m->ode.self, t, y, m->rate);
 }
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
-                            double *y) {
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
     (void)pause;
     alpha *m = self;
     double longest = m->step;
@@ -197,7 +195,8 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
     }
     if (ok) return bough_ok();
     m->started = false;
-    return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: generalised-α cannot go on: Newton's method"
+    return bough_fail(BOUGH_FAILED,
+                      "%s at t = %.6g s: generalised-α cannot go on: Newton's method"
                       " does not converge with steps of %.2g s; try a shorter micro step",
                       m->ode.name, *t, longest);
 }

@@ -8,8 +8,8 @@
 #include <string.h>
 
 static int linear_system(sunrealtype t, N_Vector y, N_Vector fy, SUNMatrix m, SUNMatrix mass,
-                         sunbooleantype jok, sunbooleantype *jcur, sunrealtype gamma, void *user,
-                         N_Vector a, N_Vector b, N_Vector c) {
+                         sunbooleantype jok, sunbooleantype *jcur, sunrealtype gamma, void *user, N_Vector a,
+                         N_Vector b, N_Vector c) {
     (void)fy, (void)m, (void)mass, (void)a, (void)b, (void)c;
     return bough_newton_handle_system(user, t, y, jok, jcur, gamma);
 }
@@ -93,8 +93,7 @@ static bool take_memory(bough_newton_run *run) {
     return flag < 0 && flag != ARK_MEM_FAIL && one.calls > 1;
 }
 
-static void *create(bough_arena *arena, const bough_ode *ode,
-                    const bough_integrator_options *options) {
+static void *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
     bough_newton_run *run = bough_newton_run_create(arena, ode, options->rtol, &library, destroy);
     bough_newton_handle *newton = &run->newton;
     run->memory = ARKStepCreate(NULL, bough_newton_handle_rate, 0, newton->y, newton->context);

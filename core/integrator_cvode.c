@@ -5,8 +5,8 @@
 #include <cvode/cvode_ls.h>
 
 static int linear_system(sunrealtype t, N_Vector y, N_Vector fy, SUNMatrix m, sunbooleantype jok,
-                         sunbooleantype *jcur, sunrealtype gamma, void *user, N_Vector a,
-                         N_Vector b, N_Vector c) {
+                         sunbooleantype *jcur, sunrealtype gamma, void *user, N_Vector a, N_Vector b,
+                         N_Vector c) {
     (void)fy, (void)m, (void)a, (void)b, (void)c;
     return bough_newton_handle_system(user, t, y, jok, jcur, gamma);
 }
@@ -15,8 +15,8 @@ static void count(void *memory, bough_statistics *sum) {
     long steps, rhs, setups, failed, iterations, convergence;
     int last, next;
     double first, previous, h, now;
-    CVodeGetIntegratorStats(memory, &steps, &rhs, &setups, &failed, &last, &next, &first, &previous,
-                            &h, &now);
+    CVodeGetIntegratorStats(memory, &steps, &rhs, &setups, &failed, &last, &next, &first, &previous, &h,
+                            &now);
     CVodeGetNonlinSolvStats(memory, &iterations, &convergence);
     sum->steps += steps;
     sum->derivatives += rhs;
@@ -61,8 +61,7 @@ static bool configure(bough_newton_run *run) {
     return bad == 0;
 }
 
-static void *create(bough_arena *arena, const bough_ode *ode,
-                    const bough_integrator_options *options) {
+static void *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
     bough_newton_run *run = bough_newton_run_create(arena, ode, options->rtol, &library, destroy);
     run->memory = CVodeCreate(CV_BDF, run->newton.context);
     if (run->memory == NULL || !configure(run)) bough_arena_leave(arena);

@@ -19,8 +19,7 @@ enum { MOST_STATES = 400 };
 static const double root6 = 2.4494897427831781;
 static const double node[STAGES] = {0.15505102572168219, 0.64494897427831781, 1};
 
-static const double gamma_ = 3.6378342527444957, alpha = 2.6810828736277521,
-                    beta = 3.0504301992474105;
+static const double gamma_ = 3.6378342527444957, alpha = 2.6810828736277521, beta = 3.0504301992474105;
 static const double transform[STAGES][STAGES] = {
     {9.1232394870892942792e-02, -0.14125529502095420843, -3.0029194105147424492e-02},
     {0.24171793270710701896, 0.20412935229379993199, 0.38294211275726193779},
@@ -88,8 +87,7 @@ static void take(bough_arena *arena, radau *r) {
     r->matrix = r->z + STAGES * n;
 }
 
-static void *create(bough_arena *arena, const bough_ode *ode,
-                    const bough_integrator_options *options) {
+static void *create(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options) {
     double rtol = options->rtol;
     radau *r = bough_arena_take(arena, sizeof *r);
     r->ode = *ode;
@@ -97,8 +95,7 @@ static void *create(bough_arena *arena, const bough_ode *ode,
     // The error estimate is of order 3, the solution of order 5: this makes the error of the latter
     // follow rtol.
     double inner = 0.1 * pow(rtol, 2.0 / 3);
-    for (int i = 0; i < ode->n; i++)
-        r->weight[i] = 1 / (inner * ode->scale[i]);
+    for (int i = 0; i < ode->n; i++) r->weight[i] = 1 / (inner * ode->scale[i]);
     r->newton_tolerance = fmax(10 * 2.3e-16 / inner, fmin(0.03, sqrt(inner)));
     return r;
 }
@@ -107,8 +104,7 @@ static void *create(bough_arena *arena, const bough_ode *ode,
 
 static double square(const radau *r, const double *x) {
     double sum = 0;
-    for (int i = 0; i < r->ode.n; i++)
-        sum += x[i] * r->weight[i] * (x[i] * r->weight[i]);
+    for (int i = 0; i < r->ode.n; i++) sum += x[i] * r->weight[i] * (x[i] * r->weight[i]);
     return sum;
 }
 
@@ -177,8 +173,7 @@ static bool differentiate(radau *r, double t) {
         bool ok = evaluate(r, t, r->y, column);
         r->y[j] = kept;
         if (!ok) return false;
-        for (int i = 0; i < n; i++)
-            column[i] = (column[i] - r->point[i]) / d;
+        for (int i = 0; i < n; i++) column[i] = (column[i] - r->point[i]) / d;
     }
     return true;
 }
@@ -206,8 +201,7 @@ static void guess_stages(radau *r, double h) {
         cubics(1 + node[s] * h / past->length, value);
         value[2] -= 1; // stages count from the last step's end
         for (int i = 0; i < n; i++) {
-            r->trial[s * n + i] =
-                value[0] * r->z[i] + value[1] * r->z[n + i] + value[2] * r->z[2 * n + i];
+            r->trial[s * n + i] = value[0] * r->z[i] + value[1] * r->z[n + i] + value[2] * r->z[2 * n + i];
         }
     }
     mix(n, inverse, r->trial, r->w);
@@ -216,8 +210,7 @@ static void guess_stages(radau *r, double h) {
 static bool evaluate_stages(radau *r, double t, double h) {
     int n = r->ode.n;
     for (int s = 0; s < STAGES; s++) {
-        for (int i = 0; i < n; i++)
-            r->point[i] = r->y[i] + r->trial[s * n + i];
+        for (int i = 0; i < n; i++) r->point[i] = r->y[i] + r->trial[s * n + i];
         if (!evaluate(r, t + node[s] * h, r->point, r->f + s * n)) return false;
     }
     return true;
@@ -240,8 +233,7 @@ static double improve(radau *r, double h, double *increment) {
         d2[i] = r->pair[2 * i];
         d3[i] = r->pair[2 * i + 1];
     }
-    for (int i = 0; i < STAGES * n; i++)
-        r->w[i] += increment[i];
+    for (int i = 0; i < STAGES * n; i++) r->w[i] += increment[i];
     return sqrt((square(r, d1) + square(r, d2) + square(r, d3)) / (STAGES * n));
 }
 
@@ -267,8 +259,7 @@ static bool solve_stages(radau *r, double h, double *shrink) {
             if (past->convergence >= 0.99) return false;
             past->remainder = past->convergence / (1 - past->convergence);
             int left = MOST_ITERATIONS - k;
-            double reach =
-                past->remainder * size * pow(past->convergence, left - 1) / r->newton_tolerance;
+            double reach = past->remainder * size * pow(past->convergence, left - 1) / r->newton_tolerance;
             if (left > 0 && reach >= 1) { // it would not converge in time
                 *shrink = 0.8 * pow(bough_clamp(reach, 1e-4, 20), -1.0 / (3 + left));
                 return false;
@@ -297,11 +288,9 @@ static double estimate_error(radau *r, double h) {
     bough_dense_solve(n, 1, r->real, r->real_pivot, r->error);
     double size = norm(r, r->error);
     if (!(size >= 1) || (r->past->accepted > 0 && !r->past->rejected)) return size;
-    for (int i = 0; i < n; i++)
-        r->point[i] = r->y[i] + r->error[i];
+    for (int i = 0; i < n; i++) r->point[i] = r->y[i] + r->error[i];
     if (!evaluate(r, r->past->time, r->point, filtered)) return size;
-    for (int i = 0; i < n; i++)
-        filtered[i] += sum[i];
+    for (int i = 0; i < n; i++) filtered[i] += sum[i];
     bough_dense_solve(n, 1, r->real, r->real_pivot, filtered);
     return norm(r, filtered);
 }
@@ -325,8 +314,7 @@ static void accept(radau *r, double t1, double h, double error, double next) {
     history *past = r->past;
     int n = r->ode.n;
     memcpy(r->z, r->trial, STAGES * (size_t)n * sizeof(double));
-    for (int i = 0; i < n; i++)
-        r->y[i] += r->z[2 * n + i];
+    for (int i = 0; i < n; i++) r->y[i] += r->z[2 * n + i];
     past->start = past->time;
     past->length = h;
     past->time = t1;
@@ -345,8 +333,7 @@ static void accept(radau *r, double t1, double h, double error, double next) {
 static void attempt(radau *r, double end, double h) {
     history *past = r->past;
     double effort = 0.5, error = NAN;
-    bool solved =
-        evaluate(r, past->time, r->y, r->rate) && prepare(r, h) && solve_stages(r, h, &effort);
+    bool solved = evaluate(r, past->time, r->y, r->rate) && prepare(r, h) && solve_stages(r, h, &effort);
     if (solved) error = fmax(estimate_error(r, h), 1e-10);
     double next = isfinite(error) ? next_step(r, h, error, effort) : effort * h;
     if (error < 1) {
@@ -366,11 +353,9 @@ static double first_step(radau *r, double span) {
     if (!evaluate(r, past->time, r->y, r->rate)) return 1e-6 * span;
     double size = norm(r, r->y), slope = norm(r, r->rate);
     double h = fmin(span, size > 1e-5 && slope > 1e-5 ? 0.01 * size / slope : 1e-6 * span);
-    for (int i = 0; i < n; i++)
-        r->point[i] = r->y[i] + h * r->rate[i];
+    for (int i = 0; i < n; i++) r->point[i] = r->y[i] + h * r->rate[i];
     if (!evaluate(r, past->time + h, r->point, r->error)) return 0.1 * h;
-    for (int i = 0; i < n; i++)
-        r->error[i] = (r->error[i] - r->rate[i]) / h;
+    for (int i = 0; i < n; i++) r->error[i] = (r->error[i] - r->rate[i]) / h;
     double steepest = fmax(slope, norm(r, r->error));
     return steepest > 0 ? fmin(span, fmin(100 * h, pow(0.01 / steepest, 0.25))) : span;
 }
@@ -406,8 +391,7 @@ static bough_status cross(radau *r, double t1) {
     return bough_ok();
 }
 
-static bough_status advance(void *self, double *t, double pause, double t1, bool restart,
-                            double *y) {
+static bough_status advance(void *self, double *t, double pause, double t1, bool restart, double *y) {
     (void)pause;
     radau *r = self;
     history *past = r->past;

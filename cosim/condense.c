@@ -67,12 +67,9 @@ bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly
     k->assembly = assembly;
     k->part = bough_arena_take(arena, n_member * sizeof *k->part);
     k->leader_input = bough_arena_take(arena, (size_t)assembly->n_input * sizeof(int));
-    for (int i = 0; i < assembly->n_member; i++)
-        choose_coordinates(k, i);
-    for (int i = 0; i < assembly->n_member; i++)
-        choose_directions(k, i);
-    for (int i = 0; i < assembly->n_member; i++)
-        take_part(k, arena, i);
+    for (int i = 0; i < assembly->n_member; i++) choose_coordinates(k, i);
+    for (int i = 0; i < assembly->n_member; i++) choose_directions(k, i);
+    for (int i = 0; i < assembly->n_member; i++) take_part(k, arena, i);
     size_t n = (size_t)k->n;
     k->gain = bough_arena_doubles(arena, (size_t)k->n_leader_input * n);
     bough_arena_each(arena, n * n, &k->loop, &k->matrix, &k->square);
@@ -88,14 +85,12 @@ bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly
 
 // -- members --------------------------------------------------------------------------------------
 
-void bough_condensed_output_change(const bough_condensed *k, int member,
-                                   const bough_operating_point *at, const double *state_change,
-                                   const double *input_change, double *change) {
+void bough_condensed_output_change(const bough_condensed *k, int member, const bough_operating_point *at,
+                                   const double *state_change, const double *input_change, double *change) {
     const bough_system *s = system_of(k, member);
     bool (*kept)(void *, const void *, const double *, const double *, double *) = s->ops->kept_tangent;
     if (kept && kept(s->self, k->part[member].factors, state_change, input_change, change)) return;
-    s->ops->output_tangent(s->self, at->time, at->state, at->input, state_change, input_change,
-                           change);
+    s->ops->output_tangent(s->self, at->time, at->state, at->input, state_change, input_change, change);
 }
 
 static void find_columns(const bough_condensed *k, int member, const bough_operating_point *at) {
@@ -137,8 +132,8 @@ static void add_some(int n, const double share[AT_ONCE], const double *const col
 }
 
 // sum (n) += factor Σ_j weight_j column_j, the columns (count × n) one after the other
-static void add_columns(int n, int count, const double *column, double factor,
-                        const double *weight, double *sum) {
+static void add_columns(int n, int count, const double *column, double factor, const double *weight,
+                        double *sum) {
     const double *some[AT_ONCE];
     double share[AT_ONCE];
     int k = 0;
@@ -157,8 +152,8 @@ static void add_columns(int n, int count, const double *column, double factor,
     add_some(n, share, some, sum);
 }
 
-void bough_condensed_add_columns(const bough_condensed *k, int member, double factor,
-                                 const double *weight, double *sum) {
+void bough_condensed_add_columns(const bough_condensed *k, int member, double factor, const double *weight,
+                                 double *sum) {
     const bough_system *s = system_of(k, member);
     add_columns(s->n_state, s->n_input, k->part[member].column, factor, weight, sum);
 }
@@ -174,8 +169,7 @@ static void find_inverse(const bough_condensed *k, int member) {
 }
 
 // The outputs' change with each input, through the states and at once.
-static void find_input_responses(const bough_condensed *k, int member,
-                                 const bough_operating_point *at) {
+static void find_input_responses(const bough_condensed *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     const bough_condensed_member *w = &k->part[member];
     double *unit = k->unit + k->assembly->input_offset[member];
@@ -188,8 +182,7 @@ static void find_input_responses(const bough_condensed *k, int member,
     }
 }
 
-static void find_state_responses(const bough_condensed *k, int member,
-                                 const bough_operating_point *at) {
+static void find_state_responses(const bough_condensed *k, int member, const bough_operating_point *at) {
     const bough_system *s = system_of(k, member);
     double *state = k->work + k->assembly->state_offset[member];
     double *response = k->part[member].output_change;
@@ -201,14 +194,12 @@ static void find_state_responses(const bough_condensed *k, int member,
     }
 }
 
-bool bough_condensed_factor_leader(bough_condensed *k, int member,
-                                   const bough_operating_point *at) {
+bool bough_condensed_factor_leader(bough_condensed *k, int member, const bough_operating_point *at) {
     const bough_condensed_member *w = &k->part[member];
     const bough_system *s = system_of(k, member);
     if (!factor(k, member, at->gamma)) return false;
     find_columns(k, member, at);
-    for (int i = 0; i < s->n_input * s->n_state; i++)
-        w->column[i] *= at->gamma;
+    for (int i = 0; i < s->n_input * s->n_state; i++) w->column[i] *= at->gamma;
     if (!w->by_state) {
         find_input_responses(k, member, at);
         return true;
@@ -326,15 +317,13 @@ static void apply_inverses(const bough_condensed *k, double *z) {
 bool bough_condensed_close(bough_condensed *k) {
     size_t n = (size_t)k->n, size = n * n;
     memset(k->gain, 0, n * (size_t)k->n_leader_input * sizeof(double));
-    for (int l = 0; l < k->n_leader_input; l++)
-        find_gain_row(k, l);
+    for (int l = 0; l < k->n_leader_input; l++) find_gain_row(k, l);
     memset(k->loop, 0, size * sizeof(double));
     for (size_t c = 0; c < n; c++) {
         add_inputs(k, k->gain + c * (size_t)k->n_leader_input, k->loop + c * n);
         apply_inverses(k, k->loop + c * n);
     }
-    for (size_t i = 0; i < size; i++)
-        k->matrix[i] = (i % (n + 1) == 0) - k->loop[i];
+    for (size_t i = 0; i < size; i++) k->matrix[i] = (i % (n + 1) == 0) - k->loop[i];
     return n == 0 || bough_dense_factor(k->n, k->matrix, k->pivot);
 }
 
@@ -352,24 +341,20 @@ static void move_outputs(bough_condensed *k) {
 
 void bough_condensed_solve(bough_condensed *k, double *change) {
     const bough_assembly *a = k->assembly;
-    for (int l = 0; l < k->n_leader_input; l++)
-        k->right[l] = change[k->leader_input[l]];
+    for (int l = 0; l < k->n_leader_input; l++) k->right[l] = change[k->leader_input[l]];
     add_inputs(k, k->right, k->coordinate);
     apply_inverses(k, k->coordinate);
     if (k->n > 0) bough_dense_solve(k->n, 1, k->matrix, k->pivot, k->coordinate);
     add_columns(k->n_leader_input, k->n, k->gain, 1, k->coordinate, k->right);
-    for (int l = 0; l < k->n_leader_input; l++)
-        change[k->leader_input[l]] = k->right[l];
+    for (int l = 0; l < k->n_leader_input; l++) change[k->leader_input[l]] = k->right[l];
     move_outputs(k);
     for (int i = 0; i < a->n_member; i++) {
         if (k->part[i].is_leader) continue;
-        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++)
-            change[j] += k->moved[a->source[j]];
+        for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) change[j] += k->moved[a->source[j]];
     }
 }
 
-void bough_condensed_add_response(const bough_condensed *k, int member, const double *change,
-                                  double *x) {
+void bough_condensed_add_response(const bough_condensed *k, int member, const double *change, double *x) {
     const bough_condensed_member *w = &k->part[member];
     int n = system_of(k, member)->n_state;
     if (w->by_state) {
@@ -398,8 +383,7 @@ static void square(int n, const double *a, double *result) {
     for (int j = 0; j < n; j++) {
         for (int k = 0; k < n; k++) {
             double factor = a[j * n + k];
-            for (int i = 0; i < n; i++)
-                result[j * n + i] += factor * a[k * n + i];
+            for (int i = 0; i < n; i++) result[j * n + i] += factor * a[k * n + i];
         }
     }
 }
@@ -410,13 +394,11 @@ double bough_condensed_radius(bough_condensed *k) {
     int n = k->n;
     for (int doubling = 0; doubling < 12; doubling++) {
         double norm = 0;
-        for (int i = 0; i < n * n; i++)
-            norm = fmax(norm, fabs(k->loop[i]));
+        for (int i = 0; i < n * n; i++) norm = fmax(norm, fabs(k->loop[i]));
         if (norm == 0) return 0;
         logarithm += weight * log(norm);
         weight /= 2;
-        for (int i = 0; i < n * n; i++)
-            k->loop[i] /= norm;
+        for (int i = 0; i < n * n; i++) k->loop[i] /= norm;
         square(n, k->loop, k->square);
         memcpy(k->loop, k->square, (size_t)(n * n) * sizeof(double));
     }

@@ -32,20 +32,20 @@ typedef struct bough_condensed_member {
 typedef struct bough_condensed {
     const bough_assembly *assembly;
     bough_condensed_member *part; // (n_member)
-    int n_leader_input; // of all leaders
-    int *leader_input;  // (n_leader_input) numbered over all inputs
-    int n;              // coordinates of all leaders
-    double *gain;       // (n_leader_input × n, column-major, as the next) K
-    double *loop;       // (n × n) Z K
-    double *matrix;     // (n × n) I − Z K, factored
-    double *square;     // (n × n) scratch
-    int *pivot;         // (n)
-    double *coordinate; // (n) w
-    double *sum;        // (n) scratch
-    double *moved;      // (n_output) the leaders' outputs' change with it
-    double *right;      // (n_leader_input) scratch
-    double *unit;         // (n_input) scratch of each member
-    double *work;       // (n_state) scratch of each member
+    int n_leader_input;           // of all leaders
+    int *leader_input;            // (n_leader_input) numbered over all inputs
+    int n;                        // coordinates of all leaders
+    double *gain;                 // (n_leader_input × n, column-major, as the next) K
+    double *loop;                 // (n × n) Z K
+    double *matrix;               // (n × n) I − Z K, factored
+    double *square;               // (n × n) scratch
+    int *pivot;                   // (n)
+    double *coordinate;           // (n) w
+    double *sum;                  // (n) scratch
+    double *moved;                // (n_output) the leaders' outputs' change with it
+    double *right;                // (n_leader_input) scratch
+    double *unit;                 // (n_input) scratch of each member
+    double *work;                 // (n_state) scratch of each member
 } bough_condensed;
 
 bough_condensed *bough_condensed_create(bough_arena *arena, const bough_assembly *assembly);
@@ -71,9 +71,8 @@ void bough_condensed_respond(bough_condensed *k, int member, const bough_operati
 
 // Change of a member's outputs with its state and its inputs, where it was last linearised, which is at
 // `at` or near; either change may be NULL.
-void bough_condensed_output_change(const bough_condensed *k, int member,
-                                   const bough_operating_point *at, const double *state_change,
-                                   const double *input_change, double *change);
+void bough_condensed_output_change(const bough_condensed *k, int member, const bough_operating_point *at,
+                                   const double *state_change, const double *input_change, double *change);
 
 // Solves (I − γJ) x = b of the member by itself, in place.
 void bough_condensed_solve_member(const bough_condensed *k, int member, double *x);
@@ -88,8 +87,7 @@ void bough_condensed_solve(bough_condensed *k, double *change);
 
 // Adds to x (n_state of the member) its response to the coordinates; that of a follower whose directions are
 // its inputs is to their change (n_input of the member) by the leaders.
-void bough_condensed_add_response(const bough_condensed *k, int member, const double *change,
-                                  double *x);
+void bough_condensed_add_response(const bough_condensed *k, int member, const double *change, double *x);
 
 // Adds to the outputs' change of such a follower its response to a change of its inputs; a leader that
 // others follow along its states does not change their inputs by itself.
@@ -97,8 +95,8 @@ void bough_condensed_add_output_response(const bough_condensed *k, int member, c
                                          double *output_change);
 
 // sum (n_state of the member) += factor Σ_j weight_j column_j
-void bough_condensed_add_columns(const bough_condensed *k, int member, double factor,
-                                 const double *weight, double *sum);
+void bough_condensed_add_columns(const bough_condensed *k, int member, double factor, const double *weight,
+                                 double *sum);
 
 // The spectral radius of Z K, which is overwritten, the gain of the interface.
 double bough_condensed_radius(bough_condensed *k);

@@ -2,8 +2,8 @@
 
 #include "cosim/port.h"
 
-#include <math.h>
 #include <assert.h>
+#include <math.h>
 #include <string.h>
 
 static void take(bough_coupling *c, bough_arena *arena) {
@@ -79,8 +79,7 @@ static bough_status first_failure(bough_coupling *c) {
     return bough_ok();
 }
 
-bough_status bough_coupling_each(bough_coupling *c, int stage,
-                                 void (*work)(bough_coupling *c, int member)) {
+bough_status bough_coupling_each(bough_coupling *c, int stage, void (*work)(bough_coupling *c, int member)) {
     member_work w = {c, work};
     bough_pool_run(c->pool, list_stage(c, stage), run_member, &w);
     return first_failure(c);
@@ -141,8 +140,7 @@ bool bough_coupling_output_rate(bough_coupling *c, int member, double t, const d
     if (s->ops->output_drift == NULL) return true;
     double *drift = c->output_drift + c->assembly->output_offset[member];
     s->ops->output_drift(s->self, t, c->assembly->member[member]->state, input, drift);
-    for (int k = 0; k < s->n_output; k++)
-        rate[k] += drift[k];
+    for (int k = 0; k < s->n_output; k++) rate[k] += drift[k];
     return true;
 }
 
@@ -171,8 +169,8 @@ static void advance(bough_coupling *c, int member, bool restart) {
 
 static void advance_first_half(bough_coupling *c, int member, bool restart) {
     double middle = 0.5 * (c->t0 + c->t1) - 1e-9 * (c->t1 - c->t0);
-    c->status[member] = bough_member_advance_part(c->assembly->member[member], middle, c->t1,
-                                                  &c->signal[member], restart);
+    c->status[member] =
+        bough_member_advance_part(c->assembly->member[member], middle, c->t1, &c->signal[member], restart);
     ask_for_retry(&c->status[member]);
 }
 
@@ -209,8 +207,7 @@ static bool signal_rate(bough_coupling *c, int member, double t, double *output_
     double *seen_rate = c->seen_rate + a->input_offset[member];
     bough_signal_value(&c->signal[member], t, seen);
     bough_signal_rate(&c->signal[member], t, seen_rate);
-    return bough_coupling_output_rate(c, member, t, seen, seen_rate,
-                                      output_rate + a->output_offset[member]);
+    return bough_coupling_output_rate(c, member, t, seen, seen_rate, output_rate + a->output_offset[member]);
 }
 
 static void advance_leader(bough_coupling *c, int member) {
@@ -255,8 +252,7 @@ void bough_coupling_interpolate(bough_coupling *c, int member, int j) {
         return;
     }
     c->followed[j] = true;
-    bough_port_hermite(&c->signal[member], local, 1,
-                       (bough_port_end){c->input + j, c->start_rate + source},
+    bough_port_hermite(&c->signal[member], local, 1, (bough_port_end){c->input + j, c->start_rate + source},
                        (bough_port_end){c->end_output + source, c->end_rate + source});
 }
 

@@ -22,16 +22,16 @@ typedef enum bough_exchange {
 
 // The user's choices. A scheme ignores the fields that it does not use.
 typedef struct bough_scheme_options {
-    const char *name;  // of the scheme, see scheme.h
-    int order;         // extrapolated, iterated: degree of the polynomial, 0 … 2
-    bool parallel;     // extrapolated: all stages at once instead of one after the other
-    bool reversed;     // sequential schemes take the last stage first
-    bough_interpolation interpolation; // sequential schemes
-    double theta;      // ramp: 1/2 … 1; 0 chooses by the ratio of interface inertias
+    const char *name;                    // of the scheme, see scheme.h
+    int order;                           // extrapolated, iterated: degree of the polynomial, 0 … 2
+    bool parallel;                       // extrapolated: all stages at once instead of one after the other
+    bool reversed;                       // sequential schemes take the last stage first
+    bough_interpolation interpolation;   // sequential schemes
+    double theta;                        // ramp: 1/2 … 1; 0 chooses by the ratio of interface inertias
     bough_integrator_options integrator; // monolithic
-    bough_exchange exchange;        // iterated
-    bough_acceleration accelerator; // iterated
-    double relaxation;              // iterated: the accelerator's first factor, 0 … 1
+    bough_exchange exchange;             // iterated
+    bough_acceleration accelerator;      // iterated
+    double relaxation;                   // iterated: the accelerator's first factor, 0 … 1
     double tolerance; // iterated: of the interface relative to its largest values so far [1]
     int iterations;   // iterated: most per macro step
 } bough_scheme_options;
@@ -46,8 +46,8 @@ typedef struct bough_coupling {
     const bough_assembly *assembly;
     const bough_scheme *scheme; // set by bough_scheme_couple
     bough_scheme_options options;
-    bough_pool *pool;  // NULL: one thread
-    void *scheme_data; // what the scheme created
+    bough_pool *pool;           // NULL: one thread
+    void *scheme_data;          // what the scheme created
     bough_iteration *iteration; // NULL unless steps are repeated
 
     // the step to take, set by the master
@@ -55,25 +55,25 @@ typedef struct bough_coupling {
     bool restart;  // a load jumped at t0: integrators start anew
 
     // by bough_coupling_exchange: at the end of the last step
-    double *output; // (n_output) of all members at their current states
-    double *input;  // (n_input) the same, as their receivers see it
+    double *output;  // (n_output) of all members at their current states
+    double *input;   // (n_input) the same, as their receivers see it
     double *applied; // (n_input) the values applied to the receivers at the end of the step
     double *deficit; // (n_input) ∫ (obtained − applied value) over all steps, of the leaders' inputs;
                      // NULL unless the scheme compensates it
-    int n_past;     // number of entries of the next two that schemes may use, at most BOUGH_HISTORY
+    int n_past;      // number of entries of the next two that schemes may use, at most BOUGH_HISTORY
     double past_time[BOUGH_PAST]; // the last synchronisation points, newest first [s]
     double *past[BOUGH_PAST];     // (n_input each) inputs there
 
     // during a step, by the scheme
-    bough_signal *signal;  // (n_member) input of each member over the step
-    bool *followed;        // (n_input) the input is the actual motion: there is no defect
-    double *start_rate;    // (n_output) rates of the outputs at t0, of members already advanced
-    double *end_output;    // (n_output) outputs at t1, likewise
-    double *end_rate;      // (n_output)
-    bough_status *status;  // (n_member) of the last move
-    int *turn;             // (n_member) the members of the stage in progress
-    bool leaders_restart;  // integrators of the stage in progress start anew
-    int failed_member;     // −1, or the member whose move failed
+    bough_signal *signal; // (n_member) input of each member over the step
+    bool *followed;       // (n_input) the input is the actual motion: there is no defect
+    double *start_rate;   // (n_output) rates of the outputs at t0, of members already advanced
+    double *end_output;   // (n_output) outputs at t1, likewise
+    double *end_rate;     // (n_output)
+    bough_status *status; // (n_member) of the last move
+    int *turn;            // (n_member) the members of the stage in progress
+    bool leaders_restart; // integrators of the stage in progress start anew
+    int failed_member;    // −1, or the member whose move failed
 
     // by schemes that exchange within the step: outputs obtained at these times, the last of which is t1
     int n_within;              // 3; 0: others
@@ -97,9 +97,9 @@ typedef struct bough_coupling {
     // by a scheme that integrates all members as one system; NULL
     bough_member *whole;
 
-    long sweeps; // by the iterated scheme: runs of all members over a macro step so far
+    long sweeps;     // by the iterated scheme: runs of all members over a macro step so far
     long unfinished; // macro steps that went on before they had converged
-    bool measured; // the error of such steps is measured by a second solution
+    bool measured;   // the error of such steps is measured by a second solution
 } bough_coupling;
 
 // Builds the working data and evaluates the outputs at the members' current states; the scheme's own
@@ -113,8 +113,7 @@ enum { BOUGH_ALL_STAGES = -1 };
 
 // Runs work(c, member) for every member of a stage, shared out by the pool, and returns the
 // first failure in member order that the work left in c->status.
-bough_status bough_coupling_each(bough_coupling *c, int stage,
-                                 void (*work)(bough_coupling *c, int member));
+bough_status bough_coupling_each(bough_coupling *c, int stage, void (*work)(bough_coupling *c, int member));
 
 // The same for advance_leader(c, member) of the leaders (stage 0) beside prepare(c, member) of all
 // others, and then advance_follower(c, member) of those whose preparation has not failed.

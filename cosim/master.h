@@ -6,8 +6,8 @@
 #include "cosim/breakdown.h"
 #include "cosim/error_estimate.h"
 #include "cosim/monitor.h"
-#include "cosim/second_solution.h"
 #include "cosim/scheme.h"
+#include "cosim/second_solution.h"
 #include "cosim/stability.h"
 #include "cosim/step_control.h"
 
@@ -37,7 +37,7 @@ typedef enum bough_error_source {
 typedef struct bough_master_def {
     bough_assembly_def assembly;
     bough_scheme_options scheme;
-    double macro_step; // H, the longest [s]
+    double macro_step;              // H, the longest [s]
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
     bough_error_source error;
     bool suits_linearised; // linearised members tell the errors of such a scene, as far as its coupling lets
@@ -70,14 +70,14 @@ typedef struct bough_master {
     bough_sampled_load *load; // (n_load)
     long *load_every;         // (n_load) macro steps per period
     int n_event;
-    double *event;   // (n_event) ascending
-    int next_event;  // first event after `time`
-    long grid_index; // k of the last grid point at or before `time`
-    bool at_event;   // `time` is an event
-    double begun;    // start of the last macro step [s]
+    double *event;                 // (n_event) ascending
+    int next_event;                // first event after `time`
+    long grid_index;               // k of the last grid point at or before `time`
+    bool at_event;                 // `time` is an event
+    double begun;                  // start of the last macro step [s]
     bough_stability_advice advice; // about the initial state; empty when not judged
-    bool (*stop)(void); // NULL: never
-    char verdict[BOUGH_VERDICT]; // a warning that the coupling is unstable; may be empty
+    bool (*stop)(void);            // NULL: never
+    char verdict[BOUGH_VERDICT];   // a warning that the coupling is unstable; may be empty
 } bough_master;
 
 // Whether a period is an integer multiple of the macro step within 1e-9: the multiple, 0 if not.
@@ -85,8 +85,7 @@ long bough_master_multiple(double period, double macro_step);
 
 // Builds everything in the arena; stepping allocates nothing. The stability of a coupling is analysed
 // about the initial state. The result is only a warning, because outer loads may add damping.
-bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
-                                bough_master **master);
+bough_status bough_master_build(bough_arena *arena, const bough_master_def *def, bough_master **master);
 
 // One macro step: samples loads, advances the members, exchanges values, checks the result. A caller that
 // takes many steps should do so within one bough_pool_region; otherwise each step opens its own.

@@ -10,11 +10,11 @@
 
 typedef struct bough_member {
     bough_system system;
-    const char *solver;  // its integrator, for messages: "IDA", "CVODE BDF", …
-    double time;         // current [s]
-    double *state;       // current (n_state)
-    double *own_error;   // (n_state) estimated errors of its own steps, summed since a reader last set
-                         // them to zero; NULL: no estimate
+    const char *solver; // its integrator, for messages: "IDA", "CVODE BDF", …
+    double time;        // current [s]
+    double *state;      // current (n_state)
+    double *own_error;  // (n_state) estimated errors of its own steps, summed since a reader last set
+                        // them to zero; NULL: no estimate
     bough_integrator integrator; // ops NULL: there are no states
     bool opaque; // a foreign simulator, which has outputs and own steps but neither states nor tangents
 
@@ -25,7 +25,7 @@ typedef struct bough_member {
     void *factors;              // of its Newton matrix
     bool started;               // the integrator's history belongs to the state
     bool (*stop)(void); // asked at each evaluation: true ends the step in progress as a failure; NULL: never
-    bool paused;                // within a macro step: it continues from `integrated`
+    bool paused;        // within a macro step: it continues from `integrated`
 } bough_member;
 
 // Builds a member in the arena, at time `start` [s] and the system's initial state. BOUGH_INVALID
@@ -36,14 +36,13 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
 // Integrates the current state to t1 by its own steps under input(t), which covers [time, t1]. `restart`:
 // the input or a load jumps at the current time, so a multistep method restarts. On failure, time and
 // state are unchanged and the next step restarts the method.
-bough_status bough_member_advance(bough_member *m, double t1, const bough_signal *input,
-                                  bool restart);
+bough_status bough_member_advance(bough_member *m, double t1, const bough_signal *input, bool restart);
 
 // The same, but it may stop at the end of the first own step at or after `pause`; the current time is then
 // this time. A further call to t1 with the same input and without restart gives the same bits as one
 // advance to t1.
-bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
-                                       const bough_signal *input, bool restart);
+bough_status bough_member_advance_part(bough_member *m, double pause, double t1, const bough_signal *input,
+                                       bool restart);
 
 // Replaces the current time and state (n_state); the integrator starts anew.
 void bough_member_set(bough_member *m, double t, const double *state);

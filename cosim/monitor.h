@@ -9,9 +9,9 @@ typedef struct bough_monitor bough_monitor;
 
 // The monitor's result at the end of the run.
 typedef struct bough_coupling_report {
-    double defect_max; // largest |obtained − applied| at a synchronisation point, of a force, moment
-                       // or velocity relative to its own largest magnitude [1]
-    double defect_rms; // its root mean square over the steps, of the worst port [1]
+    double defect_max;       // largest |obtained − applied| at a synchronisation point, of a force, moment
+                             // or velocity relative to its own largest magnitude [1]
+    double defect_rms;       // its root mean square over the steps, of the worst port [1]
     double energy_residual;  // Σ over interfaces |∫ (obtained − applied wrench) · twist dt| [J]
     double energy_exchanged; // Σ over interfaces ∫ |wrench · twist| dt [J]
 } bough_coupling_report;

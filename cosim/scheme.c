@@ -5,12 +5,12 @@
 #include <string.h>
 
 // One line a scheme: its entry is bough_scheme_<this>.
-#define SCHEMES(ENTRY)                                                                             \
-    ENTRY(frozen)                                                                                  \
-    ENTRY(gauss_seidel)                                                                            \
-    ENTRY(extrapolated)                                                                            \
-    ENTRY(iterated)                                                                                \
-    ENTRY(ramp)                                                                                    \
+#define SCHEMES(ENTRY)                                                                                       \
+    ENTRY(frozen)                                                                                            \
+    ENTRY(gauss_seidel)                                                                                      \
+    ENTRY(extrapolated)                                                                                      \
+    ENTRY(iterated)                                                                                          \
+    ENTRY(ramp)                                                                                              \
     ENTRY(monolithic)
 
 #define DECLARATION(scheme) extern const bough_scheme bough_scheme_##scheme;
@@ -76,8 +76,7 @@ void bough_scheme_describe(const bough_scheme *s, const bough_scheme_options *op
         n += (size_t)snprintf(text + n, room - n, ", order %d", options->order);
     }
     if (s->reads & BOUGH_READS_ACCELERATOR) {
-        n += (size_t)snprintf(text + n, room - n,
-                              ", accelerator %s, tolerance %.6g in at most %d iterations",
+        n += (size_t)snprintf(text + n, room - n, ", accelerator %s, tolerance %.6g in at most %d iterations",
                               bough_acceleration_names[options->accelerator], options->tolerance,
                               options->iterations);
     }

@@ -21,7 +21,7 @@ struct bough_scheme {
     unsigned reads;       // BOUGH_READS_… of the options
     bool explicit_forces; // forces are frozen or extrapolated: unstable beyond some macro step
     bool judged;          // may be unstable: its eigenvalues are computed before the run
-    bool one_system; // all members are one system: there is no coupling error to judge or estimate
+    bool one_system;      // all members are one system: there is no coupling error to judge or estimate
     // Allocates the scheme's memory and checks its options; NULL if it needs neither.
     bough_status (*create)(bough_coupling *c, bough_arena *arena);
     // Makes the choices that are constant over the run, from the initial state and a first step from t0 to

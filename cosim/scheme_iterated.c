@@ -45,7 +45,7 @@ struct bough_iteration {
     double span[MOST_NODES];        // of the Newton's Jacobians, over the macro step
     void **copy;                    // (n_member) states at T_k
     int n_node;
-    const double *node; // (n_node) in (0, 1], the last is 1
+    const double *node;  // (n_node) in (0, 1], the last is 1
     size_t n_prescribed; // n_node × n_input
     double *prescribed,
         *best;         // (n_prescribed) values of the inputs in use, and those with the smallest residual
@@ -106,7 +106,7 @@ static void create_accelerator(bough_coupling *c, bough_iteration *it, bough_are
                                  .self = it};
     it->accelerator = bough_accelerator_create(arena, &def);
     if (def.kind != BOUGH_ACCELERATE_NEWTON) return;
-    assert(!c->options.reversed); // it solves for what the leader gets
+    assert(!c->options.reversed);                                    // it solves for what the leader gets
     static const double share[BOUGH_HISTORY] = {1, 1. / 2, 5. / 12}; // ∫ of the end value's weight
     for (int k = 0; k < it->n_node; k++) {
         it->span[k] = it->n_node == 1 ? share[c->options.order] : it->node[k] / 2;
@@ -293,7 +293,7 @@ static bough_status not_converged(const bough_coupling *c, int sweeps, double re
     while (it->input[worst] >= a->input_offset[to + 1]) to++;
     double contraction = bough_accelerator_contraction(it->accelerator);
     bool learns = c->options.accelerator >= BOUGH_ACCELERATE_IQN_ILS;
-    const char *advice = !learns ? "try accelerator: iqn-ils"
+    const char *advice = !learns             ? "try accelerator: iqn-ils"
                          : contraction < 0.9 ? "try more iterations"
                                              : "try a larger tolerance or a tighter micro rtol";
     return bough_fail(BOUGH_RETRY,

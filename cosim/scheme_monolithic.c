@@ -9,8 +9,7 @@
 
 static bough_status create(bough_coupling *c, bough_arena *arena) {
     bough_member *whole = c->whole = bough_arena_take(arena, sizeof *whole);
-    bough_system system =
-        bough_coupled_system(arena, c->assembly, c->pool, "monolithic system");
+    bough_system system = bough_coupled_system(arena, c->assembly, c->pool, "monolithic system");
     return bough_member_create(arena, &system, c->t0, &c->options.integrator, whole);
 }
 

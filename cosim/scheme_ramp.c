@@ -32,16 +32,16 @@ typedef struct ramp {
     double *base;         // (n_output) h at the start values
     double *output;       // (n_output) change of the outputs with that
     double *change;       // (n_input) changes of the inputs
-    double *input; // (n_input) at the start of the step, as linearised: what was applied to leaders
-    double theta;  // of the present step
-    double final;  // after the damped first steps
-    double damped; // steps that begin before are damped [s]
-    bool chosen;   // θ is final
-    bool repeats;  // no θ holds: waveforms are iterated
-    bool repays;   // impulses
-    bool fresh;    // followers are linearised in this step
-    int age;       // steps since they were
-    double span;   // θH then [s]
+    double *input;        // (n_input) at the start of the step, as linearised: what was applied to leaders
+    double theta;         // of the present step
+    double final;         // after the damped first steps
+    double damped;        // steps that begin before are damped [s]
+    bool chosen;          // θ is final
+    bool repeats;         // no θ holds: waveforms are iterated
+    bool repays;          // impulses
+    bool fresh;           // followers are linearised in this step
+    int age;              // steps since they were
+    double span;          // θH then [s]
 } ramp;
 
 static bool leads(const bough_coupling *c, int member) { return c->assembly->stage[member] == 0; }
@@ -116,8 +116,7 @@ static bool evaluate(bough_coupling *c, int member) {
     const double *input = r->input + a->input_offset[member];
     double *increment = r->increment + a->state_offset[member], h = c->t1 - c->t0;
     if (!s->ops->derivative(s->self, r->middle, a->member[member]->state, input, increment)) return false;
-    for (int k = 0; k < s->n_state; k++)
-        increment[k] *= h;
+    for (int k = 0; k < s->n_state; k++) increment[k] *= h;
     s->ops->output(s->self, c->t1, a->member[member]->state, input, r->base + a->output_offset[member]);
     return true;
 }
@@ -228,8 +227,7 @@ static bough_status growth_of(const bough_coupling *c, bough_scheme_options opti
                               bough_stability *stability) {
     // the light body turns by about 2 √ratio in a macro step; four linear member steps a radian
     double h = c->t1 - c->t0, part = fmin(8 * sqrt(c->interface_ratio), 64);
-    bough_status status =
-        bough_stability_judge_by(c->assembly, &options, h, fmin(h / part, 5e-3), stability);
+    bough_status status = bough_stability_judge_by(c->assembly, &options, h, fmin(h / part, 5e-3), stability);
     if (!bough_is_ok(&status)) stability->growth = HUGE_VAL;
     return status;
 }
@@ -334,8 +332,7 @@ static void set_ramps(bough_coupling *c, int member) {
     const bough_assembly *a = c->assembly;
     const ramp *r = c->scheme_data;
     bough_signal *signal = &c->signal[member];
-    for (int j = a->input_offset[member], local = 0; j < a->input_offset[member + 1];
-         j++, local++) {
+    for (int j = a->input_offset[member], local = 0; j < a->input_offset[member + 1]; j++, local++) {
         double start = c->applied[j], end = start + r->change[j];
         if (!r->repays) c->deficit[j] = 0;
         if (held(r)) {
