@@ -50,8 +50,11 @@ typedef struct bough_ode {
     bool (*linearise)(void *self, double t, const double *y); // tangents of f
     bool (*factor)(void *self, double gamma);                 // I − γ ∂f/∂y of the last tangents
     void (*solve)(void *self, double *x);                     // in place
-    // x ← (I − γ ∂f/∂y)⁻¹ r, r made of f in x by `right`. NULL: by the three of them.
+    // x ← (I − γ ∂f/∂y)⁻¹ r, r made of f in x by `right`, and work on parts: see system.h. NULL: by the three
+    // of them, and there is one part.
     bool (*stage)(void *self, double t, const double *y, bough_stage_terms terms, double *x);
+    void (*each)(void *self, bough_part_work work, void *data);
+    int n_part;
 } bough_ode;
 
 typedef enum bough_integrator_kind {

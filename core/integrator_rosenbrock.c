@@ -56,6 +56,9 @@ typedef struct rosenbrock {
     int now;                    // the stage in progress
     const double *from;         // (n) y of the step in progress
     double now_step;            // of the step in progress [s]
+    double *to;                 // (n) where y₁ goes
+    int n_part;                 // of the states
+    double *square;             // (n_part) sums of squares
     double *own_error;          // (n)
     bough_statistics sum;
 } rosenbrock;
@@ -69,6 +72,8 @@ static void *create(bough_arena *arena, const bough_ode *ode,
     m->step = options->step > 0 ? options->step : (double)INFINITY;
     m->most_steps = options->most_steps > 0 ? options->most_steps : MOST_STEPS;
     bough_arena_each(arena, n, &m->weight, &m->drift, &m->error, &m->at, &m->own_error);
+    m->n_part = ode->stage ? ode->n_part : 1;
+    m->square = bough_arena_doubles(arena, (size_t)m->n_part);
     for (int i = 0; i < STAGES; i++) m->stage[i] = bough_arena_doubles(arena, n);
     for (size_t k = 0; k < n; k++) m->weight[k] = 1 / (options->rtol * ode->scale[k]);
     return m;
@@ -186,19 +191,36 @@ static bool find_stages(rosenbrock *m, double t, double h, const double *y) {
     return true;
 }
 
-// y₁ into `at`, whose last argument lacks the last stage only; the error against the tolerance, root
-// mean square.
-static double finish(rosenbrock *m) {
+static void work_on_each(rosenbrock *m, bough_part_work work) {
+    if (m->ode.stage) {
+        m->ode.each(m->ode.self, work, m);
+    } else {
+        work(m, 0, 0, m->ode.n);
+    }
+}
+
+// y₁ into `at`, whose last argument lacks the last stage only; the sum of squares of the error against the
+// tolerance.
+static void finish_part(void *self, int part, int first, int last) {
+    rosenbrock *m = self;
     double *restrict at = m->at;
     const double *restrict u0 = m->stage[0], *restrict u1 = m->stage[1], *restrict u2 = m->stage[2];
     const double *restrict u3 = m->stage[3], *restrict weight = m->weight;
     double sum = 0;
 #pragma omp simd reduction(+ : sum)
-    for (int k = 0; k < m->ode.n; k++) {
+    for (int k = first; k < last; k++) {
         at[k] += u3[k];
         double error = e[0] * u0[k] + e[1] * u1[k] + e[2] * u2[k] + e[3] * u3[k];
         sum += (weight[k] * error) * (weight[k] * error);
     }
+    m->square[part] = sum;
+}
+
+// Returns the error's root mean square.
+static double finish(rosenbrock *m) {
+    work_on_each(m, finish_part);
+    double sum = 0;
+    for (int part = 0; part < m->n_part; part++) sum += m->square[part];
     return sqrt(sum / m->ode.n);
 }
 
@@ -230,7 +252,10 @@ static double try_step(rosenbrock *m, double t, double h, const double *y) {
 // -- steps ----------------------------------------------------------------------------------------
 
 // y ← y₁
-static void accept(rosenbrock *m, double *restrict y) {
+static void accept_part(void *self, int part, int first, int last) {
+    (void)part;
+    rosenbrock *m = self;
+    double *restrict y = m->to;
     const double *restrict at = m->at;
     const double *restrict u0 = m->stage[0], *restrict u1 = m->stage[1], *restrict u2 = m->stage[2];
     const double *restrict u3 = m->stage[3];
@@ -238,7 +263,7 @@ static void accept(rosenbrock *m, double *restrict y) {
     double e0 = own_share * e[0], e1 = own_share * e[1], e2 = own_share * e[2];
     double e3 = own_share * e[3];
 #pragma omp simd
-    for (int k = 0; k < m->ode.n; k++) {
+    for (int k = first; k < last; k++) {
         y[k] = at[k];
         sum[k] += e0 * u0[k] + e1 * u1[k] + e2 * u2[k] + e3 * u3[k];
     }
@@ -267,7 +292,8 @@ static const char *cross(rosenbrock *m, double *t, double pause, double t1, doub
             if (m->age > YOUNG || !isfinite(error)) m->age = MOST_AGE;
             continue;
         }
-        accept(m, y);
+        m->to = y;
+        work_on_each(m, accept_part);
         m->sum.steps++;
         m->age++;
         m->drifted++;

@@ -20,6 +20,9 @@ typedef struct bough_stage_terms {
     bool again; // the state is that of the last evaluation
 } bough_stage_terms;
 
+// Work on part `part` of the states, entries first … last − 1.
+typedef void (*bough_part_work)(void *data, int part, int first, int last);
+
 typedef struct bough_system_ops {
     // f: rate (n_state). False when the value is not finite.
     bool (*derivative)(void *self, double t, const double *state, const double *input,
@@ -62,9 +65,13 @@ typedef struct bough_system_ops {
     void (*output_again)(void *self, double t, const double *state, const double *input, double *output);
 
     // x ← (I − γJ)⁻¹ r, r made of f in x by `terms`, as is the state: derivative, right side and solve for
-    // one part after the other. For systems without inputs.
+    // one part after the other. For systems without inputs. x is complete in the terms of the next stage, and
+    // after each.
     bool (*stage)(void *self, void *factors, double t, const double *state, bough_stage_terms terms,
                   double *x);
+
+    // Completes the x of the last stage, and then does work on each part, in parallel. With stage only.
+    void (*each)(void *self, void *factors, bough_part_work work, void *data);
 
     // ∂h/∂t: drift (n_output). NULL: 0.
     void (*output_drift)(void *self, double t, const double *state, const double *input,
@@ -96,6 +103,7 @@ typedef struct bough_system {
     int n_state, n_input, n_output;
     const double *scale;   // error scale of each state (n_state): tolerance = rtol · scale
     const double *initial; // (n_state) where a run starts
+    int n_part;            // of stage and each
     const bough_system_ops *ops;
     void *self;
 } bough_system;

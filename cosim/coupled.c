@@ -257,13 +257,17 @@ static void gather_all_changes(bough_coupled *coupled) {
     }
 }
 
-static void finish(bough_coupled *coupled, int i) {
+static void add_response(bough_coupled *coupled, int i, double *x) {
     const bough_assembly *a = coupled->assembly;
     double *led = coupled->led + a->input_offset[i];
     for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
         coupled->led[j] = coupled->change[j] - (coupled->outside ? coupled->outside[j] : 0);
     }
-    bough_condensed_add_response(coupled->interface, i, led, coupled->x + a->state_offset[i]);
+    bough_condensed_add_response(coupled->interface, i, led, x + a->state_offset[i]);
+}
+
+static void finish(bough_coupled *coupled, int i) {
+    add_response(coupled, i, coupled->x);
     if (coupled->user.after) coupled->user.after(coupled->user.self, i);
 }
 
@@ -271,8 +275,8 @@ static void solve_free(bough_coupled *coupled, double *x) {
     bough_coupled_solve_driven(coupled, NULL, x, (bough_coupled_user){0});
 }
 
-void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
-                                bough_coupled_user user) {
+// All but the members' responses to each other.
+static void solve_apart(bough_coupled *coupled, const double *outside, double *x, bough_coupled_user user) {
     coupled->x = x;
     coupled->outside = outside;
     coupled->user = user;
@@ -280,16 +284,27 @@ void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, d
                    coupled);
     gather_all_changes(coupled);
     bough_condensed_solve(coupled->interface, coupled->change);
+}
+
+void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
+                                bough_coupled_user user) {
+    solve_apart(coupled, outside, x, user);
+    coupled->incomplete = NULL;
     each(coupled, ALL, finish);
 }
 
 typedef struct stage_work {
-    bough_coupled *evaluation;
+    bough_coupled *evaluation, *coupled;
     bough_stage_terms terms;
 } stage_work;
 
+static void complete(bough_coupled *coupled, int i) {
+    if (coupled->incomplete) add_response(coupled, i, coupled->incomplete);
+}
+
 static void set_state(const stage_work *w, int i) {
     const int *offset = w->evaluation->assembly->state_offset + i;
+    complete(w->coupled, i);
     w->terms.set_state(w->terms.self, offset[0], offset[1]);
 }
 
@@ -311,12 +326,33 @@ static void find_right_side(void *self, int i) {
 
 bough_status bough_coupled_stage(bough_coupled *evaluation, bough_coupled *coupled, double t,
                                  const double *state, bough_stage_terms terms, double *x) {
-    stage_work w = {evaluation, terms};
+    stage_work w = {evaluation, coupled, terms};
     for (int i = 0; i < evaluation->assembly->n_member; i++)
         if (!comes_late(evaluation->assembly, i)) set_state(&w, i);
     begin_rates(evaluation, t, state, x);
-    bough_coupled_solve_driven(coupled, NULL, x, (bough_coupled_user){&w, find_right_side, NULL});
+    solve_apart(coupled, NULL, x, (bough_coupled_user){&w, find_right_side, NULL});
+    coupled->incomplete = x;
     return first_failure(evaluation);
+}
+
+typedef struct part_work {
+    bough_coupled *coupled;
+    bough_part_work work;
+    void *data;
+} part_work;
+
+static void work_on_part(void *self, int k) {
+    const part_work *w = self;
+    int i = w->coupled->order[k];
+    const int *offset = w->coupled->assembly->state_offset + i;
+    complete(w->coupled, i);
+    w->work(w->data, i, offset[0], offset[1]);
+}
+
+void bough_coupled_each(bough_coupled *coupled, bough_part_work work, void *data) {
+    part_work w = {coupled, work, data};
+    bough_pool_run(coupled->pool, coupled->assembly->n_member, work_on_part, &w);
+    coupled->incomplete = NULL;
 }
 
 void bough_coupled_close(bough_coupled *coupled, double *outside) {

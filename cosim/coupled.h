@@ -27,6 +27,7 @@ typedef struct bough_coupled {
     const double *at; // (n_state)
     double gamma;
     double *x;
+    double *incomplete; // (n_state) x of the last stage; NULL: none
 
     // factors
     bool linearised; // at the place of setup
@@ -100,9 +101,13 @@ void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, d
 
 // x ← (I − γJ)⁻¹ r by the factors of `coupled`, r made of F, as `evaluation` finds it, by `terms`,
 // as is the state.
-// BOUGH_FAILED names the member whose rate is not finite.
+// BOUGH_FAILED names the member whose rate is not finite. x lacks the members' response to each other until
+// the next stage has prepared them, or until bough_coupled_each.
 bough_status bough_coupled_stage(bough_coupled *evaluation, bough_coupled *coupled, double t,
                                  const double *state, bough_stage_terms terms, double *x);
+
+// Completes the x of the last stage and does work on each member's states, in parallel.
+void bough_coupled_each(bough_coupled *coupled, bough_part_work work, void *data);
 
 // δu for x = 0 and `outside` (n_input) at the leaders' inputs, in place.
 void bough_coupled_close(bough_coupled *coupled, double *outside);

@@ -54,6 +54,11 @@ static bool stage(void *self, void *factors, double t, const double *state, boug
     return bough_is_ok(&status);
 }
 
+static void each(void *self, void *factors, bough_part_work work, void *data) {
+    (void)self;
+    bough_coupled_each(factors, work, data);
+}
+
 static bool constrain(void *self, double t, double *state) {
     const bough_assembly *a = ((const bough_coupled *)self)->assembly;
     bool far = false;
@@ -72,6 +77,7 @@ static void project(void *self, const double *state, double *x) {
 static const bough_system_ops operations = {
     BOUGH_SYSTEM_REQUIRED,
     .stage = stage,
+    .each = each,
     .constrain = constrain,
     .project = project,
 };
@@ -88,6 +94,7 @@ bough_system bough_coupled_system(bough_arena *arena, const bough_assembly *a, b
                           .n_state = a->n_state,
                           .scale = scale,
                           .initial = initial,
+                          .n_part = a->n_member,
                           .ops = &operations,
                           .self = evaluation};
 }

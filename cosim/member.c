@@ -43,6 +43,11 @@ static bool stage(void *self, double t, const double *y, bough_stage_terms terms
     return m->system.ops->stage(m->system.self, m->factors, t, y, terms, x);
 }
 
+static void each(void *self, bough_part_work work, void *data) {
+    const bough_member *m = self;
+    m->system.ops->each(m->system.self, m->factors, work, data);
+}
+
 bough_status bough_member_create(bough_arena *arena, const bough_system *system, double start,
                                  const bough_integrator_options *options, bough_member *member) {
     bough_member *m = member;
@@ -65,7 +70,9 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
                      .linearise = linearise,
                      .factor = factor,
                      .solve = solve,
-                     .stage = system->ops->stage ? stage : NULL};
+                     .stage = system->ops->stage ? stage : NULL,
+                     .each = each,
+                     .n_part = system->n_part};
     bough_status status = bough_integrator_create(arena, &ode, options, &m->integrator);
     m->own_error = m->integrator.own_error;
     return status;
