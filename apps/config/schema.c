@@ -16,15 +16,13 @@ struct bough_schema_file {
     void *item;
 };
 
-static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                       void *item);
+static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
 
 static int errors_so_far(const bough_schema_reader *r) { return r->errors->n + r->errors->dropped; }
 
 // -- lists of mappings ----------------------------------------------------------------------------
 
-static void read_rows(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                      void *item) {
+static void read_rows(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
     char *items = bough_schema_items(r, key, node, key->of->size);
     if (items == NULL) return;
     for (int i = 0; i < node->n; i++) {
@@ -49,8 +47,7 @@ static void unknown_key(bough_schema_reader *r, const bough_schema *schema, cons
     char shown[64];
     bough_node word = {.kind = BOUGH_SCALAR, .text = name};
     int n = 0;
-    for (; n < schema->n_key && n < 64; n++)
-        names[n] = schema->key[n].name;
+    for (; n < schema->n_key && n < 64; n++) names[n] = schema->key[n].name;
     if (r->errors->dropped > 0) n = 0; // a hostile file: spelling costs time
     bough_schema_error(r, at, "", "unknown key %s%s", bough_node_shown(&word, shown),
                        bough_suggest(name, names, n).text);
@@ -84,8 +81,7 @@ static bool read_column(bough_schema_reader *r, const bough_schema *row, const b
     if (*unit == NULL) return true;
     bool one_number = key->kind == BOUGH_KEY_NUMBER;
     if (one_number && bough_unit_fits(*unit, key->dimension, why)) return true;
-    bough_schema_error(r, head, "", one_number ? "column '%s': %s" : "column '%s' takes no unit",
-                       text, why);
+    bough_schema_error(r, head, "", one_number ? "column '%s': %s" : "column '%s' takes no unit", text, why);
     return false;
 }
 
@@ -152,8 +148,7 @@ static void read_compact_rows(bough_schema_reader *r, const bough_key *key, cons
 }
 
 // {columns: […], rows: [[…], …]}
-static void read_table(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                       void *item) {
+static void read_table(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
     const bough_node *heads = bough_node_find(node, "columns");
     const bough_node *rows = bough_node_find(node, "rows");
     for (int i = 0; i < node->n; i++) {
@@ -226,8 +221,7 @@ static void read_file(bough_schema_reader *r, const bough_schema *schema, const 
 
 // -- mappings -------------------------------------------------------------------------------------
 
-static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                       void *item) {
+static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
     void *field = bough_field_at(item, key->offset);
     switch (key->kind) {
     case BOUGH_KEY_MAPPING: bough_schema_read(r, key->of, node, field); break;
@@ -239,7 +233,10 @@ static void read_value(bough_schema_reader *r, const bough_key *key, const bough
         }
         break;
     case BOUGH_KEY_FILE: read_file(r, key->of, node, field); break;
-    case BOUGH_KEY_CUSTOM: key->read(r, node, field); break;
+    case BOUGH_KEY_CUSTOM:
+        r->key = key;
+        key->read(r, node, field);
+        break;
     default: bough_schema_value(r, key, node, item);
     }
 }
@@ -253,8 +250,7 @@ static void read_fallback(bough_schema_reader *r, const bough_key *key, void *it
     bough_node scalar = {.kind = BOUGH_SCALAR, .text = key->fallback, .file = "default"};
     const bough_node *node = &scalar;
     if (key->fallback[0] == '[') {
-        node =
-            bough_text_parse(r->arena, "default", key->fallback, strlen(key->fallback), r->errors);
+        node = bough_text_parse(r->arena, "default", key->fallback, strlen(key->fallback), r->errors);
     }
     if (node != NULL) read_value(r, key, node, item);
 }
@@ -291,8 +287,7 @@ static void refuse_key(bough_schema_reader *r, const bough_schema *schema, const
         size_t used = strlen(where);
         snprintf(where + used, sizeof where - used, "%s%s", used == 0 ? "" : "|", twin->when);
     }
-    for (char *c = strchr(where, '|'); c != NULL; c = strchr(c, '|'))
-        *c = '/';
+    for (char *c = strchr(where, '|'); c != NULL; c = strchr(c, '|')) *c = '/';
     bough_schema_error(r, at, key->name, "only used with '%s: %s'", key->when_key, where);
 }
 
@@ -343,8 +338,8 @@ static void read_mapping(bough_schema_reader *r, const bough_schema *schema, con
     }
 }
 
-void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema,
-                       const bough_node *node, void *item) {
+void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema, const bough_node *node,
+                       void *item) {
     if (node != NULL && node->kind != BOUGH_MAPPING) {
         char what[80];
         snprintf(what, sizeof what, "%s (a mapping of keys)", schema->name);

@@ -37,10 +37,10 @@ typedef enum bough_key_kind {
     BOUGH_KEY_NUMBERS, // double *, and an int at count_offset
     BOUGH_KEY_TEXTS,   // const char **, and an int at count_offset
     BOUGH_KEY_MAPPING, // the struct of schema `of`
-    BOUGH_KEY_LIST,   // pointer to structs of schema `of`, and an int at count_offset. Written as a
-                      // list of mappings, or {columns: [span, twist deg, …], rows: [[…], …]}
-    BOUGH_KEY_FILE,   // the struct of schema `of`, read from the file of that name
-    BOUGH_KEY_CUSTOM, // what `read` makes of it
+    BOUGH_KEY_LIST,    // pointer to structs of schema `of`, and an int at count_offset. Written as a
+                       // list of mappings, or {columns: [span, twist deg, …], rows: [[…], …]}
+    BOUGH_KEY_FILE,    // the struct of schema `of`, read from the file of that name
+    BOUGH_KEY_CUSTOM,  // what `read` makes of it
 } bough_key_kind;
 
 typedef struct bough_schema bough_schema;
@@ -50,13 +50,13 @@ typedef struct bough_key {
     const char *name;
     bough_key_kind kind;
     bough_dimension dimension;
-    const char *range;          // of numbers, SI: "> 0", ">= 0", "[0, 2]"; NULL: any
-    const char *word;           // a word in place of a number, stored as 0
-    const char *const *choices; // ends with NULL
+    const char *range;                // of numbers, SI: "> 0", ">= 0", "[0, 2]"; NULL: any
+    const char *word;                 // a word in place of a number, stored as 0
+    const char *const *choices;       // ends with NULL
     const char *(*choice)(int index); // in place of it; NULL beyond the end
-    const char *when_key;       // the key applies only where this earlier choice …
-    const char *when;           // … is one of these, "revolute|prismatic"; NULL: always
-    const char *fallback;       // default as it would be written
+    const char *when_key;             // the key applies only where this earlier choice …
+    const char *when;                 // … is one of these, "revolute|prismatic"; NULL: always
+    const char *fallback;             // default as it would be written
     bool required;
     int count; // of a vector; least number of items of a list
     const bough_schema *of;
@@ -83,12 +83,13 @@ struct bough_schema_reader {
     const char *directory;           // with its last slash, "" for the current one
     const char *unit;                // of plain numbers, from the head of a column; NULL: SI
     char path[256];                  // of the value being read
+    const bough_key *key;            // whose value `read` of the key is called for
     struct bough_schema_file *files; // read so far
 };
 
 // Fills `item` (zeroed, of the schema's size) from a mapping; NULL fills the defaults.
-void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema,
-                       const bough_node *node, void *item);
+void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema, const bough_node *node,
+                       void *item);
 
 // Adds an error at `node` with the path of the value being read, then `.key` unless key is "".
 void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
@@ -98,13 +99,12 @@ void bough_schema_error(bough_schema_reader *reader, const bough_node *node, con
 const char *bough_schema_path(bough_schema_reader *reader, const char *name);
 
 // Reads a number with or without a unit; NaN after adding an error.
-double bough_schema_number(bough_schema_reader *reader, const bough_node *node,
-                           bough_dimension dimension);
+double bough_schema_number(bough_schema_reader *reader, const bough_node *node, bough_dimension dimension);
 
 // Reads a list of between 1 and `most` plain numbers; its length, or −1 after adding an error.
 // `expected` says what the list should be.
-int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int most,
-                         double *values, const char *expected);
+int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int most, double *values,
+                         const char *expected);
 
 // The value in SI of a number followed by a unit of that dimension, or by none. False when it is
 // not one; `why` then receives the reason.

@@ -20,12 +20,10 @@ void bough_schema_pop(bough_schema_reader *r, size_t length);
 void bough_schema_expected(bough_schema_reader *r, const bough_node *node, const char *what);
 
 // Memory for the items of a list; NULL (and an error) when the node is not one long enough.
-void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                         size_t size);
+void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bough_node *node, size_t size);
 
 // Reads a value that is no mapping, table, file or custom one into its field of the struct.
-void bough_schema_value(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                        void *item);
+void bough_schema_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
 
 // Writes a mapping of the schema as an object of JSON Schema.
 void bough_schema_json_object(const bough_schema *schema, FILE *stream);

@@ -4,15 +4,6 @@
 
 #include <string.h>
 
-static void put_text(const char *text, FILE *stream) {
-    fputc('"', stream);
-    for (const char *c = text; *c; c++) {
-        if (*c == '"' || *c == '\\') fputc('\\', stream);
-        if ((unsigned char)*c >= 0x20) fputc(*c, stream);
-    }
-    fputc('"', stream);
-}
-
 // A number, or one with its unit.
 static const char quantity[] = "\"type\": [\"number\", \"string\"]";
 
@@ -21,7 +12,7 @@ static void put_choices(const bough_key *key, FILE *stream) {
     fputs("\"enum\": [", stream);
     for (int i = 0; (choice = bough_key_choice(key, i)) != NULL; i++) {
         if (i > 0) fputs(", ", stream);
-        put_text(choice, stream);
+        bough_text_quoted(stream, choice);
     }
     fputc(']', stream);
 }
@@ -45,13 +36,12 @@ static void put_value(const bough_key *key, FILE *stream) {
     case BOUGH_KEY_CHOICE: put_choices(key, stream); break;
     case BOUGH_KEY_BOOLEAN: fputs("\"type\": \"boolean\"", stream); break;
     case BOUGH_KEY_VECTOR:
-        fprintf(stream, "\"type\": \"array\", \"items\": {%s}, \"minItems\": %d, \"maxItems\": %d",
-                quantity, key->count, key->count);
+        fprintf(stream, "\"type\": \"array\", \"items\": {%s}, \"minItems\": %d, \"maxItems\": %d", quantity,
+                key->count, key->count);
         break;
     case BOUGH_KEY_NUMBERS:
     case BOUGH_KEY_TEXTS:
-        fprintf(stream, "\"type\": \"array\", \"items\": {%s}, \"minItems\": %d", quantity,
-                key->count);
+        fprintf(stream, "\"type\": \"array\", \"items\": {%s}, \"minItems\": %d", quantity, key->count);
         break;
     case BOUGH_KEY_LIST: put_list(key, stream); break;
     case BOUGH_KEY_MAPPING: // written by put_key
@@ -64,11 +54,10 @@ static void put_description(const bough_key *key, FILE *stream) {
     char text[900];
     const char *unit = bough_dimension_unit(key->dimension), *example = bough_key_example(key);
     snprintf(text, sizeof text, "%s%s%s%s%s%s%s%s%s", key->help, key->form ? "; " : "",
-             key->form ? key->form : "", unit[0] ? "; in " : "", unit,
-             key->fallback ? "; default " : "", key->fallback ? key->fallback : "",
-             example[0] ? "; e.g. " : "", example);
+             key->form ? key->form : "", unit[0] ? "; in " : "", unit, key->fallback ? "; default " : "",
+             key->fallback ? key->fallback : "", example[0] ? "; e.g. " : "", example);
     fputs("\"description\": ", stream);
-    put_text(text, stream);
+    bough_text_quoted(stream, text);
 }
 
 static void put_key(const bough_key *key, FILE *stream) {
@@ -92,7 +81,7 @@ static bool comes_again(const bough_schema *schema, int i, int step) {
 
 // A key that takes another form with another choice of a key before it stands once, with all forms.
 static void put_property(const bough_schema *schema, int first, FILE *stream) {
-    put_text(schema->key[first].name, stream);
+    bough_text_quoted(stream, schema->key[first].name);
     fputs(": ", stream);
     if (!comes_again(schema, first, 1)) {
         put_key(&schema->key[first], stream);
@@ -109,7 +98,7 @@ static void put_property(const bough_schema *schema, int first, FILE *stream) {
 
 void bough_schema_json_object(const bough_schema *schema, FILE *stream) {
     fputs("{\"type\": \"object\", \"title\": ", stream);
-    put_text(schema->name, stream);
+    bough_text_quoted(stream, schema->name);
     fputs(", \"additionalProperties\": false, \"properties\": {\n", stream);
     for (int i = 0, n = 0; i < schema->n_key; i++) {
         if (comes_again(schema, i, -1)) continue;
@@ -120,14 +109,14 @@ void bough_schema_json_object(const bough_schema *schema, FILE *stream) {
     for (int i = 0, n = 0; i < schema->n_key; i++) {
         if (!schema->key[i].required || schema->key[i].when || comes_again(schema, i, -1)) continue;
         if (n++ > 0) fputs(", ", stream);
-        put_text(schema->key[i].name, stream);
+        bough_text_quoted(stream, schema->key[i].name);
     }
     fputs("]}", stream);
 }
 
 void bough_schema_json(const char *title, const bough_schema *const *schema, int n, FILE *stream) {
     fputs("{\"$schema\": \"https://json-schema.org/draft/2020-12/schema\", \"title\": ", stream);
-    put_text(title, stream);
+    bough_text_quoted(stream, title);
     fputs(", \"anyOf\": [\n", stream);
     for (int i = 0; i < n; i++) {
         if (i > 0) fputs(",\n", stream);

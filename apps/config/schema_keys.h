@@ -14,11 +14,11 @@
 #define NAMED(text, of) .name = text, .kind = BOUGH_KEY_##of
 
 #define UNIT(quantity) .dimension = BOUGH_##quantity
-#define CHOICES(...) .choices = (const char *const[]){__VA_ARGS__, NULL}
+#define CHOICES(...)                                                                                         \
+    .choices = (const char *const[]) { __VA_ARGS__, NULL }
 #define WHEN(key, values) .when_key = key, .when = values
 
 #define COUNT(table) (int)(sizeof(table) / sizeof(table)[0])
-#define SCHEMA(what, type, keys)                                                                   \
-    .name = what, .size = sizeof(type), .n_key = COUNT(keys), .key = keys
+#define SCHEMA(what, type, keys) .name = what, .size = sizeof(type), .n_key = COUNT(keys), .key = keys
 
 #endif

@@ -84,8 +84,7 @@ void bough_dimension_expected(bough_dimension dimension, char text[96]) {
 
 void bough_schema_help_units(FILE *stream) {
     for (size_t i = 1; i < sizeof dimensions / sizeof dimensions[0]; i++) {
-        fprintf(stream, "- %s in %s: '%s'\n", dimensions[i].name, dimensions[i].si,
-                dimensions[i].example);
+        fprintf(stream, "- %s in %s: '%s'\n", dimensions[i].name, dimensions[i].si, dimensions[i].example);
     }
 }
 
@@ -133,14 +132,12 @@ static bool apply_token(char *token, int sign, double *factor, int exponent[N_BA
     const unit *u = find_unit(token, &size);
     if (u == NULL) return false;
     *factor *= pow(size, power);
-    for (int k = 0; k < N_BASE; k++)
-        exponent[k] += power * u->exponent[k];
+    for (int k = 0; k < N_BASE; k++) exponent[k] += power * u->exponent[k];
     return true;
 }
 
 // The factor of a unit expression; false with a reason when it is not of the dimension.
-static bool unit_factor(const char *text, bough_dimension dimension, double *factor,
-                        char why[160]) {
+static bool unit_factor(const char *text, bough_dimension dimension, double *factor, char why[160]) {
     int exponent[N_BASE] = {0}, sign = 1;
     *factor = 1;
     for (const char *c = text + strspn(text, " *"); *c != '\0'; c += strspn(c, " *")) {
@@ -211,8 +208,7 @@ static bool convert(const char *text, size_t length, double *value) {
 }
 
 // Angles without a unit: radians to one reader, degrees to the next. 0 is the same to both.
-static bool is_ambiguous(const char *number, bough_dimension dimension, double value,
-                         char why[160]) {
+static bool is_ambiguous(const char *number, bough_dimension dimension, double value, char why[160]) {
     if (value == 0) return false;
     if (dimension == BOUGH_ANGLE) {
         snprintf(why, 160, "%.30s rad is %.4g deg; write '%.30s deg' or '%.30s rad'", number,

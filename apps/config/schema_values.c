@@ -51,8 +51,8 @@ static bool is_word(const bough_node *node, const char *word) {
 }
 
 // The column's unit holds for a plain number; a number with its own unit fails with it appended.
-static bool quantity(const bough_schema_reader *r, const char *text, bough_dimension dimension,
-                     double *value, char why[160]) {
+static bool quantity(const bough_schema_reader *r, const char *text, bough_dimension dimension, double *value,
+                     char why[160]) {
     double plain;
     char ignored[160], joined[96];
     if (r->unit == NULL || !bough_quantity(text, BOUGH_PURE_NUMBER, &plain, ignored)) {
@@ -62,21 +62,20 @@ static bool quantity(const bough_schema_reader *r, const char *text, bough_dimen
     return bough_quantity(joined, dimension, value, why);
 }
 
-double bough_schema_number(bough_schema_reader *reader, const bough_node *node,
-                           bough_dimension dimension) {
+double bough_schema_number(bough_schema_reader *reader, const bough_node *node, bough_dimension dimension) {
     double value;
     char why[160] = "", what[96], shown[64];
     if (node->kind == BOUGH_SCALAR && quantity(reader, node->text, dimension, &value, why)) {
         return value;
     }
     bough_dimension_expected(dimension, what);
-    bough_schema_error(reader, node, "", "expected %s, got %s%s%s", what,
-                       bough_node_shown(node, shown), why[0] == '\0' ? "" : ": ", why);
+    bough_schema_error(reader, node, "", "expected %s, got %s%s%s", what, bough_node_shown(node, shown),
+                       why[0] == '\0' ? "" : ": ", why);
     return NAN;
 }
 
-int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int most,
-                         double *values, const char *what) {
+int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, int most, double *values,
+                         const char *what) {
     char shown[64];
     if (node->kind != BOUGH_SEQUENCE) {
         bough_schema_expected(reader, node, what);
@@ -90,8 +89,7 @@ int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, in
     int n = node->n;
     for (int i = 0; i < node->n; i++) {
         const bough_node *item = node->value[i];
-        if (item->kind == BOUGH_SCALAR &&
-            bough_quantity(item->text, BOUGH_PURE_NUMBER, &values[i], why)) {
+        if (item->kind == BOUGH_SCALAR && bough_quantity(item->text, BOUGH_PURE_NUMBER, &values[i], why)) {
             continue;
         }
         size_t length = bough_schema_push(reader, "[%d]", i);
@@ -115,18 +113,16 @@ static bool in_range(double value, const char *range) {
     return value > strtod(range + 1, NULL);
 }
 
-static bool check_range(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                        double value) {
+static bool check_range(bough_schema_reader *r, const bough_key *key, const bough_node *node, double value) {
     if (isnan(value) || in_range(value, key->range)) return true;
     char shown[64];
     const char *unit = bough_dimension_unit(key->dimension);
-    bough_schema_error(r, node, "", "must be %s%s%s%s, got %s", key->range[0] == '[' ? "in " : "",
-                       key->range, unit[0] == '\0' ? "" : " ", unit, bough_node_shown(node, shown));
+    bough_schema_error(r, node, "", "must be %s%s%s%s, got %s", key->range[0] == '[' ? "in " : "", key->range,
+                       unit[0] == '\0' ? "" : " ", unit, bough_node_shown(node, shown));
     return false;
 }
 
-static void read_number(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                        double *field) {
+static void read_number(bough_schema_reader *r, const bough_key *key, const bough_node *node, double *field) {
     if (key->word != NULL && is_word(node, key->word)) {
         *field = 0;
         return;
@@ -135,8 +131,7 @@ static void read_number(bough_schema_reader *r, const bough_key *key, const boug
     *field = check_range(r, key, node, value) ? value : (double)NAN;
 }
 
-static void read_integer(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                         int *field) {
+static void read_integer(bough_schema_reader *r, const bough_key *key, const bough_node *node, int *field) {
     if (node->kind != BOUGH_SCALAR || !bough_whole_number(node->text, field)) {
         bough_schema_expected(r, node, "a whole number");
     } else {
@@ -160,8 +155,7 @@ const char *bough_key_choice(const bough_key *key, int index) {
     return key->choice != NULL ? key->choice(index) : key->choices[index];
 }
 
-static void read_choice(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                        int *field) {
+static void read_choice(bough_schema_reader *r, const bough_key *key, const bough_node *node, int *field) {
     char list[200] = "", shown[64];
     const char *choices[MAX_CHOICES];
     int n = 0;
@@ -185,8 +179,7 @@ static void read_boolean(bough_schema_reader *r, const bough_node *node, bool *f
     bough_schema_expected(r, node, "true or false");
 }
 
-void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                         size_t size) {
+void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bough_node *node, size_t size) {
     if (node->kind != BOUGH_SEQUENCE) {
         bool mappings = key->kind == BOUGH_KEY_LIST;
         bough_schema_expected(r, node, mappings ? "a list of mappings" : "a list");
@@ -204,8 +197,7 @@ void *bough_schema_items(bough_schema_reader *r, const bough_key *key, const bou
     return bough_arena_take(r->arena, (size_t)node->n * size);
 }
 
-static void read_texts(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                       void *item) {
+static void read_texts(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
     const char **texts = bough_schema_items(r, key, node, sizeof *texts);
     if (texts == NULL) return;
     for (int i = 0; i < node->n; i++) {
@@ -240,12 +232,10 @@ static void read_vector(bough_schema_reader *r, const bough_key *key, const boug
         read_components(r, key, node, values);
         return;
     }
-    for (int i = 0; i < key->count; i++)
-        values[i] = NAN;
+    for (int i = 0; i < key->count; i++) values[i] = NAN;
 }
 
-static void read_numbers(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                         void *item) {
+static void read_numbers(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
     double *values = bough_schema_items(r, key, node, sizeof *values);
     if (values == NULL) return;
     read_components(r, key, node, values);
@@ -255,8 +245,7 @@ static void read_numbers(bough_schema_reader *r, const bough_key *key, const bou
 
 // -- any of them ----------------------------------------------------------------------------------
 
-void bough_schema_value(bough_schema_reader *r, const bough_key *key, const bough_node *node,
-                        void *item) {
+void bough_schema_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item) {
     void *field = bough_field_at(item, key->offset);
     switch (key->kind) {
     case BOUGH_KEY_NUMBER: read_number(r, key, node, field); break;

@@ -13,8 +13,7 @@ const char *bough_node_shown(const bough_node *node, char buffer[64]) {
         return buffer;
     }
     length = 45;
-    while (((unsigned char)node->text[length] & 0xC0) == 0x80)
-        length--; // not inside a character
+    while (((unsigned char)node->text[length] & 0xC0) == 0x80) length--; // not inside a character
     snprintf(buffer, 64, "'%.*s...'", (int)length, node->text);
     return buffer;
 }
@@ -24,10 +23,8 @@ enum { WORD = 40 };
 // Edit distance of two words shorter than WORD, an exchange of neighbours counting as one edit.
 static int edit_distance(const char *a, const char *b) {
     int n = (int)strlen(a), m = (int)strlen(b), d[WORD + 1][WORD + 1];
-    for (int i = 0; i <= n; i++)
-        d[i][0] = i;
-    for (int j = 0; j <= m; j++)
-        d[0][j] = j;
+    for (int i = 0; i <= n; i++) d[i][0] = i;
+    for (int j = 0; j <= m; j++) d[0][j] = j;
     for (int i = 1; i <= n; i++) {
         for (int j = 1; j <= m; j++) {
             int best = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);

@@ -38,7 +38,7 @@ typedef struct reader {
     size_t size;
     yaml_parser_t parser;
     yaml_event_t event; // the present one
-    char *pool; // small objects are cut from blocks: the arena's smallest block has 128 bytes
+    char *pool;         // small objects are cut from blocks: the arena's smallest block has 128 bytes
     size_t pool_left, pool_size;
     bough_node **stack; // (stack_capacity)
     int n_stack, stack_capacity;
@@ -62,8 +62,8 @@ static void grow_errors(bough_errors *errors) {
     errors->capacity = capacity;
 }
 
-void bough_errors_add(bough_errors *errors, const bough_node *where, const char *path,
-                      const char *format, ...) {
+void bough_errors_add(bough_errors *errors, const bough_node *where, const char *path, const char *format,
+                      ...) {
     if (errors->n >= MAX_ERRORS) {
         errors->dropped++;
         return;
@@ -74,9 +74,9 @@ void bough_errors_add(bough_errors *errors, const bough_node *where, const char 
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    errors->item[errors->n++] = (bough_error){
-        bough_arena_string(errors->arena, where->file), where->line, where->column,
-        bough_arena_string(errors->arena, path), bough_arena_string(errors->arena, text)};
+    errors->item[errors->n++] =
+        (bough_error){bough_arena_string(errors->arena, where->file), where->line, where->column,
+                      bough_arena_string(errors->arena, path), bough_arena_string(errors->arena, text)};
 }
 
 // Rank of an error's file: those without a position, the first file, the others.
@@ -167,9 +167,8 @@ static const char *readable(const char *problem) {
     } table[] = {
         {"cannot start any token", "unexpected character here (tabs cannot indent; quote text that "
                                    "starts with @, `, % or a bracket)"},
-        {"mapping values are not allowed",
-         "unexpected ':' (two keys on one line, or a line that is "
-         "indented too far)"},
+        {"mapping values are not allowed", "unexpected ':' (two keys on one line, or a line that is "
+                                           "indented too far)"},
         {"did not find expected key", "expected 'key: value' here (check the indentation)"},
         {"could not find expected ':'", "expected ':' after a key (check the indentation)"},
         {"did not find expected ',' or ']'", "expected ',' or ']' to end the list"},
@@ -252,8 +251,7 @@ static bool remember_anchor(reader *r, const yaml_char_t *name, bough_node *node
 }
 
 static bool add_scalar(reader *r, const yaml_event_t *e) {
-    if (e->data.scalar.tag != NULL)
-        return refuse(r, e->start_mark, "tags (!...) are not used here");
+    if (e->data.scalar.tag != NULL) return refuse(r, e->start_mark, "tags (!...) are not used here");
     bough_node *node = new_node(r, BOUGH_SCALAR, e->start_mark);
     if (node == NULL) return false;
     size_t length = e->data.scalar.length;
@@ -264,8 +262,7 @@ static bool add_scalar(reader *r, const yaml_event_t *e) {
     memcpy(text, e->data.scalar.value, length + 1);
     node->text = text;
     node->quoted = e->data.scalar.style != YAML_PLAIN_SCALAR_STYLE;
-    return remember_anchor(r, e->data.scalar.anchor, node, e->start_mark) &&
-           attach(r, node, e->start_mark);
+    return remember_anchor(r, e->data.scalar.anchor, node, e->start_mark) && attach(r, node, e->start_mark);
 }
 
 static bool is_open(const reader *r, const bough_node *node) {
@@ -292,8 +289,7 @@ static bool add_alias(reader *r, const yaml_event_t *e) {
 static bool open_node(reader *r, const yaml_event_t *e, bough_node_kind kind) {
     bool mapping = kind == BOUGH_MAPPING;
     const yaml_char_t *tag = mapping ? e->data.mapping_start.tag : e->data.sequence_start.tag;
-    const yaml_char_t *name =
-        mapping ? e->data.mapping_start.anchor : e->data.sequence_start.anchor;
+    const yaml_char_t *name = mapping ? e->data.mapping_start.anchor : e->data.sequence_start.anchor;
     if (tag != NULL) return refuse(r, e->start_mark, "tags (!...) are not used here");
     if (r->depth == MAX_DEPTH) return refuse(r, e->start_mark, "nesting is deeper than 64 levels");
     bough_node *node = new_node(r, kind, e->start_mark);
@@ -432,4 +428,13 @@ bough_node *bough_node_find(const bough_node *node, const char *key) {
         if (strcmp(node->key[i]->text, key) == 0) return node->value[i];
     }
     return NULL;
+}
+
+void bough_text_quoted(FILE *stream, const char *text) {
+    fputc('"', stream);
+    for (const char *c = text; *c; c++) {
+        if (*c == '"' || *c == '\\') fputc('\\', stream);
+        if ((unsigned char)*c >= 0x20) fputc(*c, stream);
+    }
+    fputc('"', stream);
 }

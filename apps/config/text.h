@@ -47,8 +47,8 @@ typedef struct bough_errors {
 } bough_errors;
 
 // Adds an error with a printf-style text at the node.
-void bough_errors_add(bough_errors *errors, const bough_node *where, const char *path,
-                      const char *format, ...) __attribute__((format(printf, 4, 5)));
+void bough_errors_add(bough_errors *errors, const bough_node *where, const char *path, const char *format,
+                      ...) __attribute__((format(printf, 4, 5)));
 
 // Orders them: without position first, then the file `first`, then other files by name; by line
 // and column within a file.
@@ -63,6 +63,9 @@ bough_node *bough_text_read(bough_arena *arena, const char *path, bough_errors *
 // The tree of `size` bytes at `text`, called `file` in messages.
 bough_node *bough_text_parse(bough_arena *arena, const char *file, const char *text, size_t size,
                              bough_errors *errors);
+
+// Writes a text in double quotes, as YAML and JSON read it; control characters are left out.
+void bough_text_quoted(FILE *stream, const char *text);
 
 // The value of a key in a mapping, NULL when there is none or the node is no mapping (or NULL).
 bough_node *bough_node_find(const bough_node *node, const char *key);

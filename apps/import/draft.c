@@ -1,5 +1,6 @@
 #include "apps/import/draft.h"
 
+#include "apps/config/text.h"
 #include "apps/output/folder.h"
 #include "apps/scene/scene.h"
 #include "apps/simulation/run.h"
@@ -64,7 +65,8 @@ void bough_draft_library(bough_draft *d, const char *library, const char *input,
 
 void bough_draft_airfoil_name(const char *text, size_t length, int number, char name[BOUGH_AIRFOIL_NAME]) {
     int n = snprintf(name, BOUGH_AIRFOIL_NAME, "%d-", number);
-    for (size_t i = 0; i < length && n < BOUGH_AIRFOIL_NAME - 1; i++) name[n++] = bough_import_letter(text[i]);
+    for (size_t i = 0; i < length && n < BOUGH_AIRFOIL_NAME - 1; i++)
+        name[n++] = bough_import_letter(text[i]);
     name[n] = '\0';
 }
 
@@ -94,7 +96,8 @@ void bough_draft_polar(bough_draft *d, const char *name, const double *row, int 
     put_row(file, 180, end);
     if (whole && gap <= 1e-6) return;
     bough_draft_note(d, BOUGH_APPROXIMATED,
-                     "%s: from %g to %g deg; the value at 180 deg is the mean of its ends", name, row[0], last[0]);
+                     "%s: from %g to %g deg; the value at 180 deg is the mean of its ends", name, row[0],
+                     last[0]);
 }
 
 void bough_import_list(FILE *file, const double *value, int n) {
@@ -102,20 +105,11 @@ void bough_import_list(FILE *file, const double *value, int n) {
     fputc(']', file);
 }
 
-void bough_import_quoted(FILE *file, const char *text) {
-    fputc('"', file);
-    for (; *text; text++) {
-        if (*text == '"' || *text == '\\') fputc('\\', file);
-        if ((unsigned char)*text >= ' ') fputc(*text, file);
-    }
-    fputc('"', file);
-}
-
 void bough_import_path(FILE *file, const char *path) {
     char here[BOUGH_PATH_MAX], whole[2 * BOUGH_PATH_MAX];
     bool relative = path[0] != '/' && getcwd(here, sizeof here);
     snprintf(whole, sizeof whole, "%s%s%s", relative ? here : "", relative ? "/" : "", path);
-    bough_import_quoted(file, whole);
+    bough_text_quoted(file, whole);
 }
 
 char bough_import_letter(char letter) {
@@ -134,7 +128,7 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
             "# Ground axes: x downwind, z up. The rotor turns positive about the shaft's x.\n"
             "title: ",
             origin);
-    bough_import_quoted(file, title);
+    bough_text_quoted(file, title);
     fprintf(
         file,
         "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"

@@ -78,16 +78,14 @@ void bough_draft_library(bough_draft *d, const char *library, const char *input,
 enum { BOUGH_AIRFOIL_NAME = 64, BOUGH_POLAR_COLUMNS = 4 };
 void bough_draft_airfoil_name(const char *text, size_t length, int number, char name[BOUGH_AIRFOIL_NAME]);
 
-// A polar with rows (n × BOUGH_POLAR_COLUMNS) of rising angle [deg], lift, drag and moment, written from -180 to
-// 180 deg, where the values are one: the mean of those at the table's ends.
+// A polar with rows (n × BOUGH_POLAR_COLUMNS) of rising angle [deg], lift, drag and moment, written from -180
+// to 180 deg, where the values are one: the mean of those at the table's ends.
 void bough_draft_polar(bough_draft *d, const char *name, const double *row, int n);
 
 // "[1, 2, 3]" in the scene's spelling.
 void bough_import_list(FILE *file, const double *value, int n);
 
-// Writes a text in double quotes; a path as an absolute path in double quotes, for files that stay where they
-// are.
-void bough_import_quoted(FILE *file, const char *text);
+// Writes a path as an absolute path in double quotes, for files that stay where they are.
 void bough_import_path(FILE *file, const char *path);
 
 // Whether the letter may stand in a scene's name.

@@ -71,8 +71,8 @@ void bough_openfast_aero_tables(bough_openfast *o);
 void bough_openfast_aero(bough_openfast *o);
 void bough_openfast_wind(bough_openfast *o);
 
-// What both AeroDyn's readers write: blade elements with rows (n × BOUGH_N_ELEMENT_COLUMN); `count` is the name of
-// their number.
+// What both AeroDyn's readers write: blade elements with rows (n × BOUGH_N_ELEMENT_COLUMN); `count` is the
+// name of their number.
 enum { BOUGH_MOST_AIRFOILS = 200 };
 enum { // span [m], curve, sweep [m], angle of the curve [deg], twist [deg], chord [m], airfoil from 1
     BOUGH_ELEMENT_SPAN,

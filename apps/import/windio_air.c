@@ -14,7 +14,8 @@ static void airfoil_name(const bough_node *airfoil, int number, char name[NAME])
     bough_draft_airfoil_name(own ? own->text : "", own ? strlen(own->text) : 0, number, name);
 }
 
-// A coefficient over the angle of attack [deg]; nothing where the file has none. Files in radians often stop at 3.14.
+// A coefficient over the angle of attack [deg]; nothing where the file has none. Files in radians often stop
+// at 3.14.
 static bough_curve read_coefficient(bough_windio *w, const bough_node *from, const char *names, bool needed) {
     if (!needed && !bough_entry(from, names)) return (bough_curve){0};
     bough_curve c = bough_entry_curve(&w->draft, from, names);
@@ -22,15 +23,16 @@ static bough_curve read_coefficient(bough_windio *w, const bough_node *from, con
     double *x = bough_arena_doubles(w->draft.arena, (size_t)c.n), low = c.x[0] * w->degree;
     double high = c.x[c.n - 1] * w->degree;
     if (low < -181 || high > 181) {
-        bough_entry_fail(&w->draft, c.node, "grid: expected angles from -180 to 180 deg, got %g to %g", low, high);
+        bough_entry_fail(&w->draft, c.node, "grid: expected angles from -180 to 180 deg, got %g to %g", low,
+                         high);
     }
     for (int i = 0; i < c.n; i++) x[i] = c.x[i] * w->degree;
     if (low < -179 && high > 179) {
         x[0] = -180;
         x[c.n - 1] = 180;
     } else {
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "line %d: from %g to %g deg, constant beyond", c.node->line,
-                         low, high);
+        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "line %d: from %g to %g deg, constant beyond",
+                         c.node->line, low, high);
     }
     c.x = x;
     return c;

@@ -76,9 +76,10 @@ static void read_ramp(bough_schema_reader *r, const bough_node *node, bough_dime
 }
 // clang-format on
 
-// A number, a ramp or a table.
-static void read_values(bough_schema_reader *r, const bough_node *node, bough_dimension unit,
-                        bough_scene_motion *motion) {
+// A number, a ramp or a table, in the key's dimension.
+static void read_values(bough_schema_reader *r, const bough_node *node, void *field) {
+    bough_scene_motion *motion = field;
+    bough_dimension unit = r->key->dimension;
     if (node->kind != BOUGH_MAPPING) {
         motion->def.from = motion->def.to = bough_schema_number(r, node, unit);
     } else if (bough_node_find(node, "times") != NULL || bough_node_find(node, "values") != NULL) {
@@ -94,22 +95,6 @@ static void read_values(bough_schema_reader *r, const bough_node *node, bough_di
 
 // -- the motion -----------------------------------------------------------------------------------
 
-static void read_angle(bough_schema_reader *r, const bough_node *node, void *field) {
-    read_values(r, node, BOUGH_ANGLE, field);
-}
-
-static void read_angular_speed(bough_schema_reader *r, const bough_node *node, void *field) {
-    read_values(r, node, BOUGH_ANGULAR_SPEED, field);
-}
-
-static void read_position(bough_schema_reader *r, const bough_node *node, void *field) {
-    read_values(r, node, BOUGH_LENGTH, field);
-}
-
-static void read_speed(bough_schema_reader *r, const bough_node *node, void *field) {
-    read_values(r, node, BOUGH_SPEED, field);
-}
-
 // clang-format off
 #define FORM .form = "a number, {from: 0, to: ..., ramp: [...]} or {times: [...], values: [...]}"
 #define FILLS bough_scene_motion
@@ -117,29 +102,29 @@ static void read_speed(bough_schema_reader *r, const bough_node *node, void *fie
     {KEY(TEXT, input), .example = "yaw",                                                           \
      .help = "with a constant place: name by which it is set between steps"}
 static const bough_key revolute_keys[] = {
-    {NAMED("speed", CUSTOM), .read = read_angular_speed, FORM},
-    {NAMED("angle", CUSTOM), .read = read_angle, FORM},
+    {NAMED("speed", CUSTOM), .read = read_values, UNIT(ANGULAR_SPEED), FORM},
+    {NAMED("angle", CUSTOM), .read = read_values, UNIT(ANGLE), FORM},
     INPUT,
 };
 static const bough_key prismatic_keys[] = {
-    {NAMED("speed", CUSTOM), .read = read_speed, FORM},
-    {NAMED("position", CUSTOM), .read = read_position, FORM},
+    {NAMED("speed", CUSTOM), .read = read_values, UNIT(SPEED), FORM},
+    {NAMED("position", CUSTOM), .read = read_values, UNIT(LENGTH), FORM},
     INPUT,
 };
 #undef FILLS
 #define FILLS motion_pair
 static const bough_key cylindrical_keys[] = {
-    {NAMED("speed", CUSTOM), .read = read_speed},
-    {NAMED("position", CUSTOM), .read = read_position},
-    {NAMED("angular_speed", CUSTOM), AT(second), .read = read_angular_speed},
-    {NAMED("angle", CUSTOM), AT(second), .read = read_angle},
+    {NAMED("speed", CUSTOM), .read = read_values, UNIT(SPEED)},
+    {NAMED("position", CUSTOM), .read = read_values, UNIT(LENGTH)},
+    {NAMED("angular_speed", CUSTOM), AT(second), .read = read_values, UNIT(ANGULAR_SPEED)},
+    {NAMED("angle", CUSTOM), AT(second), .read = read_values, UNIT(ANGLE)},
 };
 #undef FILLS
 // clang-format on
 
 // One of a pair of keys at most, the speed first.
-static void check_one(bough_schema_reader *r, const bough_node *node, const char *speed,
-                      const char *place, bough_scene_motion *motion) {
+static void check_one(bough_schema_reader *r, const bough_node *node, const char *speed, const char *place,
+                      bough_scene_motion *motion) {
     bool of_speed = bough_node_find(node, speed) != NULL;
     bool of_place = bough_node_find(node, place) != NULL;
     motion->def.speed = of_speed;
@@ -161,8 +146,9 @@ static void check_motion(bough_schema_reader *r, void *item) {
                            "only with a constant initial position");
     }
     if (motion->node->n == (motion->input != NULL ? 2 : 1)) return;
-    bough_schema_error(r, motion->node, "", "expected either the speed or the position of the "
-                                        "joint");
+    bough_schema_error(r, motion->node, "",
+                       "expected either the speed or the position of the "
+                       "joint");
 }
 
 static void check_pair(bough_schema_reader *r, void *item) {
@@ -196,12 +182,8 @@ void bough_scene_read_motion(bough_schema_reader *r, const bough_node *node, voi
     motion_pair pair = {0};
     universal_pair two = {0};
     switch (joint->kind) {
-    case BOUGH_JOINT_REVOLUTE:
-        bough_schema_read(r, &revolute_motion, node, &joint->motion);
-        break;
-    case BOUGH_JOINT_PRISMATIC:
-        bough_schema_read(r, &prismatic_motion, node, &joint->motion);
-        break;
+    case BOUGH_JOINT_REVOLUTE: bough_schema_read(r, &revolute_motion, node, &joint->motion); break;
+    case BOUGH_JOINT_PRISMATIC: bough_schema_read(r, &prismatic_motion, node, &joint->motion); break;
     case BOUGH_JOINT_CYLINDRICAL:
         bough_schema_read(r, &cylindrical_motion, node, &pair);
         joint->motion = pair.first, joint->second_motion = pair.second;

@@ -13,19 +13,6 @@
 
 // -- replacements ---------------------------------------------------------------------------------
 
-// "key=value" in YAML: a value that was quoted is quoted again, so that it stays what it is.
-static const char *write_set(bough_arena *arena, const char *key, const bough_node *value) {
-    size_t size = strlen(key) + 2 * strlen(value->text) + 4;
-    char *set = bough_arena_take(arena, size);
-    char *end = set + snprintf(set, size, "%s=%s", key, value->quoted ? "'" : "");
-    for (const char *c = value->text; *c; c++) {
-        if (value->quoted && *c == '\'') *end++ = '\'';
-        *end++ = *c;
-    }
-    if (value->quoted) *end = '\'';
-    return set;
-}
-
 // A value in one line: 'text', [1, 2], {a: [1, 2]}. False when it is deeper than the stack of calls
 // should be.
 static bool put_flow(FILE *f, const bough_node *value) {
@@ -63,20 +50,19 @@ static const char *write_flow(bough_arena *arena, const bough_node *value) {
     return kept;
 }
 
+// A value that was quoted is quoted again in the replacement, so that it stays what it is.
 static void read_setting(bough_schema_reader *r, const char *key, const bough_node *value,
                          bough_study_setting *setting) {
     char shown[64];
-    bough_node written = *value;
-    if (value->kind != BOUGH_SCALAR) {
-        written = (bough_node){.kind = BOUGH_SCALAR, .text = write_flow(r->arena, value)};
-    }
-    if (written.kind != BOUGH_SCALAR || !written.text || written.text[0] == '\0') {
-        bough_schema_error(r, value, key, "expected one value, got %s",
-                           bough_node_shown(value, shown));
+    const char *flow = write_flow(r->arena, value), *text = value->kind == BOUGH_SCALAR ? value->text : flow;
+    if (!flow || text[0] == '\0') {
+        bough_schema_error(r, value, key, "expected one value, got %s", bough_node_shown(value, shown));
         return;
     }
-    *setting =
-        (bough_study_setting){value, key, written.text, write_set(r->arena, key, &written)};
+    size_t size = strlen(key) + strlen(flow) + 2;
+    char *set = bough_arena_take(r->arena, size);
+    snprintf(set, size, "%s=%s", key, flow);
+    *setting = (bough_study_setting){value, key, text, set};
 }
 
 static bool is_mapping(bough_schema_reader *r, const bough_node *node, const char *what) {
@@ -91,8 +77,7 @@ void bough_study_read_settings(bough_schema_reader *r, const bough_node *node, v
     if (!is_mapping(r, node, "keys of the scene with their values")) return;
     settings->item = bough_arena_take(r->arena, (size_t)node->n * sizeof *settings->item);
     settings->n = node->n;
-    for (int i = 0; i < node->n; i++)
-        read_setting(r, node->key[i]->text, node->value[i], &settings->item[i]);
+    for (int i = 0; i < node->n; i++) read_setting(r, node->key[i]->text, node->value[i], &settings->item[i]);
 }
 
 // -- grid -----------------------------------------------------------------------------------------
@@ -121,8 +106,7 @@ static void read_axis(bough_schema_reader *r, const bough_node *key, const bough
     }
     axis->value.item = bough_arena_take(r->arena, (size_t)values->n * sizeof *axis->value.item);
     axis->value.n = values->n;
-    for (int i = 0; i < values->n; i++)
-        read_setting(r, key->text, values->value[i], &axis->value.item[i]);
+    for (int i = 0; i < values->n; i++) read_setting(r, key->text, values->value[i], &axis->value.item[i]);
     check_different(r, axis);
 }
 
@@ -147,29 +131,24 @@ void bough_study_read_grid(bough_schema_reader *r, const bough_node *node, void 
     bough_study_grid *grid = field;
     if (!is_mapping(r, node, "keys of the scene, each with a list of values")) return;
     if (node->n > BOUGH_STUDY_AXES) {
-        bough_schema_error(r, node, "", "expected at most %d keys, got %d", BOUGH_STUDY_AXES,
-                           node->n);
+        bough_schema_error(r, node, "", "expected at most %d keys, got %d", BOUGH_STUDY_AXES, node->n);
         return;
     }
     grid->axis = bough_arena_take(r->arena, (size_t)node->n * sizeof *grid->axis);
     grid->n = node->n;
-    for (int i = 0; i < node->n; i++)
-        read_axis(r, node->key[i], node->value[i], &grid->axis[i]);
-    for (int i = 0; i < node->n; i++)
-        grid->axis[i].label = short_label(grid, i);
+    for (int i = 0; i < node->n; i++) read_axis(r, node->key[i], node->value[i], &grid->axis[i]);
+    for (int i = 0; i < node->n; i++) grid->axis[i].label = short_label(grid, i);
 }
 
 // -- measures -------------------------------------------------------------------------------------
 
 static const char channels_form[] = "[A, B, C], or several such lists";
 
-static void read_vector(bough_schema_reader *r, const bough_node *node,
-                        bough_study_vector *vector) {
+static void read_vector(bough_schema_reader *r, const bough_node *node, bough_study_vector *vector) {
     char shown[64];
     if (node->kind != BOUGH_SEQUENCE || node->n == 0) {
         bough_schema_error(r, node, "", "expected %s, got %s", channels_form,
-                           node->kind == BOUGH_SEQUENCE ? "an empty list"
-                                                        : bough_node_shown(node, shown));
+                           node->kind == BOUGH_SEQUENCE ? "an empty list" : bough_node_shown(node, shown));
         return;
     }
     vector->channel = bough_arena_take(r->arena, (size_t)node->n * sizeof *vector->channel);
@@ -178,20 +157,17 @@ static void read_vector(bough_schema_reader *r, const bough_node *node,
         const bough_node *name = node->value[i];
         vector->channel[i] = name->kind == BOUGH_SCALAR ? name->text : "";
         if (vector->channel[i][0] != '\0') continue;
-        bough_schema_error(r, name, "", "expected a channel's name, got %s",
-                           bough_node_shown(name, shown));
+        bough_schema_error(r, name, "", "expected a channel's name, got %s", bough_node_shown(name, shown));
     }
 }
 
 static void read_channels(bough_schema_reader *r, const bough_node *node, void *field) {
     bough_study_vectors *vectors = field;
-    bool nested =
-        node->kind == BOUGH_SEQUENCE && node->n > 0 && node->value[0]->kind == BOUGH_SEQUENCE;
+    bool nested = node->kind == BOUGH_SEQUENCE && node->n > 0 && node->value[0]->kind == BOUGH_SEQUENCE;
     int n = nested ? node->n : 1;
     vectors->item = bough_arena_take(r->arena, (size_t)n * sizeof *vectors->item);
     vectors->n = n;
-    for (int i = 0; i < n; i++)
-        read_vector(r, nested ? node->value[i] : node, &vectors->item[i]);
+    for (int i = 0; i < n; i++) read_vector(r, nested ? node->value[i] : node, &vectors->item[i]);
 }
 
 static void check_measure(bough_schema_reader *r, void *item) {
@@ -276,7 +252,8 @@ void bough_study_help(FILE *stream) {
           "performs the runs. Keys in\nbraces are keys of the scene, written as for `--set`; values "
           "are written as in scenes. Tutorials:\n[studies](tutorials/study.md), "
           "[load sets](tutorials/loads.md).\n"
-          "\n## work-precision, timing, stability\n\n", stream);
+          "\n## work-precision, timing, stability\n\n",
+          stream);
     bough_schema_help(&study_schema, 0, stream);
     fputs("\n## sweep\n\n", stream);
     bough_schema_help(&bough_sweep_schema, 0, stream);
@@ -329,7 +306,8 @@ static bool is_verification(const bough_node *root, bough_errors *errors) {
         bough_errors_add(errors, kind, "kind",
                          "'%s' is a study of bough's verification; run it by "
                          "build/release/tests/bough-verify FILE, which is built with the "
-                         "tests", kinds[i]);
+                         "tests",
+                         kinds[i]);
         return true;
     }
     return false;
@@ -359,8 +337,8 @@ static bough_status read_load_set(bough_arena *arena, const bough_node *root, bo
     return status;
 }
 
-bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
-                              bough_errors *errors, bough_study **study) {
+bough_status bough_study_read(bough_arena *arena, const char *path, int threads, bough_errors *errors,
+                              bough_study **study) {
     *study = NULL;
     bough_study *s = bough_arena_take(arena, sizeof *s);
     bough_node *root = bough_text_read(arena, path, errors);
