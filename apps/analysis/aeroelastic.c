@@ -20,11 +20,11 @@ typedef struct work {
     bough_coupled *coupled;
     const bough_modes_def *def;
     int n, k;
-    double *inverse;       // P = (I − γJ)⁻¹ (n × n)
-    double *turned;        // I + γ P S, factored (n × n)
-    int *pivot;            // (n)
-    double *right, *left;  // bases (n × k)
-    double *image, *small; // (n × k), (k × k)
+    double *inverse;                          // P = (I − γJ)⁻¹ (n × n)
+    double *turned;                           // I + γ P S, factored (n × n)
+    int *pivot;                               // (n)
+    double *right, *left;                     // bases (n × k)
+    double *image, *small;                    // (n × k), (k × k)
     double *turned_basis, *mode, *mode_image; // (n × k)
 } work;
 
@@ -177,8 +177,7 @@ static void sort_ritz(int k, ritz *r) {
 }
 
 // What is left of M v − μ v, of the first of a pair or a real one, against μ v; image (n × k) is M v.
-static double residual(const work *w, const ritz *r, int at, const double *modes,
-                       const double *images) {
+static double residual(const work *w, const ritz *r, int at, const double *modes, const double *images) {
     size_t n = (size_t)w->n;
     const double *v = modes + (size_t)at * n, *image = images + (size_t)at * n;
     double re = r->value[at], im = r->value[w->k + at], defect = 0, size = 0;
@@ -373,9 +372,8 @@ static void add_response(bough_arena *arena, work *w, const bough_air_tangent *t
     add_followed(t, m, moved, k, force, block, to);
 }
 
-static void add_air(bough_arena *arena, work *w, const bough_simulation *s,
-                    const bough_blade_group *group, const bough_air_tangent *t,
-                    bough_aeroelastic *to) {
+static void add_air(bough_arena *arena, work *w, const bough_simulation *s, const bough_blade_group *group,
+                    const bough_air_tangent *t, bough_aeroelastic *to) {
     int n = w->n, k = to->n_motion, m = t->n_air;
     size_t most = (size_t)(k > m ? k : m);
     double *block = bough_arena_doubles(arena, most * most + (size_t)k * (size_t)k);
@@ -392,32 +390,28 @@ static void add_air(bough_arena *arena, work *w, const bough_simulation *s,
     turn_air(arena, w, s, group, t->n_per_blade, to);
 }
 
-bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation *s,
-                                      bough_coupled *coupled, const bough_modes_def *def,
-                                      const bough_blade_group *group,
+bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation *s, bough_coupled *coupled,
+                                      const bough_modes_def *def, const bough_blade_group *group,
                                       const bough_air_tangent *tangent, int n_motion,
                                       bough_aeroelastic *reduced) {
     int n = coupled->assembly->n_state, kept = n_motion < n ? n_motion : n;
     work w = {.coupled = coupled, .def = def, .n = n, .k = 2 * kept < n ? 2 * kept : n};
     size_t all = (size_t)(kept + tangent->n_air);
-    *reduced = (bough_aeroelastic){
-        .n = n,
-        .n_motion = kept,
-        .n_air = tangent->n_air,
-        .shape = bough_arena_doubles(arena, (size_t)n * (size_t)kept),
-        .left = bough_arena_doubles(arena, (size_t)n * (size_t)kept),
-        .motion = bough_arena_doubles(arena, (size_t)kept * (size_t)kept),
-        .rate = bough_arena_doubles(arena, all * all)};
+    *reduced = (bough_aeroelastic){.n = n,
+                                   .n_motion = kept,
+                                   .n_air = tangent->n_air,
+                                   .shape = bough_arena_doubles(arena, (size_t)n * (size_t)kept),
+                                   .left = bough_arena_doubles(arena, (size_t)n * (size_t)kept),
+                                   .motion = bough_arena_doubles(arena, (size_t)kept * (size_t)kept),
+                                   .rate = bough_arena_doubles(arena, all * all)};
     take(arena, &w);
-    bough_status status =
-        bough_coupled_setup(coupled, def->time, def->state, def->input, 1 / def->point);
+    bough_status status = bough_coupled_setup(coupled, def->time, def->state, def->input, 1 / def->point);
     if (!bough_is_ok(&status)) return bough_fail(BOUGH_FAILED, "%s", status.message);
     invert(&w);
     bool done = turn(&w, s->tree->n_q);
     if (done) find_subspaces(&w);
     if (!done || !set_motion(arena, &w, reduced)) {
-        return bough_fail(BOUGH_FAILED, "the motion in the air cannot be reduced to %d states",
-                          kept);
+        return bough_fail(BOUGH_FAILED, "the motion in the air cannot be reduced to %d states", kept);
     }
     reduced->n_all = reduced->n_motion + reduced->n_air;
     add_air(arena, &w, s, group, tangent, reduced);
@@ -434,8 +428,8 @@ static int slower(const void *a, const void *b) {
 
 // Of mode j (and j + 1 of a pair) the motion's share of the participation |left × right|, whatever the
 // units of the states; `inverse` of the eigenvectors' matrix.
-static double motion_share(const bough_aeroelastic *r, const double *vector, const double *inverse,
-                           size_t j, bool pair) {
+static double motion_share(const bough_aeroelastic *r, const double *vector, const double *inverse, size_t j,
+                           bool pair) {
     size_t m = (size_t)r->n_all;
     double motion = 0, all = 0;
     for (size_t i = 0; i < m; i++) {

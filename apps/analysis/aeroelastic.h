@@ -14,16 +14,15 @@
 
 typedef struct bough_aeroelastic {
     int n, n_motion, n_air, n_all; // states of the members, of u, of m, of both
-    double *shape; // U (n × n_motion), column-major as all
-    double *left;  // (n_motion × n): of a rate of y what drives u
-    double *motion; // (n_motion × n_motion): the rates of u without the air
-    double *rate;  // a (n_all × n_all)
+    double *shape;                 // U (n × n_motion), column-major as all
+    double *left;                  // (n_motion × n): of a rate of y what drives u
+    double *motion;                // (n_motion × n_motion): the rates of u without the air
+    double *rate;                  // a (n_all × n_all)
 } bough_aeroelastic;
 
 // Reduces the system of `def` to n_motion states of motion and those of the tangent's air.
-bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation *s,
-                                      bough_coupled *coupled, const bough_modes_def *def,
-                                      const bough_blade_group *group,
+bough_status bough_aeroelastic_reduce(bough_arena *arena, const bough_simulation *s, bough_coupled *coupled,
+                                      const bough_modes_def *def, const bough_blade_group *group,
                                       const bough_air_tangent *tangent, int n_motion,
                                       bough_aeroelastic *reduced);
 

@@ -19,9 +19,9 @@ typedef struct work {
     double time;
     bool dynamic;
     int n_memory, n_air;
-    int *row;                       // (n_air) of the memory
+    int *row;                        // (n_air) of the memory
     double *memory, *before, *after; // (n_memory): at rest, around a moment
-    double *state;                  // (n)
+    double *state;                   // (n)
     double *rate[2], *air_rate[2];   // (n), (n_air) on either side
 } work;
 
@@ -127,8 +127,7 @@ static bough_status follow_memory(work *w, const double *state, bough_air_tangen
             bough_status status = find_rates(w, state, w->rate[side], w->air_rate[side]);
             if (!bough_is_ok(&status)) return status;
         }
-        set_column(w, air_difference, t->lift + (size_t)k * a->n_state,
-                   t->lag + (size_t)k * t->n_air);
+        set_column(w, air_difference, t->lift + (size_t)k * a->n_state, t->lag + (size_t)k * t->n_air);
     }
     return bough_ok();
 }
@@ -155,8 +154,8 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
                                     const bough_air_inputs *inputs, bough_air_tangent *t) {
     const bough_rotor *rotor = bough_aero_link_rotor(s->aero);
     int n_memory = dynamic ? bough_rotor_memory_size(rotor) : 0;
-    work w = {.simulation = s, .coupled = coupled, .time = time, .n_memory = n_memory,
-              .dynamic = n_memory > 0};
+    work w = {
+        .simulation = s, .coupled = coupled, .time = time, .n_memory = n_memory, .dynamic = n_memory > 0};
     take(arena, &w);
     if (w.dynamic) w.n_air = bough_rotor_memory_states(rotor, w.row);
     size_t n = (size_t)coupled->assembly->n_state, m = (size_t)w.n_air;
@@ -183,8 +182,8 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
 // a (rows × ·): its block of parts (k, l) becomes the mean over all (k + i, l + i).
 typedef struct blocks {
     int n_part, rows;
-    int n_to, n_from;      // entries of a part
-    const int *to, *from;  // (n_part × n_to), (n_part × n_from)
+    int n_to, n_from;     // entries of a part
+    const int *to, *from; // (n_part × n_to), (n_part × n_from)
 } blocks;
 
 static void average(const blocks *b, double *a) {
@@ -206,8 +205,8 @@ static void average(const blocks *b, double *a) {
     }
 }
 
-void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group,
-                            int n_per_blade, int *row) {
+void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group, int n_per_blade,
+                            int *row) {
     const bough_scene_turbine *turbine = &s->scene->turbine;
     for (int k = 0; k < group->n; k++) {
         for (int b = 0; b < turbine->n_blade; b++) {
@@ -217,8 +216,8 @@ void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *
     }
 }
 
-void bough_air_tangent_average(bough_arena *arena, const bough_simulation *s,
-                               const bough_blade_group *group, bough_air_tangent *t) {
+void bough_air_tangent_average(bough_arena *arena, const bough_simulation *s, const bough_blade_group *group,
+                               bough_air_tangent *t) {
     if (group->n == 0) return;
     int *air = bough_arena_take(arena, ((size_t)t->n_air + 1) * sizeof *air);
     bough_air_tangent_rows(s, group, t->n_per_blade, air);

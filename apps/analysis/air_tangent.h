@@ -9,12 +9,12 @@
 #include "cosim/coupled.h"
 
 typedef struct bough_air_tangent {
-    int n, n_air;   // states of the members, of the air
-    int n_per_blade; // of the air, blade after blade
-    double *motion; // A (n × n), column-major as all
-    double *lift;   // R (n × n_air)
-    double *drive;  // G (n_air × n)
-    double *lag;    // H (n_air × n_air)
+    int n, n_air;        // states of the members, of the air
+    int n_per_blade;     // of the air, blade after blade
+    double *motion;      // A (n × n), column-major as all
+    double *lift;        // R (n × n_air)
+    double *drive;       // G (n_air × n)
+    double *lag;         // H (n_air × n_air)
     double *input;       // ẏ by the inputs, with and without the air (n × n_input)
     double *input_drive; // K (n_air × n_input)
 } bough_air_tangent;
@@ -34,8 +34,8 @@ bough_status bough_air_tangent_find(bough_arena *arena, bough_simulation *s, bou
                                     const bough_air_inputs *inputs, bough_air_tangent *tangent);
 
 // Rows of the air's states of the group's blades (n × n_per_blade).
-void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group,
-                            int n_per_blade, int *row);
+void bough_air_tangent_rows(const bough_simulation *s, const bough_blade_group *group, int n_per_blade,
+                            int *row);
 
 // Makes what blades do to blades that of the mean over as many azimuths as there are blades, at which
 // gravity, tilt, shear and tower differ.

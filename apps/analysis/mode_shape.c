@@ -19,8 +19,7 @@ void bough_mode_shape_take(bough_arena *arena, bough_mode_shape *x) {
 // -- beams ----------------------------------------------------------------------------------------
 
 // The vertices of a modal body at its state and frame's twist moved by a part of the shape.
-static void expand(const bough_mode_shape *x, const bough_beam *beam, int part, double step,
-                   double *to) {
+static void expand(const bough_mode_shape *x, const bough_beam *beam, int part, double step, double *to) {
     const bough_simulation *s = x->simulation;
     const bough_frame *frame = &s->tree->markers[beam->marker];
     int at = x->assembly->state_offset[beam->port + 1], n = s->rod[beam->port].system.n_state;
@@ -28,11 +27,10 @@ static void expand(const bough_mode_shape *x, const bough_beam *beam, int part, 
     double input[BOUGH_ROD_INPUTS] = {0}, change[6] = {0}; // gravity does not matter
     bough_twist_store(twist, input);
     if (frame->link >= 0) {
-        bough_twist_store(
-            bough_twist_to_child(&frame->placement, s->view->acceleration[frame->link]), change);
+        bough_twist_store(bough_twist_to_child(&frame->placement, s->view->acceleration[frame->link]),
+                          change);
     }
-    for (int c = 0; c < 6; c++)
-        input[c] += step * change[c];
+    for (int c = 0; c < 6; c++) input[c] += step * change[c];
     for (int k = 0; k < n; k++)
         x->moved[k] = x->state[at + k] + step * bough_mode_shape_part(x, part)[at + k];
     memcpy(to, bough_modal_body_vertices(beam->modal, x->moved, input, 1),
@@ -51,8 +49,7 @@ static void set_modal(const bough_mode_shape *x, const bough_beam *beam, bough_b
                            x->simulation->view);
         expand(x, beam, part, -step, b->memory);
         expand(x, beam, part, step, to);
-        for (size_t k = 0; k < n; k++)
-            to[k] = (to[k] - b->memory[k]) / (2 * step);
+        for (size_t k = 0; k < n; k++) to[k] = (to[k] - b->memory[k]) / (2 * step);
         b->tangent[part] = to;
     }
     expand(x, beam, 0, 0, b->memory);
@@ -70,8 +67,7 @@ void bough_mode_shape_set(const bough_mode_shape *x) {
             continue;
         }
         b->state = x->state + at;
-        for (int part = 0; part < 2; part++)
-            b->tangent[part] = bough_mode_shape_part(x, part) + at;
+        for (int part = 0; part < 2; part++) b->tangent[part] = bough_mode_shape_part(x, part) + at;
     }
 }
 
@@ -88,8 +84,7 @@ static int rows_of(const bough_simulation *s, int body) {
 
 int bough_mode_shape_rows(const bough_simulation *s) {
     int n = 0;
-    for (int i = 0; i < s->scene->n_body; i++)
-        n += rows_of(s, i);
+    for (int i = 0; i < s->scene->n_body; i++) n += rows_of(s, i);
     return n;
 }
 
@@ -122,11 +117,9 @@ static bough_twist add_vertex(const bough_mode_shape *x, const bough_beam *beam,
                          bough_axpy(2, bough_v3(turn.x, turn.y, turn.z), frame.angular)};
 }
 
-static void store(const bough_simulation *s, const bough_frame *frame, bough_twist motion,
-                  double to[6]) {
+static void store(const bough_simulation *s, const bough_frame *frame, bough_twist motion, double to[6]) {
     bough_mat3 r = bough_tree_frame_pose(s->view, frame).rotation;
-    bough_twist_store(
-        (bough_twist){bough_mat3_mul(r, motion.linear), bough_mat3_mul(r, motion.angular)}, to);
+    bough_twist_store((bough_twist){bough_mat3_mul(r, motion.linear), bough_mat3_mul(r, motion.angular)}, to);
 }
 
 static void move_body(const bough_mode_shape *x, int body, int part, bough_shape_row *row) {

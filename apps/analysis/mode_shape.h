@@ -39,7 +39,7 @@ const bough_beam_shape *bough_mode_shape_beam(const bough_mode_shape *x, const b
 // of the scene at its frame, of a flexible one for each vertex.
 typedef struct bough_shape_row {
     int body;
-    double span;      // [m]; 0 of a rigid body
+    double span;         // [m]; 0 of a rigid body
     double motion[2][6]; // real and imaginary part
 } bough_shape_row;
 

@@ -5,8 +5,8 @@
 
 #include <float.h>
 
-const char *const bough_pattern_names[BOUGH_PATTERNS] = {
-    "", "collective", "forward", "backward", "cosine", "sine", "reactionless"};
+const char *const bough_pattern_names[BOUGH_PATTERNS] = {"",       "collective", "forward",     "backward",
+                                                         "cosine", "sine",       "reactionless"};
 
 // -- energy ---------------------------------------------------------------------------------------
 
@@ -70,8 +70,7 @@ static void set_shares(const bough_mode_shape *x, bough_scene_mode *mode) {
             mode->share[s->beam[k].body - s->scene->body] += rod_energy(x, &s->beam[k], part);
         }
     }
-    for (int i = 0; i < n_body; i++)
-        sum += mode->share[i];
+    for (int i = 0; i < n_body; i++) sum += mode->share[i];
     for (int i = 0; i < n_body; i++) {
         mode->share[i] /= sum > 0 ? sum : 1;
         if (mode->share[i] > mode->share[mode->body]) mode->body = i;
@@ -106,8 +105,7 @@ static double bending(const bough_mode_shape *x, const bough_beam *beam, int par
 static void add_direction(const bough_mode_shape *x, const bough_beam *beam, double *sum) {
     for (int i = 0; i < bough_beam_mesh(beam)->n; i++) {
         for (int part = 0; part < 2; part++) {
-            for (int c = 0; c < 3; c++)
-                sum[c] += pow(bending(x, beam, part, i, c), 2);
+            for (int c = 0; c < 3; c++) sum[c] += pow(bending(x, beam, part, i, c), 2);
             sum[BOUGH_ROD_TORSION] += pow(bending(x, beam, part, i, 5), 2);
         }
     }
@@ -136,11 +134,9 @@ static void set_direction(const bough_mode_shape *x, bough_scene_mode *mode) {
     const bough_beam *beam = bough_simulation_beam(x->simulation, mode->body);
     double sum[BOUGH_ROD_DIRECTIONS] = {0};
     bool rigid = !mode->blades && (beam == NULL || beam->port < 0);
-    for (int part = 0; rigid && part < 2; part++)
-        add_motion(x, mode->body, part, sum);
+    for (int part = 0; rigid && part < 2; part++) add_motion(x, mode->body, part, sum);
     if (!mode->blades && !rigid) add_direction(x, beam, sum);
-    for (int k = 0; mode->blades && k < x->group->n; k++)
-        add_direction(x, x->group->blade[k], sum);
+    for (int k = 0; mode->blades && k < x->group->n; k++) add_direction(x, x->group->blade[k], sum);
     mode->direction = 0;
     for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) {
         if (sum[c] > sum[mode->direction]) mode->direction = c;

@@ -8,12 +8,12 @@
 
 // How the blades move against each other.
 typedef enum bough_pattern {
-    BOUGH_PATTERN_NONE,       // there are no blades to compare
-    BOUGH_PATTERN_COLLECTIVE, // all alike
-    BOUGH_PATTERN_FORWARD,    // whirling in the sense of the rotation, at rest of the shaft's axis
-    BOUGH_PATTERN_BACKWARD,   // against it
-    BOUGH_PATTERN_COSINE,     // standing, as the cosine of the azimuth: the rotor tilts
-    BOUGH_PATTERN_SINE,       // standing, as the sine: it yaws
+    BOUGH_PATTERN_NONE,         // there are no blades to compare
+    BOUGH_PATTERN_COLLECTIVE,   // all alike
+    BOUGH_PATTERN_FORWARD,      // whirling in the sense of the rotation, at rest of the shaft's axis
+    BOUGH_PATTERN_BACKWARD,     // against it
+    BOUGH_PATTERN_COSINE,       // standing, as the cosine of the azimuth: the rotor tilts
+    BOUGH_PATTERN_SINE,         // standing, as the sine: it yaws
     BOUGH_PATTERN_REACTIONLESS, // of four blades and more
     BOUGH_PATTERNS,
 } bough_pattern;

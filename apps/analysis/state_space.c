@@ -27,12 +27,12 @@ typedef struct work {
     bough_coupled *coupled;
     bough_channels channels;
     double time;
-    const double *about;       // (n) states of the members
-    double *state;             // (n)
+    const double *about;        // (n) states of the members
+    double *state;              // (n)
     double *rate[2], *value[2]; // (n), (n_output) on either side
     int n_input;
-    input *input;              // (n_input)
-    double *size;              // (n_input)
+    input *input; // (n_input)
+    double *size; // (n_input)
 } work;
 
 // -- inputs ---------------------------------------------------------------------------------------
@@ -91,8 +91,8 @@ static void find_inputs(work *w, bough_state_space *to) {
             add_input(w, COLLECTIVE_PITCH, 0, pitch, "collective pitch", "rad", to);
     }
     if (in_air(s) && wind->kind <= BOUGH_SCENE_WIND_LOG && wind->table.node == NULL)
-        add_input(w, WIND_SPEED, 0, bough_rotor_wind(bough_aero_link_rotor(s->aero))->def.speed,
-                  "wind speed", "m/s", to);
+        add_input(w, WIND_SPEED, 0, bough_rotor_wind(bough_aero_link_rotor(s->aero))->def.speed, "wind speed",
+                  "m/s", to);
 }
 
 // -- names ----------------------------------------------------------------------------------------
@@ -133,9 +133,9 @@ static void name_joint(const bough_tree *tree, const bough_link *link, bough_sig
 static void name_rod(const bough_system *rod, bough_signal_name *state) {
     static const struct {
         const char *name, *unit;
-    } row[BOUGH_BLADE_ROWS] = {
-        {"x", "m"}, {"y", "m"}, {"z", "m"}, {"p0", "-"}, {"p1", "-"}, {"p2", "-"}, {"p3", "-"},
-        {"ux", "m/s"}, {"uy", "m/s"}, {"uz", "m/s"}, {"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"}};
+    } row[BOUGH_BLADE_ROWS] = {{"x", "m"},      {"y", "m"},      {"z", "m"},     {"p0", "-"},   {"p1", "-"},
+                               {"p2", "-"},     {"p3", "-"},     {"ux", "m/s"},  {"uy", "m/s"}, {"uz", "m/s"},
+                               {"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"}};
     int n = rod->n_state / BOUGH_BLADE_ROWS;
     for (int k = 0; k < rod->n_state; k++) {
         name_state(&state[k], rod->name, row[k / n].name, 0, row[k / n].unit);

@@ -15,11 +15,11 @@ typedef struct bough_signal_name {
 } bough_signal_name;
 
 typedef struct bough_state_space {
-    int n, n_input, n_output;   // states of the air included, behind those of the members
-    double *a, *b, *c, *d;      // (n × n), (n × n_input), (n_output × n), (n_output × n_input), column-major
-    bough_signal_name *state;   // (n) SI
-    bough_signal_name *input;   // (n_input) SI
-    bough_signal_name *output;  // (n_output) channels, in their units
+    int n, n_input, n_output; // states of the air included, behind those of the members
+    double *a, *b, *c, *d; // (n × n), (n × n_input), (n_output × n), (n_output × n_input), column-major
+    bough_signal_name *state;  // (n) SI
+    bough_signal_name *input;  // (n_input) SI
+    bough_signal_name *output; // (n_output) channels, in their units
 } bough_state_space;
 
 // About the state in which the simulation is, at `time`; it is left in it. Inputs: the loads that the scene

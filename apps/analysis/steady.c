@@ -29,8 +29,7 @@ static const bough_scene_body *pivot_of(const bough_scene *scene, const bough_be
     return body;
 }
 
-bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *beam,
-                                  bough_turning *turning) {
+bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *beam, bough_turning *turning) {
     const bough_scene_modes *modes = &s->scene->modes;
     bough_vec3 axis = {modes->axis[0], modes->axis[1], modes->axis[2]};
     *turning = (bough_turning){.speed = modes->speed};
@@ -42,9 +41,10 @@ bough_status bough_steady_turning(const bough_simulation *s, const bough_beam *b
     }
     const bough_scene_body *pivot = pivot_of(s->scene, beam);
     if (pivot == NULL) {
-        return bough_fail(BOUGH_INVALID, "rod %s: no revolute joint%s%s carries it; name an 'axis'"
-                          " for the speed of 'modes'", beam->body->name,
-                          modes->about_name == NULL ? "" : " of ",
+        return bough_fail(BOUGH_INVALID,
+                          "rod %s: no revolute joint%s%s carries it; name an 'axis'"
+                          " for the speed of 'modes'",
+                          beam->body->name, modes->about_name == NULL ? "" : " of ",
                           modes->about_name == NULL ? "" : modes->about_name);
     }
     const bough_frame *frame = &s->tree->bodies[pivot - s->scene->body];
@@ -84,9 +84,8 @@ static void set_input(const bough_simulation *s, const bough_turning *turning, b
     bough_v3_store(bough_mat3_tmul(pose.rotation, gravity), x->input + 6);
 }
 
-bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,
-                               const bough_beam *beam, const bough_turning *turning,
-                               bough_steady *steady) {
+bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
+                               const bough_turning *turning, bough_steady *steady) {
     bough_status status = check_carries_none(s, beam);
     if (!bough_is_ok(&status)) return status;
     steady->beam = beam;
@@ -100,8 +99,8 @@ bough_status bough_steady_find(bough_arena *arena, const bough_simulation *s,
                             &steady->work, steady->state);
 }
 
-bough_status bough_steady_equilibrium(bough_arena *arena, const bough_simulation *s,
-                                  const bough_beam *beam, double time, bough_steady *steady) {
+bough_status bough_steady_equilibrium(bough_arena *arena, const bough_simulation *s, const bough_beam *beam,
+                                      double time, bough_steady *steady) {
     const bough_assembly *a = s->master->assembly;
     const bough_coupling *c = s->master->coupling;
     const double *input = c->input + a->input_offset[beam->port + 1];
@@ -111,16 +110,14 @@ bough_status bough_steady_equilibrium(bough_arena *arena, const bough_simulation
     bough_rod_static_init(&steady->work, arena, m);
     bough_assembly_outputs(a, time, c->output, c->input);
     memcpy(steady->input, input, (size_t)bough_rod_n_inputs(m) * sizeof *input);
-    memcpy(steady->state, s->rod[beam->port].state,
-           (size_t)BOUGH_ROD_STATES * m->n * sizeof *input);
+    memcpy(steady->state, s->rod[beam->port].state, (size_t)BOUGH_ROD_STATES * m->n * sizeof *input);
     steady->work.scaled = *bough_rod_body_loads(beam->rod);
     bough_rod_gather(m, steady->state, steady->input, &steady->work.scratch);
     bough_rod_load(m, &steady->work.scaled, time, &steady->work.scratch);
     return bough_ok();
 }
 
-void bough_steady_displacement(const bough_steady *steady, int i, bough_vec3 *shift,
-                               bough_vec3 *turn) {
+void bough_steady_displacement(const bough_steady *steady, int i, bough_vec3 *shift, bough_vec3 *turn) {
     const bough_rod_model *m = steady->model;
     bool end = i > m->n; // belongs to what the rod carries: its x and p after u and W
     const double *y = end ? steady->input + BOUGH_ROD_INPUTS + 6 : steady->state + i - 1;

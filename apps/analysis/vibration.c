@@ -17,7 +17,7 @@ static const double free_motion = 1e-3;
 enum { FREE_MOTIONS = 8 }; // that may be found before the modes
 enum { PER_MODE = 5 };     // states of motion kept for each mode in the air that is wanted
 
-static const double rounding = 1e-10;   // damping ratios below it are none
+static const double rounding = 1e-10; // damping ratios below it are none
 
 static void set_value(const bough_eigen_pair *pair, bough_scene_mode *mode) {
     double modulus = hypot(pair->real, pair->imaginary);
@@ -88,10 +88,8 @@ static void define(double time, solution *x) {
 
 static bough_status describe(bough_arena *arena, const bough_simulation *s, const solution *x,
                              bough_vibration *v) {
-    bough_mode_shape one = {.simulation = s,
-                 .assembly = s->master->assembly,
-                 .group = &x->group,
-                 .state = x->state};
+    bough_mode_shape one = {
+        .simulation = s, .assembly = s->master->assembly, .group = &x->group, .state = x->state};
     v->n_row = bough_mode_shape_rows(s);
     bough_mode_shape_take(arena, &one);
     for (int k = 0; k < v->found; k++) {
@@ -114,8 +112,7 @@ static bool is_closure(const bough_tree *tree, const bough_eigen_pair *pair) {
     return tree->n_closures > 0 && hypot(pair->real + rate, pair->imaginary) < 1e-3 * rate;
 }
 
-static void drop_other_motions(const bough_tree *tree, double point, int count,
-                               bough_vibration *v) {
+static void drop_other_motions(const bough_tree *tree, double point, int count, bough_vibration *v) {
     int kept = 0;
     for (int k = 0; k < v->found && kept < count; k++) {
         double modulus = hypot(v->pair[k].real, v->pair[k].imaginary);
@@ -126,8 +123,8 @@ static void drop_other_motions(const bough_tree *tree, double point, int count,
 }
 
 // Of the bodies alone.
-static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s, const solution *x,
-                                 int count, bough_vibration *v) {
+static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s, const solution *x, int count,
+                                 bough_vibration *v) {
     int wanted = count + FREE_MOTIONS + 2 * s->tree->closure_rank;
     v->pair = bough_arena_take(arena, (size_t)wanted * sizeof *v->pair);
     bough_status status = bough_modes_find(arena, x->coupled, &x->def, wanted, v->pair, &v->found);
@@ -139,8 +136,8 @@ static bough_status solve_bodies(bough_arena *arena, const bough_simulation *s, 
 }
 
 // In the air that follows their motion.
-static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const solution *x,
-                                 int count, bough_vibration *v) {
+static bough_status solve_in_air(bough_arena *arena, bough_simulation *s, const solution *x, int count,
+                                 bough_vibration *v) {
     bough_air_tangent air;
     bool dynamic = s->scene->modes.air == BOUGH_SCENE_AIR_DYNAMIC;
     bough_status status =
@@ -166,8 +163,7 @@ static bough_status solve(bough_arena *arena, bough_simulation *s, double time, 
     v->spin = fabs(x.group.speed) < at_rest ? 0 : x.group.speed;
     v->frozen = is_frozen(s, &x.group);
     bool in_air = s->aero && s->scene->modes.air != BOUGH_SCENE_AIR_FROZEN;
-    status = in_air ? solve_in_air(arena, s, &x, count, v)
-                    : solve_bodies(arena, s, &x, count, v);
+    status = in_air ? solve_in_air(arena, s, &x, count, v) : solve_bodies(arena, s, &x, count, v);
     drop_other_motions(s->tree, x.def.point, count, v);
     return bough_is_ok(&status) ? describe(arena, s, &x, v) : status;
 }

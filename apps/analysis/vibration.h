@@ -12,13 +12,13 @@
 
 typedef struct bough_vibration {
     bough_equilibrium_work work; // how the equilibrium was found; 0 steps: none was sought
-    double spin;             // of the rotor [rad/s]
-    bool frozen;             // it turns, but the blades allow no transform
-    int n_blade;             // compared; 0: none
-    int n_row;               // of a shape
+    double spin;                 // of the rotor [rad/s]
+    bool frozen;                 // it turns, but the blades allow no transform
+    int n_blade;                 // compared; 0: none
+    int n_row;                   // of a shape
     int found;
-    bough_scene_mode *mode;  // (found) by the distance of λ from a point near 0
-    bough_eigen_pair *pair;  // (found)
+    bough_scene_mode *mode;            // (found) by the distance of λ from a point near 0
+    bough_eigen_pair *pair;            // (found)
     struct bough_aeroelastic *reduced; // in the air that follows: what they are the modes of; or NULL
 } bough_vibration;
 

@@ -17,8 +17,8 @@ struct bough_session {
     bool open; // the run is there
     bough_run run;
     bough_body *body; // stepped by itself; NULL: the scene is
-    uint64_t kind; // fingerprint of what its copies hold
-    size_t size;   // of a copy [bytes]
+    uint64_t kind;    // fingerprint of what its copies hold
+    size_t size;      // of a copy [bytes]
     int code;
     char error[ERROR_TEXT];
 };

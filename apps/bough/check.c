@@ -46,9 +46,8 @@ static void print_joint(const bough_scene *scene, int body) {
     const bough_scene_joint *joint = &scene->body[body].joint;
     if (joint->kind == BOUGH_JOINT_FIXED) {
         int on = carrier(scene, body);
-        printf("; fixed to %s, welded to %s%s: no states in the tree",
-               body_name(scene, joint->parent), is_rod(scene, on) ? "the end of " : "",
-               body_name(scene, on));
+        printf("; fixed to %s, welded to %s%s: no states in the tree", body_name(scene, joint->parent),
+               is_rod(scene, on) ? "the end of " : "", body_name(scene, on));
         return;
     }
     bough_joint_kind kind = (bough_joint_kind)joint->kind;
@@ -65,8 +64,7 @@ static void print_joint(const bough_scene *scene, int body) {
 
 static double beam_mass(const bough_beam *beam) {
     double mass = 0;
-    for (int i = 0; i <= beam->def.n_segment; i++)
-        mass += beam->def.inertia[i].mass;
+    for (int i = 0; i <= beam->def.n_segment; i++) mass += beam->def.inertia[i].mass;
     return mass;
 }
 
@@ -102,12 +100,10 @@ static void print_closures(const bough_tree *tree) {
                redundant, redundant == 1 ? "s" : "");
     }
     int freedoms = tree->n_v - tree->closure_rank;
-    for (int i = 0; i < tree->n_links; i++)
-        freedoms -= tree->links[i].motion != NULL;
+    for (int i = 0; i < tree->n_links; i++) freedoms -= tree->links[i].motion != NULL;
     printf("\ndegrees of freedom: %d\n", freedoms);
     if (tree->closure_moved > 1e-9) {
-        printf("closures: assembled, moving joints by up to %.3g (rad or m)\n",
-               tree->closure_moved);
+        printf("closures: assembled, moving joints by up to %.3g (rad or m)\n", tree->closure_moved);
     }
 }
 
@@ -115,8 +111,7 @@ static void print_bodies(const bough_simulation *s) {
     const bough_tree *tree = s->tree;
     int n = s->scene->n_body;
     printf("bodies: %d\n", n);
-    for (int i = 0; i < n; i++)
-        print_body(s, i);
+    for (int i = 0; i < n; i++) print_body(s, i);
     int moving = bough_simulation_n_joints(s);
     printf("joints: %d moving, %d fixed\n", moving, n - moving);
     const bough_member *whole = s->master->coupling->whole;
@@ -169,8 +164,7 @@ static void print_coupling(const bough_simulation *s) {
 // -- what acts, what is recorded ------------------------------------------------------------------
 
 static void print_vector(const double v[3], const char *unit) {
-    if (v[0] != 0 || v[1] != 0 || v[2] != 0)
-        printf(", [%.6g, %.6g, %.6g] %s", v[0], v[1], v[2], unit);
+    if (v[0] != 0 || v[1] != 0 || v[2] != 0) printf(", [%.6g, %.6g, %.6g] %s", v[0], v[1], v[2], unit);
 }
 
 static void print_load(const bough_scene *scene, const bough_scene_load *load) {
@@ -206,13 +200,11 @@ static void print_loads(const bough_simulation *s) {
     if (n > SHOWN) printf("and %d more loads\n", n - SHOWN);
 }
 
-static bough_status print_results(bough_arena *arena, bough_simulation *s,
-                                  const bough_channels *channels) {
+static bough_status print_results(bough_arena *arena, bough_simulation *s, const bough_channels *channels) {
     bough_shape shape;
     bough_status status = bough_shape_create(arena, s, &shape);
     if (!bough_is_ok(&status)) return status;
-    bough_forecast_print(bough_run_results(s, channels, bough_forecast_points(&shape)), channels,
-                         stdout);
+    bough_forecast_print(bough_run_results(s, channels, bough_forecast_points(&shape)), channels, stdout);
     return status;
 }
 

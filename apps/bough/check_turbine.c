@@ -21,8 +21,8 @@ static void print_rotor(const bough_simulation *s, const bough_rotor_place *r, F
     bough_vec3 from = bough_sub(r->hub, tower_axis(s));
     double level = hypot(r->axis.x, r->axis.y);
     fprintf(stream, "rotor: %d blade%s, radius %.6g m, hub height %.6g m, tilt %.6g deg, ",
-            s->scene->turbine.n_blade, s->scene->turbine.n_blade == 1 ? "" : "s", r->radius,
-            r->hub.z, atan2(-r->axis.z, level) / degree);
+            s->scene->turbine.n_blade, s->scene->turbine.n_blade == 1 ? "" : "s", r->radius, r->hub.z,
+            atan2(-r->axis.z, level) / degree);
     if (level > 1e-6) {
         double along = (from.x * r->axis.x + from.y * r->axis.y) / (level * level);
         fprintf(stream, "overhang %.6g m %s", fabs(along), along < 0 ? "upwind" : "downwind");
@@ -37,9 +37,8 @@ static void print_blades(const bough_simulation *s, const bough_rotor_place *r, 
         bough_vec3 z = bough_mat3_mul(root.rotation, bough_v3(0, 0, 1));
         bough_vec3 offset = bough_sub(root.position, r->hub);
         double cone = asin(fmax(-1, fmin(1, bough_dot(z, r->axis))));
-        fprintf(stream, "blade %s: pitch %.6g deg, cone %.6g deg, root at %.6g m\n",
-                blade->body->name, bough_simulation_pitch(s, blade) / degree, cone / degree,
-                bough_dot(offset, z));
+        fprintf(stream, "blade %s: pitch %.6g deg, cone %.6g deg, root at %.6g m\n", blade->body->name,
+                bough_simulation_pitch(s, blade) / degree, cone / degree, bough_dot(offset, z));
     }
 }
 
@@ -50,8 +49,7 @@ static void print_box(const bough_simulation *s, const bough_wind_box *box, cons
     const bough_rotor *air = bough_aero_link_rotor(s->aero);
     bool covered = bough_rotor_in_wind(air, r->hub, r->radius);
     bool lasts = bough_wind_box_lasts(box, s->master->duration);
-    fprintf(stream,
-            ", mean %.6g m/s, %.6g s%s, heights %.6g to %.6g m, width %.6g m: %s the rotor%s",
+    fprintf(stream, ", mean %.6g m/s, %.6g s%s, heights %.6g to %.6g m, width %.6g m: %s the rotor%s",
             box->mean, box->duration, box->periodic ? " and repeats" : "", box->bottom,
             box->bottom + box->dz * (box->n_z - 1), 2 * box->half_width,
             covered ? "covers" : "does not cover", lasts ? "" : ", ends before the run");
@@ -71,12 +69,9 @@ static void print_hub_file(const bough_simulation *s, const bough_wind_hub *hub,
 
 static void print_wind(const bough_simulation *s, const bough_rotor_place *r, FILE *stream) {
     static const char *const kinds[] = {
-        [BOUGH_SCENE_WIND_UNIFORM] = "uniform",
-        [BOUGH_SCENE_WIND_POWER] = "power law",
-        [BOUGH_SCENE_WIND_LOG] = "logarithmic law",
-        [BOUGH_SCENE_WIND_WND] = "hub-height file",
-        [BOUGH_SCENE_WIND_BTS] = "box file",
-        [BOUGH_SCENE_WIND_IEC] = "IEC 61400-1",
+        [BOUGH_SCENE_WIND_UNIFORM] = "uniform",     [BOUGH_SCENE_WIND_POWER] = "power law",
+        [BOUGH_SCENE_WIND_LOG] = "logarithmic law", [BOUGH_SCENE_WIND_WND] = "hub-height file",
+        [BOUGH_SCENE_WIND_BTS] = "box file",        [BOUGH_SCENE_WIND_IEC] = "IEC 61400-1",
     };
     const bough_scene_wind *given = &s->scene->aero.wind;
     const bough_wind *wind = bough_rotor_wind(bough_aero_link_rotor(s->aero));
@@ -113,8 +108,8 @@ static void print_aero(const bough_simulation *s, const bough_rotor_place *r, FI
     fprintf(stream,
             "aero: built, %d blades of %d stations, %d polars, %.6g Hz (every %ld macro step%s), "
             "%s between samples, tower influence %s%s%s%s\n",
-            s->scene->turbine.n_blade, aero->blade.n_station, aero->polars.n_polar, aero->rate,
-            every, every == 1 ? "" : "s", aero->hold == BOUGH_SCENE_LINEAR ? "linear" : "constant",
+            s->scene->turbine.n_blade, aero->blade.n_station, aero->polars.n_polar, aero->rate, every,
+            every == 1 ? "" : "s", aero->hold == BOUGH_SCENE_LINEAR ? "linear" : "constant",
             tower_words(&aero->tower),
             aero->tower.def.shadow == BOUGH_TOWER_SHADOW_POWLES ? ", Powles shadow" : "",
             aero->induction.inflow.kind == BOUGH_INFLOW_OYE ? ", dynamic inflow" : "",
@@ -136,7 +131,7 @@ static void print_control(const bough_simulation *s, FILE *stream) {
         return;
     }
     fprintf(stream, "control: built, %s%s, %.6g Hz, gear ratio %.6g, generator torque%s, %d event%s\n",
-            c->kind == BOUGH_SCENE_BLADED         ? "library "
+            c->kind == BOUGH_SCENE_BLADED     ? "library "
             : c->kind == BOUGH_SCENE_EXTERNAL ? "by inputs from outside"
                                               : "variable-speed law",
             c->kind == BOUGH_SCENE_BLADED ? c->library : "", c->rate, c->gear_ratio,

@@ -37,8 +37,7 @@ static void take_job(bough_job *job, bough_snapshot *s) {
     bough_run_snapshot(run, s);
     bough_snapshot_take(s, &job->rows, sizeof job->rows);
     bough_snapshot_take(s, &job->frames_kept, sizeof job->frames_kept);
-    bough_snapshot_take(s, job->statistics,
-                        (size_t)job->recorded.count * sizeof *job->statistics);
+    bough_snapshot_take(s, job->statistics, (size_t)job->recorded.count * sizeof *job->statistics);
     bough_snapshot_take(s, &run->wall_s, sizeof run->wall_s);
     bough_snapshot_take(s, &run->cpu_s, sizeof run->cpu_s);
 }
@@ -65,12 +64,13 @@ static bough_status check_interval(const bough_job *job, double interval) {
                                          "simulation.output.vertices, or store frames");
     }
     if (interval > m->duration) {
-        return bough_fail(BOUGH_INVALID, "--checkpoint %.9g s is longer than the run, %.9g s: "
-                                        "there would be no checkpoint", interval, m->duration);
+        return bough_fail(BOUGH_INVALID,
+                          "--checkpoint %.9g s is longer than the run, %.9g s: "
+                          "there would be no checkpoint",
+                          interval, m->duration);
     }
     if (bough_master_multiple(interval, m->macro_step) == 0) {
-        return bough_fail(BOUGH_INVALID,
-                          "--checkpoint %.9g s is not a multiple of the macro step %.9g s",
+        return bough_fail(BOUGH_INVALID, "--checkpoint %.9g s is not a multiple of the macro step %.9g s",
                           interval, m->macro_step);
     }
     for (int i = 0; i < m->n_load; i++) {
@@ -102,14 +102,16 @@ static void take_memory(bough_job *job) {
 // -- reading --------------------------------------------------------------------------------------
 
 static bough_status damaged(const char *path) {
-    return bough_fail(BOUGH_INVALID, "the checkpoint '%.200s' is damaged; without --resume the run "
-                                     "starts anew",
+    return bough_fail(BOUGH_INVALID,
+                      "the checkpoint '%.200s' is damaged; without --resume the run "
+                      "starts anew",
                       path);
 }
 
 static bough_status other(const char *path, const char *what) {
-    return bough_fail(BOUGH_INVALID, "the checkpoint '%.200s' is of %s; without --resume the run "
-                                     "starts anew",
+    return bough_fail(BOUGH_INVALID,
+                      "the checkpoint '%.200s' is of %s; without --resume the run "
+                      "starts anew",
                       path, what);
 }
 
@@ -122,16 +124,16 @@ static bough_status read_copy(bough_job *job, const char *path, FILE *file) {
         return bough_fail(BOUGH_INVALID, "'%.200s' is not a checkpoint of this version", path);
     }
     bool fits = h.size == c->size;
-    if (fits && (fread(c->copy, 1, c->size, file) != c->size || fgetc(file) != EOF ||
-                 sum_of(&h, c->copy) != h.sum)) {
+    if (fits &&
+        (fread(c->copy, 1, c->size, file) != c->size || fgetc(file) != EOF || sum_of(&h, c->copy) != h.sum)) {
         return damaged(path);
     }
     if (h.program != c->program) return other(path, "another version of the program");
     if (h.input != c->input) return other(path, "another scene or other settings");
     if (!fits) return damaged(path);
     if (c->interval > 0 && c->interval != h.interval) {
-        return bough_fail(BOUGH_INVALID, "the run to resume has --checkpoint %.9g s, not %.9g s",
-                          h.interval, c->interval);
+        return bough_fail(BOUGH_INVALID, "the run to resume has --checkpoint %.9g s, not %.9g s", h.interval,
+                          c->interval);
     }
     c->interval = h.interval;
     return bough_ok();
@@ -144,8 +146,9 @@ static bough_status resume(bough_job *job) {
     char why[BOUGH_INPUT_REASON];
     FILE *file = bough_input_open(path, BOUGH_INPUT_DATA, why);
     if (!file && errno == ENOENT) {
-        return bough_fail(BOUGH_INVALID, "nothing to resume: there is no '%.200s'; a run with "
-                                         "--checkpoint writes it and removes it at its end",
+        return bough_fail(BOUGH_INVALID,
+                          "nothing to resume: there is no '%.200s'; a run with "
+                          "--checkpoint writes it and removes it at its end",
                           path);
     }
     if (!file) {
@@ -182,9 +185,8 @@ static bough_status write_copy(const bough_job *job) {
     bough_status status = bough_folder_open(job->folder, name, path, &file);
     if (!bough_is_ok(&status)) return status;
     errno = 0;
-    bool good = fwrite(&h, sizeof h, 1, file) == 1 &&
-                fwrite(c->copy, 1, c->size, file) == c->size && fflush(file) == 0 &&
-                fsync(fileno(file)) == 0;
+    bool good = fwrite(&h, sizeof h, 1, file) == 1 && fwrite(c->copy, 1, c->size, file) == c->size &&
+                fflush(file) == 0 && fsync(fileno(file)) == 0;
     if (good) return bough_folder_commit(path, file);
     status = bough_fail(BOUGH_IO, "cannot write '%.200s': %s", path, strerror(errno));
     bough_folder_discard(path, file);
@@ -214,6 +216,4 @@ bough_status bough_checkpoint_update(void *self) {
     return status;
 }
 
-bough_status bough_checkpoint_remove(const char *folder) {
-    return bough_folder_remove(folder, name);
-}
+bough_status bough_checkpoint_remove(const char *folder) { return bough_folder_remove(folder, name); }

@@ -34,7 +34,8 @@ typedef struct export {
     struct {
         const char *path, *name; // where it is, where it goes
     } file[MOST_FILES];
-} export;
+}
+export;
 
 // -- files ----------------------------------------------------------------------------------------
 
@@ -108,13 +109,13 @@ static const struct {
     int kg, m, s, rad;
     double factor;
 } units[] = {
-    {"s", 0, 0, 1, 0, 1},          {"Hz", 0, 0, -1, 0, 1},     {"kg", 1, 0, 0, 0, 1},
-    {"m", 0, 1, 0, 0, 1},          {"m/s", 0, 1, -1, 0, 1},    {"m/s^2", 0, 1, -2, 0, 1},
-    {"rad", 0, 0, 0, 1, 1},        {"rad/s", 0, 0, -1, 1, 1},  {"deg", 0, 0, 0, 1, DEGREE},
-    {"deg/s", 0, 0, -1, 1, DEGREE}, {"rpm", 0, 0, -1, 1, RPM}, {"N", 1, 1, -2, 0, 1},
-    {"kN", 1, 1, -2, 0, 1000},     {"N/m", 1, 0, -2, 0, 1},    {"N m", 1, 2, -2, 0, 1},
-    {"N-m", 1, 2, -2, 0, 1},       {"kN-m", 1, 2, -2, 0, 1000}, {"N m/m", 1, 1, -2, 0, 1},
-    {"W", 1, 2, -3, 0, 1},         {"kW", 1, 2, -3, 0, 1000},  {"-", 0, 0, 0, 0, 1},
+    {"s", 0, 0, 1, 0, 1},           {"Hz", 0, 0, -1, 0, 1},      {"kg", 1, 0, 0, 0, 1},
+    {"m", 0, 1, 0, 0, 1},           {"m/s", 0, 1, -1, 0, 1},     {"m/s^2", 0, 1, -2, 0, 1},
+    {"rad", 0, 0, 0, 1, 1},         {"rad/s", 0, 0, -1, 1, 1},   {"deg", 0, 0, 0, 1, DEGREE},
+    {"deg/s", 0, 0, -1, 1, DEGREE}, {"rpm", 0, 0, -1, 1, RPM},   {"N", 1, 1, -2, 0, 1},
+    {"kN", 1, 1, -2, 0, 1000},      {"N/m", 1, 0, -2, 0, 1},     {"N m", 1, 2, -2, 0, 1},
+    {"N-m", 1, 2, -2, 0, 1},        {"kN-m", 1, 2, -2, 0, 1000}, {"N m/m", 1, 1, -2, 0, 1},
+    {"W", 1, 2, -3, 0, 1},          {"kW", 1, 2, -3, 0, 1000},   {"-", 0, 0, 0, 0, 1},
 };
 
 static void put_exponent(const char *name, int exponent, FILE *out) {
@@ -171,7 +172,8 @@ static void put_variable(const variable *v, int reference, bool input, FILE *out
 static void put_variables(const export *x, FILE *out) {
     int first = x->n_input + 1;
     fputs("  <ModelVariables>\n    <Float64 name=\"time\" valueReference=\"0\" "
-          "causality=\"independent\" variability=\"continuous\" unit=\"s\"/>\n", out);
+          "causality=\"independent\" variability=\"continuous\" unit=\"s\"/>\n",
+          out);
     for (int k = 0; k < x->n_input; k++) put_variable(&x->input[k], k + 1, true, out);
     for (int k = 0; k < x->n_output; k++) put_variable(&x->output[k], first + k, false, out);
     fputs("  </ModelVariables>\n  <ModelStructure>\n", out);
@@ -187,17 +189,22 @@ static void put_description(const export *x, FILE *out) {
     const bough_scene_control *control = &scene->control;
     bool copies = !control->node || control->kind != BOUGH_SCENE_BLADED;
     fputs("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\" "
-          "modelName=\"", out);
+          "modelName=\"",
+          out);
     bough_picture_text(out, scene->title ? scene->title : scene->file);
-    fprintf(out, "\" instantiationToken=\"%s\" generationTool=\"bough " BOUGH_VERSION "\" "
-                 "variableNamingConvention=\"flat\">\n", x->token);
-    fprintf(out, "  <CoSimulation modelIdentifier=\"bough\" canHandleVariableCommunicationStepSize="
-                 "\"true\" fixedInternalStepSize=\"%.17g\" canGetAndSetFMUState=\"%s\" "
-                 "providesDirectionalDerivatives=\"false\" maxOutputDerivativeOrder=\"0\"/>\n",
+    fprintf(out,
+            "\" instantiationToken=\"%s\" generationTool=\"bough " BOUGH_VERSION "\" "
+            "variableNamingConvention=\"flat\">\n",
+            x->token);
+    fprintf(out,
+            "  <CoSimulation modelIdentifier=\"bough\" canHandleVariableCommunicationStepSize="
+            "\"true\" fixedInternalStepSize=\"%.17g\" canGetAndSetFMUState=\"%s\" "
+            "providesDirectionalDerivatives=\"false\" maxOutputDerivativeOrder=\"0\"/>\n",
             scene->simulation.macro_step, copies ? "true" : "false");
     put_units(x, out);
     fputs("  <LogCategories>\n    <Category name=\"logStatusError\"/>\n    <Category "
-          "name=\"logStatusWarning\"/>\n    <Category name=\"logAll\"/>\n  </LogCategories>\n", out);
+          "name=\"logStatusWarning\"/>\n    <Category name=\"logAll\"/>\n  </LogCategories>\n",
+          out);
     fprintf(out, "  <DefaultExperiment startTime=\"0\" stopTime=\"%.17g\" stepSize=\"%.17g\"/>\n",
             scene->simulation.duration, scene->simulation.macro_step);
     put_variables(x, out);
@@ -230,8 +237,8 @@ static bough_status list_scene(export *x, const bough_channels *channels) {
         x->output[k] = (variable){channels->channel[k].name, channels->channel[k].unit, 0};
     for (int k = 0; k < x->n_input; k++) {
         const bough_scene_input *from = &scene->input[k];
-        x->input[k] = (variable){from->name, bough_dimension_unit((bough_dimension)from->dimension),
-                                 from->initial};
+        x->input[k] =
+            (variable){from->name, bough_dimension_unit((bough_dimension)from->dimension), from->initial};
         if (strcmp(from->name, "time") != 0 && bough_channels_find(channels, from->name) < 0) continue;
         return bough_fail(BOUGH_INVALID, "the input '%.80s' has the name of an output: rename it",
                           from->name);
@@ -332,8 +339,7 @@ static void print_body(const bough_simulation *s, const char *name) {
 
 bough_status bough_verb_export(bough_arena *arena, const bough_options *options) {
     if (strcmp(options->operand, "fmu") != 0) {
-        return bough_fail(BOUGH_INVALID, "export: unknown kind '%.80s'; known: fmu",
-                          options->operand);
+        return bough_fail(BOUGH_INVALID, "export: unknown kind '%.80s'; known: fmu", options->operand);
     }
     bough_options named = *options;
     named.operand = options->second;

@@ -5,9 +5,9 @@
 #include <math.h>
 #include <sys/statvfs.h>
 
-static const double long_run = 1e6;   // macro steps
-static const double much_data = 1e9;  // [bytes]
-static const double frame_head = 900; // bytes of a frame's file beside its points
+static const double long_run = 1e6;    // macro steps
+static const double much_data = 1e9;   // [bytes]
+static const double frame_head = 900;  // bytes of a frame's file beside its points
 static const double frame_point = 110; // bytes of one of its points
 enum { COLUMN = 18, VERTEX = 144 };    // bytes of a value in channels.out, of a vertex in vertices.h5
 
@@ -62,9 +62,7 @@ bough_status bough_run_forecast(const bough_job *job, FILE *stream) {
         bough_run_results(run->simulation, &job->recorded, bough_forecast_points(&job->shape));
     double steps = m->duration / m->macro_step, bytes = results.bytes;
     struct statvfs disk;
-    double room = statvfs(job->folder, &disk) == 0
-                      ? (double)disk.f_bavail * (double)disk.f_frsize
-                      : HUGE_VAL;
+    double room = statvfs(job->folder, &disk) == 0 ? (double)disk.f_bavail * (double)disk.f_frsize : HUGE_VAL;
     if (bytes > much_data && bytes > room) {
         return bough_fail(BOUGH_INVALID,
                           "the results take about %.3g GB, '%.200s' has room for %.3g GB: a longer "

@@ -16,9 +16,8 @@ bough_status bough_verb_import(bough_arena *arena, const bough_options *options)
     named.operand = options->second;
     const char *folder = bough_out_folder(arena, &named);
     const bough_import_options given = {options->wind, options->controller, options->clamp_base};
-    bough_status status = windio
-                              ? bough_import_windio(options->second, folder, &given, stdout)
-                              : bough_import_openfast(options->second, folder, &given, stdout);
+    bough_status status = windio ? bough_import_windio(options->second, folder, &given, stdout)
+                                 : bough_import_openfast(options->second, folder, &given, stdout);
     if (bough_is_ok(&status)) printf("scene: %s/scene.yaml\n", folder);
     return status;
 }

@@ -13,10 +13,10 @@
 #include <stdint.h>
 
 typedef struct bough_checkpoint {
-    double interval;           // [s]; 0: none are written
-    uint64_t program, input;   // fingerprints
-    size_t size;               // of a copy [bytes]
-    char *copy;                // (size)
+    double interval;         // [s]; 0: none are written
+    uint64_t program, input; // fingerprints
+    size_t size;             // of a copy [bytes]
+    char *copy;              // (size)
 } bough_checkpoint;
 
 typedef struct bough_job {

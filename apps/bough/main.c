@@ -30,8 +30,7 @@ const bough_verb bough_verbs[] = {
      bough_verb_modes},
     {"study",
      {BOUGH_OPERAND_REQUIRED, "STUDY",
-      BOUGH_OPTION_OUT | BOUGH_OPTION_THREADS | BOUGH_OPTION_PART | BOUGH_OPTION_CASE |
-          BOUGH_OPTION_QUIET},
+      BOUGH_OPTION_OUT | BOUGH_OPTION_THREADS | BOUGH_OPTION_PART | BOUGH_OPTION_CASE | BOUGH_OPTION_QUIET},
      "runs a scene for a grid of settings and compares cost and error",
      bough_verb_study},
     {"wind",

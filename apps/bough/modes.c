@@ -36,8 +36,8 @@ static void print_head(const rod_modes *x) {
                "in the mean of a turn",
                x->turning.speed * 30 / BOUGH_PI, a.x, a.y, a.z);
     }
-    printf("\n%4s %12s %12s %11s  %-8s %7s %7s %7s %7s\n", "mode", "frequency", "damped", "damping",
-           "shape", "flap", "edge", "axial", "torsion");
+    printf("\n%4s %12s %12s %11s  %-8s %7s %7s %7s %7s\n", "mode", "frequency", "damped", "damping", "shape",
+           "flap", "edge", "axial", "torsion");
     printf("%4s %12s %12s %11s  %-8s %7s %7s %7s\n", "", "(Hz)", "(Hz)", "(%)", "", "x", "y", "z");
 }
 
@@ -45,8 +45,8 @@ static void print_rod(const rod_modes *x) {
     print_head(x);
     for (int k = 0; k < x->list.found; k++) {
         const bough_rod_mode *m = &x->list.mode[k];
-        printf("%4d %12.6g %12.6g %11.5f  %-8s", k + 1, m->frequency, m->damped_frequency,
-               100 * m->damping, directions[m->dominant]);
+        printf("%4d %12.6g %12.6g %11.5f  %-8s", k + 1, m->frequency, m->damped_frequency, 100 * m->damping,
+               directions[m->dominant]);
         for (int c = 0; c < BOUGH_ROD_DIRECTIONS; c++) printf(" %7.4f", m->share[c]);
         putchar('\n');
     }
@@ -122,8 +122,8 @@ static bough_status solve(bough_arena *arena, const bough_simulation *s, const b
         status = bough_steady_find(arena, s, beam, &x->turning, &x->steady);
     }
     if (!bough_is_ok(&status)) return status;
-    return bough_rod_modes(arena, x->steady.model, &x->steady.work, x->steady.input,
-                           x->steady.state, &x->list);
+    return bough_rod_modes(arena, x->steady.model, &x->steady.work, x->steady.input, x->steady.state,
+                           &x->list);
 }
 
 static bough_status solve_all(bough_arena *arena, const bough_simulation *s, rod_modes *rods) {

@@ -36,8 +36,8 @@ static void draw_multiples(const panel *p) {
         if (end <= p->at.x.low) continue;
         fprintf(p->at.svg, "<path class=\"times\" d=\"M%.1f %.1fL%.1f %.1f\"/>\n", right(p, p->at.x.low),
                 down(p, slope * p->at.x.low), right(p, end), down(p, slope * end));
-        fprintf(p->at.svg, "<text class=\"times\" x=\"%.1f\" y=\"%.1f\">%dP</text>\n",
-                right(p, end) - 22, down(p, slope * end) + 12, multiples[k]);
+        fprintf(p->at.svg, "<text class=\"times\" x=\"%.1f\" y=\"%.1f\">%dP</text>\n", right(p, end) - 22,
+                down(p, slope * end) + 12, multiples[k]);
     }
 }
 
@@ -64,8 +64,8 @@ static void draw_line(const panel *p, int line) {
     double y = last ? value_of(p, last) : p->at.y.high + 1;
     if (y < p->at.y.low || y > p->at.y.high) return;
     fprintf(p->at.svg, "<text x=\"%.1f\" y=\"%.1f\" fill=\"%s\">%d %s %s %s</text>\n",
-            right(p, x_of(p, last->point)) + 8, down(p, y) + 4, colour, line + 1, last->body,
-            last->shape, last->pattern);
+            right(p, x_of(p, last->point)) + 8, down(p, y) + 4, colour, line + 1, last->body, last->shape,
+            last->pattern);
 }
 
 static void draw_panel(const panel *p, const char *title, const char *across) {

@@ -17,9 +17,9 @@ static const double least_alike = 0.3;
 // The modes of the point before, for finding them again.
 typedef struct tracks {
     int n, n_state;
-    int *line;       // (n)
-    bool *taken;     // (n)
-    double *shape;   // (n × 2 × n_state)
+    int *line;     // (n)
+    bool *taken;   // (n)
+    double *shape; // (n × 2 × n_state)
 } tracks;
 
 // -- operating points -----------------------------------------------------------------------------
@@ -53,8 +53,10 @@ static bough_status read_points(bough_arena *arena, const bough_options *options
         const char *text = options->sweep[k], *list = strchr(text, '=');
         int n = list ? count_values(arena, list + 1) : 0;
         if (n == 0 || n > MOST_POINTS) {
-            return bough_fail(BOUGH_INVALID, "--sweep expects KEY=V1, V2, ... of at most %d values, got "
-                                             "'%.80s'", MOST_POINTS, text);
+            return bough_fail(BOUGH_INVALID,
+                              "--sweep expects KEY=V1, V2, ... of at most %d values, got "
+                              "'%.80s'",
+                              MOST_POINTS, text);
         }
         if (k > 0 && n != s->n_point) {
             return bough_fail(BOUGH_INVALID, "--sweep: '%.80s' has %d values, the first %d", text, n,
@@ -152,8 +154,8 @@ static void add_modes(const bough_simulation *sim, const bough_vibration *v, int
 
 // -- points ---------------------------------------------------------------------------------------
 
-static bough_status solve_point(bough_arena *keep, const bough_options *options, int point,
-                                tracks *track, bough_sweep *s) {
+static bough_status solve_point(bough_arena *keep, const bough_options *options, int point, tracks *track,
+                                bough_sweep *s) {
     bough_arena *arena = bough_arena_child(keep);
     bough_options at;
     bough_simulation *sim = NULL;
@@ -203,15 +205,16 @@ static void write_table(const void *self, FILE *file) {
     fputs("point", file);
     for (int k = 0; k < s->n_key; k++) fprintf(file, ",%s", s->key[k]);
     fputs(",rotor speed (rpm),line,frequency (Hz),damped frequency (Hz),damping ratio (-),body,shape,"
-          "pattern\n", file);
+          "pattern\n",
+          file);
     for (int i = 0; i < s->n_mode; i++) {
         const bough_sweep_mode *m = &s->mode[i];
         fprintf(file, "%d", m->point + 1);
         for (int k = 0; k < s->n_key; k++) {
             fprintf(file, ",\"%s\"", s->value[k * s->n_point + m->point]);
         }
-        fprintf(file, ",%.10g,%d,%.10g,%.10g,%.10g,%s,%s,%s\n", s->speed[m->point], m->line + 1,
-                m->frequency, m->damped, m->damping, m->body, m->shape, m->pattern);
+        fprintf(file, ",%.10g,%d,%.10g,%.10g,%.10g,%s,%s,%s\n", s->speed[m->point], m->line + 1, m->frequency,
+                m->damped, m->damping, m->body, m->shape, m->pattern);
     }
 }
 
@@ -221,8 +224,8 @@ bough_status bough_modes_sweep(bough_arena *arena, const bough_options *options)
     const char *folder = bough_out_folder(arena, options);
     bough_status status = read_points(arena, options, &s);
     if (!bough_is_ok(&status)) return status;
-    printf("%4s %12s %12s %11s  %-12s %-8s pattern\n", "line", "frequency", "damped", "damping",
-           "body", "shape");
+    printf("%4s %12s %12s %11s  %-12s %-8s pattern\n", "line", "frequency", "damped", "damping", "body",
+           "shape");
     for (int i = 0; i < s.n_point && bough_is_ok(&status); i++) {
         int first = s.n_mode;
         status = solve_point(arena, options, i, track, &s);

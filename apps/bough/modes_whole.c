@@ -53,8 +53,8 @@ static void print_head(const bough_simulation *s, const bough_vibration *v) {
     if (rotor_is_free(s)) printf(", rotor free to turn");
     static const char *const air[] = {"do not follow", "follow at once", "follow in time"};
     if (s->aero) printf("; the air's forces %s", air[s->scene->modes.air]);
-    printf("\n%4s %12s %12s %11s  %-12s %-8s %-12s %8s %8s %8s\n", "mode", "frequency", "damped",
-           "damping", "body", "shape", "pattern", "collect.", "forward", "backward");
+    printf("\n%4s %12s %12s %11s  %-12s %-8s %-12s %8s %8s %8s\n", "mode", "frequency", "damped", "damping",
+           "body", "shape", "pattern", "collect.", "forward", "backward");
     printf("%4s %12s %12s %11s\n", "", "(Hz)", "(Hz)", "(%)");
 }
 
@@ -62,8 +62,8 @@ static void print_modes(const bough_simulation *s, const bough_vibration *v) {
     print_head(s, v);
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
-        printf("%4d %12.6g %12.6g %11.5f  %-12s %-8s %-12s", k + 1, m->frequency,
-               m->damped_frequency, 100 * m->damping, bough_modes_body(s, m), bough_modes_shape(s, m),
+        printf("%4d %12.6g %12.6g %11.5f  %-12s %-8s %-12s", k + 1, m->frequency, m->damped_frequency,
+               100 * m->damping, bough_modes_body(s, m), bough_modes_shape(s, m),
                bough_pattern_names[m->pattern]);
         for (int c = 0; v->n_blade > 0 && c < 3; c++) printf(" %8.4f", m->whirl[c]);
         if (rotor_is_free(s) && turns_rotor(m)) printf("  free rotor");
@@ -95,13 +95,14 @@ static void write_modes(const void *self, FILE *file) {
     const bough_vibration *v = x->found;
     int n_body = s->scene->n_body;
     fputs("mode,frequency (Hz),damped frequency (Hz),damping ratio (-),body,shape,pattern,"
-          "collective (-),forward (-),backward (-)", file);
+          "collective (-),forward (-),backward (-)",
+          file);
     for (int i = 0; i < n_body; i++) fprintf(file, ",%s (-)", s->scene->body[i].name);
     fputc('\n', file);
     for (int k = 0; k < v->found; k++) {
         const bough_scene_mode *m = &v->mode[k];
-        fprintf(file, "%d,%.10g,%.10g,%.10g,%s,%s,%s", k + 1, m->frequency, m->damped_frequency,
-                m->damping, bough_modes_body(s, m), bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
+        fprintf(file, "%d,%.10g,%.10g,%.10g,%s,%s,%s", k + 1, m->frequency, m->damped_frequency, m->damping,
+                bough_modes_body(s, m), bough_modes_shape(s, m), bough_pattern_names[m->pattern]);
         for (int c = 0; c < 3; c++) fprintf(file, ",%.6g", m->whirl[c]);
         for (int i = 0; i < n_body; i++) fprintf(file, ",%.6g", m->share[i]);
         fputc('\n', file);
@@ -114,7 +115,8 @@ static void write_shapes(const void *self, FILE *file) {
     const bough_vibration *v = x->found;
     fputs("body,mode,span (m),ux (m),uy (m),uz (m),rx (rad),ry (rad),rz (rad),imaginary ux (m),"
           "imaginary uy (m),imaginary uz (m),imaginary rx (rad),imaginary ry (rad),"
-          "imaginary rz (rad)\n", file);
+          "imaginary rz (rad)\n",
+          file);
     for (int k = 0; k < v->found; k++) {
         for (int i = 0; i < v->n_row; i++) {
             const bough_shape_row *row = &v->mode[k].shape[i];
@@ -125,8 +127,7 @@ static void write_shapes(const void *self, FILE *file) {
     }
 }
 
-bough_status bough_modes_whole(bough_arena *arena, const bough_options *options,
-                               bough_simulation *s) {
+bough_status bough_modes_whole(bough_arena *arena, const bough_options *options, bough_simulation *s) {
     bough_vibration v;
     const char *folder = bough_out_folder(arena, options);
     if (s->master->assembly->n_state == 0) {

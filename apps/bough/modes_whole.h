@@ -7,8 +7,7 @@
 #include "apps/simulation/build.h"
 
 // Finds, prints and writes them.
-bough_status bough_modes_whole(bough_arena *arena, const bough_options *options,
-                               bough_simulation *s);
+bough_status bough_modes_whole(bough_arena *arena, const bough_options *options, bough_simulation *s);
 
 // What moves most in a mode, and how.
 const char *bough_modes_body(const bough_simulation *s, const bough_scene_mode *mode);

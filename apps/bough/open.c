@@ -2,8 +2,7 @@
 
 #include <string.h>
 
-bough_status bough_open_scene(bough_arena *arena, const bough_options *options,
-                              bough_scene **scene) {
+bough_status bough_open_scene(bough_arena *arena, const bough_options *options, bough_scene **scene) {
     bough_errors errors = {.arena = arena};
     bough_status status =
         bough_scene_read(arena, options->operand, options->set, options->n_set, &errors, scene);
@@ -17,8 +16,7 @@ bough_status bough_open_scene(bough_arena *arena, const bough_options *options,
     return status;
 }
 
-bough_status bough_open(bough_arena *arena, const bough_options *options,
-                        bough_simulation **simulation) {
+bough_status bough_open(bough_arena *arena, const bough_options *options, bough_simulation **simulation) {
     bough_scene *scene;
     bough_status status = bough_open_scene(arena, options, &scene);
     if (!bough_is_ok(&status)) return status;

@@ -7,12 +7,10 @@
 
 // Reads the scene with the options' replacements and threads. Errors in it are written to stderr, one
 // a line, and the status then has no message.
-bough_status bough_open_scene(bough_arena *arena, const bough_options *options,
-                              bough_scene **scene);
+bough_status bough_open_scene(bough_arena *arena, const bough_options *options, bough_scene **scene);
 
 // Reads the scene with the options' replacements and builds it, with the errors told likewise.
-bough_status bough_open(bough_arena *arena, const bough_options *options,
-                        bough_simulation **simulation);
+bough_status bough_open(bough_arena *arena, const bough_options *options, bough_simulation **simulation);
 
 // The folder for results: as the options say, else out/ and the operand's file name without its
 // extension.

@@ -19,10 +19,10 @@ typedef struct option_row {
 static const option_row rows[] = {
     {"set", "KEY=VALUE", "replaces or adds a value of the scene: 'bodies[blade1].pitch=5 deg'",
      BOUGH_OPTION_SET, true},
-    {"out", "DIR", "folder for the results; default out/<name of the scene>", BOUGH_OPTION_OUT,
-     false},
-    {"sweep", "KEY=V1, V2, ...", "modes over operating points; the values of several --sweep vary "
-                                 "together",
+    {"out", "DIR", "folder for the results; default out/<name of the scene>", BOUGH_OPTION_OUT, false},
+    {"sweep", "KEY=V1, V2, ...",
+     "modes over operating points; the values of several --sweep vary "
+     "together",
      BOUGH_OPTION_SWEEP, true},
     {"threads", "N", "1 to 64; replaces the scene's number", BOUGH_OPTION_THREADS, false},
     {"part", "K/N", "of a study (stability, sweep, load-set) only the K-th of N shares of its runs",
@@ -30,8 +30,7 @@ static const option_row rows[] = {
     {"case", "NAME", "of a load set only the load case of that name", BOUGH_OPTION_CASE, false},
     {"checkpoint", "TIME", "stores the state of the run at this interval of simulated time",
      BOUGH_OPTION_CHECKPOINT, false},
-    {"resume", NULL, "continues from the last checkpoint in the results folder",
-     BOUGH_OPTION_RESUME, false},
+    {"resume", NULL, "continues from the last checkpoint in the results folder", BOUGH_OPTION_RESUME, false},
     {"wind", "FILE", "wind for the imported model; replaces its own: .bts, .wnd or uniform",
      BOUGH_OPTION_WIND, false},
     {"controller", "FILE", "library with Bladed's interface; replaces the model's own",
@@ -79,8 +78,7 @@ static bough_status missing(void) {
 
 // -- reading --------------------------------------------------------------------------------------
 
-static bough_status take_operand(const bough_syntax *syntax, const char *word,
-                                 bough_options *options) {
+static bough_status take_operand(const bough_syntax *syntax, const char *word, bough_options *options) {
     if (syntax->operand == BOUGH_OPERAND_TWO && options->operand && !options->second) {
         options->second = word;
         return bough_ok();
@@ -102,9 +100,8 @@ static bough_status take_threads(const char *text, bough_options *options) {
     errno = 0;
     long n = strtol(text, &end, 10);
     if (end == text || *end != '\0' || errno || n < 1 || n > MAX_THREADS) {
-        return bough_fail(BOUGH_INVALID,
-                          "--threads expects a whole number from 1 to %d, got '%.80s'", MAX_THREADS,
-                          text);
+        return bough_fail(BOUGH_INVALID, "--threads expects a whole number from 1 to %d, got '%.80s'",
+                          MAX_THREADS, text);
     }
     options->threads = (int)n;
     return bough_ok();
@@ -112,10 +109,9 @@ static bough_status take_threads(const char *text, bough_options *options) {
 
 static bough_status take_part(const char *text, bough_options *options) {
     char rest;
-    bool good = sscanf(text, "%d/%d%c", &options->part, &options->parts, &rest) == 2 &&
-                options->part >= 1 && options->part <= options->parts;
-    return good ? bough_ok()
-                : bough_fail(BOUGH_INVALID, "--part expects K/N such as 1/4, got '%.80s'", text);
+    bool good = sscanf(text, "%d/%d%c", &options->part, &options->parts, &rest) == 2 && options->part >= 1 &&
+                options->part <= options->parts;
+    return good ? bough_ok() : bough_fail(BOUGH_INVALID, "--part expects K/N such as 1/4, got '%.80s'", text);
 }
 
 static bough_status take_option(bough_option_flag flag, const char *text, bough_options *options) {
@@ -149,8 +145,7 @@ static void list_options(const bough_syntax *syntax, struct option *list) {
     }
 }
 
-static bough_status take(const bough_syntax *syntax, int code, const char *word,
-                         bough_options *options) {
+static bough_status take(const bough_syntax *syntax, int code, const char *word, bough_options *options) {
     switch (code) {
     case 1: return take_operand(syntax, optarg, options);
     case 'h': options->help = true; return bough_ok();
@@ -160,8 +155,8 @@ static bough_status take(const bough_syntax *syntax, int code, const char *word,
     }
 }
 
-bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
-                                const bough_syntax *syntax, bough_options *options) {
+bough_status bough_options_read(bough_arena *arena, int argc, char **argv, const bough_syntax *syntax,
+                                bough_options *options) {
     *options = (bough_options){.set = bough_arena_take(arena, (size_t)argc * sizeof(char *)),
                                .sweep = bough_arena_take(arena, (size_t)argc * sizeof(char *)),
                                .operands = bough_arena_take(arena, (size_t)argc * sizeof(char *))};
@@ -170,8 +165,7 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
     bough_status status = bough_ok();
     opterr = 0; // messages are ours
     // "-": operands come in order, whatever POSIXLY_CORRECT says; ":": tell missing from unknown.
-    for (int code;
-         bough_is_ok(&status) && (code = getopt_long(argc, argv, "-:h", list, NULL)) != -1;) {
+    for (int code; bough_is_ok(&status) && (code = getopt_long(argc, argv, "-:h", list, NULL)) != -1;) {
         status = take(syntax, code, argv[optind - 1], options);
     }
     for (; bough_is_ok(&status) && optind < argc; optind++) {
@@ -180,8 +174,7 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
     const char *last = syntax->operand == BOUGH_OPERAND_TWO ? options->second : options->operand;
     bool needed = syntax->operand != BOUGH_OPERAND_NONE && syntax->operand != BOUGH_OPERAND_OPTIONAL;
     if (bough_is_ok(&status) && needed && !last && !options->help) {
-        return bough_fail(BOUGH_INVALID, "%s: missing %s; see --help", argv[0],
-                          syntax->operand_name);
+        return bough_fail(BOUGH_INVALID, "%s: missing %s; see --help", argv[0], syntax->operand_name);
     }
     return status;
 }
@@ -204,8 +197,7 @@ void bough_options_help(const bough_syntax *syntax, FILE *stream) {
     for (int i = 0; i < N_ROW; i++) {
         if (!(syntax->options & rows[i].flag)) continue;
         char left[40];
-        snprintf(left, sizeof left, "--%s %s", rows[i].name,
-                 rows[i].argument ? rows[i].argument : "");
+        snprintf(left, sizeof left, "--%s %s", rows[i].name, rows[i].argument ? rows[i].argument : "");
         fprintf(stream, "  %-18s %s\n", left, rows[i].help);
     }
     fprintf(stream, "  %-18s %s\n", "-h, --help", "this text");

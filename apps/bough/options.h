@@ -50,25 +50,25 @@ typedef struct bough_options {
     int n_set;
     const char **set; // (n_set) replacements "key=value", in their order
     int n_sweep;
-    const char **sweep; // (n_sweep) "key=value, value, ..."
-    const char *out;  // NULL: named after the scene
-    int threads;      // 0: as the scene says
-    const char *body; // to be exported by itself; NULL: the whole scene
-    const char *only; // load case of a study; NULL: all
-    int part, parts;  // of a study, from 1; 0: all of it
-    const char *checkpoint; // simulated time between checkpoints; NULL: none
-    bool resume;            // from the last one
+    const char **sweep;            // (n_sweep) "key=value, value, ..."
+    const char *out;               // NULL: named after the scene
+    int threads;                   // 0: as the scene says
+    const char *body;              // to be exported by itself; NULL: the whole scene
+    const char *only;              // load case of a study; NULL: all
+    int part, parts;               // of a study, from 1; 0: all of it
+    const char *checkpoint;        // simulated time between checkpoints; NULL: none
+    bool resume;                   // from the last one
     const char *wind, *controller; // files for an imported model; NULL: its own
     bool clamp_base;               // of an imported offshore turbine
-    bool path; // of equilibria
-    bool json; // of help: a schema for editors
+    bool path;                     // of equilibria
+    bool json;                     // of help: a schema for editors
     bool quiet, help;
 } bough_options;
 
 // Reads argv[1] and what follows; argv[0] is the command's name. BOUGH_INVALID names what is wrong
 // and the nearest valid option. Texts are borrowed from argv.
-bough_status bough_options_read(bough_arena *arena, int argc, char **argv,
-                                const bough_syntax *syntax, bough_options *options);
+bough_status bough_options_read(bough_arena *arena, int argc, char **argv, const bough_syntax *syntax,
+                                bough_options *options);
 
 // Writes " SCENE [--set KEY=VALUE]... [--out DIR]", and one line for each option.
 void bough_options_usage(const bough_syntax *syntax, FILE *stream);

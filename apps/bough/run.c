@@ -99,10 +99,8 @@ static bough_status open_results(bough_job *job) {
                                       : bough_checkpoint_remove(job->folder);
     }
     if (!bough_is_ok(&status)) return status;
-    bough_recorder_def def = {.folder = job->folder,
-                              .title = title(job),
-                              .channels = &job->recorded,
-                              .kept = job->rows};
+    bough_recorder_def def = {
+        .folder = job->folder, .title = title(job), .channels = &job->recorded, .kept = job->rows};
     status = bough_recorder_open(job->arena, &def, &job->recorder);
     if (bough_is_ok(&status)) status = open_frames(job);
     return bough_is_ok(&status) ? bough_run_forecast(job, stdout) : status;
@@ -115,14 +113,13 @@ bough_status bough_job_build(bough_job *job) {
     if (bough_is_ok(&status)) status = bough_run_create(job->arena, scene, &job->run);
     if (!bough_is_ok(&status)) return status;
     const bough_scene_output *output = &scene->simulation.output;
-    status = bough_channels_choose(&job->run.channels, output->n_channel, output->channels,
-                                   &job->recorded);
+    status = bough_channels_choose(&job->run.channels, output->n_channel, output->channels, &job->recorded);
     if (!bough_is_ok(&status)) return status;
     record(job);
     size_t n = (size_t)job->recorded.count;
     job->statistics = bough_arena_take(job->arena, (n + 1) * sizeof *job->statistics);
-    status = bough_error_shares_create(job->arena, &job->run, scene->simulation.output.interval,
-                                       &job->shares);
+    status =
+        bough_error_shares_create(job->arena, &job->run, scene->simulation.output.interval, &job->shares);
     job->build_s = bough_wall_clock() - began;
     return status;
 }
@@ -184,8 +181,8 @@ static void step_all(bough_job *job) {
     bough_run_all(run);
     bough_progress_clear(&progress);
     if (run->outcome.code != BOUGH_INTERRUPTED) return;
-    run->outcome = bough_fail(BOUGH_INTERRUPTED, "%s; the results so far are in %.200s",
-                              run->outcome.message, job->folder);
+    run->outcome = bough_fail(BOUGH_INTERRUPTED, "%s; the results so far are in %.200s", run->outcome.message,
+                              job->folder);
 }
 
 bough_status bough_verb_run(bough_arena *arena, const bough_options *options) {

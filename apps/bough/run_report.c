@@ -17,9 +17,7 @@ static const char *outcome_name(const bough_run *run) {
     return run->outcome.code == BOUGH_INTERRUPTED ? "interrupted" : "failed";
 }
 
-static double real_time_factor(const bough_run *run) {
-    return run->simulation->master->time / run->wall_s;
-}
+static double real_time_factor(const bough_run *run) { return run->simulation->master->time / run->wall_s; }
 
 // -- summary.json ---------------------------------------------------------------------------------
 
@@ -226,8 +224,7 @@ static void write_work(bough_summary *s, const bough_statistics *done) {
 static void write_whole(bough_summary *s, const bough_run *run) {
     const bough_member *whole = run->simulation->master->coupling->whole;
     if (whole == NULL) return;
-    bough_statistics done =
-        bough_run_statistics(run, run->simulation->master->assembly->n_member);
+    bough_statistics done = bough_run_statistics(run, run->simulation->master->assembly->n_member);
     bough_summary_object(s, "whole");
     bough_summary_text(s, "solver", whole->solver);
     write_work(s, &done);
@@ -266,8 +263,7 @@ bough_status bough_run_summarise(const bough_job *job) {
     write_whole(&s, run);
     const bough_assembly *assembly = run->simulation->master->assembly;
     bough_summary_array(&s, "subsystems");
-    for (int i = 0; i < assembly->n_member; i++)
-        write_member(&s, run, i);
+    for (int i = 0; i < assembly->n_member; i++) write_member(&s, run, i);
     bough_summary_end(&s);
     return bough_summary_close(&s);
 }
@@ -290,8 +286,8 @@ static void tell_channels(bough_job *job, FILE *stream) {
         fprintf(stream, "%s: %.6g %s\n", c->channel[k].name, value[k], c->channel[k].unit);
         bough_run_tell_channel_shares(job, k, stream);
         if (!bough_error_probe_knows(&run->probe, k)) continue;
-        fprintf(stream, "%s_coupling_error: %.2g %s\n", c->channel[k].name,
-                run->probe.largest[k], c->channel[k].unit);
+        fprintf(stream, "%s_coupling_error: %.2g %s\n", c->channel[k].name, run->probe.largest[k],
+                c->channel[k].unit);
     }
 }
 

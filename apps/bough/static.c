@@ -48,16 +48,14 @@ static void print_rod(bough_steady *x) {
     if (x->work.iterations > 0) printf(", %d iterations", x->work.iterations);
     putchar('\n');
     printf("%10s %12s %12s %12s %12s %12s %12s\n", "span", "ux", "uy", "uz", "rx", "ry", "rz");
-    printf("%10s %12s %12s %12s %12s %12s %12s\n", "(m)", "(m)", "(m)", "(m)", "(deg)", "(deg)",
-           "(deg)");
+    printf("%10s %12s %12s %12s %12s %12s %12s\n", "(m)", "(m)", "(m)", "(m)", "(deg)", "(deg)", "(deg)");
     for (int i = 0; i <= m->n_segment; i++) {
         motion_of(x, i, value);
         print_row(m->span[i], value);
     }
-    printf("%10s %12s %12s %12s %12s %12s %12s\n", "middle", "shear x", "shear y", "axial",
-           "bend x", "bend y", "twist");
-    printf("%10s %12s %12s %12s %12s %12s %12s\n", "(m)", "(N)", "(N)", "(N)", "(N m)", "(N m)",
-           "(N m)");
+    printf("%10s %12s %12s %12s %12s %12s %12s\n", "middle", "shear x", "shear y", "axial", "bend x",
+           "bend y", "twist");
+    printf("%10s %12s %12s %12s %12s %12s %12s\n", "(m)", "(N)", "(N)", "(N)", "(N m)", "(N m)", "(N m)");
     for (int n = 0; n < m->n_segment; n++) {
         stress_of(x, n, value);
         print_row(middle_of(x, n), value);
@@ -84,8 +82,7 @@ static void print_joints(const bough_simulation *s) {
         const bough_link *link = &s->tree->links[i];
         const double *q = s->leader.state + link->first_coordinate;
         const double *v = s->leader.state + s->tree->n_q + link->first_speed;
-        printf("joint %s: %s", s->tree->bodies[link->body].name,
-               bough_joint_name(link->joint.kind));
+        printf("joint %s: %s", s->tree->bodies[link->body].name, bough_joint_name(link->joint.kind));
         if (link->joint.kind == BOUGH_JOINT_REVOLUTE) {
             printf(" %.7g deg", q[0] / degree);
         } else {
@@ -176,8 +173,8 @@ static void print_modal(bough_simulation *s) {
         bough_vec3 u = bough_sub(x, beam->def.position[n]);
         bough_vec3 r = bough_quaternion_logarithm(bough_quaternion_product(p, undeformed));
         r = bough_scale(180 / BOUGH_PI, r);
-        printf("modal %s: tip moved by %.9g %.9g %.9g m, turned by %.9g %.9g %.9g deg\n",
-               beam->body->name, u.x, u.y, u.z, r.x, r.y, r.z);
+        printf("modal %s: tip moved by %.9g %.9g %.9g m, turned by %.9g %.9g %.9g deg\n", beam->body->name,
+               u.x, u.y, u.z, r.x, r.y, r.z);
     }
 }
 

@@ -13,9 +13,9 @@ typedef struct bough_static {
     double time;                 // of the loads of the whole scene [s]
     bough_equilibrium_work work; // of the whole scene
     int n;
-    bough_steady *rod;           // (n)
-    bough_channels channels;     // of the whole scene
-    double *value;               // (channels.count)
+    bough_steady *rod;       // (n)
+    bough_channels channels; // of the whole scene
+    double *value;           // (channels.count)
 } bough_static;
 
 enum {

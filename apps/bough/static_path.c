@@ -22,8 +22,7 @@ static bough_status write_point(void *self, double share, bool limit) {
     table *t = self;
     bough_channels_sample(t->channels, 0, t->value);
     fprintf(t->file, "%d,%d,%.10g", t->point, limit, share);
-    for (int i = 0; i < t->channels->count; i++)
-        fprintf(t->file, ",%.10g", t->value[i]);
+    for (int i = 0; i < t->channels->count; i++) fprintf(t->file, ",%.10g", t->value[i]);
     fputc('\n', t->file);
     if (limit) printf("limit point: %.7g of the loads, point %d\n", share, t->point);
     t->point++;

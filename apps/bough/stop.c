@@ -4,8 +4,7 @@
 #include <stddef.h>
 
 // A signal handler can reach nothing but a global.
-static volatile sig_atomic_t
-    requested; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
+static volatile sig_atomic_t requested; // NOLINT(cppcoreguidelines-avoid-non-const-global-variables)
 
 static void request(int signal_number) {
     (void)signal_number;

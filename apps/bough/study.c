@@ -10,8 +10,7 @@
 bough_status bough_verb_study(bough_arena *arena, const bough_options *options) {
     bough_errors errors = {.arena = arena};
     bough_study *study;
-    bough_status status =
-        bough_study_read(arena, options->operand, options->threads, &errors, &study);
+    bough_status status = bough_study_read(arena, options->operand, options->threads, &errors, &study);
     if (errors.n > 0 && status.code == BOUGH_INVALID) {
         bough_errors_print(&errors, stderr);
         status.message[0] = '\0';

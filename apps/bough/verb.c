@@ -17,10 +17,8 @@ bough_status bough_verb_unknown(const char *what, const char *word, const char *
     const char *known[MAX_WORDS];
     char list[160] = "";
     int n = 0;
-    for (const bough_verb *v = bough_verbs; v->name && n < MAX_WORDS; v++)
-        known[n++] = v->name;
-    for (; more && *more && n < MAX_WORDS; more++)
-        known[n++] = *more;
+    for (const bough_verb *v = bough_verbs; v->name && n < MAX_WORDS; v++) known[n++] = v->name;
+    for (; more && *more && n < MAX_WORDS; more++) known[n++] = *more;
     for (int i = 0; i < n; i++) {
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%s", i == 0 ? "" : ", ", known[i]);

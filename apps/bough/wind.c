@@ -27,12 +27,12 @@ bough_status bough_verb_wind(bough_arena *arena, const bough_options *options) {
     if (!wind || !wind->box) {
         return bough_fail(BOUGH_INVALID,
                           "%.150s has no turbulent wind: aero.wind of 'kind: iec' with 'condition: "
-                          "ntm', etm or ewm makes it", s->scene->file);
+                          "ntm', etm or ewm makes it",
+                          s->scene->file);
     }
     const char *folder = bough_out_folder(arena, options);
     const bough_wind_box *box = wind->box;
-    printf("points: %d x %d, %.6g m apart, lowest at %.6g m\n", box->n_z, box->n_y, box->dz,
-           box->bottom);
+    printf("points: %d x %d, %.6g m apart, lowest at %.6g m\n", box->n_z, box->n_y, box->dz, box->bottom);
     printf("times: %d, every %.6g s, period %.6g s\n", box->n_time, box->dt, box->duration);
     printf("mean_speed: %.6g m/s at %.6g m\n", box->mean, box->hub);
     return write_box(box, s->scene->title ? s->scene->title : s->scene->file, folder);

@@ -19,7 +19,7 @@ typedef enum mode { INSTANTIATED, INITIALIZATION, STEP, TERMINATED } mode;
 typedef struct instance {
     bough_session *session;
     mode mode;
-    char *scene, *body; // body NULL: the whole scene
+    char *scene, *body;           // body NULL: the whole scene
     char *set[MOST_SETTINGS + 1]; // with room for another duration
     int n_set;
     bool logging;
@@ -42,8 +42,9 @@ __attribute__((format(printf, 3, 4))) static fmi3_status tell(const instance *x,
     va_start(arguments, format);
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
-    const char *category = status == FMI3_OK ? "logAll" : status == FMI3_WARNING ? "logStatusWarning"
-                                                                                 : "logStatusError";
+    const char *category = status == FMI3_OK        ? "logAll"
+                           : status == FMI3_WARNING ? "logStatusWarning"
+                                                    : "logStatusError";
     if (x->log && x->logging) x->log(x->environment, status, category, text);
     return status;
 }
@@ -102,10 +103,10 @@ static bool open_session(instance *x) {
 }
 
 fmi3_instance fmi3InstantiateCoSimulation(fmi3_string name, fmi3_string token, fmi3_string resources,
-                                          bool visible, bool logging, bool event_mode,
-                                          bool early_return, const fmi3_reference *intermediate,
-                                          size_t n_intermediate, fmi3_environment environment,
-                                          fmi3_log *log, fmi3_intermediate *update) {
+                                          bool visible, bool logging, bool event_mode, bool early_return,
+                                          const fmi3_reference *intermediate, size_t n_intermediate,
+                                          fmi3_environment environment, fmi3_log *log,
+                                          fmi3_intermediate *update) {
     (void)visible, (void)early_return, (void)intermediate, (void)n_intermediate, (void)update;
     instance *x = calloc(1, sizeof *x);
     if (!x) return NULL;
@@ -191,8 +192,8 @@ fmi3_status fmi3Reset(fmi3_instance self) {
 
 // -- values ---------------------------------------------------------------------------------------
 
-fmi3_status fmi3GetFloat64(fmi3_instance self, const fmi3_reference *reference, size_t n,
-                           double *value, size_t n_value) {
+fmi3_status fmi3GetFloat64(fmi3_instance self, const fmi3_reference *reference, size_t n, double *value,
+                           size_t n_value) {
     const instance *x = self;
     size_t inputs = (size_t)bough_session_inputs(x->session);
     const double *channel = bough_session_values(x->session);
@@ -203,22 +204,21 @@ fmi3_status fmi3GetFloat64(fmi3_instance self, const fmi3_reference *reference, 
         if (at > inputs + count || (at > inputs && !channel)) {
             return tell(x, FMI3_ERROR, "fmi3GetFloat64: no value of reference %zu", at);
         }
-        value[k] = at == 0         ? bough_session_time(x->session)
+        value[k] = at == 0        ? bough_session_time(x->session)
                    : at <= inputs ? bough_session_input_value(x->session, (int)at - 1)
                                   : channel[at - inputs - 1];
     }
     return FMI3_OK;
 }
 
-fmi3_status fmi3SetFloat64(fmi3_instance self, const fmi3_reference *reference, size_t n,
-                           const double *value, size_t n_value) {
+fmi3_status fmi3SetFloat64(fmi3_instance self, const fmi3_reference *reference, size_t n, const double *value,
+                           size_t n_value) {
     const instance *x = self;
     if (x->mode == TERMINATED) return misplaced(x, "fmi3SetFloat64");
     if (n != n_value) return tell(x, FMI3_ERROR, "fmi3SetFloat64: %zu values of %zu", n_value, n);
     for (size_t k = 0; k < n; k++) {
         if (reference[k] == 0 || reference[k] > (size_t)bough_session_inputs(x->session)) {
-            return tell(x, FMI3_ERROR, "fmi3SetFloat64: no input of reference %zu",
-                        (size_t)reference[k]);
+            return tell(x, FMI3_ERROR, "fmi3SetFloat64: no input of reference %zu", (size_t)reference[k]);
         }
         int code = bough_session_set(x->session, (int)reference[k] - 1, value[k]);
         if (code != BOUGH_SESSION_OK) return answer(x, code);
@@ -227,8 +227,7 @@ fmi3_status fmi3SetFloat64(fmi3_instance self, const fmi3_reference *reference, 
 }
 
 // An output may depend on all inputs and states: its dependencies are not listed.
-fmi3_status fmi3GetNumberOfVariableDependencies(fmi3_instance self, fmi3_reference reference,
-                                                size_t *n) {
+fmi3_status fmi3GetNumberOfVariableDependencies(fmi3_instance self, fmi3_reference reference, size_t *n) {
     (void)self;
     (void)reference;
     *n = 0;
@@ -282,8 +281,8 @@ fmi3_status fmi3DoStep(fmi3_instance self, double time, double step, bool no_ret
     if (x->mode != STEP) return misplaced(x, "fmi3DoStep");
     double end = time + step;
     if (!near(time, *reached) || !(step > 0)) {
-        return tell(x, FMI3_ERROR, "fmi3DoStep: a step of %g s from %g s, the FMU is at %g s", step,
-                    time, *reached);
+        return tell(x, FMI3_ERROR, "fmi3DoStep: a step of %g s from %g s, the FMU is at %g s", step, time,
+                    *reached);
     }
     while (*reached < end && !near(*reached, end)) {
         int code = bough_session_step(x->session);

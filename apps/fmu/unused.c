@@ -4,14 +4,14 @@
 
 #pragma GCC diagnostic ignored "-Wunused-parameter"
 
-#define NONE(name, ...)                                                                            \
-    FMI3_API fmi3_status name(__VA_ARGS__);                                                        \
+#define NONE(name, ...)                                                                                      \
+    FMI3_API fmi3_status name(__VA_ARGS__);                                                                  \
     fmi3_status name(__VA_ARGS__) { return FMI3_ERROR; }
 
 #define SELF fmi3_instance instance
 #define REFERENCES SELF, const fmi3_reference *reference, size_t n
-#define ACCESS(type, name)                                                                         \
-    NONE(fmi3Get##name, REFERENCES, type *value, size_t n_value)                                   \
+#define ACCESS(type, name)                                                                                   \
+    NONE(fmi3Get##name, REFERENCES, type *value, size_t n_value)                                             \
     NONE(fmi3Set##name, REFERENCES, const type *value, size_t n_value)
 
 ACCESS(float, Float32)
@@ -73,23 +73,22 @@ NONE(fmi3GetNumberOfContinuousStates, SELF, size_t *n)
 NONE(fmi3ActivateModelPartition, SELF, fmi3_reference clock, double time)
 
 FMI3_API fmi3_instance fmi3InstantiateModelExchange(fmi3_string name, fmi3_string token,
-                                                    fmi3_string resources, bool visible,
-                                                    bool logging, fmi3_environment environment,
-                                                    fmi3_log *log);
-fmi3_instance fmi3InstantiateModelExchange(fmi3_string name, fmi3_string token,
-                                           fmi3_string resources, bool visible, bool logging,
-                                           fmi3_environment environment, fmi3_log *log) {
+                                                    fmi3_string resources, bool visible, bool logging,
+                                                    fmi3_environment environment, fmi3_log *log);
+fmi3_instance fmi3InstantiateModelExchange(fmi3_string name, fmi3_string token, fmi3_string resources,
+                                           bool visible, bool logging, fmi3_environment environment,
+                                           fmi3_log *log) {
     return NULL;
 }
 
-FMI3_API fmi3_instance fmi3InstantiateScheduledExecution(
-    fmi3_string name, fmi3_string token, fmi3_string resources, bool visible, bool logging,
-    fmi3_environment environment, fmi3_log *log, fmi3_clock *clock, fmi3_lock *lock,
-    fmi3_lock *unlock);
-fmi3_instance fmi3InstantiateScheduledExecution(fmi3_string name, fmi3_string token,
-                                                fmi3_string resources, bool visible, bool logging,
-                                                fmi3_environment environment, fmi3_log *log,
-                                                fmi3_clock *clock, fmi3_lock *lock,
+FMI3_API fmi3_instance fmi3InstantiateScheduledExecution(fmi3_string name, fmi3_string token,
+                                                         fmi3_string resources, bool visible, bool logging,
+                                                         fmi3_environment environment, fmi3_log *log,
+                                                         fmi3_clock *clock, fmi3_lock *lock,
+                                                         fmi3_lock *unlock);
+fmi3_instance fmi3InstantiateScheduledExecution(fmi3_string name, fmi3_string token, fmi3_string resources,
+                                                bool visible, bool logging, fmi3_environment environment,
+                                                fmi3_log *log, fmi3_clock *clock, fmi3_lock *lock,
                                                 fmi3_lock *unlock) {
     return NULL;
 }

@@ -40,11 +40,9 @@ void bough_counts_add(bough_counts *counts, double t, const double *value) {
         counts->broken++;
         return;
     }
-    for (int i = 0; i < n; i++)
-        add(&counts->channel[i], t, value[i], value, (size_t)n * sizeof *value);
+    for (int i = 0; i < n; i++) add(&counts->channel[i], t, value[i], value, (size_t)n * sizeof *value);
 }
 
 void bough_counts_finish(bough_counts *counts) {
-    for (int i = 0; i < counts->n_channel; i++)
-        bough_rainflow_finish(&counts->channel[i].rainflow);
+    for (int i = 0; i < counts->n_channel; i++) bough_rainflow_finish(&counts->channel[i].rainflow);
 }

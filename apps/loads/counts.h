@@ -11,8 +11,8 @@
 typedef struct bough_channel_counts {
     bough_sample_statistics statistics;
     bough_rainflow rainflow;
-    bough_levels levels;         // samples at each level
-    double *at_least, *at_most;  // (n_channel) all channels when it was least and largest
+    bough_levels levels;        // samples at each level
+    double *at_least, *at_most; // (n_channel) all channels when it was least and largest
 } bough_channel_counts;
 
 typedef struct bough_counts {

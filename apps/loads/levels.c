@@ -46,8 +46,7 @@ static void start(bough_levels *l, int exponent, int64_t bin) {
 
 // The least exponent from `exponent` on whose bins hold both.
 static int fitting(double least, double most, int exponent) {
-    while (bin_of(most, exponent) - bin_of(least, exponent) + 1 > BOUGH_LEVELS)
-        exponent++;
+    while (bin_of(most, exponent) - bin_of(least, exponent) + 1 > BOUGH_LEVELS) exponent++;
     return exponent;
 }
 
@@ -77,14 +76,12 @@ void bough_levels_follow(bough_levels *levels, double x) {
     bool first = !levels->started;
     int64_t to = reach(levels, x);
     int64_t from = first ? to : (int64_t)bin_of(levels->last, levels->exponent);
-    for (int64_t k = from + 1; k <= to; k++)
-        levels->crossed[slot(k)]++;
+    for (int64_t k = from + 1; k <= to; k++) levels->crossed[slot(k)]++;
     levels->inside[slot(to)]++;
     levels->last = x;
 }
 
-void bough_levels_merge(bough_levels *levels, const bough_levels *part, double inside,
-                        double crossed) {
+void bough_levels_merge(bough_levels *levels, const bough_levels *part, double inside, double crossed) {
     if (!part->started) return;
     double least = ldexp((double)part->low, part->exponent);
     double most = ldexp((double)part->high, part->exponent);

@@ -13,11 +13,11 @@ enum { BOUGH_LEVELS = 128 };
 // All zero: nothing is counted yet.
 typedef struct bough_levels {
     bool started;
-    int exponent;                  // of the width, 2^exponent in the quantity's unit
-    int64_t low, high;             // bins in use, at most BOUGH_LEVELS; bin k is [k, k + 1) widths
-    double inside[BOUGH_LEVELS];   // counts in bin k, at k modulo BOUGH_LEVELS
-    double crossed[BOUGH_LEVELS];  // upward crossings of the lower edge of bin k
-    double last;                   // the value before
+    int exponent;                 // of the width, 2^exponent in the quantity's unit
+    int64_t low, high;            // bins in use, at most BOUGH_LEVELS; bin k is [k, k + 1) widths
+    double inside[BOUGH_LEVELS];  // counts in bin k, at k modulo BOUGH_LEVELS
+    double crossed[BOUGH_LEVELS]; // upward crossings of the lower edge of bin k
+    double last;                  // the value before
 } bough_levels;
 
 // Adds `count` in the bin of x, and no crossing.
@@ -27,8 +27,7 @@ void bough_levels_add(bough_levels *levels, double x, double count);
 void bough_levels_follow(bough_levels *levels, double x);
 
 // Adds the counts of `part`: those in bins times `inside`, its crossings times `crossed`.
-void bough_levels_merge(bough_levels *levels, const bough_levels *part, double inside,
-                        double crossed);
+void bough_levels_merge(bough_levels *levels, const bough_levels *part, double inside, double crossed);
 
 double bough_levels_width(const bough_levels *levels);
 double bough_levels_inside(const bough_levels *levels, int64_t bin);

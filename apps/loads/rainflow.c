@@ -4,8 +4,7 @@
 #include <string.h>
 
 static void count(bough_rainflow *r, double range, double cycles) {
-    for (int i = 0; i < r->n_slope; i++)
-        r->damage[i] += cycles * pow(range, r->slope[i]);
+    for (int i = 0; i < r->n_slope; i++) r->damage[i] += cycles * pow(range, r->slope[i]);
     r->cycles += cycles;
     bough_levels_add(&r->ranges, range, cycles);
 }
@@ -30,8 +29,10 @@ static void count_inside(bough_rainflow *r) {
 static void turn(bough_rainflow *r, double point) {
     r->point[r->n++] = point;
     while (r->n >= 3 && range_before(r, 1) >= range_before(r, 2)) {
-        if (r->n == 3) count_start(r);
-        else count_inside(r);
+        if (r->n == 3)
+            count_start(r);
+        else
+            count_inside(r);
     }
     if (r->n < BOUGH_RAINFLOW_OPEN) return;
     count(r, range_before(r, 1), 1);
@@ -54,10 +55,7 @@ void bough_rainflow_add(bough_rainflow *r, double x) {
 
 void bough_rainflow_finish(bough_rainflow *r) {
     if (r->direction != 0) turn(r, r->last);
-    for (; r->n > 1; r->n--)
-        count(r, range_before(r, 1), 0.5);
+    for (; r->n > 1; r->n--) count(r, range_before(r, 1), 0.5);
 }
 
-double bough_equivalent_load(double sum, double slope, double cycles) {
-    return pow(sum / cycles, 1 / slope);
-}
+double bough_equivalent_load(double sum, double slope, double cycles) { return pow(sum / cycles, 1 / slope); }

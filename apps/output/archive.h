@@ -21,8 +21,7 @@ typedef struct bough_archive {
 } bough_archive;
 
 // Appends a file of `size` bytes. BOUGH_INVALID when it does not fit.
-bough_status bough_archive_add(bough_archive *archive, const char *name, const void *bytes,
-                               size_t size);
+bough_status bough_archive_add(bough_archive *archive, const char *name, const void *bytes, size_t size);
 
 // Appends a copy of the file at `path`. BOUGH_IO when it cannot be read.
 bough_status bough_archive_copy(bough_archive *archive, const char *name, const char *path);

@@ -55,16 +55,16 @@ static bough_status rewind_rows(packer *p) {
 // How many of the row's values there are.
 static int read_row(packer *p) {
     int k = 0;
-    while (k <= p->n && fscanf(p->in, "%lf", &p->row[k]) == 1)
-        k++;
+    while (k <= p->n && fscanf(p->in, "%lf", &p->row[k]) == 1) k++;
     return k;
 }
 
 static bough_status check_value(const packer *p, int k) {
     double x = p->row[1 + k];
     if (fabs(x) <= most_value) return bough_ok();
-    return bough_fail(BOUGH_INVALID, "channels.outb cannot hold %s = %g at %.9g s: leave out "
-                                     "simulation.output.binary",
+    return bough_fail(BOUGH_INVALID,
+                      "channels.outb cannot hold %s = %g at %.9g s: leave out "
+                      "simulation.output.binary",
                       p->def->channels->channel[k].name, x, p->row[0]);
 }
 
@@ -103,8 +103,7 @@ static void choose_scales(packer *p) {
 // -- writing --------------------------------------------------------------------------------------
 
 static void put(FILE *out, uint64_t bits, int bytes) {
-    for (int i = 0; i < bytes; i++)
-        fputc((int)(bits >> 8 * i & 0xff), out);
+    for (int i = 0; i < bytes; i++) fputc((int)(bits >> 8 * i & 0xff), out);
 }
 
 static void put_double(FILE *out, double x) {
@@ -147,18 +146,14 @@ static void put_head(const packer *p, FILE *out) {
     put(out, (uint64_t)p->rows, 4);
     put_double(out, p->start);
     put_double(out, p->def->interval);
-    for (int k = 0; k < p->n; k++)
-        put_float(out, p->scale[k]);
-    for (int k = 0; k < p->n; k++)
-        put_float(out, p->offset[k]);
+    for (int k = 0; k < p->n; k++) put_float(out, p->scale[k]);
+    for (int k = 0; k < p->n; k++) put_float(out, p->offset[k]);
     put(out, strlen(p->def->title), 4);
     fputs(p->def->title, out);
     put_word(out, "Time", width);
-    for (int k = 0; k < p->n; k++)
-        put_word(out, c->channel[k].name, width);
+    for (int k = 0; k < p->n; k++) put_word(out, c->channel[k].name, width);
     put_unit(out, "s", width);
-    for (int k = 0; k < p->n; k++)
-        put_unit(out, c->channel[k].unit, width);
+    for (int k = 0; k < p->n; k++) put_unit(out, c->channel[k].unit, width);
 }
 
 static bough_status put_rows(packer *p, FILE *out) {

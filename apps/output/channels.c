@@ -43,8 +43,7 @@ static int *slot_of(const bough_channels *list, const char *name) {
 
 static void make_room(bough_channels *list) {
     int capacity = list->capacity;
-    bough_channel *channel =
-        grown(list->arena, list->channel, list->count, &capacity, sizeof *channel);
+    bough_channel *channel = grown(list->arena, list->channel, list->count, &capacity, sizeof *channel);
     if (capacity == list->capacity) return;
     int *slot = bough_arena_take(list->arena, 2 * (size_t)capacity * sizeof *slot);
     list->channel = channel;
@@ -75,8 +74,7 @@ void bough_channels_add(bough_channels *list, const char *unit, const char *form
     }
     assert(is_word(unit, BOUGH_CHANNEL_UNIT));
     if (bough_channels_find(list, name) >= 0) {
-        list->status =
-            bough_fail(BOUGH_INVALID, "two output channels are named '%s': rename a body", name);
+        list->status = bough_fail(BOUGH_INVALID, "two output channels are named '%s': rename a body", name);
         return;
     }
     make_room(list);

@@ -25,8 +25,7 @@ bough_status bough_folder_make(const char *path) {
     char part[BOUGH_PATH_MAX];
     size_t length = strlen(path);
     if (length == 0) return bough_fail(BOUGH_INVALID, "the results folder has an empty name");
-    if (length >= sizeof part)
-        return bough_fail(BOUGH_INVALID, "the results folder's name is too long");
+    if (length >= sizeof part) return bough_fail(BOUGH_INVALID, "the results folder's name is too long");
     memcpy(part, path, length + 1);
     for (size_t i = 1; i < length; i++) {
         if (part[i] != '/') continue;

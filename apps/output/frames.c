@@ -8,7 +8,7 @@
 
 struct bough_frames {
     bough_frames_def def;
-    FILE *list;     // frames.pvd.partial; NULL once finished
+    FILE *list;                     // frames.pvd.partial; NULL once finished
     double *point, *force, *moment; // (n_point × 3)
     int n_point, n_frame;
     char list_path[BOUGH_PATH_MAX];
@@ -36,8 +36,7 @@ static bough_status create(bough_frames *f) {
     return status;
 }
 
-bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def,
-                               bough_frames **frames) {
+bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def, bough_frames **frames) {
     bough_frames *f = bough_arena_take(arena, sizeof *f);
     f->def = *def;
     for (int k = 0; k < def->n_line; k++) f->n_point += def->line[k].n_point;
@@ -56,10 +55,11 @@ bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def,
 }
 
 static void write_vectors(const bough_frames *f, const char *name, const double *x, FILE *file) {
-    fprintf(file, "<DataArray type=\"Float32\" Name=\"%s\" NumberOfComponents=\"3\" "
-                  "format=\"ascii\">\n", name);
-    for (int i = 0; i < f->n_point; i++, x += 3)
-        fprintf(file, "%.6g %.6g %.6g\n", x[0], x[1], x[2]);
+    fprintf(file,
+            "<DataArray type=\"Float32\" Name=\"%s\" NumberOfComponents=\"3\" "
+            "format=\"ascii\">\n",
+            name);
+    for (int i = 0; i < f->n_point; i++, x += 3) fprintf(file, "%.6g %.6g %.6g\n", x[0], x[1], x[2]);
     fprintf(file, "</DataArray>\n");
 }
 
@@ -103,8 +103,9 @@ bough_status bough_frames_sample(bough_frames *f, double t) {
     if (!bough_is_ok(&status)) return status;
     f->def.points(f->def.self, f->point);
     f->def.loads(f->def.self, t, f->force, f->moment);
-    fprintf(file, "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\">\n"
-                  "<PolyData>\n<Piece NumberOfPoints=\"%d\" NumberOfLines=\"%d\">\n",
+    fprintf(file,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\">\n"
+            "<PolyData>\n<Piece NumberOfPoints=\"%d\" NumberOfLines=\"%d\">\n",
             f->n_point, f->def.n_line);
     write_points(f, file);
     write_lines(f, file);
@@ -132,8 +133,7 @@ static bough_status remove_from(const char *folder, int n) {
     for (const struct dirent *entry; bough_is_ok(&status) && (entry = readdir(directory)) != NULL;) {
         int number = atoi(entry->d_name);
         snprintf(name, sizeof name, "%06d.vtp", number);
-        if (number >= n && strcmp(name, entry->d_name) == 0)
-            status = bough_folder_remove(path, name);
+        if (number >= n && strcmp(name, entry->d_name) == 0) status = bough_folder_remove(path, name);
     }
     closedir(directory);
     if (n == 0) rmdir(path); // where nothing else is in it

@@ -27,8 +27,7 @@ typedef struct bough_frames_def {
 } bough_frames_def;
 
 // Makes the folder for the frames and removes an older frames.pvd. All memory is taken here.
-bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def,
-                               bough_frames **frames);
+bough_status bough_frames_open(bough_arena *arena, const bough_frames_def *def, bough_frames **frames);
 
 // Writes the frame of time t [s].
 bough_status bough_frames_sample(bough_frames *frames, double t);

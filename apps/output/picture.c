@@ -42,8 +42,8 @@ int bough_picture_letters(const char *text) {
 // The palette of Okabe and Ito without yellow, which is too pale on white, and with grey in place of black,
 // which is none on dark pages.
 const char *bough_picture_colour(int k) {
-    static const char *const colours[BOUGH_PICTURE_COLOURS] = {
-        "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7A7A7A"};
+    static const char *const colours[BOUGH_PICTURE_COLOURS] = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                                               "#E69F00", "#56B4E9", "#7A7A7A"};
     return colours[k % BOUGH_PICTURE_COLOURS];
 }
 
@@ -135,14 +135,14 @@ void bough_panel_axes(const bough_panel *p, const char *title, const char *acros
         else
             draw_multiples(p, axes[i]);
     }
-    fprintf(p->svg, "<path class=\"axis\" d=\"M%.1f %.1fV%.1fH%.1f\"/>\n", p->x.from, p->y.to,
-            p->y.from, p->x.to);
+    fprintf(p->svg, "<path class=\"axis\" d=\"M%.1f %.1fV%.1fH%.1f\"/>\n", p->x.from, p->y.to, p->y.from,
+            p->x.to);
     fprintf(p->svg, "<text x=\"%.1f\" y=\"%.1f\">", p->x.from, p->y.to - 10);
     bough_picture_text(p->svg, title);
     fputs("</text>\n", p->svg);
     if (!across) return;
-    fprintf(p->svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">",
-            (p->x.from + p->x.to) / 2, p->y.from + 36);
+    fprintf(p->svg, "<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"middle\">", (p->x.from + p->x.to) / 2,
+            p->y.from + 36);
     bough_picture_text(p->svg, across);
     fputs("</text>\n", p->svg);
 }

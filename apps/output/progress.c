@@ -22,8 +22,7 @@ bough_progress bough_progress_start(double t, double t_end, bool quiet) {
 
 enum { TIMES = 24 }; // characters of the times after a label
 
-void bough_progress_text(const bough_progress *p, double t, double wall, int room, char *text,
-                         size_t size) {
+void bough_progress_text(const bough_progress *p, double t, double wall, int room, char *text, size_t size) {
     int name = room > TIMES ? room - TIMES : 0;
     double done = t - p->start;
     if (p->label) {
@@ -34,8 +33,8 @@ void bough_progress_text(const bough_progress *p, double t, double wall, int roo
     if (done <= 0 || wall <= 0 || length >= (int)size) return;
     double left = (p->end - t) * wall / done;
     long seconds = left < 1e8 ? (long)(left + 0.5) : 99999999L;
-    snprintf(text + length, size - (size_t)length, ", %.3g times real time, %ld:%02ld left",
-             done / wall, seconds / 60, seconds % 60);
+    snprintf(text + length, size - (size_t)length, ", %.3g times real time, %ld:%02ld left", done / wall,
+             seconds / 60, seconds % 60);
 }
 
 // Characters of the line: one less than the terminal has, whose last would break it.

@@ -33,8 +33,8 @@ static void release(void *self) {
 }
 
 static bough_status write_error(const bough_recorder *r) {
-    return bough_fail(BOUGH_IO, "cannot write '%.200s.partial' (%ld rows so far): %s", r->path,
-                      r->rows, errno ? strerror(errno) : "the device refused");
+    return bough_fail(BOUGH_IO, "cannot write '%.200s.partial' (%ld rows so far): %s", r->path, r->rows,
+                      errno ? strerror(errno) : "the device refused");
 }
 
 // Whether the byte is inside a UTF-8 character, after its first.
@@ -46,8 +46,7 @@ static bool write_outcome(bough_recorder *r, const char *text) {
     size_t length = strlen(text);
     if (length > OUTCOME - 1) {
         length = OUTCOME - 1;
-        while (length && is_continuation(text[length]))
-            length--;
+        while (length && is_continuation(text[length])) length--;
     }
     memset(line, ' ', OUTCOME);
     for (size_t i = 0; i < length; i++) {
@@ -66,8 +65,7 @@ static bough_status write_head(bough_recorder *r, const char *title) {
     write_outcome(r, "INCOMPLETE: the run has not ended");
     fprintf(f, "\n%d channels besides the time\n\n", c->count);
     fprintf(f, "%*s", COLUMN, "Time");
-    for (int i = 0; i < c->count; i++)
-        fprintf(f, "\t%*s", COLUMN - 1, c->channel[i].name);
+    for (int i = 0; i < c->count; i++) fprintf(f, "\t%*s", COLUMN - 1, c->channel[i].name);
     fprintf(f, "\n%*s", COLUMN, "(s)");
     for (int i = 0; i < c->count; i++) {
         char unit[BOUGH_CHANNEL_UNIT + 2];
@@ -170,9 +168,8 @@ bough_status bough_recorder_finish(bough_recorder *r, const bough_status *outcom
     }
     errno = 0;
     // An earlier error counts too: the library may have dropped its buffer with it.
-    bool written = !ferror(r->file) && fflush(r->file) == 0 &&
-                   fseek(r->file, r->outcome_at, SEEK_SET) == 0 && write_outcome(r, text) &&
-                   fflush(r->file) == 0;
+    bool written = !ferror(r->file) && fflush(r->file) == 0 && fseek(r->file, r->outcome_at, SEEK_SET) == 0 &&
+                   write_outcome(r, text) && fflush(r->file) == 0;
     if (!written) {
         bough_status status = write_error(r);
         release(r);

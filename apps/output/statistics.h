@@ -9,8 +9,8 @@
 typedef struct bough_sample_statistics {
     double n; // samples
     double mean;
-    double squares;         // Σ (x − mean)²
-    double least, most;     // of all samples
+    double squares;           // Σ (x − mean)²
+    double least, most;       // of all samples
     double least_at, most_at; // when each was reached first [s]
 } bough_sample_statistics;
 

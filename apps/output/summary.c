@@ -120,8 +120,7 @@ void bough_summary_end(bough_summary *s) {
 }
 
 bough_status bough_summary_close(bough_summary *s) {
-    while (s->depth > 0)
-        bough_summary_end(s);
+    while (s->depth > 0) bough_summary_end(s);
     fputc('\n', s->file);
     FILE *file = s->file;
     s->file = NULL;

@@ -42,13 +42,15 @@ struct bough_vertices {
     series time;
     series *position, *rotation, *force, *moment; // (n_body)
     double *x, *r, *f, *m;                        // (Σ n_point × 3), r (Σ n_point × 9)
-    hsize_t n;                   // samples so far
+    hsize_t n;                                    // samples so far
     char path[BOUGH_PATH_MAX], partial[BOUGH_PATH_MAX + 16];
 };
 
 static bough_status failed(const bough_vertices *v, const char *what) {
-    return bough_fail(BOUGH_IO, "cannot %s '%.200s' after %llu samples: HDF5 refuses, as on a full "
-                                "disk", what, v->partial, (unsigned long long)v->n);
+    return bough_fail(BOUGH_IO,
+                      "cannot %s '%.200s' after %llu samples: HDF5 refuses, as on a full "
+                      "disk",
+                      what, v->partial, (unsigned long long)v->n);
 }
 
 // Whatever is left open closes with the file; a file that cannot be written is no use.
@@ -77,14 +79,13 @@ static bool set_units(hid_t set, const char *units) {
 }
 
 // `row`: the shape behind the time, of `rank` − 1 numbers.
-static bool create_series(hid_t file, const char *name, int rank, const hsize_t *row,
-                          const char *units, series *s) {
+static bool create_series(hid_t file, const char *name, int rank, const hsize_t *row, const char *units,
+                          series *s) {
     hsize_t none[4] = {0}, most[4] = {H5S_UNLIMITED}, chunk[4] = {CHUNK};
     for (int k = 1; k < rank; k++) none[k] = most[k] = chunk[k] = row[k - 1];
     hid_t space = H5Screate_simple(rank, none, most), how = H5Pcreate(H5P_DATASET_CREATE);
     hid_t parents = H5Pcreate(H5P_LINK_CREATE);
-    bool good = H5Pset_chunk(how, rank, chunk) >= 0 &&
-                H5Pset_create_intermediate_group(parents, 1) >= 0;
+    bool good = H5Pset_chunk(how, rank, chunk) >= 0 && H5Pset_create_intermediate_group(parents, 1) >= 0;
     s->rank = rank;
     s->set = H5Dcreate2(file, name, H5T_IEEE_F64LE, space, parents, how, H5P_DEFAULT);
     H5Pclose(parents);
@@ -142,9 +143,16 @@ bough_status bough_vertices_open(bough_arena *arena, const bough_vertices_def *d
     for (int i = 0; i < def->n_body; i++) points += (size_t)def->body[i].n_point;
     series *each = bough_arena_take(arena, 4 * bodies * sizeof *each);
     double *x = bough_arena_doubles(arena, 18 * points);
-    *v = (bough_vertices){.def = *def, .file = -1, .position = each, .rotation = each + bodies,
-                          .force = each + 2 * bodies, .moment = each + 3 * bodies,
-                          .x = x, .r = x + 3 * points, .f = x + 12 * points, .m = x + 15 * points};
+    *v = (bough_vertices){.def = *def,
+                          .file = -1,
+                          .position = each,
+                          .rotation = each + bodies,
+                          .force = each + 2 * bodies,
+                          .moment = each + 3 * bodies,
+                          .x = x,
+                          .r = x + 3 * points,
+                          .f = x + 12 * points,
+                          .m = x + 15 * points};
     bough_status status = bough_folder_path(def->folder, "vertices.h5", v->path);
     if (!bough_is_ok(&status)) return status;
     snprintf(v->partial, sizeof v->partial, "%s.partial", v->path);
@@ -161,8 +169,7 @@ bough_status bough_vertices_sample(bough_vertices *v, double t) {
     for (int i = 0; i < v->def.n_body && good; first += v->def.body[i++].n_point) {
         good = append(&v->position[i], v->n, v->x + 3 * first) &&
                append(&v->rotation[i], v->n, v->r + 9 * first) &&
-               append(&v->force[i], v->n, v->f + 3 * first) &&
-               append(&v->moment[i], v->n, v->m + 3 * first);
+               append(&v->force[i], v->n, v->f + 3 * first) && append(&v->moment[i], v->n, v->m + 3 * first);
     }
     if (!good) return failed(v, "write");
     v->n++;

@@ -41,8 +41,7 @@ void bough_report_quote(FILE *in, FILE *out) {
 }
 
 // A file's text as a field of the data: never as a program, whoever has written it.
-static bough_status add_file(const char *folder, const char *name, const char *field, FILE *out,
-                             bool *any) {
+static bough_status add_file(const char *folder, const char *name, const char *field, FILE *out, bool *any) {
     FILE *file;
     bough_status status = bough_report_open(folder, name, &file);
     if (!bough_is_ok(&status) || !file) return status;
@@ -55,8 +54,7 @@ static bough_status add_file(const char *folder, const char *name, const char *f
 }
 
 static bough_status add_part(const char *folder, const char *field,
-                             bough_status (*part)(const char *, FILE *, bool *), FILE *out,
-                             bool *any) {
+                             bough_status (*part)(const char *, FILE *, bool *), FILE *out, bool *any) {
     bool found = false;
     fprintf(out, "data.%s = ", field);
     bough_status status = part(folder, out, &found);
@@ -67,8 +65,7 @@ static bough_status add_part(const char *folder, const char *field,
 
 // The rows of a study that leaves no table.txt.
 static bough_status add_rows(const char *folder, FILE *out, bool *any) {
-    static const char *const names[] = {"verify.csv", "blade-models.csv", "two-mass.csv",
-                                        "added-mass.csv"};
+    static const char *const names[] = {"verify.csv", "blade-models.csv", "two-mass.csv", "added-mass.csv"};
     bough_status status = bough_ok();
     for (size_t i = 0; i < sizeof names / sizeof *names && !*any && bough_is_ok(&status); i++) {
         status = add_file(folder, names[i], "rows", out, any);
@@ -90,8 +87,10 @@ static bough_status add_data(const char *folder, FILE *out) {
     }
     if (bough_is_ok(&status)) status = add_part(folder, "shape", bough_report_frames, out, &any);
     if (!bough_is_ok(&status) || any) return status;
-    return bough_fail(BOUGH_INVALID, "'%.200s' holds no results: a run leaves summary.json and "
-                      "channels.out, a study a table", folder);
+    return bough_fail(BOUGH_INVALID,
+                      "'%.200s' holds no results: a run leaves summary.json and "
+                      "channels.out, a study a table",
+                      folder);
 }
 
 // A folder's name as a text of the page's script.
@@ -117,8 +116,7 @@ static bough_status add_others(int n, const char *const *folder, FILE *out) {
         status = bough_report_channels(folder[k], out, &found);
         fputs("},\n", out);
         if (!bough_is_ok(&status) || found) continue;
-        return bough_fail(BOUGH_INVALID, "'%.200s' holds no run's results: no channels.out",
-                          folder[k]);
+        return bough_fail(BOUGH_INVALID, "'%.200s' holds no run's results: no channels.out", folder[k]);
     }
     fputs("];\n", out);
     return status;

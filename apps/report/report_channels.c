@@ -9,8 +9,7 @@
 enum { FREE_LINES = 6, MOST_ROWS = 4000, MOST_BYTES = 1 << 20 };
 
 static bough_status damaged(const char *folder, long line) {
-    return bough_fail(BOUGH_INVALID, "%.200s/channels.out:%ld: not a row of its columns", folder,
-                      line);
+    return bough_fail(BOUGH_INVALID, "%.200s/channels.out:%ld: not a row of its columns", folder, line);
 }
 
 // The words of a line as strings; their number. Brackets around a unit are left out.

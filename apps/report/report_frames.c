@@ -8,8 +8,7 @@
 #include <string.h>
 
 static bough_status damaged(const char *folder, const char *name) {
-    return bough_fail(BOUGH_INVALID, "%.200s/%.100s: not a frame that bough has written", folder,
-                      name);
+    return bough_fail(BOUGH_INVALID, "%.200s/%.100s: not a frame that bough has written", folder, name);
 }
 
 // Reads on to the line that begins so.

@@ -27,8 +27,7 @@ static void mix_node_file(uint64_t *hash, const bough_node *node) {
 
 void bough_mix_scene(uint64_t *hash, const bough_scene *scene) {
     bough_mix_file(hash, scene->file);
-    for (int i = 0; i < scene->n_body; i++)
-        mix_node_file(hash, scene->body[i].rod.structure.node);
+    for (int i = 0; i < scene->n_body; i++) mix_node_file(hash, scene->body[i].rod.structure.node);
     mix_node_file(hash, scene->aero.blade.node);
     mix_node_file(hash, scene->aero.polars.node);
     if (scene->aero.wind.def.file) bough_mix_file(hash, scene->aero.wind.def.file);

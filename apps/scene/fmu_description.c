@@ -49,13 +49,13 @@ static void add_variable(reader *r, const char **attributes) {
     const char *causality = attribute(attributes, "causality");
     const char *reference = attribute(attributes, "valueReference");
     d->variable = grown(r->arena, d->variable, d->n_variable, &r->room, sizeof *d->variable);
-    d->variable[d->n_variable++] = (bough_fmu_variable){
-        .name = kept(r, attributes, "name"),
-        .reference = reference ? (uint32_t)strtoul(reference, NULL, 10) : 0,
-        .causality = causality && strcmp(causality, "input") == 0    ? BOUGH_FMU_INPUT
-                     : causality && strcmp(causality, "output") == 0 ? BOUGH_FMU_OUTPUT
-                                                                     : BOUGH_FMU_LOCAL,
-        .unit = kept(r, attributes, "unit")};
+    d->variable[d->n_variable++] =
+        (bough_fmu_variable){.name = kept(r, attributes, "name"),
+                             .reference = reference ? (uint32_t)strtoul(reference, NULL, 10) : 0,
+                             .causality = causality && strcmp(causality, "input") == 0    ? BOUGH_FMU_INPUT
+                                          : causality && strcmp(causality, "output") == 0 ? BOUGH_FMU_OUTPUT
+                                                                                          : BOUGH_FMU_LOCAL,
+                             .unit = kept(r, attributes, "unit")};
 }
 
 static void add_base_unit(reader *r, const char **attributes) {
@@ -131,8 +131,7 @@ static bough_status check(const reader *r, const char *path) {
     return bough_ok();
 }
 
-bough_status bough_fmu_describe(bough_arena *arena, const char *folder,
-                                bough_fmu_description *description) {
+bough_status bough_fmu_describe(bough_arena *arena, const char *folder, bough_fmu_description *description) {
     char path[4096], why[BOUGH_INPUT_REASON];
     reader r = {.arena = arena, .d = description};
     *description = (bough_fmu_description){0};

@@ -37,8 +37,7 @@ typedef struct bough_fmu_description {
 
 // Reads FOLDER/modelDescription.xml of an unpacked FMU. BOUGH_INVALID: the file is missing or is no XML, the
 // version is not 3, there is no co-simulation.
-bough_status bough_fmu_describe(bough_arena *arena, const char *folder,
-                                bough_fmu_description *description);
+bough_status bough_fmu_describe(bough_arena *arena, const char *folder, bough_fmu_description *description);
 
 // The variable of that name; NULL: there is none.
 const bough_fmu_variable *bough_fmu_find(const bough_fmu_description *d, const char *name);

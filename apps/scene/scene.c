@@ -37,16 +37,15 @@ static bool is_study(const char *path, const bough_node *root, bough_errors *err
     return true;
 }
 
-bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets,
-                              int n_set, bough_errors *errors, bough_scene **scene) {
+bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets, int n_set,
+                              bough_errors *errors, bough_scene **scene) {
     *scene = NULL;
     bough_scene *s = bough_arena_take(arena, sizeof *s);
     bough_node *root = bough_text_read(arena, path, errors);
     if (root == NULL) return finish(path, errors);
     if (is_study(path, root, errors)) return finish(path, errors);
     root = replace(arena, root, sets, n_set, errors);
-    bough_schema_reader reader = {
-        .arena = arena, .errors = errors, .directory = directory_of(arena, path)};
+    bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = directory_of(arena, path)};
     s->file = bough_arena_string(arena, path);
     bough_schema_read(&reader, &bough_scene_schema, root, s);
     if (s->node != NULL && errors->n == 0) bough_scene_repeat(&reader, s);
@@ -56,8 +55,7 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     return status;
 }
 
-const bough_scene_solver *bough_scene_micro(const bough_scene *scene,
-                                            const bough_scene_body *body) {
+const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const bough_scene_body *body) {
     return body->micro.node != NULL ? &body->micro : &scene->simulation.micro;
 }
 

@@ -27,7 +27,7 @@
 
 typedef struct bough_scene_coupling {
     const bough_node *node;
-    int scheme; // place in the table of schemes: bough_scheme_name
+    int scheme;                   // place in the table of schemes: bough_scheme_name
     bough_scheme_options options; // name and rtol left out; tolerance 0: three times micro.rtol
 } bough_scene_coupling;
 
@@ -41,12 +41,12 @@ typedef struct bough_scene_solver {
 
 typedef struct bough_scene_output {
     const bough_node *node;
-    double interval; // [s], a multiple of the macro step
-    double from;     // of the statistics: what is before does not count [s]
-    double frames;   // between stored shapes [s]; 0: none
-    double vertices; // between stored vertices [s]; 0: none
-    bool binary;     // channels.outb beside channels.out
-    int n_channel;   // 0: all
+    double interval;       // [s], a multiple of the macro step
+    double from;           // of the statistics: what is before does not count [s]
+    double frames;         // between stored shapes [s]; 0: none
+    double vertices;       // between stored vertices [s]; 0: none
+    bool binary;           // channels.outb beside channels.out
+    int n_channel;         // 0: all
     const char **channels; // (n_channel) patterns of those that are recorded
 } bough_scene_output;
 
@@ -67,7 +67,7 @@ typedef struct bough_scene_simulation {
     double duration;   // [s], a multiple of the macro step
     double macro_step; // [s]
     bough_scene_step_control step_control;
-    int initial;       // bough_scene_initial: how the rods and joints start
+    int initial; // bough_scene_initial: how the rods and joints start
     bough_scene_coupling coupling;
     bough_scene_solver master, micro;
     double error_bound; // of a channel's error relative to its range; 0: none
@@ -101,21 +101,21 @@ typedef struct bough_scene_joint {
     const char *parent_name; // as written
     int parent;              // index of a body, or BOUGH_GROUND
     int n_placement;
-    bough_scene_step *placement; // (n_placement)
-    int axis;                    // bough_scene_axis of all but fixed, spherical and free
-    int second_axis;             // bough_scene_axis of universal, not the first
-    double position;             // initial angle [rad] of revolute, displacement [m] of prismatic
-                                 // and cylindrical
-    double speed;                // initial, [rad/s] of revolute, [m/s] of prismatic, cylindrical
-    double angle, angular_speed; // initial, of cylindrical and planar [rad, rad/s]
+    bough_scene_step *placement;         // (n_placement)
+    int axis;                            // bough_scene_axis of all but fixed, spherical and free
+    int second_axis;                     // bough_scene_axis of universal, not the first
+    double position;                     // initial angle [rad] of revolute, displacement [m] of prismatic
+                                         // and cylindrical
+    double speed;                        // initial, [rad/s] of revolute, [m/s] of prismatic, cylindrical
+    double angle, angular_speed;         // initial, of cylindrical and planar [rad, rad/s]
     double angles[2], angular_speeds[2]; // initial, of universal [rad, rad/s]
     double positions[2], speeds[2];      // initial, of planar, along the two axes after the normal
                                          // in the order x, y, z, x, in the joint's frame [m, m/s]
-    double velocity[3];          // initial [m/s] of free, in the joint's frame
-    double angular_velocity[3];  // initial [rad/s] of spherical and free, in the joint's frame
-    bough_joint_spring spring; // of revolute and prismatic
-    bough_scene_motion motion;        // of the first coordinate
-    bough_scene_motion second_motion; // of the second of cylindrical (the angle) and universal
+    double velocity[3];                  // initial [m/s] of free, in the joint's frame
+    double angular_velocity[3];          // initial [rad/s] of spherical and free, in the joint's frame
+    bough_joint_spring spring;           // of revolute and prismatic
+    bough_scene_motion motion;           // of the first coordinate
+    bough_scene_motion second_motion;    // of the second of cylindrical (the angle) and universal
 } bough_scene_joint;
 
 // A section of a rod. Between stations everything is linear in span.
@@ -148,10 +148,10 @@ typedef struct bough_scene_rod {
 // Linear reductions of a body's rod.
 typedef struct bough_scene_modal {
     const bough_node *node; // NULL: all defaults
-    int modes;       // of each piece
-    bool statics;    // static answers to accelerations among the shapes
-    bool stiffening; // by axial forces
-    int pieces;      // of a segmented-modal body
+    int modes;              // of each piece
+    bool statics;           // static answers to accelerations among the shapes
+    bool stiffening;        // by axial forces
+    int pieces;             // of a segmented-modal body
 } bough_scene_modal;
 
 typedef enum bough_scene_fidelity {
@@ -172,8 +172,8 @@ typedef struct bough_scene_fmu {
     const char *folder; // its path once it is checked
     int n_motion, n_wrench;
     const char **motion, **wrench; // names of its variables, "none" where it has none; 0: the usual ones
-    int hold;  // bough_scene_fmu_hold
-    int steps; // communication steps per macro step
+    int hold;                      // bough_scene_fmu_hold
+    int steps;                     // communication steps per macro step
     bough_fmu_description description;
     const bough_fmu_variable *input[BOUGH_SCENE_MOTION], *output[BOUGH_SCENE_WRENCH]; // NULL: none
 } bough_scene_fmu;
@@ -219,24 +219,24 @@ typedef enum bough_scene_load_place {
 // between, a jump where they are equal; {0, 0}: always 1.
 typedef struct bough_scene_load {
     const bough_node *node;
-    const char *joint_name; // NULL: the load acts on a body
-    int joint;              // index of the body that the joint carries
-    double amount;          // torque [N m] of a revolute joint, force [N] of a prismatic one
-    int n_time;             // rows of a table in place of the amount, 0: none
-    double *times, *values; // (n_time) [s], [N m] or [N], on a body factors; linear between, held
-                            // before and after
-    const char *body_name;  // NULL: the load acts on a joint
-    int body;               // index of a body
-    int place;              // bough_scene_load_place
-    int vertex;             // AT_VERTEX: 0 is the root
-    double span[2];         // AT_SPAN: the first; ALONG: from, to [m]
-    double force[3];        // [N]; ALONG: [N/m]
-    double moment[3];       // [N m]; ALONG: [N m/m]
+    const char *joint_name;             // NULL: the load acts on a body
+    int joint;                          // index of the body that the joint carries
+    double amount;                      // torque [N m] of a revolute joint, force [N] of a prismatic one
+    int n_time;                         // rows of a table in place of the amount, 0: none
+    double *times, *values;             // (n_time) [s], [N m] or [N], on a body factors; linear between, held
+                                        // before and after
+    const char *body_name;              // NULL: the load acts on a joint
+    int body;                           // index of a body
+    int place;                          // bough_scene_load_place
+    int vertex;                         // AT_VERTEX: 0 is the root
+    double span[2];                     // AT_SPAN: the first; ALONG: from, to [m]
+    double force[3];                    // [N]; ALONG: [N/m]
+    double moment[3];                   // [N m]; ALONG: [N m/m]
     double end_force[3], end_moment[3]; // ALONG: at span[1], linear between; those above when not given
-    int frame;              // bough_scene_load_frame
-    double ramp[2];         // [s]
-    const char *input;      // NULL: none
-    double point[3];        // on a rigid body: in its frame [m]
+    int frame;                          // bough_scene_load_frame
+    double ramp[2];                     // [s]
+    const char *input;                  // NULL: none
+    double point[3];                    // on a rigid body: in its frame [m]
 } bough_scene_load;
 
 // Springs and dampers along and about the axes of one body or the ground at a point of it, against
@@ -245,8 +245,8 @@ typedef struct bough_scene_bushing {
     const bough_node *node;
     const char *name;
     const char *body_name[2];
-    int body[2];     // indices, or BOUGH_GROUND
-    double point[3]; // in the first one's frame [m]
+    int body[2];           // indices, or BOUGH_GROUND
+    double point[3];       // in the first one's frame [m]
     bough_bushing_def def; // but for the markers
 } bough_scene_bushing;
 
@@ -272,9 +272,9 @@ typedef struct bough_scene_spring {
     const bough_node *node;
     const char *name;
     const char *body_name[2];
-    int body[2];                       // indices, or BOUGH_GROUND
-    double point[2][3];                // in the body's frame [m]
-    bough_spring_def def;              // but for the markers
+    int body[2];          // indices, or BOUGH_GROUND
+    double point[2][3];   // in the body's frame [m]
+    bough_spring_def def; // but for the markers
 } bough_scene_spring;
 
 typedef struct bough_scene_placement {
@@ -361,8 +361,8 @@ typedef struct bough_scene_wind {
     int kind;                     // bough_scene_wind_kind
     bough_scene_wind_table table; // in place of the speed
     const char *input;            // in place of the speed; NULL: none
-    // But for the kind and the table. The veer is over 100 m of height [rad]; once checked `file` is its path; of
-    // kind iec 0 is chosen ("auto"), and speed, exponent and reference height are those of the def.
+    // But for the kind and the table. The veer is over 100 m of height [rad]; once checked `file` is its
+    // path; of kind iec 0 is chosen ("auto"), and speed, exponent and reference height are those of the def.
     bough_wind_def def;
 } bough_scene_wind;
 
@@ -376,11 +376,11 @@ typedef struct bough_scene_induction {
 
 // Vertical along ground z from the origin.
 typedef struct bough_scene_tower {
-    const bough_node *node;   // NULL: no tower influence
-    bough_tower_def def;      // its drag (def.n) once checked
-    int n_diameter, n_drag;   // def.n, 1 or def.n
-    const char *body_name;    // NULL: no drag on the tower
-    int body;                 // index of a body with a rod
+    const bough_node *node; // NULL: no tower influence
+    bough_tower_def def;    // its drag (def.n) once checked
+    int n_diameter, n_drag; // def.n, 1 or def.n
+    const char *body_name;  // NULL: no drag on the tower
+    int body;               // index of a body with a rod
 } bough_scene_tower;
 
 typedef struct bough_scene_aero {
@@ -394,12 +394,12 @@ typedef struct bough_scene_aero {
     bough_scene_polars polars;
     bough_scene_induction induction;
     bough_scene_tower tower;
-    double hub_radius; // [m]
+    double hub_radius;    // [m]
     double hub_drag_area; // drag coefficient times area [m²]
-    int dynamic_stall; // bough_stall_kind
-    int interpolation; // bough_scene_interpolation
-    int n_node;        // blade elements whose channels are recorded, of every blade
-    double *nodes;     // (n_node) numbers from 1
+    int dynamic_stall;    // bough_stall_kind
+    int interpolation;    // bough_scene_interpolation
+    int n_node;           // blade elements whose channels are recorded, of every blade
+    double *nodes;        // (n_node) numbers from 1
     bool pitching_moment;
 } bough_scene_aero;
 
@@ -422,11 +422,11 @@ typedef enum bough_scene_event_kind {
 // An event of the turbine at a time, or later when a channel passes a threshold.
 typedef struct bough_scene_event {
     const bough_node *node;
-    int kind;              // bough_scene_event_kind
-    double at;             // not before [s]
-    const char *channel;   // NULL: at that time
-    double above, below;   // threshold in the channel's unit, one of the two
-    bool falls;            // `threshold` is that of `below`
+    int kind;            // bough_scene_event_kind
+    double at;           // not before [s]
+    const char *channel; // NULL: at that time
+    double above, below; // threshold in the channel's unit, one of the two
+    bool falls;          // `threshold` is that of `below`
     double threshold;
     int blade;             // from 1, of the faults of one blade; else 0
     const char *body_name; // YAW_RUNAWAY: on the yaw joint
@@ -437,18 +437,18 @@ typedef struct bough_scene_event {
 
 // Of generator torque, and of pitch where the blades hang on joints with a motion.
 typedef struct bough_scene_control {
-    const bough_node *node; // NULL: no controller
-    int kind;               // bough_scene_controller
-    double rate;            // samples per second [Hz]
-    double gear_ratio;      // generator speed over rotor speed
-    double efficiency;      // electrical over mechanical power
-    bool pitch;             // of the blades too
-    bool individual;        // BLADED: each blade follows its own demand
+    const bough_node *node;      // NULL: no controller
+    int kind;                    // bough_scene_controller
+    double rate;                 // samples per second [Hz]
+    double gear_ratio;           // generator speed over rotor speed
+    double efficiency;           // electrical over mechanical power
+    bool pitch;                  // of the blades too
+    bool individual;             // BLADED: each blade follows its own demand
     const char *library, *input; // BLADED: paths; no input: ""
     bool copied;                 // BLADED: the library is loaded as a copy, for a second model; not in a file
     int n_event;
     bough_scene_event *event; // (n_event)
-    bough_controller_def law;    // BLADED: only the pitch rate is used
+    bough_controller_def law; // BLADED: only the pitch rate is used
 } bough_scene_control;
 
 typedef enum bough_scene_modes_of {
@@ -504,8 +504,8 @@ typedef struct bough_scene {
     double gravity[3]; // [m/s²] ground axes
     bough_scene_simulation simulation;
     int n_body;
-    bough_scene_body *body; // (n_body) in the file's order; a parent may come after its child
-    int *order;             // (n_body) indices of bodies, parents before children
+    bough_scene_body *body;           // (n_body) in the file's order; a parent may come after its child
+    int *order;                       // (n_body) indices of bodies, parents before children
     const bough_scene_body **by_name; // (n_body) by name, then by place
     int n_load;
     bough_scene_load *load; // (n_load)
@@ -520,7 +520,7 @@ typedef struct bough_scene {
     int n_sensor;
     bough_scene_sensor *sensor; // (n_sensor)
     bough_scene_turbine turbine;
-    bough_scene_aero aero; // needs the turbine
+    bough_scene_aero aero;       // needs the turbine
     bough_scene_control control; // likewise
     bough_scene_modes modes;
     int n_input;
@@ -529,8 +529,8 @@ typedef struct bough_scene {
 
 // Reads and checks the scene with the replacements `sets` ("bodies[2].pitch=5 deg"). Every error
 // found is added to `errors`; then the status is BOUGH_INVALID and *scene is NULL.
-bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets,
-                              int n_set, bough_errors *errors, bough_scene **scene);
+bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets, int n_set,
+                              bough_errors *errors, bough_scene **scene);
 
 // Writes a warning for each value that is valid but probably an error: an inertia that no mass distribution
 // has.

@@ -131,5 +131,5 @@ static void check_control(bough_schema_reader *r, void *item) {
     c->input = c->input && c->input[0] ? bough_schema_path(r, c->input) : "";
 }
 
-const bough_schema bough_scene_control_schema = {
-    SCHEMA("the control", bough_scene_control, control_keys), .check = check_control};
+const bough_schema bough_scene_control_schema = {SCHEMA("the control", bough_scene_control, control_keys),
+                                                 .check = check_control};

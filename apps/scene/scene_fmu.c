@@ -19,9 +19,8 @@ static void unknown(bough_schema_reader *r, const bough_fmu_description *d, cons
 }
 
 // The variable of that name; NULL for "none" and after an error.
-static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_fmu *fmu,
-                                      const char *key, const char *name,
-                                      bough_fmu_causality causality) {
+static const bough_fmu_variable *find(bough_schema_reader *r, const bough_scene_fmu *fmu, const char *key,
+                                      const char *name, bough_fmu_causality causality) {
     const bough_fmu_description *d = &fmu->description;
     const bough_node *node = bough_link_value(fmu->node, key);
     if (!name || strcmp(name, "none") == 0) return NULL;
@@ -46,8 +45,7 @@ static bool is_count(bough_schema_reader *r, const bough_scene_fmu *fmu, const c
                      int expected) {
     if (n == 0 || n == expected) return true;
     bough_schema_error(r, bough_link_value(fmu->node, key), key,
-                       "expected %d names, 'none' for those that the FMU does not have, got %d",
-                       expected, n);
+                       "expected %d names, 'none' for those that the FMU does not have, got %d", expected, n);
     return false;
 }
 
@@ -61,8 +59,10 @@ void bough_scene_check_fmu(bough_schema_reader *r, void *item) {
     const bough_node *folder = bough_link_value(fmu->node, "folder");
     if (!fmu->node || !fmu->folder) return;
     if (is_archive(fmu->folder)) {
-        bough_schema_error(r, folder, "folder", "expected the folder of the unpacked FMU: 'unzip %.80s "
-                           "-d FOLDER'", fmu->folder);
+        bough_schema_error(r, folder, "folder",
+                           "expected the folder of the unpacked FMU: 'unzip %.80s "
+                           "-d FOLDER'",
+                           fmu->folder);
         return;
     }
     fmu->folder = bough_schema_path(r, fmu->folder);
@@ -97,19 +97,19 @@ static void check_scheme(bough_schema_reader *r, const bough_scene *s, const bou
     if (!repeats) {
         bough_schema_error(r, place, "coupling.scheme",
                            "'%s' is an FMU, whose equations are not known: expected gauss-seidel, "
-                           "extrapolated%s, got %s", b->name,
-                           b->fmu.description.restores ? " or iterated" : "", scheme);
+                           "extrapolated%s, got %s",
+                           b->name, b->fmu.description.restores ? " or iterated" : "", scheme);
     } else if (!b->fmu.description.restores) {
         bough_schema_error(r, place, "coupling.scheme",
                            "iterated repeats steps, and the FMU '%s' cannot restore its state: expected "
-                           "gauss-seidel or extrapolated", b->name);
+                           "gauss-seidel or extrapolated",
+                           b->name);
     } else if (coupling->options.accelerator == BOUGH_ACCELERATE_NEWTON) {
         bough_schema_error(r, bough_link_value(coupling->node, "accelerator"), "coupling.accelerator",
                            "interface-newton needs tangents, which the FMU '%s' does not give", b->name);
     } else if (coupling->options.exchange != BOUGH_EXCHANGE_END_VALUES) {
         bough_schema_error(r, bough_link_value(coupling->node, "exchange"), "coupling.exchange",
-                           "the FMU '%s' stops at communication points only: expected end-values",
-                           b->name);
+                           "the FMU '%s' stops at communication points only: expected end-values", b->name);
     }
 }
 
@@ -126,9 +126,8 @@ static void check_simulation(bough_schema_reader *r, const bough_scene *s, const
                            "not with an FMU ('%s')", b->name);
     }
     if (x->step_control.tolerance > 0) {
-        bough_schema_error(r, bough_link_value(x->step_control.node, "tolerance"),
-                           "step_control.tolerance", "not with an FMU ('%s'): expected fixed steps",
-                           b->name);
+        bough_schema_error(r, bough_link_value(x->step_control.node, "tolerance"), "step_control.tolerance",
+                           "not with an FMU ('%s'): expected fixed steps", b->name);
     }
     if (x->initial > BOUGH_SCENE_UNDEFORMED) {
         bough_schema_error(r, bough_node_find(x->node, "initial"), "initial",

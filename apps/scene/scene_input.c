@@ -39,8 +39,7 @@ static void add_joint_load(bough_arena *arena, bough_scene *s, int k) {
 }
 
 // Component c of a load on a body: a load of 1 that the input multiplies.
-static void add_component(bough_arena *arena, bough_scene *s, const bough_scene_load *from, int k,
-                          int c) {
+static void add_component(bough_arena *arena, bough_scene *s, const bough_scene_load *from, int k, int c) {
     static const char *const ends[] = {"Fx", "Fy", "Fz", "Mx", "My", "Mz"};
     bool along = from->place == BOUGH_SCENE_ALONG, force = c < 3;
     double value = force ? from->force[c] : from->moment[c - 3];
@@ -53,8 +52,8 @@ static void add_component(bough_arena *arena, bough_scene *s, const bough_scene_
     memcpy(to->end_moment, to->moment, sizeof to->moment);
     to->input = joined(arena, from->input, ends[c]);
     bough_scene_input *input = add(s, from->node, to->input, BOUGH_INPUT_LOAD);
-    input->dimension = force ? (along ? BOUGH_LINE_FORCE : BOUGH_FORCE)
-                             : (along ? BOUGH_LINE_MOMENT : BOUGH_MOMENT);
+    input->dimension =
+        force ? (along ? BOUGH_LINE_FORCE : BOUGH_FORCE) : (along ? BOUGH_LINE_MOMENT : BOUGH_MOMENT);
     input->initial = value;
     input->index = k;
     give_table(arena, to, value);
@@ -97,8 +96,7 @@ static void add_control(bough_arena *arena, bough_scene *s) {
     for (int b = 0; control->pitch && b < s->turbine.n_blade; b++) {
         char end[12];
         snprintf(end, sizeof end, "%d", b + 1);
-        bough_scene_input *input =
-            add(s, control->node, joined(arena, "BlPitchCom", end), BOUGH_INPUT_PITCH);
+        bough_scene_input *input = add(s, control->node, joined(arena, "BlPitchCom", end), BOUGH_INPUT_PITCH);
         input->dimension = BOUGH_ANGLE;
         input->index = b;
         if (s->turbine.blade[b] >= 0) input->initial = s->body[s->turbine.blade[b]].pitch;
@@ -122,8 +120,7 @@ static void check_names(bough_schema_reader *r, const bough_scene *s) {
         for (int k = 0; k < i && s->input[k].name && s->input[i].name; k++) {
             if (strcmp(s->input[k].name, s->input[i].name) != 0) continue;
             bough_link_at(r, "inputs");
-            bough_schema_error(r, s->input[i].node, "", "two inputs are named '%.80s'",
-                               s->input[i].name);
+            bough_schema_error(r, s->input[i].node, "", "two inputs are named '%.80s'", s->input[i].name);
         }
     }
 }
@@ -133,8 +130,7 @@ void bough_link_inputs(bough_schema_reader *r, bough_scene *s) {
     for (int k = 0; k < s->n_load; k++) loads += s->load[k].input != NULL;
     size_t most = 6 * loads + (size_t)s->n_body + 5;
     s->input = bough_arena_take(r->arena, most * sizeof *s->input);
-    bough_scene_load *load =
-        bough_arena_take(r->arena, ((size_t)s->n_load + 5 * loads + 1) * sizeof *load);
+    bough_scene_load *load = bough_arena_take(r->arena, ((size_t)s->n_load + 5 * loads + 1) * sizeof *load);
     if (s->input == NULL || load == NULL) return;
     if (s->n_load > 0) memcpy(load, s->load, (size_t)s->n_load * sizeof *load);
     s->load = load;

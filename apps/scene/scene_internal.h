@@ -79,12 +79,11 @@ void bough_scene_link(bough_schema_reader *r, bough_scene *scene);
 enum { BOUGH_UNRESOLVED = -2 }; // the index of a name that no body has
 
 // Sets the path of the next errors.
-void bough_link_at(bough_schema_reader *r, const char *format, ...)
-    __attribute__((format(printf, 2, 3)));
+void bough_link_at(bough_schema_reader *r, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 // The index of a named body; BOUGH_UNRESOLVED after an error at the key of `node`.
-int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node,
-                    const char *key, const char *name);
+int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node, const char *key,
+                    const char *name);
 
 // The value of a key, where an error about it stands; the mapping where it is left out.
 const bough_node *bough_link_value(const bough_node *node, const char *key);
@@ -98,7 +97,6 @@ void bough_link_inputs(bough_schema_reader *r, bough_scene *s);
 
 // Replaces or adds the value that "path.to[2].key=value" names; the new root, or NULL after an
 // error. Nodes that an alias shares are copied before they change.
-bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *set,
-                            bough_errors *errors);
+bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *set, bough_errors *errors);
 
 #endif

@@ -41,8 +41,7 @@ static int compare_names(const void *a, const void *b) {
 
 static void sort_names(bough_schema_reader *r, bough_scene *s) {
     s->by_name = bough_arena_take(r->arena, (size_t)s->n_body * sizeof *s->by_name);
-    for (int i = 0; i < s->n_body; i++)
-        s->by_name[i] = &s->body[i];
+    for (int i = 0; i < s->n_body; i++) s->by_name[i] = &s->body[i];
     qsort(s->by_name, (size_t)s->n_body, sizeof *s->by_name, compare_names);
 }
 
@@ -51,11 +50,12 @@ static int find_body(const bough_scene *s, const char *name) {
     int low = 0, high = s->n_body;
     while (low < high) {
         int middle = (low + high) / 2;
-        if (strcmp(name_of(s->by_name[middle]), name) < 0) low = middle + 1;
-        else high = middle;
+        if (strcmp(name_of(s->by_name[middle]), name) < 0)
+            low = middle + 1;
+        else
+            high = middle;
     }
-    bool found = low < s->n_body && s->by_name[low]->name != NULL &&
-                 strcmp(s->by_name[low]->name, name) == 0;
+    bool found = low < s->n_body && s->by_name[low]->name != NULL && strcmp(s->by_name[low]->name, name) == 0;
     return found ? (int)(s->by_name[low] - s->body) : BOUGH_UNRESOLVED;
 }
 
@@ -64,19 +64,17 @@ static bough_suggestion suggest_body(bough_schema_reader *r, const bough_scene *
                                      const char *name) {
     if (r->errors->dropped > 0) return (bough_suggestion){""}; // a hostile file: spelling costs time
     const char **names = bough_arena_take(r->arena, ((size_t)s->n_body + 1) * sizeof *names);
-    for (int i = 0; i < s->n_body; i++)
-        names[i] = s->body[i].name;
+    for (int i = 0; i < s->n_body; i++) names[i] = s->body[i].name;
     names[s->n_body] = "ground";
     return bough_suggest(name, names, s->n_body + (strcmp(key, "parent") == 0));
 }
 
-int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node,
-                    const char *key, const char *name) {
+int bough_link_body(bough_schema_reader *r, const bough_scene *s, const bough_node *node, const char *key,
+                    const char *name) {
     if (name == NULL) return BOUGH_UNRESOLVED;
     int index = find_body(s, name);
     if (index != BOUGH_UNRESOLVED) return index;
-    bough_schema_error(r, node, key, "there is no body '%.48s'%s", name,
-                       suggest_body(r, s, key, name).text);
+    bough_schema_error(r, node, key, "there is no body '%.48s'%s", name, suggest_body(r, s, key, name).text);
     return BOUGH_UNRESOLVED;
 }
 
@@ -89,8 +87,7 @@ const bough_node *bough_link_value(const bough_node *node, const char *key) {
 
 // Names go into channels and file names.
 static void check_name(bough_schema_reader *r, const bough_scene *s, int i) {
-    static const char allowed[] =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
+    static const char allowed[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-";
     const bough_scene_body *b = &s->body[i];
     if (b->name == NULL) return;
     const bough_node *node = bough_link_value(b->node, "name");
@@ -122,10 +119,11 @@ static void check_rod_use(bough_schema_reader *r, const bough_scene_body *b) {
     if (b->fidelity == BOUGH_SCENE_MODAL && pieces != NULL) {
         bough_schema_error(r, pieces, "modal.pieces", "only used with 'fidelity: segmented-modal'");
     }
-    if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL && has_rod &&
-        b->modal.pieces > b->rod.n_segment) {
-        bough_schema_error(r, b->node, "modal.pieces", "%d pieces of %d segments: give the rod more"
-                           " segments", b->modal.pieces, b->rod.n_segment);
+    if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL && has_rod && b->modal.pieces > b->rod.n_segment) {
+        bough_schema_error(r, b->node, "modal.pieces",
+                           "%d pieces of %d segments: give the rod more"
+                           " segments",
+                           b->modal.pieces, b->rod.n_segment);
     }
     if (has_rod && b->fidelity == BOUGH_SCENE_RIGID) {
         bough_scene_refuse(r, b->node, "mass|centre_of_mass|inertia", "follows from the body's rod");
@@ -145,16 +143,15 @@ static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
     joint->parent = bough_link_body(r, s, node, "parent", joint->parent_name);
     if (joint->parent >= 0 && s->body[joint->parent].fidelity > BOUGH_SCENE_ROD) {
         bool fmu = s->body[joint->parent].fidelity == BOUGH_SCENE_FMU;
-        bough_schema_error(r, node, "parent", "'%s' is %s, which cannot carry bodies; %s",
-                           joint->parent_name, fmu ? "an FMU" : "a modal body",
+        bough_schema_error(r, node, "parent", "'%s' is %s, which cannot carry bodies; %s", joint->parent_name,
+                           fmu ? "an FMU" : "a modal body",
                            fmu ? "let the body that carries it carry them" : "make it a rod");
     }
 }
 
 // The body at which a walk towards the ground comes back to itself, from any body above a loop.
 static int body_in_loop(const bough_scene *s, int i) {
-    for (int k = 0; k < s->n_body; k++)
-        i = s->body[i].joint.parent;
+    for (int k = 0; k < s->n_body; k++) i = s->body[i].joint.parent;
     int lowest = i;
     for (int k = s->body[i].joint.parent; k != i; k = s->body[k].joint.parent) {
         if (k < lowest) lowest = k;
@@ -198,8 +195,7 @@ static bool order_bodies(bough_schema_reader *r, bough_scene *s) {
         bool loop = k >= 0 && !placed[k];
         if (loop) report_loop(r, s, i);
         if (loop) break;
-        for (k = i; k >= 0 && !placed[k]; k = s->body[k].joint.parent)
-            placed[k] = true; // looked at
+        for (k = i; k >= 0 && !placed[k]; k = s->body[k].joint.parent) placed[k] = true; // looked at
     }
     return n == s->n_body;
 }
@@ -280,7 +276,8 @@ static void link_ends(bough_schema_reader *r, const bough_scene *s, const bough_
         if (body[end] < 0 || s->body[body[end]].fidelity <= BOUGH_SCENE_RIGID) continue;
         bough_schema_error(r, node, keys[end],
                            "'%s' is no rigid body; it must be one, which may hang on a rod and "
-                           "needs no mass", name[end]);
+                           "needs no mass",
+                           name[end]);
     }
     if (name[0] != NULL && name[1] != NULL && strcmp(name[0], name[1]) == 0) {
         bough_schema_error(r, bough_link_value(item, "to"), "to", "must be another body");
@@ -311,9 +308,11 @@ static void link_marker(bough_schema_reader *r, const bough_scene *s, void *item
     const bough_node *node = bough_link_value(marker->node, "body");
     marker->body = bough_link_body(r, s, node, "body", marker->body_name);
     if (marker->body < 0 || s->body[marker->body].fidelity <= BOUGH_SCENE_RIGID) return;
-    bough_schema_error(r, node, "body", s->body[marker->body].fidelity == BOUGH_SCENE_FMU
+    bough_schema_error(r, node, "body",
+                       s->body[marker->body].fidelity == BOUGH_SCENE_FMU
                            ? "'%s' is an FMU: name the body that carries it"
-                           : "'%s' is a rod, whose tip is recorded", marker->body_name);
+                           : "'%s' is a rod, whose tip is recorded",
+                       marker->body_name);
 }
 
 static bool is_sensed_before(const bough_scene *s, const bough_scene_sensor *sensor) {
@@ -332,16 +331,16 @@ static void link_sensor(bough_schema_reader *r, const bough_scene *s, void *item
     if (body->fidelity != BOUGH_SCENE_ROD) {
         bough_schema_error(r, node, "body", "'%s' is not of fidelity rod", body->name);
     } else if (is_sensed_before(s, sensor)) {
-        bough_schema_error(r, node, "body", "'%s' already has a sensor: give all places in that "
-                                        "sensor",
+        bough_schema_error(r, node, "body",
+                           "'%s' already has a sensor: give all places in that "
+                           "sensor",
                            body->name);
     }
     double length = body->rod.structure.length;
     for (int k = 0; k < sensor->n_at && length > 0; k++) {
         if (sensor->at[k] <= length * (1 + 1e-9)) continue;
         bough_schema_error(r, bough_node_find(sensor->node, "at"), "at",
-                           "%g m is beyond the end of '%s', at %g m", sensor->at[k], body->name,
-                           length);
+                           "%g m is beyond the end of '%s', at %g m", sensor->at[k], body->name, length);
     }
 }
 
@@ -363,8 +362,7 @@ static void link_modes(bough_schema_reader *r, bough_scene *s) {
         m->about = bough_link_body(r, s, about, "about", m->about_name);
         if (m->about >= 0 && s->body[m->about].joint.kind >= 0 &&
             s->body[m->about].joint.kind != BOUGH_JOINT_REVOLUTE) {
-            bough_schema_error(r, about, "about", "the joint of '%s' must be revolute",
-                               m->about_name);
+            bough_schema_error(r, about, "about", "the joint of '%s' must be revolute", m->about_name);
         }
         if (axis != NULL) bough_schema_error(r, axis, "axis", "only used without 'about'");
     }
@@ -406,41 +404,36 @@ static void check_times(bough_schema_reader *r, bough_scene *s) {
     bough_link_at(r, "simulation");
     if (!is_multiple(simulation->duration, step)) {
         bough_schema_error(r, bough_link_value(simulation->node, "duration"), "duration",
-                           "%g s is not a multiple of the macro step, %g s", simulation->duration,
-                           step);
+                           "%g s is not a multiple of the macro step, %g s", simulation->duration, step);
     }
     if (simulation->duration > most_steps * step) {
         bough_schema_error(r, bough_link_value(simulation->node, "duration"), "duration",
-                           "%g s are %.3g macro steps of %g s; at most %.3g are taken",
-                           simulation->duration, simulation->duration / step, step, most_steps);
+                           "%g s are %.3g macro steps of %g s; at most %.3g are taken", simulation->duration,
+                           simulation->duration / step, step, most_steps);
     }
     check_shapes(r, &simulation->output, step);
     if (interval != NULL && !is_multiple(simulation->output.interval, step)) {
-        bough_schema_error(r, interval, "output.interval",
-                           "%g s is not a multiple of the macro step, %g s",
+        bough_schema_error(r, interval, "output.interval", "%g s is not a multiple of the macro step, %g s",
                            simulation->output.interval, step);
     }
-    if (s->control.node != NULL && s->control.rate > 0 &&
-        !is_multiple(1 / s->control.rate, step)) {
+    if (s->control.node != NULL && s->control.rate > 0 && !is_multiple(1 / s->control.rate, step)) {
         bough_link_at(r, "control");
         bough_schema_error(r, bough_link_value(s->control.node, "rate"), "rate",
-                           "its period %g s is not a multiple of the macro step, %g s",
-                           1 / s->control.rate, step);
+                           "its period %g s is not a multiple of the macro step, %g s", 1 / s->control.rate,
+                           step);
     }
     if (s->aero.node != NULL && s->aero.rate > 0 && !is_multiple(1 / s->aero.rate, step)) {
         bough_link_at(r, "aero");
         bough_schema_error(r, bough_link_value(s->aero.node, "rate"), "rate",
-                           "its period %g s is not a multiple of the macro step, %g s",
-                           1 / s->aero.rate, step);
+                           "its period %g s is not a multiple of the macro step, %g s", 1 / s->aero.rate,
+                           step);
     }
 }
 
 static const double default_rtol = 1e-5;
 static const double fine_rtol = 1e-6; // below it BDF's high orders serve better
 
-static bool is_named(const bough_node *map, const char *key) {
-    return map && bough_node_find(map, key);
-}
+static bool is_named(const bough_node *map, const char *key) { return map && bough_node_find(map, key); }
 
 // Where nothing is said of how bodies are coupled, they are one system under a method with error control
 // over the whole: what holds on most scenes.
@@ -453,20 +446,19 @@ static void choose_coupling(bough_scene_simulation *s) {
     if (!tolerance) master->rtol = default_rtol;
 }
 
-#define LIST(what, items, count, link)                                                             \
-    {what, offsetof(bough_scene, items), offsetof(bough_scene, count),                             \
-     sizeof *((bough_scene *)0)->items, link}
+#define LIST(what, items, count, link)                                                                       \
+    {                                                                                                        \
+        what, offsetof(bough_scene, items), offsetof(bough_scene, count), sizeof *((bough_scene *)0)->items, \
+            link                                                                                             \
+    }
 static const struct {
     const char *name;
     size_t items, count, size; // place of the pointer and of the number of items, size of one
     void (*link)(bough_schema_reader *r, const bough_scene *s, void *item);
 } lists[] = {
-    LIST("loads", load, n_load, link_load),
-    LIST("markers", marker, n_marker, link_marker),
-    LIST("sensors", sensor, n_sensor, link_sensor),
-    LIST("bushings", bushing, n_bushing, link_bushing),
-    LIST("springs", spring, n_spring, link_spring),
-    LIST("closures", closure, n_closure, link_closure),
+    LIST("loads", load, n_load, link_load),         LIST("markers", marker, n_marker, link_marker),
+    LIST("sensors", sensor, n_sensor, link_sensor), LIST("bushings", bushing, n_bushing, link_bushing),
+    LIST("springs", spring, n_spring, link_spring), LIST("closures", closure, n_closure, link_closure),
 };
 
 static void link_lists(bough_schema_reader *r, bough_scene *s) {

@@ -35,8 +35,7 @@ static void link_blade(bough_schema_reader *r, bough_scene *s, int k) {
     } else if (bough_node_find(s->body[t->blade[k]].node, "rod") == NULL) {
         bough_schema_error(r, node, "", "body '%s' has no rod, so it cannot be a blade", name);
     } else if (t->rotor >= 0 && !hangs_on(s, t->blade[k], t->rotor)) {
-        bough_schema_error(r, node, "", "body '%s' is not carried by the rotor '%s'", name,
-                           t->rotor_name);
+        bough_schema_error(r, node, "", "body '%s' is not carried by the rotor '%s'", name, t->rotor_name);
     }
 }
 
@@ -52,8 +51,7 @@ void bough_link_turbine(bough_schema_reader *r, bough_scene *s) {
         bough_schema_error(r, rotor, "rotor", "the joint of '%s' must be revolute", t->rotor_name);
     }
     t->blade = bough_arena_take(r->arena, (size_t)t->n_blade * sizeof *t->blade);
-    for (int k = 0; k < t->n_blade; k++)
-        link_blade(r, s, k);
+    for (int k = 0; k < t->n_blade; k++) link_blade(r, s, k);
 }
 
 // -- aerodynamics ---------------------------------------------------------------------------------
@@ -92,8 +90,7 @@ static void link_polars(bough_schema_reader *r, bough_scene *s) {
     const bough_scene_polars *polars = &s->aero.polars;
     if (polars->n_polar == 0) return;
     const char **names = bough_arena_take(r->arena, (size_t)polars->n_polar * sizeof *names);
-    for (int k = 0; k < polars->n_polar; k++)
-        names[k] = polars->polar[k].name;
+    for (int k = 0; k < polars->n_polar; k++) names[k] = polars->polar[k].name;
     for (int i = 0; i < s->aero.blade.n_station; i++) {
         if (s->aero.blade.station[i].node != NULL) link_polar(r, s, names, i);
     }
@@ -110,8 +107,7 @@ static void check_blade_lengths(bough_schema_reader *r, const bough_scene *s) {
         double length = b->rod.structure.length;
         if (!(length > 0) || !(fabs(span - length) > 1e-3 * length)) continue;
         bough_schema_error(r, bough_link_value(s->aero.node, "blade"), "blade",
-                           "the blade elements end at %g m, but '%s' is %g m long", span, b->name,
-                           length);
+                           "the blade elements end at %g m, but '%s' is %g m long", span, b->name, length);
         return;
     }
 }
@@ -123,8 +119,7 @@ static void link_tower(bough_schema_reader *r, bough_scene *s) {
     tower->body = bough_link_body(r, s, node, "tower.body", tower->body_name);
     if (tower->body < 0) return;
     bool blade = false;
-    for (int k = 0; k < s->turbine.n_blade; k++)
-        blade = blade || s->turbine.blade[k] == tower->body;
+    for (int k = 0; k < s->turbine.n_blade; k++) blade = blade || s->turbine.blade[k] == tower->body;
     if (blade || bough_node_find(s->body[tower->body].node, "rod") == NULL) {
         bough_schema_error(r, node, "tower.body", "'%s' must have a rod and must not be a blade",
                            tower->body_name);
@@ -166,8 +161,8 @@ static void link_event(bough_schema_reader *r, bough_scene *s, int i) {
         bough_schema_error(r, e->node, "", "needs blades on pitch joints: revolute with 'motion'");
     }
     if (e->blade > s->turbine.n_blade) {
-        bough_schema_error(r, bough_link_value(e->node, "blade"), "blade",
-                           "the turbine has %d blades", s->turbine.n_blade);
+        bough_schema_error(r, bough_link_value(e->node, "blade"), "blade", "the turbine has %d blades",
+                           s->turbine.n_blade);
     }
     if (e->body_name == NULL) return;
     const bough_node *node = bough_link_value(e->node, "body");
@@ -184,10 +179,12 @@ static void check_operation(bough_schema_reader *r, const bough_scene *s) {
     bool law = s->control.node != NULL && s->control.kind == BOUGH_SCENE_VARIABLE_SPEED;
     bough_link_at(r, "simulation");
     if (!law || s->aero.node == NULL || s->turbine.node == NULL) {
-        bough_schema_error(r, given, "initial", "operation needs 'aero' and 'control: {kind: "
+        bough_schema_error(r, given, "initial",
+                           "operation needs 'aero' and 'control: {kind: "
                            "variable-speed}'; else give the rotor's speed and 'equilibrium'");
     } else if (s->aero.ramp[1] > 0) {
-        bough_schema_error(r, given, "initial", "operation needs the air from the start on: leave out "
+        bough_schema_error(r, given, "initial",
+                           "operation needs the air from the start on: leave out "
                            "'aero.ramp'");
     } else if (s->turbine.rotor >= 0 && s->body[s->turbine.rotor].joint.motion.node != NULL) {
         bough_schema_error(r, given, "initial", "the motion of '%s' leaves no speed to be found",
@@ -213,11 +210,12 @@ void bough_link_control(bough_schema_reader *r, bough_scene *s) {
         const bough_scene_body *first = &s->body[s->turbine.blade[0]];
         const bough_scene_body *b = &s->body[s->turbine.blade[k]];
         if (has_pitch_joint(b) != has_pitch_joint(first)) {
-            bough_schema_error(r, b->node, "", "blades '%s' and '%s': all or none are pitched by a "
-                               "joint with 'motion'", first->name, b->name);
+            bough_schema_error(r, b->node, "",
+                               "blades '%s' and '%s': all or none are pitched by a "
+                               "joint with 'motion'",
+                               first->name, b->name);
         } else if (has_pitch_joint(b) && b->joint.axis != 2) {
-            bough_schema_error(r, b->node, "", "the pitch joint of '%s' must turn about z",
-                               b->name);
+            bough_schema_error(r, b->node, "", "the pitch joint of '%s' must turn about z", b->name);
         }
     }
     if (s->turbine.n_blade > BOUGH_MOST_BLADES) {

@@ -19,13 +19,13 @@ void bough_scene_read_load_place(bough_schema_reader *r, const bough_node *node,
     load->place = BOUGH_SCENE_AT_SPAN;
     bool unit = !bough_quantity(text, BOUGH_PURE_NUMBER, &plain, why);
     if (unit && bough_quantity(text, BOUGH_LENGTH, &load->span[0], why)) return;
-    bough_schema_error(r, node, "", "expected 'tip', the number of a vertex or a length with its "
-                       "unit, as '30 m', got %s", bough_node_shown(node, shown));
+    bough_schema_error(r, node, "",
+                       "expected 'tip', the number of a vertex or a length with its "
+                       "unit, as '30 m', got %s",
+                       bough_node_shown(node, shown));
 }
 
-static bool is_spread(const bough_scene_load *load) {
-    return bough_node_find(load->node, "along") != NULL;
-}
+static bool is_spread(const bough_scene_load *load) { return bough_node_find(load->node, "along") != NULL; }
 
 // Three numbers, with or without a unit.
 static void read_three(bough_schema_reader *r, const bough_node *node, bough_dimension dimension,
@@ -88,8 +88,7 @@ void bough_scene_read_load_moment(bough_schema_reader *r, const bough_node *node
 // -- checks within a load -------------------------------------------------------------------------
 
 // Exactly one of two keys must be given.
-static bool check_either(bough_schema_reader *r, const bough_node *load, const char *a,
-                         const char *b) {
+static bool check_either(bough_schema_reader *r, const bough_node *load, const char *a, const char *b) {
     const bough_node *first = bough_node_find(load, a), *second = bough_node_find(load, b);
     if ((first == NULL) != (second == NULL)) return true;
     bough_schema_error(r, load, "", "expected either '%s' or '%s'%s", a, b,
@@ -116,13 +115,11 @@ static void read_ends(bough_schema_reader *r, bough_scene_load *load) {
 
 static void check_body_keys(bough_schema_reader *r, bough_scene_load *load) {
     bough_scene_refuse(r, load->node, "torque", "only used with 'joint'");
-    if (bough_node_find(load->node, "at") != NULL &&
-        !check_either(r, load->node, "at", "along")) {
+    if (bough_node_find(load->node, "at") != NULL && !check_either(r, load->node, "at", "along")) {
         return;
     }
     if (load->n_time > 0) bough_scene_refuse(r, load->node, "ramp", "only used without 'factor'");
-    if (bough_node_find(load->node, "force") == NULL &&
-        bough_node_find(load->node, "moment") == NULL &&
+    if (bough_node_find(load->node, "force") == NULL && bough_node_find(load->node, "moment") == NULL &&
         bough_node_find(load->node, "end_force") == NULL &&
         bough_node_find(load->node, "end_moment") == NULL) {
         bough_schema_error(r, load->node, "", "expected a 'force' or a 'moment' or both");
@@ -145,8 +142,7 @@ void bough_scene_check_load(bough_schema_reader *r, void *item) {
     }
     bough_scene_check_ramp(r, load->node, load->ramp);
     if (load->input == NULL || (load->n_time == 0 && load->ramp[1] == 0)) return;
-    bough_schema_error(r, bough_node_find(load->node, "input"), "input",
-                       "only without a ramp or a table");
+    bough_schema_error(r, bough_node_find(load->node, "input"), "input", "only without a ramp or a table");
 }
 
 // -- checks against the body ----------------------------------------------------------------------
@@ -161,8 +157,7 @@ static double arc_length(const bough_scene_structure *s) {
 }
 
 // The place must be on the rod, up to rounding of its length.
-static void check_place(bough_schema_reader *r, const bough_scene_load *load,
-                        const bough_scene_rod *rod) {
+static void check_place(bough_schema_reader *r, const bough_scene_load *load, const bough_scene_rod *rod) {
     const bough_node *at = bough_node_find(load->node, "at");
     const bough_node *along = bough_node_find(load->node, "along");
     double length = arc_length(&rod->structure), most = length * (1 + 1e-9);
@@ -171,15 +166,14 @@ static void check_place(bough_schema_reader *r, const bough_scene_load *load,
         bough_schema_error(r, at, "at", "'%s' has the vertices 0 to %d, got %d", load->body_name,
                            rod->n_segment, load->vertex);
     }
-    bool beyond = load->place == BOUGH_SCENE_AT_SPAN &&
-                  (load->span[0] > most || load->span[0] < 0);
+    bool beyond = load->place == BOUGH_SCENE_AT_SPAN && (load->span[0] > most || load->span[0] < 0);
     if (beyond && at != NULL) {
         bough_schema_error(r, at, "at", "'%s' is %g m long, got %g m", load->body_name, length,
                            load->span[0]);
     }
     if (along != NULL && load->span[1] > most) {
-        bough_schema_error(r, along, "along", "'%s' is %g m long, got %g m", load->body_name,
-                           length, load->span[1]);
+        bough_schema_error(r, along, "along", "'%s' is %g m long, got %g m", load->body_name, length,
+                           load->span[1]);
     }
 }
 
@@ -206,7 +200,8 @@ void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scen
     if (body->fidelity > BOUGH_SCENE_ROD && load->frame == BOUGH_SCENE_LOAD_FOLLOWER) {
         bough_schema_error(r, bough_node_find(load->node, "frame"), "frame",
                            "'%s' is a modal body, on which loads do not turn with its sections: make"
-                           " it a rod or give 'frame: body'", load->body_name);
+                           " it a rod or give 'frame: body'",
+                           load->body_name);
     }
     if (body->rod.structure.n_station > 0) check_place(r, load, &body->rod);
 }

@@ -48,13 +48,12 @@ void bough_scene_take_part(bough_schema_reader *r, const bough_node *given, cons
     if (s->n_station < 1 || !isfinite(s->length)) return; // told already
     if (!good) {
         bough_schema_error(r, given, "part",
-                           "must be a stretch of the table, which is %g m long, got [%g m, %g m]",
-                           s->length, part[0], part[1]);
+                           "must be a stretch of the table, which is %g m long, got [%g m, %g m]", s->length,
+                           part[0], part[1]);
         return;
     }
     s->length = part[1] - part[0];
     if (s->n_station == 1) return; // uniform
-    bough_scene_station *to =
-        bough_arena_take(r->arena, ((size_t)s->n_station + 2) * sizeof *to);
+    bough_scene_station *to = bough_arena_take(r->arena, ((size_t)s->n_station + 2) * sizeof *to);
     cut(s, part, to);
 }

@@ -23,9 +23,10 @@ static size_t count_bodies(bough_schema_reader *r, const bough_scene *s) {
         segments += (size_t)s->body[i].repeat * (size_t)s->body[i].rod.n_segment;
     }
     if (bodies > MOST_BODIES || segments > MOST_SEGMENTS) {
-        bough_schema_error(r, s->node, "bodies", "expected at most %d bodies and %d segments of "
-                           "rods in all, got %zu and %zu", MOST_BODIES, MOST_SEGMENTS, bodies,
-                           segments);
+        bough_schema_error(r, s->node, "bodies",
+                           "expected at most %d bodies and %d segments of "
+                           "rods in all, got %zu and %zu",
+                           MOST_BODIES, MOST_SEGMENTS, bodies, segments);
         return 0;
     }
     return bodies;

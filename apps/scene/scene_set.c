@@ -94,8 +94,7 @@ static bough_suggestion suggest_item(const replacement *s, const bough_node *nod
 }
 
 // "[2]…" or "[blade1]…": an item that exists; "[2-4]…": several.
-static bough_node *put_item(const replacement *s, const bough_node *node, const char *rest,
-                            int depth) {
+static bough_node *put_item(const replacement *s, const bough_node *node, const char *rest, int depth) {
     char *end, text[200];
     int named = named_item(node, rest, &end);
     bool is_name = rest[1] != ']' && (rest[1] < '0' || rest[1] > '9') && *end == ']';
@@ -132,22 +131,19 @@ static bough_node *put_item(const replacement *s, const bough_node *node, const 
 }
 
 // "key…": replaced or added; `node` NULL makes a new mapping.
-static bough_node *put_key(const replacement *s, const bough_node *node, const char *rest,
-                           int depth) {
+static bough_node *put_key(const replacement *s, const bough_node *node, const char *rest, int depth) {
     size_t length = strcspn(rest, ".[");
     char name[PATH], text[PATH + 80], shown[64];
     if (length == 0) return refuse(s, "expected a key");
     snprintf(name, sizeof name, "%.*s", (int)length, rest);
     if (node != NULL && node->kind != BOUGH_MAPPING) {
-        snprintf(text, sizeof text, "key '%s' is looked for in %s", name,
-                 bough_node_shown(node, shown));
+        snprintf(text, sizeof text, "key '%s' is looked for in %s", name, bough_node_shown(node, shown));
         return refuse(s, text);
     }
     bough_node empty = {.kind = BOUGH_MAPPING, .file = origin};
     bough_node *copy = copy_container(s, node == NULL ? &empty : node);
     int i = 0;
-    while (i < copy->n && strcmp(copy->key[i]->text, name) != 0)
-        i++;
+    while (i < copy->n && strcmp(copy->key[i]->text, name) != 0) i++;
     bough_node *value = put(s, i < copy->n ? copy->value[i] : NULL, rest + length, depth + 1);
     bough_node *key = new_node(s, BOUGH_SCALAR, bough_arena_string(s->arena, name));
     if (value == NULL) return NULL;
@@ -166,8 +162,7 @@ static bough_node *put(const replacement *s, const bough_node *node, const char 
     return depth == 0 ? put_key(s, node, rest, depth) : refuse(s, "expected '.' or '['");
 }
 
-bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *set,
-                            bough_errors *errors) {
+bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *set, bough_errors *errors) {
     replacement s = {.arena = arena, .errors = errors};
     const char *equals = strchr(set, '=');
     size_t length = equals == NULL ? 0 : (size_t)(equals - set);
@@ -176,8 +171,7 @@ bough_node *bough_scene_set(bough_arena *arena, bough_node *root, const char *se
         return refuse(&s, length == 0 ? "expected KEY=VALUE" : "the path is too long");
     }
     memcpy(s.path, set, length);
-    if (equals[1 + strspn(equals + 1, " ")] == '\0')
-        return refuse(&s, "expected a value after '='");
+    if (equals[1 + strspn(equals + 1, " ")] == '\0') return refuse(&s, "expected a value after '='");
     s.value = parse_value(&s, equals + 1);
     return s.value == NULL ? NULL : put(&s, root, s.path, 0);
 }

@@ -25,8 +25,7 @@ static bool parse_step(bough_schema_reader *r, const bough_node *node, bough_sce
             return true;
         }
     }
-    bough_schema_error(r, node, "",
-                       "expected 'move x|y|z LENGTH' or 'rotate x|y|z ANGLE', got %s%s%s",
+    bough_schema_error(r, node, "", "expected 'move x|y|z LENGTH' or 'rotate x|y|z ANGLE', got %s%s%s",
                        bough_node_shown(node, shown), why[0] == '\0' ? "" : ": ", why);
     return false;
 }
@@ -43,8 +42,7 @@ void bough_scene_read_steps(bough_schema_reader *r, const bough_node *node, void
     bough_scene_placement *placement = field;
     char shown[64];
     if (node->kind != BOUGH_SEQUENCE) {
-        bough_schema_error(r, node, "", "expected a list of steps, got %s",
-                           bough_node_shown(node, shown));
+        bough_schema_error(r, node, "", "expected a list of steps, got %s", bough_node_shown(node, shown));
         return;
     }
     placement->step = bough_arena_take(r->arena, (size_t)node->n * sizeof *placement->step);
@@ -71,8 +69,7 @@ void bough_scene_check_joint(bough_schema_reader *r, void *item) {
     const bough_node *stop = bough_node_find(joint->node, "stop");
     const bough_node *stiffness = bough_node_find(joint->node, "stop_stiffness");
     if ((stop == NULL) != (stiffness == NULL)) {
-        bough_schema_error(r, stop == NULL ? stiffness : stop,
-                           stop == NULL ? "stop_stiffness" : "stop",
+        bough_schema_error(r, stop == NULL ? stiffness : stop, stop == NULL ? "stop_stiffness" : "stop",
                            "'stop' and 'stop_stiffness' go together");
     } else if (stop != NULL && !(joint->spring.low < joint->spring.high)) {
         bough_schema_error(r, stop, "stop", "the second must be greater than the first");
@@ -150,8 +147,7 @@ void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *nod
     if (!(s->mass > 0)) {
         bough_schema_error(r, node->value[0], "", "the mass per length must be > 0 kg/m");
     } else if (!has_section_inertia(s)) {
-        bough_schema_error(r, node, "",
-                           "the inertia about the mass centre must be positive definite");
+        bough_schema_error(r, node, "", "the inertia about the mass centre must be positive definite");
     }
 }
 
@@ -221,11 +217,11 @@ static bool check_next(bough_schema_reader *r, const sequence *s, const bough_no
     size_t length = push_row(r, owner, s->list, i);
     const bough_node *at = bough_node_find(row, s->key);
     if (first) {
-        bough_schema_error(r, at, s->key, "the first must be %g %s, got %g %s", s->first / unit,
-                           s->unit_name, value / unit, s->unit_name);
+        bough_schema_error(r, at, s->key, "the first must be %g %s, got %g %s", s->first / unit, s->unit_name,
+                           value / unit, s->unit_name);
     } else {
-        bough_schema_error(r, at, s->key, "must be more than the %g %s before it, got %g %s",
-                           before / unit, s->unit_name, value / unit, s->unit_name);
+        bough_schema_error(r, at, s->key, "must be more than the %g %s before it, got %g %s", before / unit,
+                           s->unit_name, value / unit, s->unit_name);
     }
     r->path[length] = '\0';
     return false;
@@ -242,8 +238,8 @@ static void check_length(bough_schema_reader *r, bough_scene_structure *s) {
     } else if (given == NULL) {
         s->length = last;
     } else if (s->n_station > 1 && fabs(last - s->length) > 1e-6 * s->length) {
-        bough_schema_error(r, given, "length", "is %g m, but the last station stands at %g m",
-                           s->length, last);
+        bough_schema_error(r, given, "length", "is %g m, but the last station stands at %g m", s->length,
+                           last);
     }
 }
 
@@ -277,8 +273,8 @@ static void check_turn(bough_schema_reader *r, const bough_scene_polar *p) {
     for (int c = 0; c < 3; c++) {
         if (!(fabs(first[c] - last[c]) > 1e-6)) continue;
         size_t length = push_row(r, p->node, "table", p->n_row - 1);
-        bough_schema_error(r, b->node, names[c], "at 180 deg must be as at -180 deg, %g, got %g",
-                           first[c], last[c]);
+        bough_schema_error(r, b->node, names[c], "at 180 deg must be as at -180 deg, %g, got %g", first[c],
+                           last[c]);
         r->path[length] = '\0';
     }
 }
@@ -322,17 +318,16 @@ static void check_increasing(bough_schema_reader *r, const bough_node *node, con
         if (value[i] > value[i - 1]) continue;
         char path[32];
         snprintf(path, sizeof path, "%s[%d]", key, i);
-        bough_schema_error(r, list->value[i], path,
-                           "must be more than the %g %s before it, got %g %s", value[i - 1], unit,
-                           value[i], unit);
+        bough_schema_error(r, list->value[i], path, "must be more than the %g %s before it, got %g %s",
+                           value[i - 1], unit, value[i], unit);
     }
 }
 
 void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
     const bough_scene_wind_table *t = item;
     if (t->n_time != t->n_speed) {
-        bough_schema_error(r, bough_node_find(t->node, "speeds"), "speeds",
-                           "has %d values, but times has %d", t->n_speed, t->n_time);
+        bough_schema_error(r, bough_node_find(t->node, "speeds"), "speeds", "has %d values, but times has %d",
+                           t->n_speed, t->n_time);
     }
     check_increasing(r, t->node, "times", t->time, "s");
 }
@@ -387,8 +382,8 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
     bough_scene_tower *t = item;
     int n = t->def.n;
     if (n != t->n_diameter) {
-        bough_schema_error(r, bough_node_find(t->node, "diameter"), "diameter", "has %d values, but height has %d",
-                           t->n_diameter, n);
+        bough_schema_error(r, bough_node_find(t->node, "diameter"), "diameter",
+                           "has %d values, but height has %d", t->n_diameter, n);
     }
     if (t->n_drag != 1 && t->n_drag != n) {
         bough_schema_error(r, bough_node_find(t->node, "drag"), "drag",
@@ -438,7 +433,6 @@ void bough_scene_check_rod(bough_schema_reader *r, void *item) {
 void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]) {
     const bough_node *given = bough_node_find(node, "ramp");
     if (given != NULL && ramp[1] < ramp[0]) {
-        bough_schema_error(r, given, "ramp", "must end after it starts, got [%g s, %g s]", ramp[0],
-                           ramp[1]);
+        bough_schema_error(r, given, "ramp", "must end after it starts, got [%g s, %g s]", ramp[0], ramp[1]);
     }
 }

@@ -13,9 +13,7 @@ static bool has_distribution(const double v[6]) {
 }
 
 // Known about one axis only, as of mechanisms in a plane and of shafts.
-static bool is_about_one_axis(const double v[6]) {
-    return (v[0] != 0) + (v[1] != 0) + (v[2] != 0) == 1;
-}
+static bool is_about_one_axis(const double v[6]) { return (v[0] != 0) + (v[1] != 0) + (v[2] != 0) == 1; }
 
 static void warn_inertia(const bough_scene_body *b, FILE *stream) {
     if (b->fidelity == BOUGH_SCENE_FMU) return; // what is left to the carrier is no body by itself

@@ -21,8 +21,7 @@ bough_status bough_claims_open(bough_arena *arena, const char *folder, int *clai
 }
 
 static bool set_lock(int claims, int number, short type) {
-    struct flock byte = {
-        .l_type = type, .l_whence = SEEK_SET, .l_start = (off_t)number, .l_len = 1};
+    struct flock byte = {.l_type = type, .l_whence = SEEK_SET, .l_start = (off_t)number, .l_len = 1};
     return fcntl(claims, F_SETLK, &byte) == 0 || (errno != EACCES && errno != EAGAIN);
 }
 

@@ -62,13 +62,14 @@ static bough_status read_scene(bough_arena *arena, const bough_load_case *c, bou
     bough_errors errors = {.arena = arena};
     bough_status status = bough_scene_read(arena, c->scene, c->set, c->n_set, &errors, scene);
     if (status.code != BOUGH_INVALID) return status;
-    return bough_fail(BOUGH_IO, "the scene '%.150s' or a file of it has changed or is gone since the "
-                                "study began", c->scene);
+    return bough_fail(BOUGH_IO,
+                      "the scene '%.150s' or a file of it has changed or is gone since the "
+                      "study began",
+                      c->scene);
 }
 
 // What cannot be built is a case that fails.
-static bough_status build(bough_arena *arena, const bough_load_case *c, const char *folder,
-                          case_run *r) {
+static bough_status build(bough_arena *arena, const bough_load_case *c, const char *folder, case_run *r) {
     bough_scene *scene;
     bough_status status = read_scene(arena, c, &scene);
     if (!bough_is_ok(&status)) return status;

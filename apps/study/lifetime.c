@@ -19,8 +19,8 @@ bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_load_set *set
     return l;
 }
 
-static void take_extreme(bough_extreme *e, const bough_load_set *set, int number, double value,
-                         double at, const double *row) {
+static void take_extreme(bough_extreme *e, const bough_load_set *set, int number, double value, double at,
+                         const double *row) {
     double factor = set->group[set->cases[number].group].factor;
     e->found = true;
     e->value = factor * value;
@@ -72,6 +72,5 @@ void bough_lifetime_add(bough_lifetime *l, int number, const bough_case_result *
 }
 
 double bough_lifetime_equivalent(const bough_lifetime *l, int channel, int slope) {
-    return bough_equivalent_load(l->channel[channel].damage[slope], l->set->slope[slope],
-                                 l->set->cycles);
+    return bough_equivalent_load(l->channel[channel].damage[slope], l->set->slope[slope], l->set->cycles);
 }

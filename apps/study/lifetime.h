@@ -8,10 +8,10 @@
 // An extreme value of a channel, multiplied by its partial safety factor.
 typedef struct bough_extreme {
     bool found;
-    double value;  // in the channel's unit
-    double at;     // [s]
-    int number;    // of its case
-    double *row;   // (n_channel) all channels at that moment, times the same factor
+    double value; // in the channel's unit
+    double at;    // [s]
+    int number;   // of its case
+    double *row;  // (n_channel) all channels at that moment, times the same factor
 } bough_extreme;
 
 typedef struct bough_lifetime_channel {

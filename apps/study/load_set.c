@@ -116,8 +116,8 @@ const bough_schema bough_load_set_schema = {
 static void make_group(bough_arena *arena, bough_load_set *s) {
     s->group = bough_arena_take(arena, sizeof *s->group);
     s->n_group = 1;
-    *s->group = (bough_load_group){
-        .node = s->node, .name = "sweep", .grid = s->grid, .factor = 1, .extremes = true};
+    *s->group =
+        (bough_load_group){.node = s->node, .name = "sweep", .grid = s->grid, .factor = 1, .extremes = true};
 }
 
 bough_load_set *bough_load_set_parse(bough_arena *arena, const char *path, const bough_node *root,
@@ -134,8 +134,8 @@ bough_load_set *bough_load_set_parse(bough_arena *arena, const char *path, const
     return errors->n > 0 ? NULL : s;
 }
 
-bough_load_set *bough_load_set_read(bough_arena *arena, const char *path, const bough_node *root,
-                                    int threads, bough_errors *errors, bough_status *status) {
+bough_load_set *bough_load_set_read(bough_arena *arena, const char *path, const bough_node *root, int threads,
+                                    bough_errors *errors, bough_status *status) {
     *status = bough_ok();
     bough_load_set *s = bough_load_set_parse(arena, path, root, errors);
     if (!s) return NULL;

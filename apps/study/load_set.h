@@ -38,26 +38,26 @@ typedef struct bough_load_case {
     int index[BOUGH_STUDY_AXES]; // of its value on each axis of the group
     const char *scene;           // path
     int n_set;
-    const char **set;      // (n_set) replacements in the scene
-    const char *settings;  // "speed=12 m/s, seed=3"
-    const char *command;   // that runs it alone
-    double share;          // of its group's hours or events
-    uint64_t fingerprint;  // of all that its result depends on
+    const char **set;     // (n_set) replacements in the scene
+    const char *settings; // "speed=12 m/s, seed=3"
+    const char *command;  // that runs it alone
+    double share;         // of its group's hours or events
+    uint64_t fingerprint; // of all that its result depends on
 } bough_load_case;
 
 typedef struct bough_load_set {
     const bough_node *node;
     const char *file, *title, *scene_name;
-    int kind;            // of the text; the study's own tells
-    bool sweep;          // statistics alone
-    double from;         // what is before it is left out [s]
-    bool series;         // every case keeps its channels
+    int kind;    // of the text; the study's own tells
+    bool sweep;  // statistics alone
+    double from; // what is before it is left out [s]
+    bool series; // every case keeps its channels
     int n_wanted;
     const char **wanted; // (n_wanted) channels; none: all
     int n_slope;
-    double *slope;       // (n_slope) exponents of the S-N curves
-    double cycles;       // at which the lifetime's equivalent loads are told
-    double lifetime;     // [years]
+    double *slope;   // (n_slope) exponents of the S-N curves
+    double cycles;   // at which the lifetime's equivalent loads are told
+    double lifetime; // [years]
     bough_load_wind wind;
     bough_study_settings common;
     bough_study_grid grid; // of a sweep
@@ -65,7 +65,7 @@ typedef struct bough_load_set {
     bough_load_group *group; // (n_group)
 
     // by bough_load_set_expand and bough_load_set_check
-    int threads;         // cases side by side; 0: as many as processors
+    int threads; // cases side by side; 0: as many as processors
     int n_case;
     bough_load_case *cases; // (n_case) by group, in it the last axis runs fastest
     int n_channel;
@@ -74,8 +74,8 @@ typedef struct bough_load_set {
 
 // Reads a study of either kind from its text and checks it with the scene of every case. Errors are added
 // to `errors`; the set is NULL when there are any.
-bough_load_set *bough_load_set_read(bough_arena *arena, const char *path, const bough_node *root,
-                                    int threads, bough_errors *errors, bough_status *status);
+bough_load_set *bough_load_set_read(bough_arena *arena, const char *path, const bough_node *root, int threads,
+                                    bough_errors *errors, bough_status *status);
 
 // How many times the case's run occurs in the lifetime, of which `counted` seconds were counted;
 // 0: no fatigue.

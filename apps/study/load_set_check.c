@@ -12,8 +12,7 @@
 // -- errors ---------------------------------------------------------------------------------------
 
 // Where the set says what the error is about.
-static const bough_node *origin(const bough_load_set *s, const bough_load_case *c,
-                                const bough_error *e) {
+static const bough_node *origin(const bough_load_set *s, const bough_load_case *c, const bough_error *e) {
     const bough_load_group *g = &s->group[c->group];
     const bough_study_setting *found = bough_study_concerned_value(&g->grid, c->index, e);
     if (!found) found = bough_study_concerned(&g->set, e);

@@ -11,8 +11,7 @@ static const char speed_key[] = "aero.wind.speed", scene_key[] = "scene";
 
 static int count_group(const bough_load_group *g) { return bough_grid_count(&g->grid, BOUGH_MOST_CASES); }
 
-static const bough_study_setting *value_of(const bough_load_group *g, const bough_load_case *c,
-                                           int axis) {
+static const bough_study_setting *value_of(const bough_load_group *g, const bough_load_case *c, int axis) {
     return &g->grid.axis[axis].value.item[c->index[axis]];
 }
 
@@ -56,8 +55,7 @@ static void check_speeds(const bough_load_group *g, bough_errors *errors) {
     int speeds = axis_of(g, speed_key);
     if (!(g->weibull > 0) || (speeds >= 0 && are_rising(&g->grid.axis[speeds]))) return;
     bough_errors_add(errors, g->node, "weibull",
-                     "'%.80s' needs at least two rising speeds of '%s' in its grid", g->name,
-                     speed_key);
+                     "'%.80s' needs at least two rising speeds of '%s' in its grid", g->name, speed_key);
 }
 
 static double share_of(const bough_load_set *s, const bough_load_case *c, int n_group) {
@@ -79,8 +77,10 @@ static void quote(FILE *f, const char *text) {
     }
     fputc('\'', f);
     for (const char *c = text; *c; c++) {
-        if (*c == '\'') fputs("'\\''", f);
-        else fputc(*c, f);
+        if (*c == '\'')
+            fputs("'\\''", f);
+        else
+            fputc(*c, f);
     }
     fputc('\'', f);
 }
@@ -144,7 +144,6 @@ void bough_load_set_expand(bough_arena *arena, bough_load_set *s, bough_errors *
     s->cases = bough_arena_take(arena, (size_t)n * sizeof *s->cases);
     for (int g = 0; g < s->n_group && s->cases; g++) {
         int n_group = count_group(&s->group[g]);
-        for (int i = 0; i < n_group; i++)
-            make_case(arena, s, g, i, n_group, &s->cases[s->n_case++]);
+        for (int i = 0; i < n_group; i++) make_case(arena, s, g, i, n_group, &s->cases[s->n_case++]);
     }
 }

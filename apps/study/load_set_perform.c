@@ -86,9 +86,8 @@ static void list_cases(bough_arena *arena, work *w) {
 
 // Tables of an earlier state must not stand beside new cases.
 static bough_status remove_tables(const char *folder) {
-    static const char *const names[] = {"cases.csv",  "costs.csv",  "equivalent.csv",
-                                        "ranges.csv", "levels.csv", "extremes.csv",
-                                        "table.txt",  "plot.svg"};
+    static const char *const names[] = {"cases.csv",  "costs.csv",    "equivalent.csv", "ranges.csv",
+                                        "levels.csv", "extremes.csv", "table.txt",      "plot.svg"};
     bough_status status = bough_ok();
     for (size_t i = 0; i < sizeof names / sizeof *names && bough_is_ok(&status); i++)
         status = bough_folder_remove(folder, names[i]);
@@ -125,8 +124,8 @@ static bough_status run_cases(bough_arena *arena, work *w) {
     if (b->done > 0) {
         fprintf(w->options->stream,
                 "ran %d cases, %.4g simulated hours in %.4g s on %d threads: %.4g simulated hours per "
-                "core hour\n", b->done, w->simulated / 3600, bough_wall_clock() - began, threads,
-                w->simulated / w->cpu);
+                "core hour\n",
+                b->done, w->simulated / 3600, bough_wall_clock() - began, threads, w->simulated / w->cpu);
     }
     return status;
 }
@@ -164,8 +163,8 @@ static void print_table(const void *self, FILE *f) {
     const bough_load_set *s = c->set;
     fprintf(f, "%s\n", s->title ? s->title : s->file);
     if (s->sweep) {
-        fprintf(f, "%d runs, %d failed; statistics of %d channels from %g s on in cases.csv\n",
-                s->n_case, c->lifetime->n_failed, s->n_channel, s->from);
+        fprintf(f, "%d runs, %d failed; statistics of %d channels from %g s on in cases.csv\n", s->n_case,
+                c->lifetime->n_failed, s->n_channel, s->from);
     } else {
         bough_lifetime_print(c->lifetime, f);
     }
@@ -183,12 +182,12 @@ static bough_status write_all(const conclusion *c) {
 static bough_status judge(const work *w, const bough_lifetime *l) {
     if (l->n_failed == 0) return bough_ok();
     if (w->set->sweep) {
-        return bough_fail(BOUGH_FAILED, "%d of %d runs failed: see table.txt", l->n_failed,
-                          w->set->n_case);
+        return bough_fail(BOUGH_FAILED, "%d of %d runs failed: see table.txt", l->n_failed, w->set->n_case);
     }
     return bough_fail(BOUGH_FAILED,
                       "%d of %d cases failed: the lifetime result is incomplete, %.3g %% of its "
-                      "weight is missing", l->n_failed, w->set->n_case, 100 * l->lacking);
+                      "weight is missing",
+                      l->n_failed, w->set->n_case, 100 * l->lacking);
 }
 
 static bough_status conclude_in(bough_arena *arena, const work *w) {
@@ -213,8 +212,7 @@ static bough_status conclude_in(bough_arena *arena, const work *w) {
 
 static int count_missing(const work *w) {
     int n = 0;
-    for (int i = 0; i < w->set->n_case; i++)
-        n += !bough_case_exists(w->options->folder, w->set, i);
+    for (int i = 0; i < w->set->n_case; i++) n += !bough_case_exists(w->options->folder, w->set, i);
     return n;
 }
 
@@ -228,8 +226,10 @@ static bough_status conclude(bough_arena *arena, const work *w) {
     } else if (missing > 0 && w->options->only) {
         fprintf(f, "%d of %d cases still missing\n", missing, n);
     } else if (missing > 0) {
-        fprintf(f, "%d of %d cases are run by other processes; the same command makes the tables when "
-                   "they are done\n", missing, n);
+        fprintf(f,
+                "%d of %d cases are run by other processes; the same command makes the tables when "
+                "they are done\n",
+                missing, n);
     } else {
         return conclude_in(arena, w);
     }

@@ -59,17 +59,17 @@ static void draw_channel(const bough_case_plot *plot, int k, FILE *f) {
     bough_panel p = panel_at(f, k, false);
     for (int i = 0; i < s->n_case; i++) {
         bough_axis_include(&p.x, across_of(s, i));
-        for (int c = 0; c < 3; c++)
-            bough_axis_include(&p.y, plot->value[3 * (i * plot->n_panel + k) + c]);
+        for (int c = 0; c < 3; c++) bough_axis_include(&p.y, plot->value[3 * (i * plot->n_panel + k) + c]);
     }
     draw_axes(&p, s->channel[k], s->unit[k], s->grid.axis[0].key);
     for (int i = 0; i < s->n_case; i++) {
         const double *v = plot->value + 3 * (i * plot->n_panel + k);
         if (!isfinite(v[0])) continue;
         double x = bough_axis_place(&p.x, across_of(s, i));
-        fprintf(f, "<path d=\"M%.1f %.1fV%.1f\" stroke=\"#56B4E9\" stroke-width=\"2\"/>"
-                   "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"#0072B2\"><title>", x,
-                bough_axis_place(&p.y, v[0]), bough_axis_place(&p.y, v[1]), x,
+        fprintf(f,
+                "<path d=\"M%.1f %.1fV%.1f\" stroke=\"#56B4E9\" stroke-width=\"2\"/>"
+                "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"#0072B2\"><title>",
+                x, bough_axis_place(&p.y, v[0]), bough_axis_place(&p.y, v[1]), x,
                 bough_axis_place(&p.y, v[2]));
         bough_picture_text(f, s->cases[i].settings);
         fprintf(f, ": %.5g (%.5g to %.5g)</title></circle>\n", v[2], v[0], v[1]);

@@ -37,16 +37,13 @@ static const char *outcome_of(const bough_case_result *r) {
 static void put_channel(const bough_load_set *s, const bough_case_result *r, int i, FILE *f) {
     const bough_channel_counts *c = &r->counts.channel[i];
     const bough_sample_statistics *x = &c->statistics;
-    fprintf(f, ",%.10g,%.10g,%.10g,%.10g", x->least, x->most, x->mean,
-            bough_sample_statistics_deviation(x));
+    fprintf(f, ",%.10g,%.10g,%.10g,%.10g", x->least, x->most, x->mean, bough_sample_statistics_deviation(x));
     for (int k = 0; k < s->n_slope; k++) {
-        fprintf(f, ",%.10g",
-                bough_equivalent_load(c->rainflow.damage[k], s->slope[k], r->counted));
+        fprintf(f, ",%.10g", bough_equivalent_load(c->rainflow.damage[k], s->slope[k], r->counted));
     }
 }
 
-bough_status bough_case_tables_open(const char *folder, const bough_load_set *set,
-                                    bough_case_tables *t) {
+bough_status bough_case_tables_open(const char *folder, const bough_load_set *set, bough_case_tables *t) {
     *t = (bough_case_tables){.set = set};
     bough_status status = bough_folder_open(folder, "cases.csv", t->cases_path, &t->cases);
     if (bough_is_ok(&status)) status = bough_folder_open(folder, "costs.csv", t->costs_path, &t->costs);
@@ -75,8 +72,10 @@ void bough_case_tables_add(bough_case_tables *t, int number, const bough_case_re
     }
     fputs(outcome_of(r), f);
     for (int i = 0; i < s->n_channel; i++) {
-        if (good) put_channel(s, r, i, f);
-        else for (int k = 0; k < 4 + s->n_slope; k++) fputs(",nan", f);
+        if (good)
+            put_channel(s, r, i, f);
+        else
+            for (int k = 0; k < 4 + s->n_slope; k++) fputs(",nan", f);
     }
     fputc('\n', f);
     fprintf(t->costs, "%d,%.9g,%.6g,%.6g\n", number + 1, r->done ? r->time : 0, r->cpu, r->wall);
@@ -108,19 +107,17 @@ static void put_equivalent(const void *self, FILE *f) {
     fputs(",cycles in the life\n", f);
     for (int i = 0; i < s->n_channel; i++) {
         fprintf(f, "%s,%s", s->channel[i], s->unit[i]);
-        for (int k = 0; k < s->n_slope; k++)
-            fprintf(f, ",%.17g", bough_lifetime_equivalent(l, i, k));
+        for (int k = 0; k < s->n_slope; k++) fprintf(f, ",%.17g", bough_lifetime_equivalent(l, i, k));
         fprintf(f, ",%.17g\n", l->channel[i].cycles);
     }
 }
 
-static void put_extreme(const bough_lifetime *l, int i, const char *what, const bough_extreme *e,
-                        FILE *f) {
+static void put_extreme(const bough_lifetime *l, int i, const char *what, const bough_extreme *e, FILE *f) {
     const bough_load_set *s = l->set;
     if (!e->found) return;
     const bough_load_case *c = &s->cases[e->number];
-    fprintf(f, "%s,%s,%s,%.17g,%g,%d,", s->channel[i], s->unit[i], what, e->value,
-            s->group[c->group].factor, e->number + 1);
+    fprintf(f, "%s,%s,%s,%.17g,%g,%d,", s->channel[i], s->unit[i], what, e->value, s->group[c->group].factor,
+            e->number + 1);
     bough_csv_text(f, s->group[c->group].name);
     fputc(',', f);
     bough_csv_text(f, c->settings);
@@ -148,8 +145,8 @@ static void put_ranges(const void *self, FILE *f) {
         const bough_levels *r = &l->channel[i].ranges;
         double width = bough_levels_width(r);
         for (int64_t k = r->low; r->started && k <= r->high; k++) {
-            fprintf(f, "%s,%s,%.10g,%.10g,%.17g\n", l->set->channel[i], l->set->unit[i],
-                    width * (double)k, width * (double)(k + 1), bough_levels_inside(r, k));
+            fprintf(f, "%s,%s,%.10g,%.10g,%.17g\n", l->set->channel[i], l->set->unit[i], width * (double)k,
+                    width * (double)(k + 1), bough_levels_inside(r, k));
         }
     }
 }
@@ -184,15 +181,15 @@ static void print_extreme(const bough_lifetime *l, const bough_extreme *e, FILE 
         return;
     }
     char where[64];
-    snprintf(where, sizeof where, "%.14s #%d %.4g s", s->group[s->cases[e->number].group].name,
-             e->number + 1, e->at);
+    snprintf(where, sizeof where, "%.14s #%d %.4g s", s->group[s->cases[e->number].group].name, e->number + 1,
+             e->at);
     fprintf(f, " %12.5g %-24s", e->value, where);
 }
 
 void bough_lifetime_print(const bough_lifetime *l, FILE *f) {
     const bough_load_set *s = l->set;
-    fprintf(f, "%d cases, %.6g hours of a lifetime of %g years; equivalent loads at %g cycles\n",
-            s->n_case, l->hours, s->lifetime, s->cycles);
+    fprintf(f, "%d cases, %.6g hours of a lifetime of %g years; equivalent loads at %g cycles\n", s->n_case,
+            l->hours, s->lifetime, s->cycles);
     if (l->n_failed + l->n_missing > 0) {
         fprintf(f, "INCOMPLETE: %d cases failed, %d are missing, %.3g %% of the weight is missing\n",
                 l->n_failed, l->n_missing, 100 * l->lacking);
@@ -202,8 +199,7 @@ void bough_lifetime_print(const bough_lifetime *l, FILE *f) {
     fprintf(f, " %12s %-24s %12s %-24s\n", "smallest", "case, time", "largest", "case, time");
     for (int i = 0; i < s->n_channel; i++) {
         fprintf(f, "%-12s %-6s", s->channel[i], s->unit[i]);
-        for (int k = 0; k < s->n_slope; k++)
-            fprintf(f, " %12.5g", bough_lifetime_equivalent(l, i, k));
+        for (int k = 0; k < s->n_slope; k++) fprintf(f, " %12.5g", bough_lifetime_equivalent(l, i, k));
         print_extreme(l, &l->channel[i].least, f);
         print_extreme(l, &l->channel[i].most, f);
         fputc('\n', f);

@@ -92,9 +92,9 @@ typedef struct bough_study {
     bough_study_settings reference, common;
     bough_study_grid grid;
     int n_measure;
-    bough_study_measure *measure; // (n_measure)
-    int repeat;                   // runs of each cell; times are their medians
-    int threads;                  // 0: as the scene says
+    bough_study_measure *measure;    // (n_measure)
+    int repeat;                      // runs of each cell; times are their medians
+    int threads;                     // 0: as the scene says
     struct bough_load_set *load_set; // all there is of kinds sweep and load-set, else NULL
 
     // by bough_study_expand
@@ -114,8 +114,8 @@ typedef struct bough_study {
 // Reads a study and checks it with every scene that its runs see. `threads` replaces the scene's
 // unless 0. Every error found is added to `errors`; then the status is BOUGH_INVALID and *study is
 // NULL.
-bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
-                              bough_errors *errors, bough_study **study);
+bough_status bough_study_read(bough_arena *arena, const char *path, int threads, bough_errors *errors,
+                              bough_study **study);
 
 // Writes every key of a study, as Markdown and as JSON Schema.
 void bough_study_help(FILE *stream);

@@ -17,8 +17,7 @@
 static void mix_measure(uint64_t *hash, const bough_study_measure *m) {
     char numbers[80];
     for (int i = 0; i < m->channels.n; i++) {
-        for (int k = 0; k < m->channels.item[i].n; k++)
-            bough_mix_text(hash, m->channels.item[i].channel[k]);
+        for (int k = 0; k < m->channels.item[i].n; k++) bough_mix_text(hash, m->channels.item[i].channel[k]);
         bough_mix_text(hash, "");
     }
     snprintf(numbers, sizeof numbers, "%d %.17g", m->norm, m->scale);
@@ -32,14 +31,10 @@ static uint64_t fingerprint(const bough_study *s, const bough_scene *scene) {
     char numbers[80];
     bough_mix_program(&hash);
     bough_mix_scene(&hash, scene);
-    for (int i = 0; i < s->reference_cell->n_set; i++)
-        bough_mix_text(&hash, s->reference_cell->set[i]);
-    for (int i = 0; i < s->common.n; i++)
-        bough_mix_text(&hash, s->common.item[i].set);
-    for (int i = 0; i < s->grid.n; i++)
-        bough_mix_text(&hash, s->grid.axis[i].key);
-    for (int i = 0; i < s->n_measure; i++)
-        mix_measure(&hash, &s->measure[i]);
+    for (int i = 0; i < s->reference_cell->n_set; i++) bough_mix_text(&hash, s->reference_cell->set[i]);
+    for (int i = 0; i < s->common.n; i++) bough_mix_text(&hash, s->common.item[i].set);
+    for (int i = 0; i < s->grid.n; i++) bough_mix_text(&hash, s->grid.axis[i].key);
+    for (int i = 0; i < s->n_measure; i++) mix_measure(&hash, &s->measure[i]);
     // of a stability study they are groups side by side
     snprintf(numbers, sizeof numbers, "%d %d", s->repeat, s->kind == BOUGH_STUDY_STABILITY ? 0 : s->threads);
     bough_mix_text(&hash, numbers);
@@ -95,18 +90,16 @@ void bough_study_tell(const bough_error *e, const char *scene, const bough_node 
 }
 
 // Where the study says what the error in the cell's scene is about.
-static const bough_node *origin(const bough_study *s, const bough_study_cell *cell,
-                                const bough_error *e) {
+static const bough_node *origin(const bough_study *s, const bough_study_cell *cell, const bough_error *e) {
     bool reference = cell->index[0] < 0;
-    const bough_study_setting *found =
-        reference ? bough_study_concerned(&s->reference, e)
-                  : bough_study_concerned_value(&s->grid, cell->index, e);
+    const bough_study_setting *found = reference ? bough_study_concerned(&s->reference, e)
+                                                 : bough_study_concerned_value(&s->grid, cell->index, e);
     if (!found) found = bough_study_concerned(&s->common, e);
     return found ? found->node : bough_node_find(s->node, reference ? "reference" : "grid");
 }
 
-static bough_scene *read_scene(bough_arena *arena, const bough_study *s,
-                               const bough_study_cell *cell, bough_errors *errors) {
+static bough_scene *read_scene(bough_arena *arena, const bough_study *s, const bough_study_cell *cell,
+                               bough_errors *errors) {
     bough_errors own = {.arena = arena};
     bough_scene *scene;
     bough_scene_read(arena, s->scene, cell->set, cell->n_set, &own, &scene);
@@ -115,8 +108,8 @@ static bough_scene *read_scene(bough_arena *arena, const bough_study *s,
     return scene;
 }
 
-static void check_times(const bough_study *s, const bough_study_cell *cell,
-                        const bough_scene_simulation *sim, bough_errors *errors) {
+static void check_times(const bough_study *s, const bough_study_cell *cell, const bough_scene_simulation *sim,
+                        bough_errors *errors) {
     const bough_node *grid = bough_node_find(s->node, "grid");
     if (fabs(sim->output.interval - s->interval) > 1e-9 * s->interval) {
         bough_errors_add(errors, grid, "grid",
@@ -125,8 +118,8 @@ static void check_times(const bough_study *s, const bough_study_cell *cell,
                          cell->settings, sim->output.interval, s->interval);
     }
     if (fabs(sim->duration - s->duration) > 1e-9 * s->duration) {
-        bough_errors_add(errors, grid, "grid", "%s: lasts %.9g s, the reference %.9g s",
-                         cell->settings, sim->duration, s->duration);
+        bough_errors_add(errors, grid, "grid", "%s: lasts %.9g s, the reference %.9g s", cell->settings,
+                         sim->duration, s->duration);
     }
 }
 
@@ -141,8 +134,8 @@ static void check_cells(bough_study *s, bool times, bough_errors *errors) {
 
 // -- channels -------------------------------------------------------------------------------------
 
-void bough_study_unknown_channel(const bough_channels *channels, const char *name,
-                                 const bough_node *node, const char *key, bough_errors *errors) {
+void bough_study_unknown_channel(const bough_channels *channels, const char *name, const bough_node *node,
+                                 const char *key, bough_errors *errors) {
     const char **names = bough_arena_take(errors->arena, (size_t)(channels->count + 1) * sizeof *names);
     for (int i = 0; i < channels->count; i++) names[i] = channels->channel[i].name;
     bough_errors_add(errors, node, key, "the scene has no channel '%.80s'%s", name,
@@ -152,8 +145,7 @@ void bough_study_unknown_channel(const bough_channels *channels, const char *nam
 static void check_unit(bough_study_measure *m, const bough_channel *channel, bough_arena *arena,
                        bough_errors *errors) {
     if (!m->unit) m->unit = bough_arena_string(arena, channel->unit);
-    if (bough_node_find(m->node, "scale") || !m->unit || strcmp(m->unit, channel->unit) == 0)
-        return;
+    if (bough_node_find(m->node, "scale") || !m->unit || strcmp(m->unit, channel->unit) == 0) return;
     bough_errors_add(errors, m->node, "measures", "channel %s is in %s, not %s: give a 'scale'",
                      channel->name, channel->unit, m->unit);
 }
@@ -161,8 +153,7 @@ static void check_unit(bough_study_measure *m, const bough_channel *channel, bou
 static int count_channels(const bough_study *s) {
     int n = 0;
     for (int i = 0; i < s->n_measure; i++) {
-        for (int k = 0; k < s->measure[i].channels.n; k++)
-            n += s->measure[i].channels.item[k].n;
+        for (int k = 0; k < s->measure[i].channels.n; k++) n += s->measure[i].channels.item[k].n;
     }
     return n;
 }

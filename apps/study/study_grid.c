@@ -24,8 +24,8 @@ const char *bough_grid_settings(bough_arena *arena, const bough_study_grid *grid
         size += strlen(grid->axis[i].label) + strlen(grid->axis[i].value.item[index[i]].value) + 3;
     char *text = bough_arena_take(arena, size);
     for (int i = 0; i < grid->n; i++) {
-        used += (size_t)snprintf(text + used, size - used, "%s%s=%s", i ? ", " : "",
-                                 grid->axis[i].label, grid->axis[i].value.item[index[i]].value);
+        used += (size_t)snprintf(text + used, size - used, "%s%s=%s", i ? ", " : "", grid->axis[i].label,
+                                 grid->axis[i].value.item[index[i]].value);
     }
     return text;
 }
@@ -36,16 +36,13 @@ static void add_set(bough_study_cell *cell, const bough_study_setting *setting) 
 
 static void take_sets(bough_arena *arena, const bough_study *s, int n_own, bough_study_cell *cell) {
     cell->set = bough_arena_take(arena, (size_t)(s->common.n + n_own) * sizeof *cell->set);
-    for (int i = 0; i < s->common.n; i++)
-        add_set(cell, &s->common.item[i]);
+    for (int i = 0; i < s->common.n; i++) add_set(cell, &s->common.item[i]);
 }
 
-static void make_cell(bough_arena *arena, const bough_study *s, int number,
-                      bough_study_cell *cell) {
+static void make_cell(bough_arena *arena, const bough_study *s, int number, bough_study_cell *cell) {
     bough_grid_place(&s->grid, number, cell->index);
     take_sets(arena, s, s->grid.n, cell);
-    for (int i = 0; i < s->grid.n; i++)
-        add_set(cell, &s->grid.axis[i].value.item[cell->index[i]]);
+    for (int i = 0; i < s->grid.n; i++) add_set(cell, &s->grid.axis[i].value.item[cell->index[i]]);
     cell->settings = bough_grid_settings(arena, &s->grid, cell->index);
 }
 
@@ -71,47 +68,41 @@ static int reference_of(const bough_study *s, const bough_study_cell *cell) {
 }
 
 // "reference", or with the parameters "reference: damping=1e-3"
-static const char *name_reference(bough_arena *arena, const bough_study *s,
-                                  const bough_study_cell *cell) {
+static const char *name_reference(bough_arena *arena, const bough_study *s, const bough_study_cell *cell) {
     char text[1024] = "reference";
     for (int i = 0; i < s->grid.n; i++) {
         size_t used = strlen(text);
         if (!is_model(s, i)) continue;
-        snprintf(text + used, sizeof text - used, "%s %s=%s", used > 9 ? "," : ":",
-                 s->grid.axis[i].label, bough_study_value(s, cell, i));
+        snprintf(text + used, sizeof text - used, "%s %s=%s", used > 9 ? "," : ":", s->grid.axis[i].label,
+                 bough_study_value(s, cell, i));
     }
     return bough_arena_string(arena, text);
 }
 
-static void make_reference(bough_arena *arena, const bough_study *s, int number,
-                           bough_study_cell *cell) {
+static void make_reference(bough_arena *arena, const bough_study *s, int number, bough_study_cell *cell) {
     take_sets(arena, s, s->reference.n + s->grid.n, cell);
-    for (int i = 0; i < BOUGH_STUDY_AXES; i++)
-        cell->index[i] = -1;
+    for (int i = 0; i < BOUGH_STUDY_AXES; i++) cell->index[i] = -1;
     for (int i = s->grid.n - 1; i >= 0; i--) {
         if (!is_model(s, i)) continue;
         cell->index[i] = number % s->grid.axis[i].value.n;
         number /= s->grid.axis[i].value.n;
         add_set(cell, &s->grid.axis[i].value.item[cell->index[i]]);
     }
-    for (int i = 0; i < s->reference.n; i++)
-        add_set(cell, &s->reference.item[i]);
+    for (int i = 0; i < s->reference.n; i++) add_set(cell, &s->reference.item[i]);
     cell->settings = name_reference(arena, s, cell);
 }
 
 static void make_references(bough_arena *arena, bough_study *s) {
     s->n_reference = count_references(s);
-    s->reference_cell =
-        bough_arena_take(arena, (size_t)s->n_reference * sizeof *s->reference_cell);
-    for (int i = 0; i < s->n_reference; i++)
-        make_reference(arena, s, i, &s->reference_cell[i]);
+    s->reference_cell = bough_arena_take(arena, (size_t)s->n_reference * sizeof *s->reference_cell);
+    for (int i = 0; i < s->n_reference; i++) make_reference(arena, s, i, &s->reference_cell[i]);
 }
 
 void bough_study_expand(bough_arena *arena, bough_study *s, bough_errors *errors) {
     int n = bough_grid_count(&s->grid, BOUGH_STUDY_CELLS);
     if (n > BOUGH_STUDY_CELLS) {
-        bough_errors_add(errors, bough_node_find(s->node, "grid"), "grid",
-                         "expected at most %d combinations", BOUGH_STUDY_CELLS);
+        bough_errors_add(errors, bough_node_find(s->node, "grid"), "grid", "expected at most %d combinations",
+                         BOUGH_STUDY_CELLS);
         return;
     }
     make_references(arena, s);

@@ -26,8 +26,8 @@ void bough_study_tell(const bough_error *e, const char *scene, const bough_node 
                       bough_errors *errors);
 
 // Adds the error that the scene has no channel of that name.
-void bough_study_unknown_channel(const bough_channels *channels, const char *name,
-                                 const bough_node *node, const char *key, bough_errors *errors);
+void bough_study_unknown_channel(const bough_channels *channels, const char *name, const bough_node *node,
+                                 const char *key, bough_errors *errors);
 
 // The number of a grid's combinations, at most `most` + 1; the places on the axes of the combination
 // `number`, the last axis runs fastest; and these as text, "scheme=ramp, macro_step=5 ms".

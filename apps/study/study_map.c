@@ -63,8 +63,8 @@ static void draw_columns(FILE *svg, const bough_map *m, int left) {
     bough_picture_text(svg, m->across);
     fputs("</text>\n", svg);
     for (int k = 0; k < m->n_column; k += every) {
-        fprintf(svg, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">",
-                left + (k + 0.5) * m->column_width, TOP - 6);
+        fprintf(svg, "<text x=\"%.1f\" y=\"%d\" text-anchor=\"middle\">", left + (k + 0.5) * m->column_width,
+                TOP - 6);
         bough_picture_text(svg, m->column[k]);
         fputs("</text>\n", svg);
     }

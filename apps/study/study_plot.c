@@ -106,10 +106,8 @@ static void draw_panel(panel *p) {
     int n = along(p->results->study);
     find_ranges(p);
     draw_axes(p);
-    for (int line = 0; line < count_lines(p->results->study); line++)
-        draw_polyline(p, line, line * n, n);
-    for (int line = 0; line < count_lines(p->results->study); line++)
-        draw_points(p, line, line * n, n);
+    for (int line = 0; line < count_lines(p->results->study); line++) draw_polyline(p, line, line * n, n);
+    for (int line = 0; line < count_lines(p->results->study); line++) draw_points(p, line, line * n, n);
 }
 
 // -- legend ---------------------------------------------------------------------------------------
@@ -189,9 +187,8 @@ static void draw(const void *self, FILE *svg) {
     bough_picture_title(svg, LEFT, title_of(s));
     for (int i = 0; i < s->n_measure; i++) {
         int x = i % PER_ROW * PANEL_WIDTH, y = TITLE_HEIGHT + i / PER_ROW * PANEL_HEIGHT;
-        bough_panel at = {
-            svg, bough_axis_between(x + LEFT, x + PANEL_WIDTH - RIGHT, true),
-            bough_axis_between(y + PANEL_HEIGHT - BOTTOM, y + TOP, true)};
+        bough_panel at = {svg, bough_axis_between(x + LEFT, x + PANEL_WIDTH - RIGHT, true),
+                          bough_axis_between(y + PANEL_HEIGHT - BOTTOM, y + TOP, true)};
         panel p = {results, i, at};
         draw_panel(&p);
     }

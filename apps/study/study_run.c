@@ -18,9 +18,9 @@ typedef struct cell_run {
     int *column; // (n_channel) of the study's channels among the run's
     bough_study_series *series;
     bough_recorder *recorder; // of all channels; NULL: none
-    long batches;            // of the estimate, seen so far
-    double *gathered, *zero; // (n_channel) scratch
-    double *estimate;        // (n_measure)
+    long batches;             // of the estimate, seen so far
+    double *gathered, *zero;  // (n_channel) scratch
+    double *estimate;         // (n_measure)
 } cell_run;
 
 // -- sampling -------------------------------------------------------------------------------------
@@ -41,8 +41,7 @@ static bough_status sample(void *self, double t) {
     if (!r->recorder) bough_channels_sample(&r->run.channels, t, r->run.value);
     const double *value = r->recorder ? bough_recorder_values(r->recorder) : r->run.value;
     double *row = s->value + (size_t)s->filled++ * (size_t)s->n_channel;
-    for (int i = 0; i < s->n_channel; i++)
-        row[i] = value[r->column[i]];
+    for (int i = 0; i < s->n_channel; i++) row[i] = value[r->column[i]];
     return status;
 }
 
@@ -82,8 +81,7 @@ static bough_status update_estimates(void *self) {
         const bough_study_measure *m = &r->study->measure[i];
         double worst = 0;
         for (int k = 0; k < m->channels.n; first += m->channels.item[k++].n) {
-            worst = larger(worst, difference(r->gathered + first, r->zero, m->channels.item[k].n,
-                                             m->norm));
+            worst = larger(worst, difference(r->gathered + first, r->zero, m->channels.item[k].n, m->norm));
         }
         r->estimate[i] = larger(r->estimate[i], m->scale * worst);
     }
@@ -104,11 +102,10 @@ bough_status bough_study_columns(bough_arena *arena, const bough_channels *chann
 
 // Every cell was read when the study began: an error now is none of the cell, nor may a changed scene
 // be compared with runs of the old one.
-static bough_status read_scene(bough_arena *arena, const bough_study *study,
-                               const bough_study_cell *cell, bough_scene **scene) {
+static bough_status read_scene(bough_arena *arena, const bough_study *study, const bough_study_cell *cell,
+                               bough_scene **scene) {
     bough_errors errors = {.arena = arena};
-    bough_status status =
-        bough_scene_read(arena, study->scene, cell->set, cell->n_set, &errors, scene);
+    bough_status status = bough_scene_read(arena, study->scene, cell->set, cell->n_set, &errors, scene);
     if (study->scene_sum == 0 || (!bough_is_ok(&status) && status.code != BOUGH_INVALID)) {
         return status;
     }
@@ -117,8 +114,8 @@ static bough_status read_scene(bough_arena *arena, const bough_study *study,
     if (bough_is_ok(&status) && sum == study->scene_sum) return status;
     return bough_fail(BOUGH_IO,
                       "the scene '%.150s' or a file of it has changed or is gone since the study "
-                      "began%s%.100s; runs so far are kept", study->scene,
-                      errors.n > 0 ? ": " : "", errors.n > 0 ? errors.item[0].text : "");
+                      "began%s%.100s; runs so far are kept",
+                      study->scene, errors.n > 0 ? ": " : "", errors.n > 0 ? errors.item[0].text : "");
 }
 
 // Chooses the cheapest error estimate for the cells, whose true error against the reference is known: by
@@ -135,8 +132,10 @@ static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell
     bough_scene *scene;
     bough_status status = read_scene(arena, r->study, cell, &scene);
     if (!bough_is_ok(&status)) return status;
-    if (r->study->kind == BOUGH_STUDY_STABILITY) scene->simulation.threads = 1;
-    else if (r->study->threads > 0) scene->simulation.threads = r->study->threads;
+    if (r->study->kind == BOUGH_STUDY_STABILITY)
+        scene->simulation.threads = 1;
+    else if (r->study->threads > 0)
+        scene->simulation.threads = r->study->threads;
     estimate_cheaply(scene);
     status = bough_run_create(arena, scene, &r->run);
     if (!bough_is_ok(&status)) return status;
@@ -216,8 +215,7 @@ bough_status bough_study_run(const bough_study *study, const bough_study_cell *c
     bool good = bough_is_ok(&result->outcome);
     result->wall = good ? bough_spread_of(wall, n).median : wall[n - 1];
     result->cpu = good ? bough_spread_of(cpu, n).median : cpu[n - 1];
-    for (int i = 0; i < study->n_measure; i++)
-        result->error[i] = (double)NAN;
+    for (int i = 0; i < study->n_measure; i++) result->error[i] = (double)NAN;
     result->done = true;
     return bough_ok();
 }
@@ -225,8 +223,8 @@ bough_status bough_study_run(const bough_study *study, const bough_study_cell *c
 // -- differences ----------------------------------------------------------------------------------
 
 // Of n components from `first`, over all rows.
-static double largest_difference(const bough_study_series *a, const bough_study_series *b,
-                                 int first, int n, int norm) {
+static double largest_difference(const bough_study_series *a, const bough_study_series *b, int first, int n,
+                                 int norm) {
     double largest = 0;
     for (int i = 0; i < a->n_row; i++) {
         size_t at = (size_t)i * (size_t)a->n_channel + (size_t)first;

@@ -20,10 +20,10 @@ typedef struct bough_study_result {
     double time;          // reached [s]
     double wall, cpu;     // of the stepping, medians of the repeats [s]
     bough_coupling_report coupling;
-    double error[BOUGH_STUDY_MEASURES]; // NaN when the run failed
+    double error[BOUGH_STUDY_MEASURES];    // NaN when the run failed
     double estimate[BOUGH_STUDY_MEASURES]; // the run's own of the same; NaN where it has none
-    bool warned;                        // before the run
-    bool done;                          // ended, well or not
+    bool warned;                           // before the run
+    bool done;                             // ended, well or not
 } bough_study_result;
 
 // Median and quartiles of at most BOUGH_STUDY_REPEATS values.

@@ -55,8 +55,7 @@ static void put_number(line *l, bool known, double value) {
 static void put_head(line *l, const bough_study *s) {
     l->n = 0;
     put(l, "run");
-    for (int i = 0; i < s->grid.n; i++)
-        put(l, "%.40s", s->grid.axis[i].label);
+    for (int i = 0; i < s->grid.n; i++) put(l, "%.40s", s->grid.axis[i].label);
     put(l, "status");
     put(l, "wall [s]");
     put(l, "cpu [s]");
@@ -101,8 +100,7 @@ static void put_row(line *l, const bough_study_results *results, int row) {
 // Characters, not bytes.
 static int shown_width(const char *text) {
     int n = 0;
-    for (; *text; text++)
-        n += ((unsigned char)*text & 0xC0) != 0x80;
+    for (; *text; text++) n += ((unsigned char)*text & 0xC0) != 0x80;
     return n;
 }
 
@@ -130,8 +128,7 @@ static void print_diagnosis(const char *settings, const bough_study_result *r, F
     size_t length = strlen(text);
     bool cut = length > SHORT;
     if (cut) {
-        for (length = SHORT; length > 0 && ((unsigned char)text[length] & 0xC0) == 0x80;)
-            length--;
+        for (length = SHORT; length > 0 && ((unsigned char)text[length] & 0xC0) == 0x80;) length--;
     }
     fprintf(stream, "failed: %s: %.*s%s\n", settings, (int)length, text, cut ? "..." : "");
 }
@@ -181,8 +178,7 @@ static void write_csv_head(const bough_study *s, FILE *f) {
         snprintf(name, sizeof name, "%.120s [%.60s]", s->measure[i].name, s->measure[i].unit);
         fputc(',', f);
         bough_csv_text(f, name);
-        snprintf(name, sizeof name, "%.120s estimated [%.50s]", s->measure[i].name,
-                 s->measure[i].unit);
+        snprintf(name, sizeof name, "%.120s estimated [%.50s]", s->measure[i].name, s->measure[i].unit);
         fputc(',', f);
         bough_csv_text(f, name);
     }
@@ -235,8 +231,7 @@ static void write_csv_row(const bough_study_results *results, int row, FILE *f) 
 static void write_csv(const void *self, FILE *f) {
     const bough_study_results *results = self;
     write_csv_head(results->study, f);
-    for (int row = -1; row < results->study->n_cell; row++)
-        write_csv_row(results, row, f);
+    for (int row = -1; row < results->study->n_cell; row++) write_csv_row(results, row, f);
 }
 
 // -- files ----------------------------------------------------------------------------------------

@@ -47,8 +47,7 @@ static bough_status take_turn(timing *t, int turn) {
         if (turn == 0) bough_study_compare(t->study, &t->series, &t->reference, t->cell[i].error);
     }
     for (int i = 0; i < t->study->n_cell; i++) {
-        t->cell[i].ratio[turn] =
-            t->cell[partner(t->study, i)].wall[turn] / t->cell[i].wall[turn];
+        t->cell[i].ratio[turn] = t->cell[partner(t->study, i)].wall[turn] / t->cell[i].wall[turn];
     }
     return bough_ok();
 }
@@ -58,8 +57,7 @@ static bough_status run_all(timing *t) {
     t->drive.progress.label = "reference";
     bough_status status = run(t, t->study->reference_cell, &t->drive, &t->reference, &reference);
     bough_progress_clear(&t->drive.progress);
-    for (int turn = 0; turn < t->study->repeat && bough_is_ok(&status); turn++)
-        status = take_turn(t, turn);
+    for (int turn = 0; turn < t->study->repeat && bough_is_ok(&status); turn++) status = take_turn(t, turn);
     return status;
 }
 
@@ -68,9 +66,10 @@ static bough_status run_all(timing *t) {
 static void print_times(const void *self, FILE *f) {
     const timing *t = self;
     const bough_study *s = t->study;
-    fprintf(f, "%s\n%d turns: medians, quartiles in brackets; ratio: wall time of the first %s to the "
-            "cell's\n\n", s->title ? s->title : s->file, s->repeat,
-            s->grid.axis[s->grid.n - 1].label);
+    fprintf(f,
+            "%s\n%d turns: medians, quartiles in brackets; ratio: wall time of the first %s to the "
+            "cell's\n\n",
+            s->title ? s->title : s->file, s->repeat, s->grid.axis[s->grid.n - 1].label);
     fprintf(f, "%-52s %9s %9s %17s %21s", "", "cpu [s]", "wall [s]", "x real time", "ratio");
     for (int m = 0; m < s->n_measure; m++) {
         fprintf(f, "  %s [%s]", s->measure[m].name, s->measure[m].unit);
@@ -82,8 +81,8 @@ static void print_times(const void *self, FILE *f) {
         bough_spread ratio = bough_spread_of(c->ratio, s->repeat);
         double x = s->duration;
         fprintf(f, "%-52s %9.3f %9.3f %5.1f [%4.1f, %4.1f] %6.3f [%.3f, %.3f]", s->cell[i].settings,
-                cpu.median, wall.median, x / wall.median, x / wall.high, x / wall.low,
-                ratio.median, ratio.low, ratio.high);
+                cpu.median, wall.median, x / wall.median, x / wall.high, x / wall.low, ratio.median,
+                ratio.low, ratio.high);
         for (int m = 0; m < s->n_measure; m++) {
             int width = (int)(strlen(s->measure[m].name) + strlen(s->measure[m].unit)) + 3;
             fprintf(f, "  %*.1e", width, c->error[m]);
