@@ -1,11 +1,11 @@
-// A second solution beside the run: all members as one system under the same loads, coupled at the
-// stages of the Rosenbrock method. It measures the error of the run instead of estimating it, whether
-// coupling, sub-solvers or too long a macro step cause the error, and however the mechanics amplifies it.
+// A second solution beside the run: all members as one system under the same loads. It measures the error of
+// the run instead of estimating it, whether coupling, sub-solvers or too long a macro step cause the error,
+// and however the mechanics amplifies it.
 //
-// It is finer than the run. Where the run is itself such a solution, the second takes steps of at most half the
-// length to 1/64 of the tolerance. Its error then is 1/8 (order 3) to 1/4 (order 2, to which stiff members reduce
-// it) of the run's where the length binds, and 1/4 where the tolerance does. An eighth of the tolerance is not
-// enough: undamped vibrations below it are lost in both solutions.
+// It is finer than the run. Beside a run as one system it takes steps of at most half the length to 1/64 of
+// the tolerance. Its error by the Rosenbrock method then is 1/8 (order 3) to 1/4 (order 2, to which stiff
+// members reduce it) of the run's where the length binds, and 1/4 where the tolerance does. An eighth of the
+// tolerance is not enough: undamped vibrations below it are lost in both solutions.
 //
 // Under the loads of the run, the reaction of loads to the error, such as that of the air or a controller, is
 // missing. Where there are such loads, a second model of the scene with loads of its own takes the same macro
