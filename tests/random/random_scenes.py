@@ -15,6 +15,8 @@ has a row for each family and each scheme; the exit code is 1 where the promise 
   false stop   ended, though the error until then was below 1e-3 (told by the error bound: a tenth of what was told)
   refused      exit code 2: the scene is not built
 
+The last column has what was told of the largest error divided by it, where that is above 1e-3.
+
 Errors are of vectors (X, Y, Z of a point; the directions of a joint), relative to the vector's own range."""
 import argparse
 import collections
@@ -199,6 +201,19 @@ def classify(run, truth, rough):
     return ("warned" if most > WARNED or warned else "held"), line
 
 
+def told_share(run, truth, rough):
+    """Of the error of a run that ended well, where it is largest: told/true; None where it is small or unsettled."""
+    if run.code != 0 or truth.code != 0 or rough.code != 0:
+        return None
+    told = {name for name, value in run.told.items() if value is not None and is_state(name)}
+    settled = error_of(rough, truth, told)
+    errors = error_of(run, truth, told)
+    worst = max(errors, key=lambda v: errors[v][0], default=None)
+    if worst is None or errors[worst][0] <= max(SMALL, 5 * settled[worst][0]):
+        return None
+    return errors[worst][1] / errors[worst][0]
+
+
 # -- scenes ---------------------------------------------------------------------------------------
 
 MONOLITHIC = ("simulation.coupling={scheme: monolithic}", "simulation.step_control.tolerance=0",
@@ -230,7 +245,7 @@ def one(arguments, index):
             json.dump(scene, file, indent=1)
         run = Run(arguments.bough, path, os.path.join(folder, "run"), arguments.set)
         if run.code == 2:
-            return index, family.__name__, word, "refused", run.said[:200]
+            return index, family.__name__, word, "refused", run.said[:200], None
         reference = [Run(arguments.bough, path, os.path.join(folder, "reference%d" % k),
                          MONOLITHIC + ("simulation.master={solver: ida, rtol: %g}" % rtol,), REFERENCE_TIMEOUT)
                      for k, rtol in enumerate((1e-6, 1e-8))]
@@ -239,19 +254,24 @@ def one(arguments, index):
             kept = os.path.join(arguments.keep, verdict.replace(" ", "-"))
             os.makedirs(kept, exist_ok=True)
             shutil.copy(path, os.path.join(kept, "%d-%d.yaml" % (arguments.seed, index)))
-        return index, family.__name__, word, verdict, line
+        return index, family.__name__, word, verdict, line, told_share(run, reference[1], reference[0])
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
 
 def table(results, column):
-    rows = collections.defaultdict(collections.Counter)
+    rows, shares = collections.defaultdict(collections.Counter), collections.defaultdict(list)
     for result in results:
-        rows[result[column]][result[3]] += 1
-        rows["all"][result[3]] += 1
-    print("%-13s %5s " % ("", "runs") + " ".join("%10s" % c for c in CLASSES))
+        for name in (result[column], "all"):
+            rows[name][result[3]] += 1
+            if result[5] is not None:
+                shares[name].append(result[5])
+    print("%-13s %5s " % ("", "runs") + " ".join("%10s" % c for c in CLASSES) + "   told/true, within 1/3 to 3")
     for name in [n for n in rows if n != "all"] + ["all"]:
-        print("%-13s %5d " % (name, sum(rows[name].values())) + " ".join("%10s" % (rows[name][c] or ".") for c in CLASSES))
+        told = shares[name]
+        good = "%.2f to %.2f, %d of %d" % (min(told), max(told), sum(1 / 3 <= x <= 3 for x in told), len(told)) if told else "."
+        print("%-13s %5d " % (name, sum(rows[name].values())) + " ".join("%10s" % (rows[name][c] or ".") for c in CLASSES) +
+              "   " + good)
     print()
 
 
@@ -280,13 +300,13 @@ def main():
         for result in pool.map(lambda i: one(arguments, i), range(arguments.first, arguments.first + arguments.count)):
             if result:
                 results.append(result)
-                file.write("%d\t%s\t%s\t%s\t%s\n" % result)
+                file.write("%d\t%s\t%s\t%s\t%s\n" % result[:5])
                 file.flush()
     table(results, 1)
     table(results, 2)
     broken = [r for r in results if r[3] in BROKEN or (r[3] == "false stop" and r[2] in ("monolithic", "stages"))]
     for result in broken:
-        print("%d/%d %s %s: %s: %s" % ((arguments.seed,) + result))
+        print("%d/%d %s %s: %s: %s" % ((arguments.seed,) + result[:5]))
     much = sum(r[3] == "too much" for r in results)
     if much > max(1, 0.02 * len(results)):
         print("%d of %d told too much" % (much, len(results)))
