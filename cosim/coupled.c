@@ -257,26 +257,21 @@ static void gather_all_changes(bough_coupled *coupled) {
     }
 }
 
-static void add_response(bough_coupled *coupled, int i, double *x) {
+void bough_coupled_complete(bough_coupled *coupled, int i) {
     const bough_assembly *a = coupled->assembly;
-    double *led = coupled->led + a->input_offset[i];
-    for (int j = a->input_offset[i]; j < a->input_offset[i + 1]; j++) {
-        coupled->led[j] = coupled->change[j] - (coupled->outside ? coupled->outside[j] : 0);
-    }
-    bough_condensed_add_response(coupled->interface, i, led, x + a->state_offset[i]);
-}
-
-static void finish(bough_coupled *coupled, int i) {
-    add_response(coupled, i, coupled->x);
-    if (coupled->user.after) coupled->user.after(coupled->user.self, i);
+    if (coupled->incomplete == NULL) return;
+    bough_condensed_add_response(coupled->interface, i, coupled->led + a->input_offset[i],
+                                 coupled->incomplete + a->state_offset[i]);
 }
 
 static void solve_free(bough_coupled *coupled, double *x) {
+    coupled->incomplete = NULL;
     bough_coupled_solve_driven(coupled, NULL, x, (bough_coupled_user){0});
+    bough_coupled_each(coupled, NULL, NULL);
 }
 
-// All but the members' responses to each other.
-static void solve_apart(bough_coupled *coupled, const double *outside, double *x, bough_coupled_user user) {
+void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
+                                bough_coupled_user user) {
     coupled->x = x;
     coupled->outside = outside;
     coupled->user = user;
@@ -284,13 +279,9 @@ static void solve_apart(bough_coupled *coupled, const double *outside, double *x
                    coupled);
     gather_all_changes(coupled);
     bough_condensed_solve(coupled->interface, coupled->change);
-}
-
-void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
-                                bough_coupled_user user) {
-    solve_apart(coupled, outside, x, user);
-    coupled->incomplete = NULL;
-    each(coupled, ALL, finish);
+    for (int j = 0; j < coupled->assembly->n_input; j++)
+        coupled->led[j] = coupled->change[j] - (outside ? outside[j] : 0);
+    coupled->incomplete = x;
 }
 
 typedef struct stage_work {
@@ -298,13 +289,9 @@ typedef struct stage_work {
     bough_stage_terms terms;
 } stage_work;
 
-static void complete(bough_coupled *coupled, int i) {
-    if (coupled->incomplete) add_response(coupled, i, coupled->incomplete);
-}
-
 static void set_state(const stage_work *w, int i) {
     const int *offset = w->evaluation->assembly->state_offset + i;
-    complete(w->coupled, i);
+    bough_coupled_complete(w->coupled, i);
     w->terms.set_state(w->terms.self, offset[0], offset[1]);
 }
 
@@ -330,8 +317,7 @@ bough_status bough_coupled_stage(bough_coupled *evaluation, bough_coupled *coupl
     for (int i = 0; i < evaluation->assembly->n_member; i++)
         if (!comes_late(evaluation->assembly, i)) set_state(&w, i);
     begin_rates(evaluation, t, state, x);
-    solve_apart(coupled, NULL, x, (bough_coupled_user){&w, find_right_side, NULL});
-    coupled->incomplete = x;
+    bough_coupled_solve_driven(coupled, NULL, x, (bough_coupled_user){&w, find_right_side});
     return first_failure(evaluation);
 }
 
@@ -345,8 +331,8 @@ static void work_on_part(void *self, int k) {
     const part_work *w = self;
     int i = w->coupled->order[k];
     const int *offset = w->coupled->assembly->state_offset + i;
-    complete(w->coupled, i);
-    w->work(w->data, i, offset[0], offset[1]);
+    bough_coupled_complete(w->coupled, i);
+    if (w->work) w->work(w->data, i, offset[0], offset[1]);
 }
 
 void bough_coupled_each(bough_coupled *coupled, bough_part_work work, void *data) {

@@ -8,11 +8,10 @@
 #include "core/pool.h"
 #include "cosim/condense.h"
 
-// Further work for a member by the thread that solves for it: preparing its part of x, and using it.
+// Further work for a member by the thread that solves for it: preparing its part of x.
 typedef struct bough_coupled_user {
     void *self;
     void (*before)(void *self, int member); // NULL: nothing
-    void (*after)(void *self, int member);
 } bough_coupled_user;
 
 typedef struct bough_coupled {
@@ -27,7 +26,7 @@ typedef struct bough_coupled {
     const double *at; // (n_state)
     double gamma;
     double *x;
-    double *incomplete; // (n_state) x of the last stage; NULL: none
+    double *incomplete; // (n_state) the last solution, without the members' responses; NULL: none
 
     // factors
     bool linearised; // at the place of setup
@@ -95,18 +94,22 @@ void bough_coupled_solve(bough_coupled *coupled, double *x);
 // Takes changes of quaternions' lengths out of a change x (n_state) of `state`.
 void bough_coupled_project(const bough_coupled *coupled, const double *state, double *x);
 
-// The same with `outside` (n_input) added to the inputs' changes, δu = P δo + outside; NULL: 0.
+// The same with `outside` (n_input) added to the inputs' changes, δu = P δo + outside; NULL: 0. x lacks the
+// members' responses to each other until bough_coupled_complete, or until bough_coupled_each.
 void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
                                 bough_coupled_user user);
 
 // x ← (I − γJ)⁻¹ r by the factors of `coupled`, r made of F, as `evaluation` finds it, by `terms`,
 // as is the state.
-// BOUGH_FAILED names the member whose rate is not finite. x lacks the members' response to each other until
-// the next stage has prepared them, or until bough_coupled_each.
+// BOUGH_FAILED names the member whose rate is not finite. x is completed by the next stage, or by
+// bough_coupled_each.
 bough_status bough_coupled_stage(bough_coupled *evaluation, bough_coupled *coupled, double t,
                                  const double *state, bough_stage_terms terms, double *x);
 
-// Completes the x of the last stage and does work on each member's states, in parallel.
+// Adds to the last solution, once, what the others do to this member; in the next solution's `before` or later.
+void bough_coupled_complete(bough_coupled *coupled, int member);
+
+// Completes the last solution and does work on each member's states, in parallel; NULL: no work.
 void bough_coupled_each(bough_coupled *coupled, bough_part_work work, void *data);
 
 // δu for x = 0 and `outside` (n_input) at the leaders' inputs, in place.

@@ -294,15 +294,32 @@ static const double *own_errors(const bough_error_estimate *e, double *time) {
     return e->own + (size_t)e->step * (size_t)e->assembly->n_state;
 }
 
+static void end_member(bough_error_estimate *e, int first, int last) {
+    const alpha_method *a = &e->method;
+    double h = a->h, part = a->f, kept = part * h * (1 - part), own = 1 / (part * part * h);
+    const double *restrict x = e->x;
+    double *restrict error = e->error, *restrict rate = e->rate;
+#pragma omp simd
+    for (int k = first; k < last; k++) {
+        double now = own * (x[k] - error[k] - kept * rate[k]);
+        error[k] += h * (rate[k] + part * (now - rate[k]));
+        rate[k] = now;
+    }
+}
+
 // One step: x is ε at t + α_f h,
 //     (I − g J) x = ε + (α_f h (1 − γ) − g (1 − α_m)) ε̇ + g (B δ + s),
 // s the rate at which the members' own steps err in the macro step in progress.
 static void begin_member(void *self, int member) {
-    const bough_error_estimate *e = self;
+    bough_error_estimate *e = self;
     const alpha_method *a = &e->method;
     const int *offset = e->assembly->state_offset + member;
     double time, carried = a->f * a->h * (1 - a->f) - a->factor * (1 - a->m);
     const double *restrict erring = own_errors(e, &time);
+    if (e->coupled->incomplete) { // of the step before
+        bough_coupled_complete(e->coupled, member);
+        end_member(e, offset[0], offset[1]);
+    }
     double *restrict x = e->x, added = a->factor / time;
     const double *restrict error = e->error, *restrict rate = e->rate;
 #pragma omp simd
@@ -311,23 +328,13 @@ static void begin_member(void *self, int member) {
     }
 }
 
-static void end_member(void *self, int member) {
-    const bough_error_estimate *e = self;
-    const alpha_method *a = &e->method;
-    const int *offset = e->assembly->state_offset + member;
-    double h = a->h, part = a->f, kept = part * h * (1 - part), own = 1 / (part * part * h);
-    const double *restrict x = e->x;
-    double *restrict error = e->error, *restrict rate = e->rate;
-#pragma omp simd
-    for (int k = offset[0]; k < offset[1]; k++) {
-        double now = own * (x[k] - error[k] - kept * rate[k]);
-        error[k] += h * (rate[k] + part * (now - rate[k]));
-        rate[k] = now;
-    }
+static void end_part(void *self, int part, int first, int last) {
+    (void)part;
+    end_member(self, first, last);
 }
 
 static void advance(bough_error_estimate *e) {
-    bough_coupled_user user = {e, begin_member, end_member};
+    bough_coupled_user user = {e, begin_member};
     bough_coupled_solve_driven(e->coupled, e->mean, e->x, user);
     for (int j = 0; j < e->assembly->n_input; j++) {
         e->input_worst[j] = fmax(e->input_worst[j], fabs(e->coupled->change[j] - e->mean[j]));
@@ -344,6 +351,7 @@ static bool propagate(bough_error_estimate *e, bough_coupling *c) {
         find_mean(e, start + k * h, h);
         advance(e);
     }
+    bough_coupled_each(e->coupled, end_part, e);
     return true;
 }
 

@@ -144,6 +144,7 @@ static void check(const plan *p) {
     status = bough_coupled_setup(coupled, 0, y, input, gamma);
     assert_true(bough_is_ok(&status));
     bough_coupled_solve_driven(coupled, outside, x, (bough_coupled_user){0});
+    bough_coupled_each(coupled, NULL, NULL);
 
     // x = r + γ (A x + B δu) member by member, δu = P (C x + D δu) + outside
     double change[PORTS], answer[PORTS];

@@ -49,8 +49,6 @@ static void halve_and_add_one(void *self, int first, int last) {
 
 static void keep(void *self, int first, int last) { (void)self, (void)first, (void)last; }
 
-static void leave(void *data, int part, int first, int last) { (void)data, (void)part, (void)first, (void)last; }
-
 // A stage is rate, right side and solution, to the bit.
 static void stages_are_rate_and_solution(void **state) {
     (void)state;
@@ -70,7 +68,7 @@ static void stages_are_rate_and_solution(void **state) {
     status = bough_coupled_stage(evaluation, coupled, 0, y,
                                  (bough_stage_terms){x, keep, halve_and_add_one, false}, x);
     assert_true(bough_is_ok(&status));
-    bough_coupled_each(coupled, leave, NULL);
+    bough_coupled_each(coupled, NULL, NULL);
     assert_memory_equal(x, expected, sizeof x);
     bough_two_mass_destroy(&m);
 }
