@@ -22,7 +22,7 @@
 // by the members' own tolerances. An adaptive multistep method that restarts and stops within the step has
 // a hundred times more noise there than at the end of the step.
 #include "cosim/accelerate.h"
-#include "cosim/interface_newton.h"
+#include "cosim/coupled.h"
 #include "cosim/iteration.h"
 #include "cosim/port.h"
 #include "cosim/scheme.h"
@@ -36,14 +36,21 @@
 static const double least_scale = 1e-6;
 
 enum { MOST_NODES = 3 };
+enum { MOST_AGE = 12 }; // of Newton's Jacobians [steps]: as the ramp keeps its tangents
 static const double end_point[] = {1};
 static const double lobatto[MOST_NODES] = {0.27639320225002103, 0.72360679774997897, 1};
 
 struct bough_iteration {
     bough_accelerator *accelerator;
-    bough_interface_newton *newton; // NULL: another accelerator
-    double span[MOST_NODES];        // of the Newton's Jacobians, over the macro step
-    void **copy;                    // (n_member) states at T_k
+    // Newton's, one a node: how inputs answer to their own change up to there. Every member answers by one
+    // linearly implicit step, (I − γJ) δy = γ B δu, as in the ramp's prediction; γ is the time over which a
+    // unit change at the node acts, ∫ w dt. NULL: another accelerator.
+    bough_coupled *jacobian[MOST_NODES];
+    double span[MOST_NODES]; // γ over the macro step
+    double *at;              // (n_state) where they are made
+    double length;           // of the macro step that they are made for [s]; 0: none
+    int age;                 // steps since
+    void **copy;             // (n_member) states at T_k
     int n_node;
     const double *node;  // (n_node) in (0, 1], the last is 1
     size_t n_prescribed; // n_node × n_input
@@ -110,8 +117,9 @@ static void create_accelerator(bough_coupling *c, bough_iteration *it, bough_are
     static const double share[BOUGH_HISTORY] = {1, 1. / 2, 5. / 12}; // ∫ of the end value's weight
     for (int k = 0; k < it->n_node; k++) {
         it->span[k] = it->n_node == 1 ? share[c->options.order] : it->node[k] / 2;
+        it->jacobian[k] = bough_coupled_create(arena, c->assembly, c->pool);
     }
-    it->newton = bough_interface_newton_create(arena, c, it->n_node);
+    it->at = bough_arena_doubles(arena, (size_t)c->assembly->n_state);
 }
 
 bough_status bough_iteration_create(bough_coupling *c, bough_arena *arena) {
@@ -277,9 +285,27 @@ static void solve_newton(void *self, double *x) {
     for (int p = 0; p < it->n_node; p++, x += it->n) {
         memset(it->change, 0, (size_t)it->n_input * sizeof(double));
         for (int k = 0; k < it->n; k++) it->change[it->input[k]] = it->scale[k] * x[k];
-        bough_interface_newton_solve(it->newton, p, it->change);
+        bough_coupled_close(it->jacobian[p], it->change);
         for (int k = 0; k < it->n; k++) x[k] = it->change[it->input[k]] / it->scale[k];
     }
+}
+
+// The Jacobians for a step, members being at t0: anew when the macro step changes, loads jump, and every few
+// steps.
+static bough_status renew_jacobians(bough_coupling *c) {
+    bough_iteration *it = c->iteration;
+    double length = c->t1 - c->t0;
+    bool same = !c->restart && fabs(length - it->length) <= 1e-9 * length;
+    it->age++;
+    if (same && it->age <= MOST_AGE) return bough_ok();
+    it->length = length;
+    it->age = 0;
+    bough_assembly_states(c->assembly, it->at);
+    bough_status status = bough_ok();
+    for (int k = 0; k < it->n_node && bough_is_ok(&status); k++) {
+        status = bough_coupled_setup(it->jacobian[k], c->t0, it->at, c->input, it->span[k] * length);
+    }
+    return status;
 }
 
 static bough_status not_converged(const bough_coupling *c, int sweeps, double residual) {
@@ -320,9 +346,7 @@ bough_status bough_iteration_step(bough_coupling *c) {
     bough_status status = bough_coupling_each(c, BOUGH_ALL_STAGES, save);
     bough_accelerator_start(it->accelerator);
     predict(c);
-    if (bough_is_ok(&status) && it->newton) {
-        status = bough_interface_newton_update(it->newton, c, it->span);
-    }
+    if (bough_is_ok(&status) && it->jacobian[0]) status = renew_jacobians(c);
     double best = HUGE_VAL;
     for (int k = 1; bough_is_ok(&status); k++) {
         status = sweep(c);
@@ -346,9 +370,9 @@ bough_status bough_iteration_step(bough_coupling *c) {
 }
 
 void bough_iteration_snapshot(bough_coupling *c, bough_snapshot *s) {
-    const bough_iteration *it = c->iteration;
+    bough_iteration *it = c->iteration;
     bough_snapshot_doubles(s, it->size, it->n);
-    if (it->newton && s->move == BOUGH_SNAPSHOT_RESTORE) bough_interface_newton_forget(it->newton);
+    if (s->move == BOUGH_SNAPSHOT_RESTORE) it->length = 0; // Jacobians are made anew
 }
 
 static int defect_order(const bough_scheme_options *options) {
