@@ -33,8 +33,6 @@ struct bough_pool {
     bool open;    // a region is
     bool listing; // a list is in progress; the caller's
     bool crowded; // more threads than processors
-    int n_alone;  // tasks of the list in progress that the caller has done
-    atomic_bool alone; // of the last list, all of them
     // the list in progress, written before `list` tells of it
     bough_task task;
     void *data;
@@ -45,6 +43,8 @@ struct bough_pool {
     slot slot[MOST_TASKS];
     wait_queue idle, waiting;
     pthread_mutex_t mutex; // of both
+    _Alignas(LINE) int n_alone; // tasks of the list in progress that the caller has done, in a line of its own
+    atomic_bool alone;          // of the last list, all of them
 };
 
 static uint64_t number_of(uint64_t list) { return list >> 16; }
