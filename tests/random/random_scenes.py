@@ -1,6 +1,6 @@
 """The promise, tested on random scenes: within its bound, or stopped with a diagnosis, and what is told is true.
 
-    random_scenes.py BOUGH SOURCE [--hard | --machines] [--seed N] [--count M] [--jobs J] [--only FAMILY] [--keep DIR] [--list FILE]
+    random_scenes.py BOUGH SOURCE [--hard | --machines] [--seed N] [--count M] [--jobs J] [--only FAMILY] [--advice] [--keep DIR] [--list FILE]
 
 Every scene runs as a user runs it, and against the monolithic solution at two tolerances. Only where these two
 agree the reference is taken for true; the others are counted as unsettled (chaos, for the most part). The table
@@ -214,6 +214,27 @@ def told_share(run, truth, rough):
     return errors[worst][1] / errors[worst][0]
 
 
+# -- advice ---------------------------------------------------------------------------------------
+
+ADVICE = {"scheme: monolithic": "simulation.coupling={scheme: monolithic}",
+          r"macro_step: (\S+) s": "simulation.macro_step=%s s",
+          r"master\.rtol: (\S+)": "simulation.master.rtol=%s"}
+
+
+def follow(arguments, path, folder, said):
+    """Whether each change that the message names holds: ["scheme: monolithic holds", …]."""
+    outcomes = []
+    named = said[said.rfind("; try "):]
+    for pattern, setting in ADVICE.items():
+        found = re.search(pattern, named)
+        if not found:
+            continue
+        setting = setting % found.groups() if found.groups() else setting
+        run = Run(arguments.bough, path, os.path.join(folder, "advised"), (*arguments.set, setting))
+        outcomes.append("%s %s" % (setting.split("=")[0], "holds" if run.code == 0 else "ends with %d" % run.code))
+    return outcomes
+
+
 # -- scenes ---------------------------------------------------------------------------------------
 
 MONOLITHIC = ("simulation.coupling={scheme: monolithic}", "simulation.step_control.tolerance=0",
@@ -250,6 +271,8 @@ def one(arguments, index):
                          MONOLITHIC + ("simulation.master={solver: ida, rtol: %g}" % rtol,), REFERENCE_TIMEOUT)
                      for k, rtol in enumerate((1e-6, 1e-8))]
         verdict, line = classify(run, reference[1], reference[0])
+        if arguments.advice and run.code == 3 and reference[1].code == 0:
+            arguments.followed.update(follow(arguments, path, folder, run.said))
         if arguments.keep:
             kept = os.path.join(arguments.keep, verdict.replace(" ", "-"))
             os.makedirs(kept, exist_ok=True)
@@ -289,6 +312,7 @@ def main():
     parser.add_argument("--scheme", help="this one for all scenes")
     parser.add_argument("--defaults", action="store_true", help="only scenes that leave all solver settings out")
     parser.add_argument("--stages", action="store_true", help="with stage-coupled steps among the schemes")
+    parser.add_argument("--advice", action="store_true", help="try what the messages of stopped runs name, and count")
     parser.add_argument("--set", action="append", default=[], help="for the runs, not for their references")
     parser.add_argument("--keep", help="folder for the scenes, by class")
     parser.add_argument("--list", help="file for a line a scene")
@@ -296,6 +320,7 @@ def main():
     arguments.bough, arguments.source = os.path.abspath(arguments.bough), os.path.abspath(arguments.source)
     os.environ["OPENBLAS_NUM_THREADS"] = "1"
     results = []
+    arguments.followed = collections.Counter()
     with ThreadPoolExecutor(arguments.jobs) as pool, open(arguments.list or os.devnull, "w") as file:
         for result in pool.map(lambda i: one(arguments, i), range(arguments.first, arguments.first + arguments.count)):
             if result:
@@ -304,6 +329,8 @@ def main():
                 file.flush()
     table(results, 1)
     table(results, 2)
+    for outcome, count in sorted(arguments.followed.items()):
+        print("%4d %s" % (count, outcome))
     broken = [r for r in results if r[3] in BROKEN or (r[3] == "false stop" and r[2] in ("monolithic", "stages"))]
     for result in broken:
         print("%d/%d %s %s: %s: %s" % ((arguments.seed,) + result[:5]))
