@@ -129,8 +129,9 @@ static int owner(const bough_pool *p, int k) {
     return k / p->n_thread % 2 == 0 ? place : p->n_thread - 1 - place;
 }
 
-// For a task's owner. Where no other thread has come, lists cost no more than on one thread.
-static long patience(const bough_pool *p) { return atomic_load(&p->alone) ? 0 : steal_time; }
+// The caller's time to wait for a task's owner [ns]: none where no other thread has come, so that lists cost no
+// more than on one thread.
+static long time_to_wait(const bough_pool *p) { return atomic_load(&p->alone) ? 0 : steal_time; }
 
 // A thread's own tasks, then those of threads that do not come.
 static void do_list(bough_pool *p, uint64_t list, int self) {
@@ -139,7 +140,7 @@ static void do_list(bough_pool *p, uint64_t list, int self) {
     }
     if (self > 0 && look(p, steal_time, has_news, list)) return;
     for (int k = 0; k < count_of(list); k++) {
-        if (self == 0 && look(p, patience(p), is_done, (uint64_t)k)) continue;
+        if (self == 0 && look(p, time_to_wait(p), is_done, (uint64_t)k)) continue;
         do_task(p, list, k, self);
     }
 }
@@ -213,7 +214,7 @@ void bough_pool_run_turns(bough_pool *pool, int n, void (*work)(void *data, int 
 void bough_pool_await(bough_pool *pool, int earlier) {
     if (!pool || !pool->open || pool->n_thread == 1 || earlier < pool->first) return;
     int k = earlier - pool->first;
-    if (!look(pool, patience(pool), is_done, (uint64_t)k)) {
+    if (!look(pool, time_to_wait(pool), is_done, (uint64_t)k)) {
         do_task(pool, atomic_load(&pool->list), k, omp_get_thread_num());
     }
     wait_until(pool, &pool->waiting, is_done, (uint64_t)k);
