@@ -1,8 +1,8 @@
 // Two watches serve where no second solution measures the error; what each finds on random scenes is in
 // docs/verification.md.
 //
-// A force that has grown by a factor of 100 since its first steps is analysed, and again after each further
-// factor of 100: the coupling is the cause if its eigenvalues about the current state explain that growth and
+// A force that has grown by a factor of 100 since its first steps, and that the members do not agree on, is
+// analysed, and again after each further factor of 100: the coupling is the cause if its eigenvalues about the current state explain that growth and
 // those of a shorter macro step, or of ramp there, do not. So growth that belongs to the mechanics, such as a
 // fall or flutter, goes on. Members whose equations are not known have no eigenvalues; of these the coupling
 // is the cause if the force obtained and the force applied have nothing in common.
@@ -18,6 +18,10 @@
 
 enum { FIRST_STEPS = 8 };
 static const double suspicious_growth = 100;
+
+// Difference of the forces obtained and applied, of the largest so far, below which a coupling that does not
+// iterate is not the cause of any growth yet.
+static const double agreement = 1e-5;
 
 // Up to three components of one connection: a vector, measured by its norm.
 typedef struct group {
@@ -161,7 +165,8 @@ static bough_status watch_size(const bough_monitor *m, const bough_coupling *c, 
         g->first_steps += size > 0;
         g->small = fmax(g->small, size);
         g->small_time = c->t1;
-    } else if (!g->kinematic && size > suspicious_growth * g->small) {
+    } else if (!g->kinematic && size > suspicious_growth * g->small &&
+               (c->iteration || defect > agreement * g->magnitude)) {
         bough_status status = look_into(m, c, g, defect);
         g->small = size;
         g->small_time = c->t1;

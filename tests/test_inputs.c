@@ -81,7 +81,7 @@ static void constant_inputs_are_loads_of_the_scene(void **state) {
         for (int k = 0; cases[i].set[k][0]; k++) set(a, cases[i].set[k][0], cases[i].set[k][1]);
         step_to(a, bough_session_duration(a));
         step_to(b, bough_session_duration(b));
-        check_within(a, b, 1e-11); // the sums are the same, their order is not
+        check_within(a, b, 1e-8); // the sums are the same, their order is not, and steps follow their rounding
         bough_session_close(a);
         bough_session_close(b);
     }

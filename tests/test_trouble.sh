@@ -155,6 +155,7 @@ vanished() {
 
 # TERM and INT end a study after its step, KILL at once; what was done is not done again.
 signals() {
+    small_study scene.yaml | sed 's/duration: 0.5 s/duration: 1 s/' >study.yaml # a second after its first run
     for signal in INT TERM KILL; do
         rm -rf part
         "$bough" study study.yaml --out part --threads 1 --quiet >/dev/null 2>stderr &
