@@ -19,8 +19,8 @@
 enum { FIRST_STEPS = 8 };
 static const double suspicious_growth = 100;
 
-// Difference of the forces obtained and applied, of the largest so far, below which a coupling that does not
-// iterate is not the cause of any growth yet.
+// Difference of the forces obtained and applied, of the largest so far, below which an implicit coupling that
+// does not iterate is not the cause of any growth yet. (Explicit ones may apply all forces as obtained.)
 static const double agreement = 1e-5;
 
 // Up to three components of one connection: a vector, measured by its norm.
@@ -166,7 +166,7 @@ static bough_status watch_size(const bough_monitor *m, const bough_coupling *c, 
         g->small = fmax(g->small, size);
         g->small_time = c->t1;
     } else if (!g->kinematic && size > suspicious_growth * g->small &&
-               (c->iteration || defect > agreement * g->magnitude)) {
+               (c->iteration || c->scheme->explicit_forces || defect > agreement * g->magnitude)) {
         bough_status status = look_into(m, c, g, defect);
         g->small = size;
         g->small_time = c->t1;
