@@ -27,6 +27,10 @@ bough_status bough_controller_check(const bough_controller_def *d) {
         return bough_fail(BOUGH_INVALID, "the controller's speeds, power, torque, rates, gains and "
                                          "slip must be positive");
     }
+    if (!(d->cut_in >= 0 && d->optimal_gain >= 0 && d->proportional >= 0)) {
+        return bough_fail(BOUGH_INVALID, "the controller's cut-in speed, optimal gain and proportional gain "
+                                         "must not be negative");
+    }
     if (!(d->least_pitch < d->most_pitch)) {
         return bough_fail(BOUGH_INVALID, "the controller's least pitch must be below its most");
     }
@@ -40,15 +44,17 @@ bough_status bough_controller_check(const bough_controller_def *d) {
 }
 
 double bough_controller_torque(const bough_controller_def *d, double speed, double pitch) {
+    bool pitched = pitch >= d->power_pitch;
     double torque;
-    if (speed >= d->rated_speed && d->above_rated == BOUGH_CONSTANT_TORQUE) {
-        torque = d->rated_power / d->rated_speed;
-    } else if (speed >= d->rated_speed || pitch >= d->power_pitch) {
-        torque = d->rated_power / fmax(speed, d->cut_in);
-    } else if (speed <= d->cut_in) {
+    if (speed <= d->cut_in) {
         torque = 0;
-    } else if (speed < d->optimal_from) { // a line from none at cut-in to the parabola
-        double end = d->optimal_gain * d->optimal_from * d->optimal_from;
+    } else if (speed >= d->rated_speed && d->above_rated == BOUGH_CONSTANT_TORQUE) {
+        torque = d->rated_power / d->rated_speed;
+    } else if (speed >= d->rated_speed || (pitched && speed >= d->optimal_from)) {
+        torque = d->rated_power / speed;
+    } else if (speed < d->optimal_from) { // a line from none at cut-in to constant power or the parabola
+        double parabola = d->optimal_gain * d->optimal_from * d->optimal_from;
+        double end = fmin(pitched ? d->rated_power / d->optimal_from : parabola, d->most_torque);
         torque = end * (speed - d->cut_in) / (d->optimal_from - d->cut_in);
     } else if (speed < transition(d)) {
         torque = d->optimal_gain * speed * speed;
@@ -80,6 +86,7 @@ void bough_controller_advance(const bough_controller_def *d, double speed, doubl
     s->speed = speed + (s->speed - speed) * exp(-step * d->corner);
     double most = d->torque_rate * step, torque = bough_controller_torque(d, s->speed, s->pitch);
     s->torque = bough_clamp(torque, s->torque - most, s->torque + most);
+    if (speed <= 0) s->torque = 0; // which the filter and the torque's rate would keep while it reverses
     double share = schedule(d, s->pitch), error = s->speed - d->reference_speed;
     // The integral alone must not ask for more than there is.
     double unit = share * d->integral;

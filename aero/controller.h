@@ -22,7 +22,7 @@ typedef struct bough_controller_def {
     double slip;                    // of the line between the two, share of its synchronous speed [-]
     double most_torque;             // [N m]
     double torque_rate;             // the most [N m/s]
-    double power_pitch;             // pitch above which the power is constant at any speed [rad]
+    double power_pitch;             // pitch above which the power is constant from optimal_from on [rad]
     double reference_speed;         // of the pitch [rad/s]
     double proportional;            // gain at no pitch [s]
     double integral;                // [-]
@@ -43,7 +43,8 @@ typedef struct bough_controller_state {
     double pitch;    // demanded [rad]
 } bough_controller_state;
 
-// The torque at a filtered speed and a pitch, without its limit in time [N m].
+// The torque at a filtered speed and a pitch, without its limit in time [N m]. It never drives: none at and
+// below cut-in, positive above.
 double bough_controller_torque(const bough_controller_def *def, double speed, double pitch);
 
 // Advances by `step` [s] with the measured generator speed [rad/s] and pitch [rad]. The demanded torque and

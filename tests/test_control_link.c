@@ -7,9 +7,8 @@
 
 static const char turbine[] = "apps/turbine/power.yaml";
 
-#define RIGID                                                                                      \
-    "simulation.threads=1", "bodies[3].fidelity=rigid", "bodies[4].fidelity=rigid",                \
-        "bodies[5].fidelity=rigid"
+#define RIGID                                                                                                \
+    "simulation.threads=1", "bodies[3].fidelity=rigid", "bodies[4].fidelity=rigid", "bodies[5].fidelity=rigid"
 #define BLADED "control={kind: bladed, library: " BOUGH_SAMPLE_DISCON "}"
 
 typedef struct fixture {
@@ -44,9 +43,13 @@ static double channel(fixture *f, const char *name) {
 // 10.45° gives 2 % less than it.
 static void law_holds_speed_and_power(void **state) {
     (void)state;
-    static const char *const sets[] = {RIGID, "aero.wind.speed=15 m/s", "bodies[3].pitch=8 deg",
-                                       "bodies[4].pitch=8 deg", "bodies[5].pitch=8 deg",
-                                       "bodies[2].joint.speed=12.6 rpm", NULL};
+    static const char *const sets[] = {RIGID,
+                                       "aero.wind.speed=15 m/s",
+                                       "bodies[3].pitch=8 deg",
+                                       "bodies[4].pitch=8 deg",
+                                       "bodies[5].pitch=8 deg",
+                                       "bodies[2].joint.speed=12.6 rpm",
+                                       NULL};
     fixture f = open_turbine(sets);
     run_until(&f, 60);
     check_near(channel(&f, "RotSpeed"), 12.1, 2e-3, 0);
@@ -54,6 +57,39 @@ static void law_holds_speed_and_power(void **state) {
     check_near(channel(&f, "BldPitch3"), channel(&f, "BldPitch1"), 1e-12, 0);
     check_near(channel(&f, "GenPwr"), 0.944 * 5296.61, 1e-3, 0);
     check_near(channel(&f, "RtAeroPwr"), 5296610, 2e-2, 0); // blade 1 is near the tower
+    bough_arena_destroy(f.arena);
+}
+
+// Blades that nobody pitches and that stand beyond power_pitch: from standstill in a light wind the generator
+// has no torque below cut-in, and at 9 rpm that of the best tip-speed ratio.
+static void law_brakes_unsteered_blades_only(void **state) {
+    (void)state;
+    static const char *const sets[] = {RIGID,
+                                       "aero.wind.speed=6 m/s",
+                                       "control.pitch=false",
+                                       "bodies[3].pitch=10 deg",
+                                       "bodies[4].pitch=10 deg",
+                                       "bodies[5].pitch=10 deg",
+                                       "bodies[2].joint.speed=0 rpm",
+                                       NULL};
+    fixture f = open_turbine(sets);
+    for (int k = 1; k <= 10; k++) {
+        run_until(&f, k);
+        check_near(channel(&f, "GenTq"), 0, 0, 0);
+        assert_true(channel(&f, "RotSpeed") > 0);
+    }
+    bough_arena_destroy(f.arena);
+    static const char *const turning[] = {RIGID,
+                                          "aero.wind.speed=8 m/s",
+                                          "control.pitch=false",
+                                          "bodies[3].pitch=2 deg",
+                                          "bodies[4].pitch=2 deg",
+                                          "bodies[5].pitch=2 deg",
+                                          NULL};
+    f = open_turbine(turning);
+    run_until(&f, 0.04);
+    double speed = channel(&f, "GenSpeed") * BOUGH_PI / 30;
+    check_near(1e3 * channel(&f, "GenTq"), 2.332287 * speed * speed, 1e-2, 0);
     bough_arena_destroy(f.arena);
 }
 
@@ -76,11 +112,14 @@ static void library_steers_the_turbine(void **state) {
 static void library_steers_all_blades(void **state) {
     (void)state;
     static const char *const sets[] = {
-        RIGID, BLADED, "bodies[1].joint={kind: fixed, parent: ground, placement: [move z 87.6 m]}",
+        RIGID,
+        BLADED,
+        "bodies[1].joint={kind: fixed, parent: ground, placement: [move z 87.6 m]}",
         "bodies[0]={name: blade4, fidelity: rigid, joint: {kind: revolute, parent: hub, axis: z, "
         "motion: {angle: 0 deg}, placement: [rotate x 60 deg, rotate y -2.5 deg, move z 1.5 m]}, "
         "rod: {table: blade-structure.yaml, segments: 24}}",
-        "turbine.blades=[blade1, blade2, blade3, blade4]", NULL};
+        "turbine.blades=[blade1, blade2, blade3, blade4]",
+        NULL};
     fixture f = open_turbine(sets);
     run_until(&f, 0.5);
     check_near(channel(&f, "BldPitch4"), 8 * 0.5, 1e-6, 0);
@@ -187,8 +226,8 @@ static void bad_scenes_are_refused(void **state) {
         bough_errors errors = {.arena = arena};
         bough_scene *scene;
         bough_simulation *s;
-        bough_status status = bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/power.yaml",
-                                               bad[i], 1, &errors, &scene);
+        bough_status status =
+            bough_scene_read(arena, BOUGH_SOURCE_DIR "/apps/turbine/power.yaml", bad[i], 1, &errors, &scene);
         if (bough_is_ok(&status)) status = bough_simulation_build(arena, scene, &s);
         assert_int_equal(status.code, BOUGH_INVALID);
         const char *told = errors.n > 0 ? errors.item[0].text : status.message;
@@ -200,13 +239,10 @@ static void bad_scenes_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(law_holds_speed_and_power),
-        cmocka_unit_test(library_steers_the_turbine),
-        cmocka_unit_test(library_steers_all_blades),
-        cmocka_unit_test(library_is_told_of_the_nacelle),
-        cmocka_unit_test(library_may_pitch_each_blade),
-        cmocka_unit_test(failing_library_ends_the_run),
-        cmocka_unit_test(memory_is_saved_and_restored),
+        cmocka_unit_test(law_holds_speed_and_power),      cmocka_unit_test(law_brakes_unsteered_blades_only),
+        cmocka_unit_test(library_steers_the_turbine),     cmocka_unit_test(library_steers_all_blades),
+        cmocka_unit_test(library_is_told_of_the_nacelle), cmocka_unit_test(library_may_pitch_each_blade),
+        cmocka_unit_test(failing_library_ends_the_run),   cmocka_unit_test(memory_is_saved_and_restored),
         cmocka_unit_test(bad_scenes_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

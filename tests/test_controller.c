@@ -44,10 +44,9 @@ static void gains_are_those_of_the_design(void **state) {
 static void torque_follows_the_regions(void **state) {
     (void)state;
     bough_controller_def d = baseline();
-    static const double table[][3] = {
-        {500, 0, 0},        {669.9, 0, 0},           {871, 0, 19403.3},
-        {1000, 0, 25576.4}, {1161.963, 0, 43528.7},  {1173.7, 0, 43093.5},
-        {1300, 0, 38906.9}, {1100, 0.0175, 45980.8}, {1000, 0.2, 47402.9}};
+    static const double table[][3] = {{500, 0, 0},        {669.9, 0, 0},           {871, 0, 19403.3},
+                                      {1000, 0, 25576.4}, {1161.963, 0, 43528.7},  {1173.7, 0, 43093.5},
+                                      {1300, 0, 38906.9}, {1100, 0.0175, 45980.8}, {1000, 0.2, 47402.9}};
     for (size_t i = 0; i < sizeof table / sizeof *table; i++) {
         const double *t = table[i];
         check_near(bough_controller_torque(&d, t[0] * rpm, t[1]), t[2], 2e-5, 0.5);
@@ -57,6 +56,37 @@ static void torque_follows_the_regions(void **state) {
         double torque = bough_controller_torque(&d, w, 0);
         assert_true(torque >= before && torque < before + 80);
         before = torque;
+    }
+}
+
+// From -1 to 1.3 of rated speed, at any pitch: no torque up to cut-in, positive above, without a jump up to
+// where the pitched turbine has constant power.
+static void torque_never_drives(void **state) {
+    (void)state;
+    static const double pitches[] = {0, 0.018, 0.3, 1.57};
+    for (int k = 0; k < 8; k++) {
+        bough_controller_def d = baseline();
+        if (k >= 4) d.cut_in = 0;
+        double pitch = pitches[k % 4], before = 0;
+        for (double w = -d.rated_speed; w < 1.3 * d.rated_speed; w += 0.01) {
+            double torque = bough_controller_torque(&d, w, pitch);
+            assert_true(w <= d.cut_in ? torque == 0 : torque > 0);
+            assert_true(w >= d.optimal_from || fabs(torque - before) < 25);
+            before = torque;
+        }
+    }
+}
+
+// A rotor that something else stops and turns back: the filter and the rate of the torque keep none.
+static void a_rotor_that_reverses_has_no_torque(void **state) {
+    (void)state;
+    bough_controller_def d = baseline();
+    bough_controller_state s = {0};
+    bough_controller_advance(&d, 110, 0, 0.02, &s);
+    assert_true(s.torque > 20000);
+    for (double speed = 110; speed > -50; speed -= 2) {
+        bough_controller_advance(&d, speed, 0, 0.02, &s);
+        if (speed <= 0) check_near(s.torque, 0, 0, 0);
     }
 }
 
@@ -120,8 +150,10 @@ static void speed_is_regulated(void **state) {
 
 static void senseless_constants_are_refused(void **state) {
     (void)state;
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 6; i++) {
         bough_controller_def d = baseline();
+        if (i == 4) d.cut_in = -1;
+        if (i == 5) d.optimal_gain = -1;
         if (i == 0) d.slip = 0;
         if (i == 1) d.least_pitch = 2;
         if (i == 2) d.cut_in = 100;
@@ -147,6 +179,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(gains_are_those_of_the_design),
         cmocka_unit_test(torque_follows_the_regions),
+        cmocka_unit_test(torque_never_drives),
+        cmocka_unit_test(a_rotor_that_reverses_has_no_torque),
         cmocka_unit_test(torque_may_stay),
         cmocka_unit_test(limits_hold),
         cmocka_unit_test(speed_is_regulated),

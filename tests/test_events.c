@@ -77,11 +77,29 @@ static void stop_takes_the_torque_away_in_ten_seconds(void **state) {
     bough_arena_destroy(f.arena);
 }
 
+// A brake on the rotor's joint stops it within those ten seconds and would turn it back: a sample after it
+// stands there is no torque.
+static void stop_does_not_drive_a_rotor_that_stands(void **state) {
+    (void)state;
+    fixture f = open_run("control.events=[{kind: stop, at: 1 s}]",
+                         "loads=[{joint: hub, torque: -12 MN m, ramp: [1 s, 1 s]}]");
+    double least = 0;
+    for (double t = 1; t < 9; t += step) {
+        double before = channel(&f, "RotSpeed");
+        go_to(&f, t + step);
+        least = fmin(least, channel(&f, "RotSpeed"));
+        if (before < 0) check_near(channel(&f, "GenTq"), 0, 0, 1e-9);
+    }
+    assert_true(least < -0.1);
+    bough_arena_destroy(f.arena);
+}
+
 static void a_stuck_blade_stays_while_the_others_feather(void **state) {
     (void)state;
     fixture f = open_run("control.events=[{kind: emergency-stop, at: 2 s}, "
                          "{kind: pitch-stuck, blade: 2, at: 1 s}, "
-                         "{kind: pitch-runaway, blade: 3, at: 4 s, angle: -5 deg, rate: 4 deg/s}]", NULL);
+                         "{kind: pitch-runaway, blade: 3, at: 4 s, angle: -5 deg, rate: 4 deg/s}]",
+                         NULL);
     go_to(&f, 1);
     double stuck = channel(&f, "BldPitch2");
     go_to(&f, 4);
@@ -119,8 +137,8 @@ static void thresholds_trigger(void **state) {
 
 static void before_its_start_the_turbine_idles(void **state) {
     (void)state;
-    fixture f = open_run("control.events=[{kind: start, at: 2 s}]",
-                         "bodies[3-5].joint.motion={angle: -90 deg}");
+    fixture f =
+        open_run("control.events=[{kind: start, at: 2 s}]", "bodies[3-5].joint.motion={angle: -90 deg}");
     go_to(&f, 2);
     check_near(channel(&f, "BldPitch1"), 90, 1e-9, 0);
     check_near(channel(&f, "GenTq"), 0, 0, 1e-12);
@@ -154,8 +172,8 @@ static void a_yaw_drive_turns_the_nacelle(void **state) {
 // A copy taken before an event goes on through it to the same bits.
 static void events_are_in_the_copy(void **state) {
     (void)state;
-    fixture f = open_run("control.events=[{kind: pitch-stuck, blade: 1, at: 0.5 s}, {kind: stop, at: 1 s}]",
-                         NULL);
+    fixture f =
+        open_run("control.events=[{kind: pitch-stuck, blade: 1, at: 0.5 s}, {kind: stop, at: 1 s}]", NULL);
     go_to(&f, 0.8);
     bough_snapshot measure = {.move = BOUGH_SNAPSHOT_MEASURE};
     bough_run_snapshot(&f.run, &measure);
@@ -207,6 +225,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(emergency_stop_feathers_without_torque),
         cmocka_unit_test(stop_takes_the_torque_away_in_ten_seconds),
+        cmocka_unit_test(stop_does_not_drive_a_rotor_that_stands),
         cmocka_unit_test(a_stuck_blade_stays_while_the_others_feather),
         cmocka_unit_test(thresholds_trigger),
         cmocka_unit_test(before_its_start_the_turbine_idles),

@@ -1,6 +1,8 @@
 // The keys of a turbine's controller.
 #include "apps/scene/scene_tables.h"
 
+#include <math.h>
+
 // clang-format off
 
 // The constants of the law with those of the NREL 5 MW turbine.
@@ -25,7 +27,7 @@ static const bough_key law_keys[] = {
     LAW(most_torque, MOMENT, "47402.91", "47.4 kN m", "largest torque of the generator"),
     LAW(torque_rate, PURE_NUMBER, "15000", "12e3", "largest rate of the torque, in N m/s"),
     LAW(power_pitch, ANGLE, "0.01745329 rad", "1 deg",
-        "pitch above which the power is constant at any speed"),
+        "pitch above which the power is constant from optimal_from on, if the pitch is controlled"),
     LAW(reference_speed, ANGULAR_SPEED, "122.9096 rad/s", "1174 rpm",
         "generator speed to which the pitch controls"),
     LAW(proportional, PURE_NUMBER, "0.01882681", "0.02",
@@ -50,7 +52,7 @@ static const bough_key event_keys[] = {
              "yaw-runaway"),
      .required = true,
      .help = "start: until then the turbine idles with the pitch of its joints; stop: pitch to "
-             "feather, torque to zero in 10 s; emergency-stop: pitch to feather at the largest "
+             "feather, torque to zero in 10 s and as the rotor stops; emergency-stop: pitch to feather at the largest "
              "rate, no torque; grid-loss: no torque, the pitch is controlled; pitch-stuck: one "
              "blade keeps its pitch; pitch-runaway: one blade pitches to 'angle'; yaw-runaway: the "
              "yaw drive turns to 'angle'"},
@@ -126,6 +128,7 @@ static const bough_key control_keys[] = {
 
 static void check_control(bough_schema_reader *r, void *item) {
     bough_scene_control *c = item;
+    if (!c->pitch) c->law.power_pitch = INFINITY; // a pitch that nobody controls says nothing of the power
     if (c->kind != BOUGH_SCENE_BLADED) return;
     if (c->library) c->library = bough_schema_path(r, c->library);
     c->input = c->input && c->input[0] ? bough_schema_path(r, c->input) : "";

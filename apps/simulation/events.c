@@ -39,8 +39,7 @@ static bough_status find_channels(bough_arena *arena, bough_events *e) {
     return status;
 }
 
-bough_status bough_events_build(bough_arena *arena, bough_simulation *simulation,
-                                bough_events **events) {
+bough_status bough_events_build(bough_arena *arena, bough_simulation *simulation, bough_events **events) {
     const bough_scene_control *control = &simulation->scene->control;
     if (control->n_event == 0) return bough_ok();
     bough_events *e = bough_arena_take(arena, sizeof *e);
@@ -77,16 +76,14 @@ static double yaw_angle(const bough_simulation *s, int body) {
     return s->leader.state[q];
 }
 
-void bough_events_look(bough_events *e, const bough_discon_sensed *sensed,
-                       bough_event_state *state) {
+void bough_events_look(bough_events *e, const bough_discon_sensed *sensed, bough_event_state *state) {
     for (int i = 0; i < e->n; i++) {
         const bough_scene_event *event = &e->event[i];
         if (state[i].happened != 0 || !happens(e, i, sensed->time)) continue;
         state[i] = (bough_event_state){
-            .happened = 1, .since = sensed->time, .torque = sensed->torque};
+            .happened = 1, .since = sensed->time, .torque = sensed->torque, .speed = sensed->generator_speed};
         if (event->blade > 0) state[i].angle = sensed->pitch[event->blade - 1];
-        if (event->kind == BOUGH_SCENE_YAW_RUNAWAY)
-            state[i].angle = yaw_angle(e->simulation, event->body);
+        if (event->kind == BOUGH_SCENE_YAW_RUNAWAY) state[i].angle = yaw_angle(e->simulation, event->body);
     }
 }
 
@@ -109,18 +106,17 @@ static double rate_of(const bough_events *e, const bough_scene_event *event) {
     return event->kind == BOUGH_SCENE_YAW_RUNAWAY ? yaw : e->simulation->scene->control.law.pitch_rate;
 }
 
-static void feather(const bough_events *e, const bough_scene_event *event,
-                    const bough_discon_sensed *sensed, bough_discon_demand *demand) {
+static void feather(const bough_events *e, const bough_scene_event *event, const bough_discon_sensed *sensed,
+                    bough_discon_demand *demand) {
     double to = event->angle > 0 ? event->angle : BOUGH_PI / 2;
     double reach = rate_of(e, event) * sensed->step;
-    for (int b = 0; b < sensed->n_blade; b++)
-        demand->pitch[b] = towards(sensed->pitch[b], to, reach);
+    for (int b = 0; b < sensed->n_blade; b++) demand->pitch[b] = towards(sensed->pitch[b], to, reach);
 }
 
 // Pitched, the law demands rated power at any speed, which would stop a rotor that starts: until it is at
 // rated speed or no longer pitched, it has the torque of an unpitched one.
-static void run_up(const bough_events *e, const bough_discon_sensed *sensed,
-                   bough_event_state *state, bough_discon_demand *demand) {
+static void run_up(const bough_events *e, const bough_discon_sensed *sensed, bough_event_state *state,
+                   bough_discon_demand *demand) {
     const bough_controller_def *law = &e->simulation->scene->control.law;
     bool runs = sensed->generator_speed >= law->rated_speed || sensed->pitch[0] < law->power_pitch;
     if (runs) state->running = 1;
@@ -128,9 +124,17 @@ static void run_up(const bough_events *e, const bough_discon_sensed *sensed,
     demand->torque = fmin(demand->torque, bough_controller_torque(law, sensed->generator_speed, 0));
 }
 
+// In ten seconds to none, below half the speed of the start also with the speed: a torque that stayed would
+// turn a rotor that has stopped backwards.
+static double stopping_torque(const bough_event_state *state, double gone, double speed) {
+    const double ramp = 10; // [s]
+    double left = fmax(0, 1 - gone / ramp), turning = state->speed > 0 ? 2 * speed / state->speed : 0;
+    return state->torque * left * bough_clamp(turning, 0, 1);
+}
+
 // The joint goes at its rate; its speed jumps where that begins and ends.
-static void turn_yaw(const bough_events *e, const bough_scene_event *event,
-                     const bough_discon_sensed *sensed, const bough_event_state *state) {
+static void turn_yaw(const bough_events *e, const bough_scene_event *event, const bough_discon_sensed *sensed,
+                     const bough_event_state *state) {
     double rate = rate_of(e, event), gone = sensed->time - state->since;
     double now = towards(state->angle, event->angle, rate * gone);
     double then = towards(state->angle, event->angle, rate * (gone + sensed->step));
@@ -139,9 +143,8 @@ static void turn_yaw(const bough_events *e, const bough_scene_event *event,
                      (bough_motion_point){now, speed, 0}, (bough_motion_point){then, speed, 0});
 }
 
-static void change(const bough_events *e, int i, const bough_discon_sensed *sensed,
-                   bough_event_state *state, bough_discon_demand *demand) {
-    const double ramp = 10; // of the torque of a normal stop [s]
+static void change(const bough_events *e, int i, const bough_discon_sensed *sensed, bough_event_state *state,
+                   bough_discon_demand *demand) {
     const bough_scene_event *event = &e->event[i];
     int b = event->blade - 1;
     double gone = sensed->time + sensed->step - state->since;
@@ -151,7 +154,7 @@ static void change(const bough_events *e, int i, const bough_discon_sensed *sens
             run_up(e, sensed, state, demand);
         break;
     case BOUGH_SCENE_STOP:
-        demand->torque = state->torque * fmax(0, 1 - gone / ramp);
+        demand->torque = stopping_torque(state, gone, sensed->generator_speed);
         feather(e, event, sensed, demand);
         break;
     case BOUGH_SCENE_EMERGENCY_STOP:
@@ -161,15 +164,14 @@ static void change(const bough_events *e, int i, const bough_discon_sensed *sens
     case BOUGH_SCENE_GRID_LOSS: demand->torque = 0; break;
     case BOUGH_SCENE_PITCH_STUCK: demand->pitch[b] = state->angle; break;
     case BOUGH_SCENE_PITCH_RUNAWAY:
-        demand->pitch[b] =
-            towards(sensed->pitch[b], event->angle, rate_of(e, event) * sensed->step);
+        demand->pitch[b] = towards(sensed->pitch[b], event->angle, rate_of(e, event) * sensed->step);
         break;
     case BOUGH_SCENE_YAW_RUNAWAY: turn_yaw(e, event, sensed, state); break;
     }
 }
 
-void bough_events_change(const bough_events *e, const bough_discon_sensed *sensed,
-                         bough_event_state *state, bough_discon_demand *demand) {
+void bough_events_change(const bough_events *e, const bough_discon_sensed *sensed, bough_event_state *state,
+                         bough_discon_demand *demand) {
     if (bough_events_idle(e, state)) {
         demand->torque = 0;
         for (int b = 0; b < sensed->n_blade; b++) demand->pitch[b] = sensed->pitch[b];
@@ -178,8 +180,7 @@ void bough_events_change(const bough_events *e, const bough_discon_sensed *sense
     for (int fault = 0; fault < 2; fault++) {
         for (int i = 0; i < e->n; i++) {
             bool single = e->event[i].blade > 0;
-            if (state[i].happened != 0 && single == (fault == 1))
-                change(e, i, sensed, &state[i], demand);
+            if (state[i].happened != 0 && single == (fault == 1)) change(e, i, sensed, &state[i], demand);
         }
     }
 }
