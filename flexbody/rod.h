@@ -202,10 +202,6 @@ void bough_rod_rest_state(const bough_rod_model *m, const double *input, double 
 void bough_rod_gather(const bough_rod_model *m, const double *state, const double *input,
                       bough_rod_scratch *scratch);
 
-// The same for what the first segment needs.
-void bough_rod_gather_root(const bough_rod_model *m, const double *state, const double *input,
-                           bough_rod_scratch *scratch);
-
 // Elastic and viscous forces of segments first..last−1 from scratch->vertex into
 // scratch->segment. False when a segment's relative rotation exceeds 120° (mesh too coarse).
 bool bough_rod_forces(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch);

@@ -47,12 +47,6 @@ void bough_rod_gather(const bough_rod_model *m, const double *state, const doubl
     gather_state(m, state, 1, m->n, scratch->vertex);
 }
 
-void bough_rod_gather_root(const bough_rod_model *m, const double *state, const double *input,
-                           bough_rod_scratch *scratch) {
-    gather_input(m, input, scratch);
-    gather_state(m, state, 1, 1, scratch->vertex);
-}
-
 // The forces, and the least cos θ/2 of the segments.
 static double least_cosine(const bough_rod_model *m, int first, int last, bough_rod_scratch *scratch) {
     int s = m->stride;
@@ -349,7 +343,8 @@ bool bough_rod_derivative_again(const bough_rod_model *m, const bough_rod_loads 
 void bough_rod_root_wrench(const bough_rod_model *m, const bough_rod_loads *loads, double t,
                            const double *state, const double *input, bough_rod_scratch *scratch,
                            double *wrench) {
-    bough_rod_gather_root(m, state, input, scratch);
+    gather_input(m, input, scratch);
+    gather_state(m, state, 1, 1, scratch->vertex);
     load_end(m, loads, t, 0, 0, scratch);
     bough_rod_forces(m, 0, 1, scratch);
     bough_rod_present_root_wrench(m, scratch, wrench);

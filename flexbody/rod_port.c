@@ -56,13 +56,13 @@ static vertex_variation end_variation(const double *p, const double *d) {
 
 // -- the wrenches ---------------------------------------------------------------------------------
 
-void bough_rod_wrench_tangent(const bough_rod_model *m, const double *state, const double *input,
-                              const double *state_rate, const double *input_rate, bough_rod_scratch *scratch,
-                              double *wrench) {
-    bough_rod_gather_root(m, state, input, scratch);
+void bough_rod_wrench_tangent(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                              const bough_rod_variation *at, bough_rod_scratch *scratch, double *wrench) {
+    double now[BOUGH_ROD_OUTPUTS]; // leaves vertices and loads in scratch
+    bough_rod_root_wrench(m, loads, t, at->state, at->input, scratch, now);
     vertex_variation l = {0}, r = {0};
-    if (input_rate != NULL) l = root_variation(m, input_rate);
-    if (state_rate != NULL) r = first_variation(m, state, state_rate);
+    if (at->input_rate != NULL) l = root_variation(m, at->input_rate);
+    if (at->state_rate != NULL) r = first_variation(m, at->state, at->state_rate);
     segment_force f = segment_tangent(m, scratch, 0, &l, &r);
     store3(wrench, 1, 0, f.f);
     store3(wrench + 3, 1, 0, bough_mat3_mul(m->root, f.ll));
@@ -212,10 +212,12 @@ static void end_columns(const bough_rod_model *m, const double *end, const bough
     }
 }
 
-void bough_rod_input_columns(const bough_rod_model *m, const double *state, const double *input,
-                             bough_rod_scratch *scratch, double *column) {
+void bough_rod_input_columns(const bough_rod_model *m, const bough_rod_loads *loads, double t,
+                             const double *state, const double *input, bough_rod_scratch *scratch,
+                             double *column) {
     size_t size = (size_t)BOUGH_ROD_STATES * m->n, inputs = (size_t)bough_rod_n_inputs(m);
     bough_rod_gather(m, state, input, scratch);
+    bough_rod_load(m, loads, t, scratch);
     memset(column, 0, inputs * size * sizeof *column);
     root_columns(m, state, scratch, column);
     if (!bough_rod_carries(m)) return;

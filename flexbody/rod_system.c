@@ -43,9 +43,9 @@ static void output_again(void *self, double t, const double *state, const double
 static void output_tangent(void *self, double t, const double *state, const double *input,
                            const double *state_rate, const double *input_rate, double *rate) {
     bough_rod_body *b = self;
-    bough_rod_wrench_tangent(b->model, state, input, state_rate, input_rate, &b->scratch, rate);
-    if (!bough_rod_carries(b->model)) return;
     bough_rod_variation at = {state, input, state_rate, input_rate};
+    bough_rod_wrench_tangent(b->model, &b->loads, t, &at, &b->scratch, rate);
+    if (!bough_rod_carries(b->model)) return;
     bough_rod_end_tangent(b->model, &b->loads, t, &at, &b->scratch, rate + BOUGH_ROD_OUTPUTS);
 }
 
@@ -57,9 +57,8 @@ static bool kept_tangent(void *self, const void *factors, const double *state_ra
 }
 
 static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
-    (void)t;
     bough_rod_body *b = self;
-    bough_rod_input_columns(b->model, state, input, &b->scratch, column);
+    bough_rod_input_columns(b->model, &b->loads, t, state, input, &b->scratch, column);
 }
 
 static void *factors(void *self, bough_arena *arena) {

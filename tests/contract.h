@@ -29,8 +29,8 @@ static inline double contract_largest(const double *x, int n) {
     return largest;
 }
 
-static inline void contract_near(const double *value, const double *expected, int n,
-                                 double tolerance, const char *what) {
+static inline void contract_near(const double *value, const double *expected, int n, double tolerance,
+                                 const char *what) {
     double allowed = tolerance * (contract_largest(expected, n) + 1e-30);
     for (int i = 0; i < n; i++) {
         if (fabs(value[i] - expected[i]) <= allowed) continue;
@@ -61,9 +61,8 @@ static inline void contract_evaluate(const bough_system *s, contract_function f,
 }
 
 // Central difference along (dy, du); either may be NULL.
-static inline void contract_difference(const bough_system *s, contract_point at,
-                                       contract_function f, const double *dy, const double *du,
-                                       double *slope) {
+static inline void contract_difference(const bough_system *s, contract_point at, contract_function f,
+                                       const double *dy, const double *du, double *slope) {
     const double step = 1e-6;
     int n = f == CONTRACT_OUTPUT ? s->n_output : s->n_state;
     double *y = contract_doubles(s->n_state), *u = contract_doubles(s->n_input);
@@ -165,8 +164,7 @@ static inline void contract_run(bough_member *m, contract_point at, double lengt
 // A copy restored twice and advanced twice gives the same bits, and questions to the system in between
 // disturb nothing. Without a restart too: the integrator's history is not that of the copy, and who
 // restores need not say so.
-static inline void contract_save_restore(bough_member *m, contract_point at, double length,
-                                         bool restart) {
+static inline void contract_save_restore(bough_member *m, contract_point at, double length, bool restart) {
     const bough_system *s = &m->system;
     size_t n = (size_t)s->n_state * sizeof(double);
     bough_arena *arena = bough_arena_create();
@@ -240,8 +238,70 @@ static inline void contract_pause(bough_member *m, contract_point at, double len
     bough_arena_destroy(arena);
 }
 
+// What each operation returns at the point; the solution needs factors.
+static const char *const contract_results[] = {"derivative",   "output", "output_tangent",
+                                               "output_drift", "solve",  "input_columns"};
+enum { CONTRACT_RESULTS = sizeof contract_results / sizeof *contract_results };
+
+static inline int contract_result_size(const bough_system *s, int which) {
+    const int n_drift = s->ops->output_drift ? s->n_output : 0;
+    const int size[] = {s->n_state, s->n_output, s->n_output, n_drift, s->n_state, s->n_input * s->n_state};
+    return size[which];
+}
+
+static inline void contract_result(const bough_system *s, contract_point at, double gamma, int which,
+                                   void *factors, double *x) {
+    const bough_system_ops *ops = s->ops;
+    double *dy = contract_doubles(s->n_state), *du = contract_doubles(s->n_input);
+    contract_direction(s->scale, s->n_state, 1, dy);
+    contract_direction(NULL, s->n_input, 1, du);
+    switch (which) {
+    case 0: assert_true(ops->derivative(s->self, at.t, at.state, at.input, x)); break;
+    case 1: ops->output(s->self, at.t, at.state, at.input, x); break;
+    case 2: ops->output_tangent(s->self, at.t, at.state, at.input, dy, du, x); break;
+    case 3:
+        if (ops->output_drift) ops->output_drift(s->self, at.t, at.state, at.input, x);
+        break;
+    case 4:
+        assert_true(ops->linearise(s->self, at.t, at.state, at.input, factors));
+        assert_true(ops->factor(s->self, factors, gamma));
+        memcpy(x, dy, (size_t)s->n_state * sizeof *x);
+        ops->solve(s->self, factors, x);
+        break;
+    default: ops->input_columns(s->self, at.t, at.state, at.input, x);
+    }
+    free(dy), free(du);
+}
+
+// No result depends on earlier calls: to the bit the same after a derivative and a linearisation at another
+// time, state and input.
+static inline void contract_no_memory(const bough_system *s, contract_point at, double gamma) {
+    int most = 1 + s->n_state + s->n_output + s->n_input * s->n_state;
+    double *first = contract_doubles(most), *again = contract_doubles(most);
+    double *y = contract_doubles(s->n_state), *u = contract_doubles(s->n_input);
+    bough_arena *arena = bough_arena_create();
+    void *factors = s->ops->factors(s->self, arena), *others = s->ops->factors(s->self, arena);
+    contract_direction(s->scale, s->n_state, 5, y);
+    contract_direction(NULL, s->n_input, 5, u);
+    contract_shifted(at.state, 1e-2, y, s->n_state, y);
+    contract_shifted(at.input, 1e-2, u, s->n_input, u);
+    contract_point elsewhere = {at.t + 0.37, y, u, at.tolerance};
+    for (int which = 0; which < CONTRACT_RESULTS; which++) {
+        contract_result(s, at, gamma, 0, factors, again);
+        contract_result(s, at, gamma, which, factors, first);
+        contract_result(s, elsewhere, gamma, 4, others, again);
+        contract_result(s, elsewhere, gamma, 1, others, again);
+        contract_result(s, elsewhere, gamma, 0, others, again);
+        contract_result(s, at, gamma, which, factors, again);
+        contract_near(again, first, contract_result_size(s, which), 0, contract_results[which]);
+    }
+    free(first), free(again), free(y), free(u);
+    bough_arena_destroy(arena);
+}
+
 // What needs no member.
 static inline void contract_check_system(const bough_system *s, contract_point at, double gamma) {
+    contract_no_memory(s, at, gamma);
     contract_output_tangent(s, at);
     contract_input_columns(s, at);
     contract_newton(s, at, gamma);

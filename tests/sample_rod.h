@@ -43,8 +43,7 @@ static inline bough_rod_def sample_def(int n, sample_arrays a, bool carries) {
                            .carries = carries};
 }
 
-static inline bough_rod_model *sample_build(bough_arena *arena, int n, sample_arrays a,
-                                            bool carries) {
+static inline bough_rod_model *sample_build(bough_arena *arena, int n, sample_arrays a, bool carries) {
     bough_rod_def def = sample_def(n, a, carries);
     bough_rod_model *model = NULL;
     bough_status status = bough_rod_create(arena, &def, &model);
@@ -56,8 +55,7 @@ static inline bough_rod_model *sample_build(bough_arena *arena, int n, sample_ar
 // A straight uniform rod along z: diagonal stiffness (6), viscosity mu [s], mass per length,
 // rotary inertia per length about x, y, z.
 static inline bough_rod_model *sample_uniform(bough_arena *arena, int n, double length,
-                                              const double stiffness[6], double mu,
-                                              const double inertia[4]) {
+                                              const double stiffness[6], double mu, const double inertia[4]) {
     static const int diagonal[6] = {0, 6, 11, 15, 18, 20};
     sample_arrays a = sample_take(arena, n);
     double h = length / n;
@@ -146,10 +144,29 @@ static inline void sample_loads(const bough_rod_model *m, bough_rod_loads *loads
     loads->start = 0.25;
 }
 
+// D of its segments at random.
+static inline void sample_line(bough_rod_model *m) {
+    unsigned seed = 29;
+    for (int k = 0; k < 36 * m->stride; k++) m->line[k] = 0.05 * sample_random(&seed);
+}
+
+// Adds loads along all segments that change in time: ramped dead ones and followers from 0.1 to 1 s, and
+// strains without stress that grow steadily.
+static inline void sample_loads_along(bough_arena *arena, const bough_rod_model *m, bough_rod_loads *loads) {
+    const double ramp[2] = {0.1, 1};
+    unsigned seed = 23;
+    for (int follower = 0; follower < 2; follower++) {
+        bough_rod_ramped_load *load = bough_rod_loads_ramped(loads, arena, m, follower, ramp);
+        load->along = true;
+        for (int k = 0; k < 6 * m->stride; k++) load->line[k] = sample_random(&seed);
+    }
+    loads->moving = true;
+    for (int k = 0; k < 6 * m->stride; k++) loads->rest_rate[k] = 0.01 * sample_random(&seed);
+}
+
 // Equilibrium of a rod whose frame is at rest.
 static inline bough_status rod_equilibrium(const bough_rod_model *m, const bough_rod_loads *loads,
-                                           bough_vec3 gravity,
-                                           const bough_rod_static_options *options,
+                                           bough_vec3 gravity, const bough_rod_static_options *options,
                                            bough_rod_static *work, double *state) {
     const double input[BOUGH_ROD_INPUTS] = {0, 0, 0, 0, 0, 0, gravity.x, gravity.y, gravity.z};
     return bough_rod_steady(m, loads, input, options, work, state);

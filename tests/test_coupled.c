@@ -1,4 +1,5 @@
 #include "cosim/coupled.h"
+#include "tests/contract.h"
 #include "tests/two_mass.h"
 
 enum { N = 4 };
@@ -31,8 +32,7 @@ static void solves_the_coupled_system(void **state) {
         status = bough_coupled_setup(coupled, 0, y, coupled->input, gamma);
         assert_true(bough_is_ok(&status));
         bough_coupled_solve(coupled, x);
-        for (int k = 0; k < N; k++)
-            moved[k] = y[k] + x[k];
+        for (int k = 0; k < N; k++) moved[k] = y[k] + x[k];
         status = bough_coupled_rate(coupled, 0, moved, after);
         assert_true(bough_is_ok(&status));
         for (int k = 0; k < N; k++) {
@@ -55,8 +55,7 @@ static void stages_are_rate_and_solution(void **state) {
     bough_coupled *coupled;
     bough_two_mass m;
     build(&m, &coupled, 2);
-    bough_coupled *evaluation =
-        bough_coupled_create_evaluation(m.arena, m.master->assembly, coupled->pool);
+    bough_coupled *evaluation = bough_coupled_create_evaluation(m.arena, m.master->assembly, coupled->pool);
     const double y[N] = {.1, -.2, .5, .3};
     double x[N], expected[N];
     bough_status status = bough_coupled_rate(coupled, 0, y, expected);
@@ -70,6 +69,17 @@ static void stages_are_rate_and_solution(void **state) {
     assert_true(bough_is_ok(&status));
     bough_coupled_each(coupled, NULL, NULL);
     assert_memory_equal(x, expected, sizeof x);
+    bough_two_mass_destroy(&m);
+}
+
+static void connected_members_fulfil_the_contract_of_a_system(void **state) {
+    (void)state;
+    bough_coupled *coupled;
+    bough_two_mass m;
+    build(&m, &coupled, 1);
+    const double y[N] = {.1, -.2, .5, .3}, none[1] = {0};
+    bough_system s = bough_coupled_system(m.arena, m.master->assembly, NULL, "two masses");
+    contract_check_system(&s, (contract_point){0, y, none, 1e-5}, .05);
     bough_two_mass_destroy(&m);
 }
 
@@ -94,6 +104,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solves_the_coupled_system),
         cmocka_unit_test(stages_are_rate_and_solution),
+        cmocka_unit_test(connected_members_fulfil_the_contract_of_a_system),
         cmocka_unit_test(rates_are_those_of_the_coupled_masses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

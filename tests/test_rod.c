@@ -93,8 +93,7 @@ static void forces_are_the_gradient_of_the_energy(void **context) {
     for (int i = 1; i <= N; i++) {
         for (int c = 0; c < 3; c++) {
             power += (seg[c * s + i] - seg[c * s + i - 1]) * v[(BOUGH_ROD_U + c) * s + i];
-            power += (seg[(3 + c) * s + i] + seg[(6 + c) * s + i - 1]) *
-                     v[(BOUGH_ROD_W + c) * s + i];
+            power += (seg[(3 + c) * s + i] + seg[(6 + c) * s + i - 1]) * v[(BOUGH_ROD_W + c) * s + i];
         }
     }
     for (int side = 0; side < 2; side++) {
@@ -114,17 +113,15 @@ static void check_newton(fixture *f) {
         for (int k = 0; k < STATES; k++) d[k] = sample_random(&seed);
         directional(f, d, none, jd);
         for (int k = 0; k < STATES; k++) b[k] = d[k] - gammas[g] * jd[k];
-        assert_true(bough_rod_linearise(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch,
-                                        &f->tangent));
+        assert_true(
+            bough_rod_linearise(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, &f->tangent));
         assert_true(bough_rod_factor(f->model, &f->tangent, gammas[g]));
         bough_rod_solve(f->model, &f->tangent, b);
         for (int k = 0; k < STATES; k++) check_near(b[k], d[k], 0, 2e-7);
     }
 }
 
-static void newton_solution_inverts_the_jacobian(void **context) {
-    check_newton(*context);
-}
+static void newton_solution_inverts_the_jacobian(void **context) { check_newton(*context); }
 
 // A rod of any number of segments, in a strongly deformed state.
 typedef struct sized {
@@ -165,14 +162,12 @@ static void check_sized(int n_segment, bool carries) {
     for (int side = -1; side <= 1; side += 2) {
         unsigned seed = 3;
         for (int k = 0; k < count; k++) r.moved[k] = r.state[k] + side * eps * sample_random(&seed);
-        assert_true(bough_rod_derivative(r.model, &r.loads, 0.5, r.moved, r.input, &r.scratch,
-                                         r.rate));
+        assert_true(bough_rod_derivative(r.model, &r.loads, 0.5, r.moved, r.input, &r.scratch, r.rate));
         for (int k = 0; k < count; k++) r.x[k] -= side * gamma * r.rate[k] / (2 * eps);
     }
     unsigned seed = 3;
     for (int k = 0; k < count; k++) r.x[k] += sample_random(&seed);
-    assert_true(bough_rod_linearise(r.model, &r.loads, 0.5, r.state, r.input, &r.scratch,
-                                    &r.tangent));
+    assert_true(bough_rod_linearise(r.model, &r.loads, 0.5, r.state, r.input, &r.scratch, &r.tangent));
     assert_true(bough_rod_factor(r.model, &r.tangent, gamma));
     bough_rod_solve(r.model, &r.tangent, r.x);
     seed = 3;
@@ -209,8 +204,7 @@ static void second_evaluation_at_a_state_is_the_same(void **context) {
 // Half of the ramp is reached at the time of evaluation.
 static bough_rod_ramped_load *ramped(fixture *f, bool follower) {
     const double ramp[2] = {0.25, 0.75};
-    bough_rod_ramped_load *l =
-        bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp);
+    bough_rod_ramped_load *l = bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp);
     assert_non_null(l);
     assert_ptr_equal(l, bough_rod_loads_ramped(&f->loads, f->arena, f->model, follower, ramp));
     return l;
@@ -267,10 +261,8 @@ static void second_evaluation_knows_loads_along_segments(void **context) {
     double first[STATES], again[STATES];
     lay_along(f);
     derivative(f, f->state, f->input, first);
-    assert_true(bough_rod_derivative_again(f->model, &f->loads, 0.7, f->state, f->input,
-                                           &f->scratch, again));
-    assert_true(bough_rod_derivative(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch,
-                                     first));
+    assert_true(bough_rod_derivative_again(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch, again));
+    assert_true(bough_rod_derivative(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch, first));
     for (int k = 0; k < STATES; k++) check_near(again[k], first[k], 1e-12, 1e-12);
 }
 
@@ -286,8 +278,8 @@ static void second_evaluation_is_no_other_after_a_wrench(void **context) {
         if (asked) {
             bough_rod_root_wrench(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch, wrench);
         }
-        assert_true(bough_rod_derivative_again(f->model, &f->loads, 0.7, f->state, f->input,
-                                               &f->scratch, again[asked]));
+        assert_true(bough_rod_derivative_again(f->model, &f->loads, 0.7, f->state, f->input, &f->scratch,
+                                               again[asked]));
     }
     for (int k = 0; k < STATES; k++) {
         assert_true(again[0][k] == again[1][k]);
@@ -346,7 +338,7 @@ static void ramped_load_grows_between_its_times(void **context) {
 static void input_columns_match_differences(void **context) {
     fixture *f = *context;
     double column[BOUGH_ROD_INPUTS * STATES], d[STATES], none[STATES] = {0};
-    bough_rod_input_columns(f->model, f->state, f->input, &f->scratch, column);
+    bough_rod_input_columns(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, column);
     for (int j = 0; j < BOUGH_ROD_INPUTS; j++) {
         double unit[BOUGH_ROD_INPUTS] = {0};
         unit[j] = 1;
@@ -367,8 +359,8 @@ static void check_wrench_tangent(fixture *f) {
         for (int k = 0; k < BOUGH_ROD_INPUTS; k++) u[k] = f->input[k] + step * du[k];
         bough_rod_root_wrench(f->model, &f->loads, 0.5, y, u, &f->scratch, side[s]);
     }
-    bough_rod_root_wrench(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, d);
-    bough_rod_wrench_tangent(f->model, f->state, f->input, ds, du, &f->scratch, d);
+    bough_rod_variation at = {f->state, f->input, ds, du};
+    bough_rod_wrench_tangent(f->model, &f->loads, 0.5, &at, &f->scratch, d);
     for (int k = 0; k < 6; k++) check_near(d[k], (side[1][k] - side[0][k]) / (2 * eps), 1e-7, 1e-7);
     double kept[6];
     assert_true(bough_rod_linearise(f->model, &f->loads, 0.5, f->state, f->input, &f->scratch, &f->tangent));
@@ -421,20 +413,16 @@ static void overturned_segment_is_refused(void **context) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(undeformed_rod_moving_rigidly_feels_no_stress, setup,
-                                        teardown),
+        cmocka_unit_test_setup_teardown(undeformed_rod_moving_rigidly_feels_no_stress, setup, teardown),
         cmocka_unit_test_setup_teardown(forces_are_the_gradient_of_the_energy, setup, teardown),
         cmocka_unit_test_setup_teardown(newton_solution_inverts_the_jacobian, setup, teardown),
         cmocka_unit_test(newton_solution_holds_for_any_number_of_segments),
         cmocka_unit_test(second_evaluation_at_a_state_is_the_same),
         cmocka_unit_test_setup_teardown(newton_solution_knows_follower_loads, setup, teardown),
         cmocka_unit_test_setup_teardown(newton_solution_knows_loads_along_segments, setup, teardown),
-        cmocka_unit_test_setup_teardown(newton_solution_knows_loads_that_follow_the_motion, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(second_evaluation_knows_loads_along_segments, setup,
-                                        teardown),
-        cmocka_unit_test_setup_teardown(second_evaluation_is_no_other_after_a_wrench, setup,
-                                        teardown),
+        cmocka_unit_test_setup_teardown(newton_solution_knows_loads_that_follow_the_motion, setup, teardown),
+        cmocka_unit_test_setup_teardown(second_evaluation_knows_loads_along_segments, setup, teardown),
+        cmocka_unit_test_setup_teardown(second_evaluation_is_no_other_after_a_wrench, setup, teardown),
         cmocka_unit_test_setup_teardown(wrench_tangent_knows_loads_along_segments, setup, teardown),
         cmocka_unit_test_setup_teardown(follower_load_turns_with_its_section, setup, teardown),
         cmocka_unit_test(ramped_load_grows_between_its_times),
