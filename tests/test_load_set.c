@@ -26,7 +26,7 @@ enum { CASES = 13 };
 // The set without its scenes: groups and cases alone.
 static bough_load_set made(bough_load_case cases[CASES], bough_load_group group[4]) {
     static double slope[] = {4, 10};
-    static const char *channel[] = {"load", "other"};
+    static const char *channel[] = {"load", "other"}, *unit[] = {"kN-m", "rpm"};
     bough_load_set set = {.n_slope = 2,
                           .slope = slope,
                           .cycles = 1e6,
@@ -38,9 +38,9 @@ static bough_load_set made(bough_load_case cases[CASES], bough_load_group group[
                           .cases = cases,
                           .n_channel = 2,
                           .channel = channel,
-                          .unit = channel};
-    group[0] = (bough_load_group){.hours = 50, .factor = 1.5, .extremes = true};
-    group[1] = (bough_load_group){.events = 100, .factor = 1, .extremes = true};
+                          .unit = unit};
+    group[0] = (bough_load_group){.hours = 50, .factor = 1.5, .favourable = 0.9, .extremes = true};
+    group[1] = (bough_load_group){.events = 100, .factor = 1, .favourable = 0.9, .extremes = true};
     cases[0] = (bough_load_case){.group = 0, .share = 0.5};
     cases[1] = (bough_load_case){.group = 0, .share = 0.5};
     cases[2] = (bough_load_case){.group = 1, .share = 1};
@@ -48,8 +48,7 @@ static bough_load_set made(bough_load_case cases[CASES], bough_load_group group[
 }
 
 // A result of a sine of range 2a about m over n periods, sampled 8 times each, every 0.5 s.
-static bough_case_result sine(bough_arena *arena, const bough_load_set *set, double m, double a,
-                              int n) {
+static bough_case_result sine(bough_arena *arena, const bough_load_set *set, double m, double a, int n) {
     bough_case_result r = bough_case_take(arena, set);
     for (int i = 0; i <= 8 * n; i++) {
         const double value[2] = {m + a * cos(0.25 * 3.14159265358979323846 * i), i};
@@ -88,7 +87,8 @@ static void sums_are_those_by_hand(void **state) {
         hours += bough_levels_inside(&l.channel[0].levels, k);
     check_near(hours, l.hours, 1e-12, 0);
     // Factors count: 1.5·13 stands above 1·5, −5 below 1.5·(−1).
-    check_near(l.channel[0].most.value, 19.5, 1e-14, 0);
+    check_near(l.channel[0].most.value, 13, 1e-14, 0);
+    check_near(l.channel[0].most.factor, 1.5, 0, 0);
     assert_int_equal(l.channel[0].most.number, 1);
     check_near(l.channel[0].least.value, -5, 1e-14, 0);
     assert_int_equal(l.channel[0].least.number, 2);
@@ -109,7 +109,7 @@ static void what_is_lacking_is_told(void **state) {
     bough_case_result good = sine(arena, &set, 0, 1, 5), failed = good, missing = good;
     failed.outcome = bough_fail(BOUGH_FAILED, "broke");
     missing.done = false;
-    group[1] = (bough_load_group){.hours = 150, .factor = 1, .extremes = true};
+    group[1] = (bough_load_group){.hours = 150, .factor = 1, .favourable = 0.9, .extremes = true};
     l = bough_lifetime_take(arena, &set);
     bough_lifetime_add(&l, 0, &good);
     bough_lifetime_add(&l, 1, &failed);
@@ -117,6 +117,33 @@ static void what_is_lacking_is_told(void **state) {
     assert_int_equal(l.n_failed, 1);
     assert_int_equal(l.n_missing, 1);
     check_near(l.lacking, 1 - 25. / 200, 1e-12, 0);
+    bough_arena_destroy(arena);
+}
+
+// A load of 7 to 13 and one of -13 to -7: what is nearest to zero relieves. A speed of 0 to 160 and what else
+// there is at that moment have no factor.
+static void factors_are_of_loads_and_on_the_safe_side(void **state) {
+    (void)state;
+    bough_arena *arena = bough_arena_create();
+    bough_load_case cases[CASES];
+    bough_load_group group[4];
+    bough_load_set set = made(cases, group);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        bough_lifetime l = bough_lifetime_take(arena, &set);
+        bough_case_result r = sine(arena, &set, 10 * sign, 3, 20);
+        bough_lifetime_add(&l, 0, &r);
+        const bough_lifetime_channel *load = &l.channel[0], *speed = &l.channel[1];
+        const bough_extreme *near = sign > 0 ? &load->least : &load->most;
+        const bough_extreme *far = sign > 0 ? &load->most : &load->least;
+        check_near(near->value, 7 * sign, 1e-14, 0);
+        check_near(near->factor, 0.9, 0, 0);
+        check_near(far->value, 13 * sign, 1e-14, 0);
+        check_near(far->factor, 1.5, 0, 0);
+        check_near(speed->most.value, 160, 0, 0);
+        check_near(speed->most.factor, 1, 0, 0);
+        check_near(speed->most.row[0], 10 * sign + 3, 1e-14, 0);
+        check_near(speed->least.factor, 1, 0, 0);
+    }
     bough_arena_destroy(arena);
 }
 
@@ -143,6 +170,7 @@ static void speeds_weigh_by_weibull(void **state) {
     check_near(bough_load_set_weight(set, &set->cases[11], 600), 1000 * 25 / 2., 1e-12, 0);
     check_near(bough_load_set_weight(set, &set->cases[12], 600), 0, 0, 0);
     assert_string_equal(set->cases[3].settings, "speed=8, seed=2");
+    check_near(set->group[1].favourable, 0.9, 0, 0);
     bough_arena_destroy(arena);
 }
 
@@ -150,6 +178,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sums_are_those_by_hand),
         cmocka_unit_test(what_is_lacking_is_told),
+        cmocka_unit_test(factors_are_of_loads_and_on_the_safe_side),
         cmocka_unit_test(speeds_weigh_by_weibull),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

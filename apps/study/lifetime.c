@@ -19,27 +19,36 @@ bough_lifetime bough_lifetime_take(bough_arena *arena, const bough_load_set *set
     return l;
 }
 
-static void take_extreme(bough_extreme *e, const bough_load_set *set, int number, double value, double at,
-                         const double *row) {
-    double factor = set->group[set->cases[number].group].factor;
+// Forces and moments, also per length: their units begin with a newton.
+static bool is_load(const char *unit) {
+    const char *base = unit + strspn(unit, "kM");
+    return base[0] == 'N' && (base[1] == '\0' || base[1] == '-' || base[1] == '/');
+}
+
+// sign: 1 for a largest value, -1 for a smallest.
+static double factor_of(const bough_load_group *g, const char *unit, double value, int sign) {
+    if (!is_load(unit)) return 1;
+    return sign * value < 0 ? g->favourable : g->factor;
+}
+
+static void add_extreme(bough_extreme *e, const bough_load_set *set, int number, int channel, double value,
+                        double at, const double *row, int sign) {
+    double factor = factor_of(&set->group[set->cases[number].group], set->unit[channel], value, sign);
+    if (e->found && !(sign * factor * value > sign * e->factor * e->value)) return;
     e->found = true;
-    e->value = factor * value;
+    e->value = value;
+    e->factor = factor;
     e->at = at;
     e->number = number;
-    for (int i = 0; i < set->n_channel; i++) e->row[i] = factor * row[i];
+    memcpy(e->row, row, (size_t)set->n_channel * sizeof *row);
 }
 
 static void add_extremes(bough_lifetime *l, int number, int i, const bough_channel_counts *c) {
-    const bough_load_group *g = &l->set->group[l->set->cases[number].group];
     const bough_sample_statistics *s = &c->statistics;
     bough_lifetime_channel *to = &l->channel[i];
-    if (!g->extremes || s->n == 0) return;
-    if (!to->least.found || g->factor * s->least < to->least.value) {
-        take_extreme(&to->least, l->set, number, s->least, s->least_at, c->at_least);
-    }
-    if (!to->most.found || g->factor * s->most > to->most.value) {
-        take_extreme(&to->most, l->set, number, s->most, s->most_at, c->at_most);
-    }
+    if (!l->set->group[l->set->cases[number].group].extremes || s->n == 0) return;
+    add_extreme(&to->least, l->set, number, i, s->least, s->least_at, c->at_least, -1);
+    add_extreme(&to->most, l->set, number, i, s->most, s->most_at, c->at_most, 1);
 }
 
 static void add_fatigue(bough_lifetime *l, int i, const bough_channel_counts *c, double weight,

@@ -5,13 +5,16 @@
 
 #include "apps/study/case_run.h"
 
-// An extreme value of a channel, multiplied by its partial safety factor.
+// The extreme of a channel whose design value, `factor` times the characteristic one, is the most extreme of
+// all cases. Forces and moments alone have a factor; it is the load case's `favourable` where it would else
+// take the value away from zero although nothing goes beyond: for a smallest above zero and a largest below.
 typedef struct bough_extreme {
     bool found;
-    double value; // in the channel's unit
-    double at;    // [s]
-    int number;   // of its case
-    double *row;  // (n_channel) all channels at that moment, times the same factor
+    double value;  // characteristic: as the run has it, in the channel's unit
+    double factor; // [-]
+    double at;     // [s]
+    int number;    // of its case
+    double *row;   // (n_channel) all channels at that moment, characteristic
 } bough_extreme;
 
 typedef struct bough_lifetime_channel {

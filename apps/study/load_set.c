@@ -25,7 +25,10 @@ static const bough_key group_keys[] = {
     {KEY(NUMBER, events), .range = ">= 0", .fallback = "0", .example = "1000",
      .help = "events in a year, of all its cases together; each run is one event"},
     {KEY(NUMBER, factor), .range = "> 0", .fallback = "1.35", .example = "1.1",
-     .help = "partial safety factor of its extremes"},
+     .help = "partial safety factor of its extreme forces and moments"},
+    {KEY(NUMBER, favourable), .range = "(0, 1]", .fallback = "0.9", .example = "1",
+     .help = "factor of favourable loads in place of it: of a largest value below zero and a smallest "
+             "value above"},
     {KEY(BOOLEAN, extremes), .fallback = "true", .help = "its extremes count"},
 };
 #undef FILLS
@@ -116,8 +119,8 @@ const bough_schema bough_load_set_schema = {
 static void make_group(bough_arena *arena, bough_load_set *s) {
     s->group = bough_arena_take(arena, sizeof *s->group);
     s->n_group = 1;
-    *s->group =
-        (bough_load_group){.node = s->node, .name = "sweep", .grid = s->grid, .factor = 1, .extremes = true};
+    *s->group = (bough_load_group){
+        .node = s->node, .name = "sweep", .grid = s->grid, .factor = 1, .favourable = 1, .extremes = true};
 }
 
 bough_load_set *bough_load_set_parse(bough_arena *arena, const char *path, const bough_node *root,

@@ -20,11 +20,12 @@ typedef struct bough_load_group {
     bough_study_settings set;
     bough_study_grid grid;
     // How often: one of these, or none for extremes alone.
-    double weibull; // share of all hours, spread over the speeds of the grid; 0: not
-    double hours;   // a year, of all cases together; 0: not
-    double events;  // a year, of all cases together; 0: not
-    double factor;  // partial safety factor of the extremes
-    bool extremes;  // whether they count
+    double weibull;    // share of all hours, spread over the speeds of the grid; 0: not
+    double hours;      // a year, of all cases together; 0: not
+    double events;     // a year, of all cases together; 0: not
+    double factor;     // partial safety factor of extreme loads
+    double favourable; // of those that relieve: the largest below zero, the smallest above
+    bool extremes;     // whether they count
 } bough_load_group;
 
 typedef struct bough_load_wind {

@@ -116,8 +116,8 @@ static void put_extreme(const bough_lifetime *l, int i, const char *what, const 
     const bough_load_set *s = l->set;
     if (!e->found) return;
     const bough_load_case *c = &s->cases[e->number];
-    fprintf(f, "%s,%s,%s,%.17g,%g,%d,", s->channel[i], s->unit[i], what, e->value, s->group[c->group].factor,
-            e->number + 1);
+    fprintf(f, "%s,%s,%s,%.17g,%g,%.17g,%d,", s->channel[i], s->unit[i], what, e->value, e->factor,
+            e->factor * e->value, e->number + 1);
     bough_csv_text(f, s->group[c->group].name);
     fputc(',', f);
     bough_csv_text(f, c->settings);
@@ -129,7 +129,7 @@ static void put_extreme(const bough_lifetime *l, int i, const char *what, const 
 static void put_extremes(const void *self, FILE *f) {
     const bough_lifetime *l = self;
     const bough_load_set *s = l->set;
-    fputs("channel,unit,extreme,value,factor,case,load case,settings,time [s]", f);
+    fputs("channel,unit,extreme,characteristic,safety factor,design,case,load case,settings,time [s]", f);
     for (int k = 0; k < s->n_channel; k++) fprintf(f, ",%s [%s]", s->channel[k], s->unit[k]);
     fputc('\n', f);
     for (int i = 0; i < s->n_channel; i++) {
@@ -177,13 +177,30 @@ bough_status bough_lifetime_write(const bough_lifetime *l, const char *folder) {
 static void print_extreme(const bough_lifetime *l, const bough_extreme *e, FILE *f) {
     const bough_load_set *s = l->set;
     if (!e->found) {
-        fprintf(f, " %12s %-24s", "-", "");
+        fprintf(f, " %12s %6s %12s %-24s", "-", "", "", "");
         return;
     }
     char where[64];
     snprintf(where, sizeof where, "%.14s #%d %.4g s", s->group[s->cases[e->number].group].name, e->number + 1,
              e->at);
-    fprintf(f, " %12.5g %-24s", e->value, where);
+    fprintf(f, " %12.5g %6.3g %12.5g %-24s", e->value, e->factor, e->factor * e->value, where);
+}
+
+static void print_extremes(const bough_lifetime *l, FILE *f) {
+    const bough_load_set *s = l->set;
+    const char *const title[] = {"smallest", "largest"};
+    fprintf(f, "Extremes: characteristic value, partial safety factor of forces and moments, design value\n");
+    fprintf(f, "%-12s %-6s", "channel", "unit");
+    for (int k = 0; k < 2; k++) {
+        fprintf(f, " %12s %6s %12s %-24s", title[k], "factor", "design", "case, time");
+    }
+    fputc('\n', f);
+    for (int i = 0; i < s->n_channel; i++) {
+        fprintf(f, "%-12s %-6s", s->channel[i], s->unit[i]);
+        print_extreme(l, &l->channel[i].least, f);
+        print_extreme(l, &l->channel[i].most, f);
+        fputc('\n', f);
+    }
 }
 
 void bough_lifetime_print(const bough_lifetime *l, FILE *f) {
@@ -196,12 +213,11 @@ void bough_lifetime_print(const bough_lifetime *l, FILE *f) {
     }
     fprintf(f, "%-12s %-6s", "channel", "unit");
     for (int k = 0; k < s->n_slope; k++) fprintf(f, "   DEL m=%-4g", s->slope[k]);
-    fprintf(f, " %12s %-24s %12s %-24s\n", "smallest", "case, time", "largest", "case, time");
+    fputc('\n', f);
     for (int i = 0; i < s->n_channel; i++) {
         fprintf(f, "%-12s %-6s", s->channel[i], s->unit[i]);
         for (int k = 0; k < s->n_slope; k++) fprintf(f, " %12.5g", bough_lifetime_equivalent(l, i, k));
-        print_extreme(l, &l->channel[i].least, f);
-        print_extreme(l, &l->channel[i].most, f);
         fputc('\n', f);
     }
+    print_extremes(l, f);
 }
