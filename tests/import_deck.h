@@ -13,9 +13,7 @@ static const char *const decks[] = {
     "parts/servo.dat", "parts/aero-blade.dat", "parts/foils/round.dat", "parts/foils/flat.dat",
     "v4/main.fst",     "v4/elasto.dat",        "v4/blade.dat",          "v4/aero.dat",
     "v5/main.fst",     "v5/elasto.dat",        "v5/aero-blade.dat",     "v5/aero.dat",
-    "v5/servo.dat",    "v5/beam.dat",          "v5/beam-blade.dat",    "v8/main.fst",
-    "v8/aero.ipt",     "v8/foil.dat",          "v8/furl.dat",
-    "v8/elasto.dat",
+    "v5/servo.dat",    "v5/beam.dat",          "v5/beam-blade.dat",
 };
 enum { N_DECK = sizeof decks / sizeof *decks };
 
@@ -41,11 +39,11 @@ static inline void write_box(const char *folder) {
 // Imports the decks under this main file with two texts replaced (NULL: none).
 static inline trial import_given(const char *main, const edit *one, const edit *two,
                                  const bough_import_options *options) {
-    static const char *const folder[] = {"parts/foils", "v4", "v5", "v8"};
+    static const char *const folder[] = {"parts/foils", "v4", "v5"};
     trial t = {.arena = bough_arena_create()};
     char path[SCRATCH_PATH];
     assert_non_null(mkdtemp(scratch_name(t.folder)));
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 3; i++) {
         snprintf(path, sizeof path, "%s/%s", t.folder, folder[i]);
         bough_status made = bough_folder_make(path);
         assert_true(bough_is_ok(&made));

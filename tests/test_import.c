@@ -246,6 +246,24 @@ static void controller_libraries_and_wind_files_stay_in_place(void **context) {
     a_scene_steps(&library, &(edit){"parts/elasto.dat", "True          DrTrDOF", "F  DrTrDOF"});
 }
 
+// The decks' titles begin as values do, "2 NumBl and 90 m TowerHt": every test here reads past them. Nor is
+// there a value in the list of output channels, and of several numbers before a name the first counts.
+static void lines_have_places_before_names(void **context) {
+    (void)context;
+    const edit outputs = {"parts/servo.dat", "5E+07   YawSpr",
+                          "5E+07   YawSpr\n1E+05 YawDamp\nOutList - channels\n12 YawNeut\nEND"};
+    trial t = import(&outputs);
+    assert_string_equal(t.status.message, "");
+    assert_string_equal(text(read_file(&t, "scene.yaml"), "bodies.1.joint.rest"), "0 deg");
+    done(&t);
+    trial base = import(NULL);
+    t = import(&(edit){"parts/servo.dat", "1   VSContrl", "1,      5   VSContrl"});
+    assert_string_equal(t.status.message, "");
+    same_file(&base, &t, "scene.yaml");
+    done(&t);
+    done(&base);
+}
+
 static void bad_decks_are_told_where(void **context) {
     (void)context;
     const struct {
@@ -253,40 +271,45 @@ static void bad_decks_are_told_where(void **context) {
         const char *says;
     } bad[] = {
         {{"parts/elasto.dat", "20    RotSpeed", "2x    RotSpeed"},
-         "elasto.dat:12: RotSpeed: expected a number, got '2x'"},
+         "elasto.dat:13: RotSpeed: expected a number, got '2x'"},
         {{"parts/elasto.dat", "HubRad", "HubRat"}, "no 'HubRad': expected a line 'number  HubRad'"},
         {{"main.fst", "2    CompElast", "3  NumBl\n1  ADAMSPrep"},
          "main.fst:7: expected a turbine's main file of OpenFAST, got a model of FAST 8.07 or older"},
         {{"parts/foils/flat.dat", "-0.9   -10.0   0.05", "-0.9   -10.0"},
          "flat.dat:7: a row of the polar: expected 3 numbers in the line, got 2"},
         {{"parts/elasto.dat", "30    GBRatio", "-97    GBRatio"},
-         "elasto.dat:34: GBRatio: expected 0.001 to 10000, got -97"},
+         "elasto.dat:35: GBRatio: expected 0.001 to 10000, got -97"},
         {{"parts/elasto.dat", "2000    HubMass", "-2000    HubMass"},
-         "elasto.dat:26: HubMass: expected 0 to 1e+09, got -2000"},
+         "elasto.dat:27: HubMass: expected 0 to 1e+09, got -2000"},
         {{"parts/servo.dat", "95   GenEff", "195   GenEff"},
-         "servo.dat:4: GenEff: expected 0 to 100, got 195"},
+         "servo.dat:5: GenEff: expected 0 to 100, got 195"},
         {{"parts/wind.dat", "12    HWindSpeed", "-1 HWindSpeed"},
-         "wind.dat:5: HWindSpeed: expected 0 to 200, got -1"},
+         "wind.dat:6: HWindSpeed: expected 0 to 200, got -1"},
         {{"parts/elasto.dat", "3    NumBl", "40    NumBl"},
-         "elasto.dat:13: NumBl: expected a whole"},
+         "elasto.dat:14: NumBl: expected a whole"},
         {{"parts/elasto.dat", "True          YawDOF", "Maybe         YawDOF"},
-         "elasto.dat:6: YawDOF: expected True or False, got 'Maybe'"},
+         "elasto.dat:7: YawDOF: expected True or False, got 'Maybe'"},
         {{"main.fst", "parts/wind.dat", "parts/wand.dat"}, "main.fst:17: cannot read"},
         {{"main.fst", "0    CompHydro", "1    CompHydro"}, "main.fst:10: CompHydro: expected 0"},
-        {{"parts/wind.dat", "1    WindType", "4    WindType"}, "wind.dat:2: WindType 4: expected a line"},
+        {{"parts/wind.dat", "1    WindType", "4    WindType"}, "wind.dat:3: WindType 4: expected a line"},
         {{"parts/beam.dat", "kp_zr", "kp_z"}, "beam.dat: no table with the columns kp_xr"},
-        {{"parts/beam.dat", "5.0     6.0", "nan     6.0"}, "beam.dat:9: kp_zr: expected a number"},
+        {{"parts/beam.dat", "5.0     6.0", "nan     6.0"}, "beam.dat:10: kp_zr: expected a number"},
         {{"parts/beam.dat", "5.0     6.0", "9.5     6.0"}, "kp_zr: expected increasing values"},
         {{"parts/beam-blade.dat", "  0.625", "  1.625"},
-         "beam-blade.dat:23: the station is at 1.625"},
+         "beam-blade.dat:24: the station is at 1.625"},
         {{"parts/beam-blade.dat", "3   station_total", "4   station_total"}, "the file ends"},
         {{"parts/aero-blade.dat", "6.0       2 ", "6.0       3 "}, "BlAFID: row 2: expected"},
         {{"parts/aero-blade.dat", "  3   NumBlNds", "  4   NumBlNds"}, "3 rows, expected 4"},
         {{"parts/foils/flat.dat", "-10.0", "-190.0"},
          "flat.dat:7: alpha: expected"},
         {{"parts/aero-blade.dat", "2       1.0\n", "2       0.0\n"},
-         "aero-blade.dat:2: BlChord: row 2: expected a positive chord"},
-        {{"parts/servo.dat", "400   VS_RtTq", "4   VS_RtTq"}, "servo.dat:6: VS_RtGnSp"},
+         "aero-blade.dat:3: BlChord: row 2: expected a positive chord"},
+        {{"parts/servo.dat", "400   VS_RtTq", "4   VS_RtTq"}, "servo.dat:7: VS_RtGnSp"},
+        {{"parts/servo.dat", "900   VS_RtGnSp", "0.009   VS_RtGnSp"},
+         "servo.dat:7: the torque reaches its maximum of 400 N m"},
+        {{"main.fst", "2    CompAero", "1    CompAero"}, "main.fst:8: CompAero: expected 0 or 2"},
+        {{"parts/elasto.dat", "True          YawDOF", "True Furling\nTrue YawDOF"},
+         "elasto.dat:7: Furling: expected False"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         trial t = import(&bad[i].change);
@@ -311,6 +334,7 @@ int main(void) {
         cmocka_unit_test(frequencies_are_those_of_beams),
         cmocka_unit_test(scenes_step),
         cmocka_unit_test(controller_libraries_and_wind_files_stay_in_place),
+        cmocka_unit_test(lines_have_places_before_names),
         cmocka_unit_test(bad_decks_are_told_where),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -106,7 +106,7 @@ static void respell(const char *folder, const char *name) {
     fclose(out);
 }
 
-// Decks without tables, whose lines may stand in any order but for their first.
+// Decks without tables, whose lines may stand in any order below heading and title.
 static void reverse(const char *folder, const char *name) {
     char path[SCRATCH_PATH], text[8192], *line[200] = {""};
     int n = 0;
@@ -120,8 +120,8 @@ static void reverse(const char *folder, const char *name) {
     snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *out = fopen(path, "w");
     assert_non_null(out);
-    fprintf(out, "%s\n", line[0]);
-    for (int i = n - 1; i > 0; i--)
+    fprintf(out, "%s\n%s\n", line[0], line[1]);
+    for (int i = n - 1; i > 1; i--)
         fprintf(out, "%s\n", line[i]);
     fclose(out);
 }
@@ -148,8 +148,8 @@ static void again(trial *t, const char *main) {
 
 static void every_spelling_gives_the_same_scene(void **context) {
     (void)context;
-    static const char *const mains[] = {"main.fst", "v4/main.fst", "v5/main.fst", "v8/main.fst"};
-    for (int m = 0; m < 4; m++) {
+    static const char *const mains[] = {"main.fst", "v4/main.fst", "v5/main.fst"};
+    for (int m = 0; m < 3; m++) {
         trial base = import_main(mains[m], NULL, NULL);
         assert_string_equal(base.status.message, "");
         trial t = import_main(mains[m], NULL, NULL);

@@ -234,38 +234,6 @@ static void units_may_be_written_anyhow(void **context) {
     }
 }
 
-// AeroDyn 14, as of FAST 8: elements by their middles, airfoils in the old form.
-static void aerodyn_14_has_elements_too(void **context) {
-    (void)context;
-    trial t = import_main("v8/main.fst", NULL, NULL);
-    assert_string_equal(t.status.message, "");
-    const bough_node *rows = at(read_file(&t, "blade-aero.yaml"), "stations.rows");
-    const double span[] = {0, 1.5, 4.5, 7.5, 9}, chord[] = {0.8, 0.8, 1, 0.6, 0.6};
-    assert_int_equal(rows->n, 5);
-    for (int i = 0; i < 5; i++) {
-        check_near(number(rows->value[i], "0"), span[i], 1e-9, 0);
-        check_near(number(rows->value[i], "4"), chord[i], 1e-9, 0);
-    }
-    const bough_node *polar = at(read_file(&t, "airfoils.yaml"), "polars.0.table.rows");
-    assert_int_equal(polar->n, 5);
-    check_near(number(polar, "3.1"), 0.9, 1e-9, 0);
-    check_near(number(polar, "3.2"), 0.05, 1e-9, 0);
-    check_near(number(polar, "3.3"), -0.02, 1e-9, 0);
-    const bough_node *s = read_file(&t, "scene.yaml");
-    assert_string_equal(text(s, "aero.dynamic_stall"), "hgm");
-    assert_string_equal(text(s, "aero.induction.inflow"), "oye");
-    assert_string_equal(text(s, "aero.induction.hub_loss"), "false");
-    check_near(number(s, "aero.air_density"), 1.1, 1e-9, 0);
-    steps(&t);
-    done(&t);
-    t = import_main("v8/main.fst", &(edit){"v8/foil.dat", " 10.0   0.9", "-10.0   0.9"}, NULL);
-    assert_non_null(strstr(t.status.message, "foil.dat:12: expected increasing angles of attack"));
-    done(&t);
-    t = import_main("v8/main.fst", &(edit){"v8/aero.ipt", "5.5    5.0", "5.5x   5.0"}, NULL);
-    assert_non_null(strstr(t.status.message, "aero.ipt:21: RNodes: expected a number, got '5.5x'"));
-    done(&t);
-}
-
 // -- other parts ----------------------------------------------------------------------------------
 
 static void masses_on_tips_and_yaw_bearing(void **context) {
@@ -323,30 +291,6 @@ static void any_number_of_blades_is_taken(void **context) {
     }
 }
 
-// The tail hangs on an axis along y of the nacelle, so that x of its frame is y, and y is -x; the rotor's
-// part is held at 5 degrees about the vertical through (0.5, 0).
-static void tails_and_rotors_furl(void **context) {
-    (void)context;
-    trial t = import_main("v8/main.fst", NULL, NULL);
-    assert_string_equal(t.status.message, "");
-    const bough_node *tail = body(&t, "tail"), *furl = body(&t, "furl");
-    assert_string_equal(text(tail, "joint.kind"), "revolute");
-    assert_string_equal(text(tail, "joint.angle"), "4 deg");
-    assert_string_equal(text(tail, "mass"), "80 kg");
-    check_near(number(tail, "centre_of_mass.0"), 1, 1e-9, 0);
-    check_near(number(tail, "centre_of_mass.1"), -1.25, 1e-9, 0);
-    check_near(number(tail, "centre_of_mass.2"), 0, 0, 1e-9);
-    check_near(number(tail, "inertia.0"), 500 - 80 * 1.25 * 1.25, 1e-9, 0);
-    assert_string_equal(text(tail, "joint.stop.0"), "3 deg");
-    check_near(number(tail, "joint.stop_stiffness"), 1.7e4, 1e-9, 0);
-    assert_string_equal(text(furl, "joint.kind"), "fixed");
-    assert_string_equal(text(body(&t, "generator"), "joint.parent"), "furl");
-    assert_string_equal(text(body(&t, "generator"), "joint.placement.0"), "rotate y 90 deg");
-    assert_string_equal(text(body(&t, "generator"), "joint.placement.5"), "move y 0.1 m");
-    steps(&t);
-    done(&t);
-}
-
 // From 600 rpm to 1.5 times 300 N m at 1.5 times 2 %; the line of a circuit beside its formula.
 static void induction_generators_are_lines(void **context) {
     (void)context;
@@ -382,6 +326,20 @@ static void induction_generators_are_lines(void **context) {
     assert_string_equal(t.status.message, "");
     assert_true(list_says(&t, "the user's generator of GenModel 3"));
     done(&t);
+}
+
+static void generators_that_stay_off_have_no_torque(void **context) {
+    (void)context;
+    for (int mode = 0; mode <= 1; mode++) {
+        char line[32];
+        snprintf(line, sizeof line, "%d   VSContrl", mode);
+        trial t = import_with(&(edit){"parts/servo.dat", "1   VSContrl", line},
+                              &(edit){"parts/servo.dat", "0   TimGenOn", "9999   TimGenOn"});
+        assert_string_equal(t.status.message, "");
+        assert_true(list_says(&t, "TimGenOn: no torque acts on the generator"));
+        assert_null(bough_node_find(read_file(&t, "scene.yaml"), "control"));
+        done(&t);
+    }
 }
 
 // What ServoDyn also steers is on the list.
@@ -433,12 +391,11 @@ int main(void) {
         cmocka_unit_test(polars_go_round),
         cmocka_unit_test(undamped_blades_are_damped_where_elastodyn_is_rigid),
         cmocka_unit_test(units_may_be_written_anyhow),
-        cmocka_unit_test(aerodyn_14_has_elements_too),
         cmocka_unit_test(masses_on_tips_and_yaw_bearing),
         cmocka_unit_test(two_blades_teeter),
         cmocka_unit_test(any_number_of_blades_is_taken),
-        cmocka_unit_test(tails_and_rotors_furl),
         cmocka_unit_test(induction_generators_are_lines),
+        cmocka_unit_test(generators_that_stay_off_have_no_torque),
         cmocka_unit_test(structural_control_is_on_the_list),
         cmocka_unit_test(steep_torque_lines_are_taken),
         cmocka_unit_test(steps_follow_the_rotor),

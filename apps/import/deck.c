@@ -25,6 +25,63 @@ void bough_deck_fail(const bough_deck *deck, int line, const char *format, ...) 
     *deck->status = bough_fail(BOUGH_INVALID, "%.150s:%s %s", deck->path, at, text);
 }
 
+// -- words ----------------------------------------------------------------------------------------
+
+// Takes the next word off *at, quotes removed; false at the end of the line.
+static bool next_word(const char **at, char word[WORD]) {
+    const char *p = *at + strspn(*at, " \t,");
+    if (*p == '\0') return false;
+    bool quoted = *p == '"' || *p == '\'';
+    size_t length = quoted ? strcspn(p + 1, *p == '"' ? "\"" : "'") : strcspn(p, " \t,");
+    const char *from = p + quoted;
+    *at = from + length + (quoted && from[length] != '\0');
+    if (length >= WORD) length = WORD - 1;
+    memcpy(word, from, length);
+    word[length] = '\0';
+    return true;
+}
+
+// Fortran's spellings, 1.5D+3 and 1.5+100, are known; hexadecimal, infinity and NaN are not.
+static bool read_number(const char *word, double *value) {
+    char copy[64], *end, last = '\0';
+    size_t length = strlen(word), n = 0;
+    if (length == 0 || length >= sizeof copy - 1) return false;
+    if (strspn(word, "+-.0123456789eEdD") != length) return false;
+    for (size_t i = 0; i <= length; i++) {
+        char letter = word[i] && strchr("dDE", word[i]) ? 'e' : word[i];
+        bool sign = letter == '+' || letter == '-';
+        if (sign && last && last != 'e') {
+            if (memchr(copy, 'e', n) || n + 2 >= sizeof copy) return false;
+            copy[n++] = 'e';
+        }
+        copy[n++] = last = letter;
+    }
+    *value = strtod(copy, &end);
+    return *end == '\0' && isfinite(*value);
+}
+
+// Whether the word is one of "A|B".
+static bool is_one_of(const char *word, const char *names) {
+    size_t length = strlen(word);
+    for (const char *p = names;; p++) {
+        size_t n = strcspn(p, "|");
+        if (n == length && strncasecmp(p, word, n) == 0) return true;
+        p += n;
+        if (*p == '\0') return false;
+    }
+}
+
+static bool is_comment(const char *line) {
+    line += strspn(line, " \t");
+    return *line == '\0' || strchr("!#%", *line);
+}
+
+// A rule or a comment, which has no value.
+static bool has_no_value(const char *line) {
+    line += strspn(line, " \t");
+    return strncmp(line, "---", 3) == 0 || strncmp(line, "===", 3) == 0 || is_comment(line);
+}
+
 // -- reading --------------------------------------------------------------------------------------
 
 // Lines of a text may end with \n, \r\n or \r; the number of lines when all end with \n.
@@ -40,7 +97,25 @@ static int mend_line_ends(char *text) {
     return n;
 }
 
-bough_deck *bough_deck_open(bough_arena *arena, const char *path, bough_status *status) {
+// The line behind the first `n` that are no comments.
+static int behind(const bough_deck *deck, int n) {
+    int i = 0;
+    for (; i < deck->n && n > 0; i++) n -= !is_comment(deck->line[i]);
+    return i;
+}
+
+// The line of the list of output channels, behind which nothing has a name; else the number of lines.
+static int output_list(const bough_deck *deck) {
+    char word[WORD];
+    int i = deck->first;
+    for (; i < deck->n; i++) {
+        const char *at = deck->line[i];
+        if (next_word(&at, word) && strcasecmp(word, "OutList") == 0) break;
+    }
+    return i;
+}
+
+bough_deck *bough_deck_open(bough_arena *arena, const char *path, int n_heading, bough_status *status) {
     if (!bough_is_ok(status)) return NULL;
     char why[BOUGH_INPUT_REASON];
     size_t size;
@@ -59,54 +134,26 @@ bough_deck *bough_deck_open(bough_arena *arena, const char *path, bough_status *
         text += strcspn(text, "\n");
         if (*text) *text++ = '\0';
     }
+    deck->first = behind(deck, n_heading);
+    deck->last = output_list(deck);
     return deck;
-}
-
-// -- words ----------------------------------------------------------------------------------------
-
-// Takes the next word off *at, quotes removed; false at the end of the line.
-static bool next_word(const char **at, char word[WORD]) {
-    const char *p = *at + strspn(*at, " \t,");
-    if (*p == '\0') return false;
-    bool quoted = *p == '"' || *p == '\'';
-    size_t length = quoted ? strcspn(p + 1, *p == '"' ? "\"" : "'") : strcspn(p, " \t,");
-    const char *from = p + quoted;
-    *at = from + length + (quoted && from[length] != '\0');
-    if (length >= WORD) length = WORD - 1;
-    memcpy(word, from, length);
-    word[length] = '\0';
-    return true;
-}
-
-// Whether the word is one of "A|B".
-static bool is_one_of(const char *word, const char *names) {
-    size_t length = strlen(word);
-    for (const char *p = names;; p++) {
-        size_t n = strcspn(p, "|");
-        if (n == length && strncasecmp(p, word, n) == 0) return true;
-        p += n;
-        if (*p == '\0') return false;
-    }
-}
-
-// A rule or a comment, which has no value.
-static bool has_no_value(const char *line) {
-    line += strspn(line, " \t");
-    return strncmp(line, "---", 3) == 0 || strncmp(line, "===", 3) == 0 || strchr("!#%", *line);
 }
 
 int bough_deck_line(const bough_deck *deck, const char *names) {
     char word[WORD];
-    for (int i = deck ? deck->first : 0; deck && i < deck->n; i++) {
+    double rest; // a line may have several numbers before its name, of which the first counts
+    for (int i = deck ? deck->first : 0; deck && i < deck->last; i++) {
         const char *at = deck->line[i];
         if (has_no_value(at) || !next_word(&at, word)) continue;
-        if (next_word(&at, word) && is_one_of(word, names)) return i;
+        bool more = next_word(&at, word);
+        while (more && read_number(word, &rest)) more = next_word(&at, word);
+        if (more && is_one_of(word, names)) return i;
     }
     return -1;
 }
 
 int bough_deck_find(const bough_deck *deck, const char *words) {
-    for (int i = 0; i < deck->n; i++) {
+    for (int i = deck->first; i < deck->last; i++) {
         for (const char *p = deck->line[i]; *p; p++) {
             if (strncasecmp(p, words, strlen(words)) == 0) return i;
         }
@@ -117,7 +164,7 @@ int bough_deck_find(const bough_deck *deck, const char *words) {
 bough_deck bough_deck_part(const bough_deck *deck, const char *words) {
     bough_deck part = *deck;
     int line = bough_deck_find(deck, words);
-    part.first = line < 0 ? 0 : line;
+    if (line >= 0) part.first = line;
     return part;
 }
 
@@ -144,25 +191,6 @@ static bool is_default(const bough_deck *deck, const char *names) {
 }
 
 // -- values ---------------------------------------------------------------------------------------
-
-// Fortran's spellings, 1.5D+3 and 1.5+100, are known; hexadecimal, infinity and NaN are not.
-static bool read_number(const char *word, double *value) {
-    char copy[64], *end, last = '\0';
-    size_t length = strlen(word), n = 0;
-    if (length == 0 || length >= sizeof copy - 1) return false;
-    if (strspn(word, "+-.0123456789eEdD") != length) return false;
-    for (size_t i = 0; i <= length; i++) {
-        char letter = word[i] && strchr("dDE", word[i]) ? 'e' : word[i];
-        bool sign = letter == '+' || letter == '-';
-        if (sign && last && last != 'e') {
-            if (memchr(copy, 'e', n) || n + 2 >= sizeof copy) return false;
-            copy[n++] = 'e';
-        }
-        copy[n++] = last = letter;
-    }
-    *value = strtod(copy, &end);
-    return *end == '\0' && isfinite(*value);
-}
 
 double bough_deck_number(const bough_deck *deck, const char *names) {
     char word[WORD];
@@ -313,11 +341,6 @@ static bool find_columns(const char *line, const char *const *column, int n_colu
     return true;
 }
 
-static bool is_comment(const char *line) {
-    line += strspn(line, " \t");
-    return *line == '\0' || strchr("!#%", *line);
-}
-
 bool bough_deck_is_comment(const bough_deck *deck, int line) {
     return line >= 0 && line < deck->n && is_comment(deck->line[line]);
 }
@@ -353,10 +376,10 @@ static bool begins_with_number(const char *line) {
 }
 
 const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column, int n) {
-    int place[MOST_WORDS], line = 0;
     if (!deck || !bough_is_ok(deck->status)) return NULL;
-    while (line < deck->n && !find_columns(deck->line[line], column, n_column, place)) line++;
-    if (line == deck->n) {
+    int place[MOST_WORDS], line = deck->first;
+    while (line < deck->last && !find_columns(deck->line[line], column, n_column, place)) line++;
+    if (line == deck->last) {
         bough_deck_fail(deck, -1, "no table with the columns %s, %s, ...", column[0],
                         n_column > 1 ? column[1] : "");
         return NULL;
@@ -371,26 +394,6 @@ const double *bough_deck_table(const bough_deck *deck, const char *const *column
         read_row(deck, line, column, n_column, place, &table[i * n_column]);
     }
     return bough_is_ok(deck->status) ? table : NULL;
-}
-
-bool bough_deck_three(const bough_deck *deck, const char *name, double to[3]) {
-    char word[WORD];
-    for (int i = 0; i < deck->n; i++) {
-        const char *at = deck->line[i];
-        int n = 0;
-        while (n < 3 && next_word(&at, word) && read_number(word, &to[n])) n++;
-        if (n == 3 && next_word(&at, word) && is_one_of(word, name)) return true;
-    }
-    return false;
-}
-
-int bough_deck_only_numbers(const bough_deck *deck, int line, int most, double *to) {
-    char word[WORD];
-    int n = 0;
-    for (const char *at = deck->line[line]; n < most && next_word(&at, word); n++) {
-        if (!read_number(word, &to[n])) return 0;
-    }
-    return n;
 }
 
 void bough_deck_row(const bough_deck *deck, int *line, const char *what, int count, double *to) {

@@ -1,6 +1,6 @@
-// Input files of OpenFAST as lines "value  Name  - comment", in which values are found by name,
-// never by line number, and tables by the names of their columns, since lines come and go between
-// versions.
+// Input files of OpenFAST as lines "value  Name  - comment", in which values are found by name and tables by
+// the names of their columns, since lines come and go between versions. Names count only between the heading,
+// whose text is free, and the list of output channels.
 //
 // The first failure is kept in *status, with file:line, name and what was expected; afterwards all
 // reads return 0, so that a reader may check once at its end.
@@ -16,18 +16,21 @@ typedef struct bough_deck {
     const char *path;
     const char **line; // (n)
     int n;
-    int first; // where names are looked for
+    int first, last; // names are looked for in these lines, without the last
     bough_arena *arena;
     bough_status *status;
 } bough_deck;
 
-// The lines of a file; NULL after a failure. Refused: files above 16 MB, and those with NUL bytes.
-bough_deck *bough_deck_open(bough_arena *arena, const char *path, bough_status *status);
+// The lines of a file; NULL after a failure. Refused: files above 16 MB, and those with NUL bytes. The first
+// `n_heading` lines that are neither empty nor comments have no names: in the file of a module its heading
+// and its title, in that of an airfoil none.
+enum { BOUGH_DECK_HEADING = 2 };
+bough_deck *bough_deck_open(bough_arena *arena, const char *path, int n_heading, bough_status *status);
 
 // In what follows `names` is a name or several spellings of it, "WakeMod|Wake_Mod"; capitals do not
 // matter.
 
-// The line [from 0] that has the name behind its value; -1: none.
+// The line [from 0] that has the name behind its value or its values; -1: none.
 int bough_deck_line(const bough_deck *deck, const char *names);
 
 // The deck from the line on that contains the words, for names that it has several times; the whole deck
@@ -60,12 +63,6 @@ bool bough_deck_is_comment(const bough_deck *deck, int line);
 // A table of `n` rows below the line that names all columns, units below it skipped: (n ×
 // n_column), NULL after a failure. A column "?Name" need not be there: its entries are then NaN.
 const double *bough_deck_table(const bough_deck *deck, const char *const *column, int n_column, int n);
-
-// The three numbers of a line "x, y, z  Name"; false where there is no such line.
-bool bough_deck_three(const bough_deck *deck, const char *name, double to[3]);
-
-// How many numbers (at most `most`) are in a line that has nothing else; 0 where it has.
-int bough_deck_only_numbers(const bough_deck *deck, int line, int most, double *to);
 
 // Reads the first `count` numbers of one line, the first from *line on that is not empty or a comment;
 // *line moves behind it. `what` names the row in messages.

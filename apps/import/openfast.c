@@ -7,7 +7,7 @@
 
 bough_deck *bough_openfast_open(bough_openfast *o, const bough_deck *from, const char *names) {
     const char *path = bough_deck_file(from, names);
-    bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
+    bough_deck *deck = bough_deck_open(o->draft.arena, path, BOUGH_DECK_HEADING, o->draft.status);
     if (deck) bough_draft_note(&o->draft, BOUGH_TAKEN, "%.*s: %s", (int)strcspn(names, "|"), names, path);
     return deck;
 }
@@ -84,15 +84,13 @@ static void open_modules(bough_openfast *o) {
     if (bough_deck_whole(o->main, "CompInflow", 0, 2) == 1) {
         o->inflow = bough_openfast_open(o, o->main, "InflowFile");
     }
-    if (air == 2 || air == 1) o->aero = bough_openfast_open(o, o->main, "AeroFile");
-    o->old_aero = o->aero && bough_deck_line(o->aero, "StallMod") >= 0;
-    if (air == 3 || (air == 1 && o->aero && !o->old_aero)) {
-        bough_deck_fail(
-            o->main, bough_deck_line(o->main, "CompAero"),
-            "CompAero: expected 0, 2 (AeroDyn 15 and later) or, before version 4, 1 (AeroDyn 14), got "
-            "%d: AeroDisk and external loads are not supported",
-            air);
+    if (air == 1 || air == 3) {
+        bough_deck_fail(o->main, bough_deck_line(o->main, "CompAero"),
+                        "CompAero: expected 0 or 2 (AeroDyn 15 and later), got %d: AeroDyn 14, AeroDisk and "
+                        "external loads are not supported",
+                        air);
     }
+    if (air == 2) o->aero = bough_openfast_open(o, o->main, "AeroFile");
     if (bough_deck_whole_or(o->main, "CompServo", 0) == 1) {
         o->servo = bough_openfast_open(o, o->main, "ServoFile");
     }
@@ -115,6 +113,10 @@ static void read_shape(bough_openfast *o) {
     o->tower_top = bough_deck_number(e, "TowerHt");
     o->tower_base = bough_deck_number_or(e, "TowerBsHt", 0);
     if (!bough_is_ok(o->draft.status)) return;
+    if (bough_deck_flag_or(e, "Furling", false)) {
+        bough_deck_fail(e, bough_deck_line(e, "Furling"),
+                        "Furling: expected False: tails and rotors that furl are not supported");
+    }
     if (!(o->tower_top > o->tower_base)) {
         bough_deck_fail(e, bough_deck_line(e, "TowerHt"), "TowerHt: expected more than TowerBsHt");
     }
@@ -166,7 +168,7 @@ static void write_scene(bough_openfast *o, const char *path) {
 
 static void convert(void *self, const char *path) {
     bough_openfast *o = self;
-    o->main = bough_deck_open(o->draft.arena, path, o->draft.status);
+    o->main = bough_deck_open(o->draft.arena, path, BOUGH_DECK_HEADING, o->draft.status);
     if (o->main) open_modules(o);
     bough_openfast_check(o->elasto, BOUGH_LIMITS_ELASTO);
     bough_openfast_check(o->servo, BOUGH_LIMITS_SERVO);

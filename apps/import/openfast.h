@@ -6,7 +6,6 @@
 #include "apps/import/deck.h"
 #include "apps/import/draft.h"
 #include "apps/import/import.h"
-#include "core/vec3.h"
 
 // What acts on the generator.
 typedef enum bough_generator {
@@ -21,10 +20,7 @@ typedef struct bough_openfast {
     const bough_import_options *options;
     bough_deck *main, *elasto, *tower, *servo, *inflow, *aero; // NULL: the model has none
     int n_blade;
-    bough_deck *furl; // NULL: nothing furls
-    bool rotor_furls; // a body "furl" carries the shaft
-    bool old_aero;    // `aero` is of AeroDyn 14
-    bool beamdyn;     // blades by BeamDyn, else by ElastoDyn
+    bool beamdyn; // blades by BeamDyn, else by ElastoDyn
     bool rigid_blade, rigid_tower;
     bough_generator generator;
     const char *library;          // of the controller
@@ -71,27 +67,6 @@ void bough_openfast_aero_tables(bough_openfast *o);
 void bough_openfast_aero(bough_openfast *o);
 void bough_openfast_wind(bough_openfast *o);
 
-// What both AeroDyn's readers write: blade elements with rows (n × BOUGH_N_ELEMENT_COLUMN); `count` is the
-// name of their number.
-enum { BOUGH_MOST_AIRFOILS = 200 };
-enum { // span [m], curve, sweep [m], angle of the curve [deg], twist [deg], chord [m], airfoil from 1
-    BOUGH_ELEMENT_SPAN,
-    BOUGH_ELEMENT_TWIST = 4,
-    BOUGH_ELEMENT_CHORD,
-    BOUGH_ELEMENT_AIRFOIL,
-    BOUGH_N_ELEMENT_COLUMN
-};
-// Opens the airfoil file named at or, behind comments, below *line, which moves behind it; the name that the
-// scene gives to its polar. NULL: not opened, the draft's status says why.
-bough_deck *bough_openfast_open_airfoil(bough_openfast *o, int *line, int number,
-                                        char name[BOUGH_AIRFOIL_NAME]);
-void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, const char *count,
-                                 const double *row, int n, char (*name)[BOUGH_AIRFOIL_NAME], int n_name);
-
-// The same of AeroDyn 14 (openfast_aero14.c).
-void bough_openfast_aero14_tables(bough_openfast *o);
-void bough_openfast_aero14(bough_openfast *o);
-
 // The highest speed of the rotor that the decks tell [rad/s].
 double bough_openfast_rotor_speed(const bough_openfast *o);
 
@@ -101,10 +76,6 @@ void bough_openfast_generator(bough_openfast *o);
 // The parts `bodies` and `turbine` of the scene; `control`.
 void bough_openfast_bodies(bough_openfast *o);
 void bough_openfast_control(bough_openfast *o);
-
-// Bodies that furl, on the nacelle; the first steps of the shaft's placement with them.
-void bough_openfast_furl(bough_openfast *o);
-void bough_openfast_put_shaft_offset(const bough_openfast *o);
 
 // The generator's inertia on the slow shaft [kg m2]; whether it turns against the hub.
 double bough_openfast_generator_inertia(const bough_openfast *o);

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_ROWS = 2000, MOST_COLUMNS = 20, NAME = BOUGH_AIRFOIL_NAME };
+enum { MOST_AIRFOILS = 200, MOST_ROWS = 2000, MOST_COLUMNS = 20, NAME = BOUGH_AIRFOIL_NAME };
 
 // -- airfoils -------------------------------------------------------------------------------------
 
@@ -48,22 +48,24 @@ static void put_polar(bough_openfast *o, const bough_deck *deck, const char *nam
     }
 }
 
-bough_deck *bough_openfast_open_airfoil(bough_openfast *o, int *line, int number, char name[NAME]) {
+// Opens the airfoil file named at or, behind comments, below *line, which moves behind it; the name that the
+// scene gives to its polar. NULL: not opened, the draft's status says why.
+static bough_deck *open_airfoil(bough_openfast *o, int *line, int number, char name[NAME]) {
     while (bough_deck_is_comment(o->aero, *line)) ++*line;
     const char *path = bough_deck_file_at(o->aero, (*line)++);
-    bough_deck *deck = bough_deck_open(o->draft.arena, path, o->draft.status);
+    bough_deck *deck = bough_deck_open(o->draft.arena, path, 0, o->draft.status);
     const char *slash = strrchr(path, '/'), *own = slash ? slash + 1 : path;
     if (deck) bough_draft_airfoil_name(own, strcspn(own, "."), number, name);
     return deck;
 }
 
 static int put_polars(bough_openfast *o, char (*name)[NAME]) {
-    int n = bough_deck_whole(o->aero, "NumAFfiles", 1, BOUGH_MOST_AIRFOILS);
+    int n = bough_deck_whole(o->aero, "NumAFfiles", 1, MOST_AIRFOILS);
     int line = bough_deck_line(o->aero, "AFNames");
     if (line < 0) line = bough_deck_line(o->aero, "NumAFfiles") + 1; // the label may be missing
     fputs("polars:\n", o->draft.file[BOUGH_IMPORT_POLARS]);
     for (int i = 0; i < n && bough_is_ok(o->draft.status); i++) {
-        bough_deck *deck = bough_openfast_open_airfoil(o, &line, i + 1, name[i]);
+        bough_deck *deck = open_airfoil(o, &line, i + 1, name[i]);
         if (!deck) return 0;
         put_polar(o, deck, name[i]);
     }
@@ -73,16 +75,9 @@ static int put_polars(bough_openfast *o, char (*name)[NAME]) {
 
 // -- blade elements -------------------------------------------------------------------------------
 
-enum {
-    SPAN = BOUGH_ELEMENT_SPAN,
-    CURVE,
-    SWEEP,
-    CURVE_ANGLE,
-    TWIST = BOUGH_ELEMENT_TWIST,
-    CHORD = BOUGH_ELEMENT_CHORD,
-    AIRFOIL = BOUGH_ELEMENT_AIRFOIL,
-    N_COLUMN = BOUGH_N_ELEMENT_COLUMN
-};
+// Columns of a table: span [m], curve, sweep [m], angle of the curve [deg], twist [deg], chord [m], airfoil
+// from 1.
+enum { SPAN, CURVE, SWEEP, CURVE_ANGLE, TWIST, CHORD, AIRFOIL, N_COLUMN };
 
 static void put_element(FILE *file, const double *row, double span, const char *name) {
     fprintf(file, "    - [%.10g, %.10g, %.10g, %.10g, %.10g, %s]\n", span, row[CURVE], row[SWEEP], row[TWIST],
@@ -124,12 +119,7 @@ static void put_span(bough_openfast *o, const double *row, int n, char (*name)[N
 static void put_elements(bough_openfast *o, const bough_deck *deck, char (*name)[NAME], int n_name) {
     const char *const column[] = {"BlSpn", "BlCrvAC", "BlSwpAC", "?BlCrvAng", "BlTwist", "BlChord", "BlAFID"};
     int n = bough_deck_whole(deck, "NumBlNds", 1, MOST_ROWS);
-    bough_openfast_put_elements(o, deck, "NumBlNds", bough_deck_table(deck, column, N_COLUMN, n), n, name,
-                                n_name);
-}
-
-void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, const char *count,
-                                 const double *row, int n, char (*name)[NAME], int n_name) {
+    const double *row = bough_deck_table(deck, column, N_COLUMN, n);
     fputs("stations:\n  columns: [span, ac_x, ac_y, twist deg, chord, polar]\n  rows:\n",
           o->draft.file[BOUGH_IMPORT_AERO]);
     double angle = 0, last = -1;
@@ -137,7 +127,7 @@ void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, cons
         const double *r = row + N_COLUMN * i;
         int id = r[AIRFOIL] >= 1 && r[AIRFOIL] <= n_name ? (int)r[AIRFOIL] : 0, line = -1;
         if (id != r[AIRFOIL] || !(r[SPAN] > last) || !(r[CHORD] > 0)) {
-            line = bough_deck_line(deck, count);
+            line = bough_deck_line(deck, "NumBlNds");
         }
         if (id != r[AIRFOIL]) {
             bough_deck_fail(deck, line, "BlAFID: row %d: expected an airfoil from 1 to %d, got %g", i + 1,
@@ -165,11 +155,7 @@ void bough_openfast_put_elements(bough_openfast *o, const bough_deck *deck, cons
 
 void bough_openfast_aero_tables(bough_openfast *o) {
     if (!o->aero || !bough_is_ok(o->draft.status)) return;
-    if (o->old_aero) {
-        bough_openfast_aero14_tables(o);
-        return;
-    }
-    char(*name)[NAME] = bough_arena_take(o->draft.arena, BOUGH_MOST_AIRFOILS * sizeof *name);
+    char(*name)[NAME] = bough_arena_take(o->draft.arena, MOST_AIRFOILS * sizeof *name);
     int n = put_polars(o, name);
     bough_deck *deck = bough_openfast_open(o, o->aero, "ADBlFile(1)|ADBlFile1");
     if (bough_is_ok(o->draft.status)) put_elements(o, deck, name, n);
@@ -319,10 +305,6 @@ void bough_openfast_aero(bough_openfast *o) {
     bough_openfast_wind(o);
     fprintf(file, "  blade: %s\n  polars: %s\n  hub_radius: %.10g m\n", bough_import_name[BOUGH_IMPORT_AERO],
             bough_import_name[BOUGH_IMPORT_POLARS], o->hub_radius);
-    if (o->old_aero) {
-        bough_openfast_aero14(o);
-        return;
-    }
     put_induction(o);
     put_stall(o);
     put_tower(o);

@@ -10,6 +10,7 @@
 enum { NONE, SIMPLE, LIBRARY = 5, THEVENIN = 2 };
 
 static const double rpm = 3.14159265358979323846 / 30; // [rad/s]
+static const double least_speed = 1e-3;                // of a generator with torque [rad/s]
 
 static int torque_mode(const bough_openfast *o) {
     return o->servo ? bough_deck_whole_or(o->servo, "VSContrl", NONE) : NONE;
@@ -94,16 +95,18 @@ static void find_library(bough_openfast *o) {
     }
 }
 
-// A generator without controller, once it is switched on.
+// Whether the generator is switched on by time, and not before the end of the run.
+static bool stays_off(const bough_openfast *o) {
+    return o->servo && bough_deck_flag_or(o->servo, "GenTiStr", true) &&
+           bough_deck_number_or(o->servo, "TimGenOn", 0) >= bough_deck_number(o->main, "TMax");
+}
+
+// A generator without controller.
 static void find_induction(bough_openfast *o) {
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
-    bool timed = bough_deck_flag_or(o->servo, "GenTiStr", true);
-    if (timed && bough_deck_number_or(o->servo, "TimGenOn", 0) >= bough_deck_number(o->main, "TMax")) {
-        return;
-    }
     if (model == SIMPLE || model == THEVENIN) o->generator = BOUGH_GENERATOR_LAW;
     if (model != SIMPLE && model != THEVENIN) lack(o, "the user's generator of GenModel %d", model);
-    if (!timed) {
+    if (!bough_deck_flag_or(o->servo, "GenTiStr", true)) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "SpdGenOn: the generator works from the start");
     }
 }
@@ -120,9 +123,10 @@ void bough_openfast_generator(bough_openfast *o) {
         return;
     }
     int torque = torque_mode(o);
-    if (torque == SIMPLE) o->generator = BOUGH_GENERATOR_LAW;
+    if (torque == SIMPLE && !stays_off(o)) o->generator = BOUGH_GENERATOR_LAW;
     if (o->options->controller || torque == LIBRARY || pitch_mode(o) == LIBRARY) find_library(o);
     if (o->generator != BOUGH_GENERATOR_FREE || !o->servo) return;
+    if ((torque == NONE || torque == SIMPLE) && stays_off(o)) return;
     if (torque == NONE) {
         find_induction(o);
     } else {
@@ -229,15 +233,22 @@ static void put_law(bough_openfast *o) {
         if (l.gain == 0) full *= (1 + least) / (1 + l.slip);
         l.slip = least;
     }
+    if (!(l.slip <= 1) || !(full > 2 * (1 + l.slip) * least_speed)) {
+        bough_deck_fail(o->servo,
+                        bough_deck_line(o->servo, torque_mode(o) == SIMPLE ? "VS_RtGnSp" : "GenModel"),
+                        "the torque reaches its maximum of %g N m at %.3g rpm of the generator, too suddenly "
+                        "for samples every %g s",
+                        l.most, full / rpm, o->draft.macro_step);
+    }
     fprintf(o->draft.file[BOUGH_IMPORT_SCENE],
             "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
             "  efficiency: %.10g\n  pitch: false\n  law:\n    corner: %.10g rad/s\n    cut_in: 0 rad/s\n"
-            "    optimal_from: 1e-3 rad/s\n    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n"
+            "    optimal_from: %g rad/s\n    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n"
             "    rated_power: %.10g\n    above_rated: torque\n    slip: %.10g\n"
             "    most_torque: %.10g\n    torque_rate: 1e9\n    power_pitch: 100 rad\n",
             1 / o->draft.macro_step, bough_deck_number(o->elasto, "GBRatio"),
-            bough_deck_number_or(o->servo, "GenEff", 100) / 100, 2 / o->draft.macro_step, l.gain, full,
-            l.most * full, l.slip, l.most);
+            bough_deck_number_or(o->servo, "GenEff", 100) / 100, 2 / o->draft.macro_step, least_speed, l.gain,
+            full, l.most * full, l.slip, l.most);
     if (bough_deck_number_or(o->servo, "TimGenOn", 0) > 0) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "TimGenOn: the generator works from the start");
     }

@@ -88,12 +88,10 @@ static void put_main_joint(bough_openfast *o) {
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     double speed = bough_deck_number(e, "RotSpeed");
     double angle = bough_deck_number_or(e, "Azimuth", 0) - bough_deck_number_or(e, "AzimB1Up", 0);
-    fprintf(file, "    joint:\n      kind: revolute\n      parent: %s\n      placement: [",
-            o->rotor_furls ? "furl" : "nacelle");
-    bough_openfast_put_shaft_offset(o);
-    fprintf(file, "move z %.10g m, ", bough_deck_number(e, "Twr2Shft"));
-    if (o->furl) fprintf(file, "rotate z %.10g deg, ", bough_deck_number(o->furl, "ShftSkew"));
-    fprintf(file, "rotate y %.10g deg, move x %.10g m]\n      axis: x\n", -bough_deck_number(e, "ShftTilt"),
+    fprintf(file,
+            "    joint:\n      kind: revolute\n      parent: nacelle\n      placement: [move z %.10g m, "
+            "rotate y %.10g deg, move x %.10g m]\n      axis: x\n",
+            bough_deck_number(e, "Twr2Shft"), -bough_deck_number(e, "ShftTilt"),
             bough_deck_number(e, "OverHang"));
     if (angle != 0) fprintf(file, "      angle: %.10g deg\n", angle);
     if (o->lacks_control) {
@@ -266,8 +264,6 @@ void bough_openfast_bodies(bough_openfast *o) {
     fputs("bodies:\n", o->draft.file[BOUGH_IMPORT_SCENE]);
     put_tower(o, top);
     put_nacelle(o);
-    bough_openfast_furl(o);
-    if (!bough_is_ok(o->draft.status)) return;
     put_rotor(o);
     bough_openfast_leave(o, e, rest, sizeof rest / sizeof *rest);
 }

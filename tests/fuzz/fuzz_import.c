@@ -10,8 +10,7 @@ static const char *const decks[] = {
     "parts/aero-blade.dat", "parts/foils/flat.dat", "parts/servo.dat", "parts/wind.dat",
     "parts/beam.dat", "parts/beam-blade.dat", "parts/foils/round.dat", "v4/main.fst", "v4/elasto.dat",
     "v4/blade.dat", "v4/aero.dat", "v5/main.fst", "v5/elasto.dat", "v5/aero.dat", "v5/aero-blade.dat",
-    "v5/servo.dat", "v5/beam.dat", "v5/beam-blade.dat", "v8/main.fst", "v8/elasto.dat", "v8/aero.ipt",
-    "v8/foil.dat", "v8/furl.dat",
+    "v5/servo.dat", "v5/beam.dat", "v5/beam-blade.dat",
 };
 enum { DECKS = sizeof decks / sizeof *decks, ROOM = 1 << 16 };
 
@@ -46,7 +45,6 @@ static void start(void) {
     make("parts/foils");
     make("v4");
     make("v5");
-    make("v8");
     for (int i = 0; i < DECKS; i++)
         load(i);
 }
