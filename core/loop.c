@@ -12,6 +12,9 @@
 static const double dependent = 1e-10;
 // Of the diagonal's largest entry of the same kind: below this nothing moves.
 static const double rigid = 1e-13;
+// Of the largest entry of the other kind, both per length: below this the largest entry of a kind is the
+// square of rounding errors. A plane mechanism that lies across the ground's axes has such rotations.
+static const double rounding = 1e-22;
 
 // -- construction ------------------------------------------------------------------------------
 
@@ -26,6 +29,7 @@ static bough_status check(const bough_tree *tree, const bough_closure_def *c) {
 bough_status bough_loops_place(bough_arena *arena, const bough_tree_def *def, bough_tree *tree) {
     tree->closures = bough_arena_take(arena, (size_t)def->n_closures * sizeof(bough_closure));
     tree->closure_time = def->closure_time > 0 ? def->closure_time : 0.01;
+    tree->closure_size = 1;
     for (int k = 0; k < def->n_closures; k++) {
         const bough_closure_def *from = &def->closures[k];
         bough_closure *to = &tree->closures[k];
@@ -122,14 +126,19 @@ static bool turns(const bough_tree *tree, int row) {
     return row - c->first_row >= c->constraint.n_translation;
 }
 
-// Of the diagonal, among equations of translation and of rotation
+// Of the diagonal, among equations of translation and of rotation; infinite where that is rounding
 static void find_largest(const bough_tree *tree, const bough_loops *l, double largest[2]) {
     int m = tree->n_rows;
+    double area = tree->closure_size * tree->closure_size;
     largest[0] = largest[1] = 0;
     for (int k = 0; k < m; k++) {
         double *x = &largest[turns(tree, k)];
         *x = fmax(*x, l->matrix[k * m + k]);
     }
+    bool still = largest[0] < rounding * area * largest[1],
+         straight = area * largest[1] < rounding * largest[0];
+    if (still) largest[0] = INFINITY;
+    if (straight) largest[1] = INFINITY;
 }
 
 // Scales the matrix to a diagonal of one and finds its eigenvectors. Rows that nothing moves drop

@@ -158,7 +158,7 @@ static bough_status assemble_speeds(bough_tree *tree, bough_tree_data *d, double
 bough_status bough_loops_assemble(bough_tree *tree, bough_tree_data *d) {
     if (d->loops == NULL) return bough_ok();
     bough_tree_kinematics(tree, tree->initial, d);
-    double size = extent(tree, d);
+    double size = tree->closure_size = extent(tree, d);
     bough_status status = assemble_positions(tree, d, size);
     if (bough_is_ok(&status)) {
         tree->closure_rank = d->loops->rank;

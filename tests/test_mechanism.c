@@ -1,11 +1,15 @@
 // Mechanisms of rigid bodies as whole scenes: from the file to the channels.
 #include "apps/output/channels.h"
 #include "core/loop.h"
+#include "core/rotation.h"
 #include "cosim/stability.h"
 #include "tests/built_scene.h"
+#include "tests/scratch_name.h"
 #include "tests/tree_measure.h"
 
+#include <dirent.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char *const no_sets[] = {NULL};
 
@@ -36,8 +40,7 @@ static double channel(fixture *f, const char *name) {
 }
 
 static void run(fixture *f, int steps) {
-    for (int k = 0; k < steps; k++)
-        scene_step(f->s);
+    for (int k = 0; k < steps; k++) scene_step(f->s);
 }
 
 static void joints_of_several_axes_start_and_are_recorded(void **context) {
@@ -179,8 +182,7 @@ static void squeezer_passes_the_reference(void **context) {
         fixture f = start("apps/mechanisms/squeezer.yaml", k == 0 ? no_sets : radau);
         assert_int_equal(f.s->tree->closure_rank, 6);
         run(&f, 100);
-        for (int i = 0; i < 7; i++)
-            check_near(channel(&f, names[i]) * degree, angles[i], 0, 1e-6);
+        for (int i = 0; i < 7; i++) check_near(channel(&f, names[i]) * degree, angles[i], 0, 1e-6);
         double x = 199.1753333731910, y = -29.75531228015052; // in ground axes
         check_near(channel(&f, "E3Fx"), cos(turn) * x + sin(turn) * y, 0, 1e-3);
         check_near(channel(&f, "E3Fy"), cos(turn) * y - sin(turn) * x, 0, 1e-3);
@@ -202,17 +204,19 @@ static void closed_loops_run_under_every_scheme(void **context) {
     static const struct {
         const char *scheme;
         double allowed; // of the crank's angle, in degrees
-    } schemes[] = {{"monolithic", 0}, {"gauss-seidel", 0.05}, {"extrapolated", 0.01},
-                   {"iterated", 0.01}, {"ramp", 0.01}};
+    } schemes[] = {{"monolithic", 0},
+                   {"gauss-seidel", 0.05},
+                   {"extrapolated", 0.01},
+                   {"iterated", 0.01},
+                   {"ramp", 0.01}};
     double reference = 0;
     for (int k = 0; k < 5; k++) {
         for (int solver = 0; solver < 2; solver++) {
             char scheme[64];
             snprintf(scheme, sizeof scheme, "simulation.coupling.scheme=%s", schemes[k].scheme);
-            const char *sets[] = {scheme, "simulation.macro_step=1 ms",
-                                  solver == 0 ? "simulation.master.solver=ida"
-                                              : "simulation.master.solver=radau5",
-                                  NULL};
+            const char *sets[] = {
+                scheme, "simulation.macro_step=1 ms",
+                solver == 0 ? "simulation.master.solver=ida" : "simulation.master.solver=radau5", NULL};
             fixture f = start("tests/scenes/closed.yaml", sets);
             check_near(channel(&f, "crankVel"), 2 * 180 / acos(-1.0), 1e-12, 0); // the others follow
             check_closed(&f, 1e-9);
@@ -255,22 +259,144 @@ static void closed_loops_come_to_rest(void **context) {
 static void stability_of_closed_loops_is_judged(void **context) {
     (void)context;
     static const char *const names[] = {"frozen", "ramp"};
-    const char *const light[] = {"bodies[0].mass=0.003", "bodies[0].inertia=[1e-4, 1e-4, 2e-5]",
-                                 "bodies[1].mass=0.002", "bodies[1].inertia=[2e-5, 2e-4, 2e-4]",
-                                 "bodies[2].mass=0.003", "bodies[2].inertia=[1e-4, 1e-4, 2e-5]",
+    const char *const light[] = {"bodies[0].mass=0.003",
+                                 "bodies[0].inertia=[1e-4, 1e-4, 2e-5]",
+                                 "bodies[1].mass=0.002",
+                                 "bodies[1].inertia=[2e-5, 2e-4, 2e-4]",
+                                 "bodies[2].mass=0.003",
+                                 "bodies[2].inertia=[1e-4, 1e-4, 2e-5]",
                                  NULL};
     for (int k = 0; k < 2; k++) {
         fixture f = start("tests/scenes/closed.yaml", light);
         bough_scheme_options options = f.s->master->coupling->options;
         bough_stability stability;
         options.name = names[k];
-        bough_status status =
-            bough_stability_judge(f.s->master->assembly, &options, 5e-3, &stability);
+        bough_status status = bough_stability_judge(f.s->master->assembly, &options, 5e-3, &stability);
         assert_int_equal(status.code, BOUGH_OK);
         print_message("%s: growth %.3g 1/s\n", names[k], stability.growth);
         assert_true((stability.growth > 1) == (k == 0));
         bough_arena_destroy(f.arena);
     }
+}
+
+// -- mechanisms in other directions ---------------------------------------------------------------
+
+static const double turns[][3] = {{0, 0, 1}, {37, -112, 64}, {-141, 23, 178}}; // [deg] about x, y, z in turn
+
+static bough_mat3 rotation_of(const double *turn) {
+    const double degree = acos(-1.0) / 180;
+    bough_mat3 r = bough_mat3_identity();
+    for (int k = 0; k < 3; k++) {
+        bough_vec3 about = bough_v3(k == 0, k == 1, k == 2);
+        bough_quaternion q = bough_quaternion_exponential(bough_scale(turn[k] * degree, about));
+        r = bough_mat3_product(r, bough_rotation_matrix(q));
+    }
+    return r;
+}
+
+static void write_line(FILE *out, const char *line, bough_vec3 gravity, const double *turn) {
+    if (strncmp(line, "gravity:", 8) == 0) {
+        fprintf(out, "gravity: [%.17g, %.17g, %.17g]\n", gravity.x, gravity.y, gravity.z);
+        return;
+    }
+    for (const char *ground; (ground = strstr(line, ": ground")) != NULL; line = ground + strlen(": ground"))
+        fprintf(out, "%.*s: base", (int)(ground - line), line);
+    fputs(line, out);
+    if (strcmp(line, "bodies:\n") != 0) return;
+    fprintf(out,
+            "  - {name: base, fidelity: rigid, mass: 1, joint: {kind: fixed, parent: ground,\n"
+            "     placement: [rotate x %.17g deg, rotate y %.17g deg, rotate z %.17g deg]}}\n",
+            turn[0], turn[1], turn[2]);
+}
+
+// The scene on a base that is turned against the ground, and gravity with it, into `name`.
+static void write_turned(const char *path, const double *turn, const char *name) {
+    char line[512], file[512];
+    snprintf(file, sizeof file, BOUGH_SOURCE_DIR "/%s", path);
+    FILE *in = fopen(file, "r"), *out = fopen(name, "w");
+    assert_true(in != NULL && out != NULL);
+    bough_vec3 down = strstr(path, "squeezer") ? bough_v3(0, 0, 0) : bough_v3(0, 0, -9.81);
+    down = bough_mat3_mul(rotation_of(turn), down);
+    while (fgets(line, sizeof line, in)) write_line(out, line, down, turn);
+    fclose(in);
+    fclose(out);
+}
+
+static fixture start_file(const char *path) {
+    fixture f = {.arena = bough_arena_create()};
+    bough_errors errors = {.arena = f.arena};
+    bough_scene *scene = NULL;
+    bough_status status = bough_scene_read(f.arena, path, no_sets, 0, &errors, &scene);
+    bough_errors_print(&errors, stderr);
+    assert_int_equal(status.code, BOUGH_OK);
+    status = bough_simulation_build(f.arena, scene, &f.s);
+    if (!bough_is_ok(&status)) print_error("%s\n", status.message);
+    assert_int_equal(status.code, BOUGH_OK);
+    f.channels = bough_channels_start(f.arena);
+    status = bough_simulation_channels(f.s, &f.channels);
+    assert_int_equal(status.code, BOUGH_OK);
+    assert_true(f.channels.count <= 64);
+    return f;
+}
+
+// Whether the channel is the first of a vector in ground axes; all others are seen from a joint or a body.
+static bool starts_vector(const bough_channels *list, int i) {
+    const char *name = list->channel[i].name;
+    size_t n = strlen(name);
+    bool direction = n > 5 && strncmp(name + n - 5, "Dir", 3) == 0 && name[n - 1] == 'x';
+    return i + 2 < list->count && (name[n - 1] == 'X' || direction);
+}
+
+static void check_same(fixture *still, fixture *turned, bough_mat3 r) {
+    const double *a = still->value, *b = turned->value;
+    assert_int_equal(still->channels.count, turned->channels.count);
+    channel(still, still->channels.channel[0].name), channel(turned, still->channels.channel[0].name);
+    for (int i = 0; i < still->channels.count; i++) {
+        double expected[3] = {a[i]};
+        int n = starts_vector(&still->channels, i) ? 3 : 1;
+        if (n == 3) bough_v3_store(bough_mat3_mul(r, bough_v3(a[i], a[i + 1], a[i + 2])), expected);
+        for (int k = 0; k < n; k++) {
+            if (!(fabs(b[i + k] - expected[k]) < 1e-5 * (1 + fabs(expected[k]))))
+                print_error("channel %s\n", still->channels.channel[i + k].name);
+            check_near(b[i + k], expected[k], 1e-5, 1e-5);
+        }
+        i += n - 1;
+    }
+}
+
+// The motion of a mechanism does not depend on the direction of its ground.
+static void check_turned(const char *path, const char *folder) {
+    char name[SCRATCH_PATH];
+    snprintf(name, sizeof name, "%s/turned.yaml", folder);
+    for (int k = 0; k < (int)(sizeof turns / sizeof *turns); k++) {
+        print_message("%s turned by %g, %g, %g deg\n", path, turns[k][0], turns[k][1], turns[k][2]);
+        write_turned(path, turns[k], name);
+        fixture still = start(path, no_sets), turned = start_file(name);
+        assert_int_equal(still.s->tree->closure_rank, turned.s->tree->closure_rank);
+        check_same(&still, &turned, rotation_of(turns[k]));
+        run(&still, 40), run(&turned, 40);
+        check_same(&still, &turned, rotation_of(turns[k]));
+        bough_arena_destroy(still.arena);
+        bough_arena_destroy(turned.arena);
+    }
+    remove(name);
+}
+
+static void mechanisms_move_alike_in_every_direction(void **context) {
+    (void)context;
+    char folder[SCRATCH_NAME], path[512];
+    assert_non_null(mkdtemp(scratch_name(folder)));
+    DIR *shipped = opendir(BOUGH_SOURCE_DIR "/apps/mechanisms");
+    assert_non_null(shipped);
+    for (const struct dirent *entry; (entry = readdir(shipped)) != NULL;) {
+        if (entry->d_name[0] == '.' || strcmp(entry->d_name, "verify.yaml") == 0) continue;
+        snprintf(path, sizeof path, "apps/mechanisms/%s", entry->d_name);
+        check_turned(path, folder);
+    }
+    closedir(shipped);
+    check_turned("tests/scenes/closed.yaml", folder); // assembled from near, with a rod
+    check_turned("tests/scenes/prop.yaml", folder);   // from an equilibrium
+    rmdir(folder);
 }
 
 int main(void) {
@@ -287,6 +413,7 @@ int main(void) {
         cmocka_unit_test(propped_beams_rest_on_their_closure),
         cmocka_unit_test(closed_loops_come_to_rest),
         cmocka_unit_test(stability_of_closed_loops_is_judged),
+        cmocka_unit_test(mechanisms_move_alike_in_every_direction),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
