@@ -77,6 +77,11 @@ static void compare(const comparison *c, bough_static *fine) {
 // metre of a blade.
 enum { TIMES = 4 };
 
+// The finer mesh starts with the joints of the equilibrium found: a mechanism may have several.
+static void start_near(const bough_simulation *coarse, bough_simulation *fine) {
+    memcpy(fine->leader.state, coarse->leader.state, (size_t)fine->leader.system.n_state * sizeof(double));
+}
+
 static bough_status find_finer(bough_arena *arena, void *self) {
     const comparison *c = self;
     bough_scene scene = *c->coarse->simulation->scene;
@@ -84,7 +89,9 @@ static bough_status find_finer(bough_arena *arena, void *self) {
     bough_static fine;
     if (!bough_error_share_refine(arena, &scene, TIMES, c->share)) return bough_ok();
     bough_status status = bough_simulation_build(arena, &scene, &s);
-    if (bough_is_ok(&status)) status = bough_static_find(arena, s, &fine);
+    if (!bough_is_ok(&status)) return status;
+    start_near(c->coarse->simulation, s);
+    status = bough_static_find(arena, s, &fine);
     if (bough_is_ok(&status)) compare(c, &fine);
     return status;
 }
