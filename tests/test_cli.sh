@@ -233,14 +233,15 @@ failed_run() {
     rm -r failed
 }
 
-# Starts a run that would take hours, in the background, and waits until it steps.
+# start_long [WORD]...: starts a run that would take hours, in the background, behind the words, and waits
+# until it steps.
 start_long() {
     rm -rf long
     mkdir long
     echo earlier >long/summary.json
     echo earlier >long/channels.out
     said="bough run ... --out long"
-    "$bough" run "$beam" --set 'simulation.duration=1000000 s' --out long >../stdout 2>../stderr &
+    "$@" "$bough" run "$beam" --set 'simulation.duration=1000000 s' --out long >../stdout 2>../stderr &
     long=$!
     waited=0
     while [ ! -e long/channels.out.partial ] && [ $waited -lt 20 ]; do
@@ -251,9 +252,10 @@ start_long() {
 }
 
 interrupted_run() {
-    for signal in TERM INT; do
+    for signal in TERM INT HUP XCPU; do
         start_long
         kill -s $signal $long
+        [ $signal != XCPU ] || kill -s $signal $long 2>/dev/null # it comes every second
         wait $long
         code=$?
         [ $code -eq 130 ] || fail "SIG$signal: exit code $code, expected 130"
@@ -265,13 +267,33 @@ interrupted_run() {
         rows=$(sed '1,/^ *(s)/d' long/channels.out | wc -l)
         has long/summary.json "\"rows\": $rows,"
     done
-    start_long
+    start_long nohup
+    kill -s HUP $long
+    sleep 1
+    kill -0 $long || fail "$said: a run behind nohup ended with SIGHUP"
     kill -s KILL $long
     wait $long 2>/dev/null
     has long/summary.json '^earlier$' # what was there stays until the new run can replace it
     has long/channels.out '^earlier$'
     has long/channels.out.partial '^INCOMPLETE'
     rm -r long
+}
+
+# Whatever standard streams are closed, no file of results has the number of one.
+closed_streams() {
+    short='simulation.duration=5 ms'
+    expect 0 run "$bar" --set "$short" --set simulation.output.frames=1e-3 --out open
+    for closed in '<&-' '>&-' '2>&-' '<&- >&-' '>&- 2>&-' '<&- >&- 2>&-'; do
+        said="bough run ... $closed"
+        (eval "exec $closed" && exec "$bough" run "$bar" --set "$short" \
+            --set simulation.output.frames=1e-3 --out closed) >/dev/null 2>&1
+        code=$?
+        [ $code -eq 0 ] || fail "$said: exit code $code"
+        json closed/summary.json
+        diff -r -x summary.json -x stdout open closed >../differ || fail "$said: $(head -n 3 ../differ)"
+        rm -rf closed
+    done
+    rm -r open
 }
 
 bad_output() {
@@ -523,6 +545,7 @@ statics "$@"
 sensed
 modes "$@"
 interrupted_run
+closed_streams
 bad_output
 shown
 imported

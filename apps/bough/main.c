@@ -2,6 +2,7 @@
 #include "apps/bough/verb.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
@@ -96,7 +97,16 @@ static void quiet_threads(char **argv) {
     execv("/proc/self/exe", argv);
 }
 
+// Opens /dev/null on closed standard streams: a file of results that took the number of one would receive
+// what is printed.
+static void open_streams(void) {
+    int file = 0;
+    while (file >= 0 && file <= STDERR_FILENO) file = open("/dev/null", O_RDWR);
+    if (file > STDERR_FILENO) close(file);
+}
+
 int main(int argc, char **argv) {
+    open_streams();
     quiet_threads(argv);
     signal(SIGXFSZ, SIG_IGN); // a file at its limit is a write that fails, and is told
     if (argc < 2) {
