@@ -11,7 +11,11 @@ void DISCON(float *swap, int *fail, char *input, char *output, char *message) {
     int n = (int)swap[49];
     (void)output;
     *fail = 0;
-    swap[46] = 100 * swap[19];
+    FILE *file = n > 3 && strcmp(input + n - 3, ".in") == 0 ? fopen(input, "r") : NULL;
+    float gain = 100; // or the first number of the input file
+    if (file && fscanf(file, "%f", &gain) != 1) *fail = -1;
+    if (file) fclose(file);
+    swap[46] = gain * swap[19];
     swap[44] = 0.1f + 0.001f * swap[1];
     for (int b = 0; b < 3; b++)
         swap[41 + b] = 0.2f + 0.1f * (float)b;

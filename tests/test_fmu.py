@@ -1,10 +1,11 @@
-"""An exported FMU as an importer meets it: test_fmu.py BOUGH SOURCE, with the module bough in the path.
+"""An exported FMU as an importer meets it: test_fmu.py BOUGH SOURCE CONTROLLER, with the module bough in the path.
 
 The archive, its description against the rules of FMI 3.0, the library by dlopen with all functions of
 the standard, its run against bough's own to the bit.
 """
 import ctypes
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -14,7 +15,7 @@ import zipfile
 
 import bough
 
-PROGRAM, SOURCE = sys.argv[1:3]
+PROGRAM, SOURCE, CONTROLLER = sys.argv[1:4]
 TURBINE = SOURCE + "/apps/turbine/runup.yaml"
 SETTINGS = ["bodies[3-5].rod.segments=8", "aero.wind.input=wind",
             "loads=[{joint: hub, torque: -2 MN m, input: brake}]", "simulation.threads=1"]
@@ -97,6 +98,64 @@ class Instance:
 def variables(causality):
     return {v.get("name"): int(v.get("valueReference")) for v in root.find("ModelVariables")
             if v.get("causality") == causality}
+
+
+class Files(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = self.temporary.name
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def write(self, name, text):
+        path = os.path.join(self.folder, name)
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        with open(path, "w") as file:
+            file.write(text)
+
+    def export(self, *words):
+        return subprocess.run([PROGRAM, "export", "fmu", *words, "--out", "x"], cwd=self.folder,
+                              capture_output=True, text=True)
+
+    def names(self):
+        with zipfile.ZipFile(self.folder + "/x/bough.fmu") as archive:
+            self.assertIsNone(archive.testzip())
+            return sorted(name for name in archive.namelist() if name.startswith("resources/"))
+
+    def test_every_table_is_in_the_archive(self):
+        tables = range(100)
+        section = "stiffness: [1e9, 1e9, 1e9, 1e6, 1e6, 1e6], mass: [1, 0, 0, 1, 1, 0]"
+        for k in tables:
+            self.write("t%02d.yaml" % k, "length: 5\nstations:\n" + "".join(
+                "- {span: %d, %s}\n" % (span, section) for span in (0, 5)))
+        self.write("many.yaml", "simulation: {duration: 1 s, macro_step: 10 ms}\nbodies:\n" + "".join(
+            "- {name: b%d, fidelity: rod, joint: {kind: fixed, parent: ground}, "
+            "rod: {table: t%02d.yaml, segments: 2}}\n" % (k, k) for k in tables))
+        said = self.export("many.yaml")
+        self.assertEqual(said.returncode, 0, said.stderr)
+        self.assertEqual(self.names(), sorted(["resources/many.yaml", "resources/scene.txt"] +
+                                              ["resources/t%02d.yaml" % k for k in tables]))
+
+    def test_the_files_of_a_controller_are_in_the_archive(self):
+        for name in "power", "blade-structure", "blade-aero", "airfoils":
+            with open(SOURCE + "/apps/turbine/%s.yaml" % name) as file:
+                self.write("scenes/%s.yaml" % name, file.read())
+        os.makedirs(self.folder + "/control")
+        shutil.copy(CONTROLLER, self.folder + "/control/law.so")
+        self.write("control/law.in", "100 ! gain\n\"../tables/Cp.txt\" ! PerfFileName\n")
+        self.write("tables/Cp.txt", "0.4\n")
+        given = ["--set", "control={kind: bladed, library: ../control/law.so, input: ../control/law.in, pitch: false}"]
+        said = self.export("scenes/power.yaml", *given)
+        self.assertEqual(said.returncode, 0, said.stderr)
+        self.assertEqual([name[10:] for name in self.names() if name.endswith((".txt", ".so", ".in"))],
+                         ["control/law.in", "control/law.so", "scene.txt", "tables/Cp.txt"])
+        said = self.export("scenes/power.yaml", *given,
+                           "--set", "control.library=%s/control/law.so" % self.folder)
+        self.assertEqual(said.returncode, 2)
+        self.assertIn("control.library: '%s/control/law.so' is not given relative" % self.folder, said.stderr)
+        absolute = "%s/scenes/power.yaml" % self.folder # of the scene itself it changes nothing
+        self.assertEqual(self.export(absolute, *given).returncode, 0)
 
 
 class Fmu(unittest.TestCase):

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Wind by name and load sets as a user meets them: test_loads.sh PROGRAM SOURCE_FOLDER
+# Wind by name and load sets as a user meets them: test_loads.sh PROGRAM SOURCE_FOLDER CONTROLLER
 set -u
-bough=$1 source=$2
+bough=$1 source=$2 controller=$3
 power=$source/apps/turbine/power.yaml
 . "$(dirname "$0")/scratch.sh"
 
@@ -122,6 +122,50 @@ if parallel --version 2>/dev/null | grep -q 'GNU parallel'; then
     grep -q 'ran ' log && fail "cases of GNU parallel's jobs were run again"
     same whole jobs
 fi
+
+# -- what a file says decides, not its name --------------------------------------------------------
+
+# A controller whose gain is in its input file: results of another gain are not reused.
+cp "$controller" law.so
+cp "$source"/apps/turbine/*.yaml .
+for gain in a b; do echo "100 ! gain" >$gain.in; done
+controlled='{kind: bladed, library: law.so, input: a.in, pitch: false}'
+cat >gains.yaml <<END
+kind: sweep
+scene: power.yaml
+common: {simulation.duration: 0.5 s, control: $controlled}
+channels: [GenTq]
+grid:
+  control.input: [a.in, b.in]
+END
+cat >errors.yaml <<END
+kind: work-precision
+scene: power.yaml
+reference: {simulation.coupling.scheme: ramp}
+common: {simulation.duration: 0.5 s, simulation.output.interval: 0.1 s, control: $controlled}
+grid:
+  control.input: [a.in, b.in]
+measures: [{name: torque, channels: [GenTq]}]
+END
+for study in gains errors; do study 0 '' $study.yaml --out $study; done
+case1=$(ls -l --time-style=full-iso gains/cases | grep 000001.case)
+same_gains=$(cut -d, -f4- gains/cases.csv | sed -n 2p)
+[ "$same_gains" = "$(cut -d, -f4- gains/cases.csv | sed -n 3p)" ] || fail "one gain, two results"
+echo "200 ! gain" >b.in
+for study in gains errors; do
+    study 0 '' $study.yaml --out $study
+    study 0 '' $study.yaml --out fresh-$study
+done
+cmp gains/cases.csv fresh-gains/cases.csv || fail "a sweep keeps results of another input file"
+error() { awk -F, -v "row=$2" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i ~ /^torque \[/) k = i } NR == row { print $k }' "$1/table.csv"; }
+for row in 3 4; do
+    [ "$(error errors $row)" = "$(error fresh-errors $row)" ] || fail "errors of run $((row - 2)) are of another input file"
+done
+[ "$(error errors 3)" != "$(error errors 4)" ] || fail "twice the gain changes no error"
+[ "$case1" = "$(ls -l --time-style=full-iso gains/cases | grep 000001.case)" ] || fail "case 1 was run again"
+[ "$same_gains" != "$(cut -d, -f4- gains/cases.csv | sed -n 3p)" ] || fail "twice the gain changes nothing"
+
+# -- workers ---------------------------------------------------------------------------------------
 
 # Two workers at once do each case once; one is killed, and the next goes on where it was.
 "$bough" study set.yaml --out shared --threads 1 --quiet >first 2>&1 &

@@ -88,7 +88,7 @@ static void find_fingerprints(bough_job *job) {
     bough_checkpoint *c = &job->checkpoint;
     c->program = c->input = BOUGH_FINGERPRINT_START;
     bough_mix_program(&c->program);
-    bough_mix_scene(&c->input, job->run.simulation->scene);
+    bough_mix_scene(&c->input, &(bough_file_sums){.arena = job->arena}, job->run.simulation->scene);
     for (int i = 0; i < job->options->n_set; i++) bough_mix_text(&c->input, job->options->set[i]);
 }
 

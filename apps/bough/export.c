@@ -8,14 +8,13 @@
 #include "apps/output/folder.h"
 #include "apps/output/picture.h"
 #include "apps/scene/fingerprint.h"
+#include "apps/scene/scene_files.h"
 #include "apps/simulation/body_alone.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-
-enum { MOST_FILES = 40 };
 
 typedef struct variable {
     const char *name, *unit;
@@ -30,10 +29,8 @@ typedef struct export {
     variable *input, *output; // (n_input), (n_output)
     char token[40];
     const char *scene; // in resources/
-    int n_file;
-    struct {
-        const char *path, *name; // where it is, where it goes
-    } file[MOST_FILES];
+    bough_scene_files files;
+    const char **name; // (files.n) of a file in the archive
 }
 export;
 
@@ -46,55 +43,54 @@ static const char *print(bough_arena *arena, const char *a, const char *b, const
     return text ? text : "";
 }
 
-static void add_path(export *x, const char *path) {
-    for (int k = 0; k < x->n_file; k++) {
-        if (strcmp(x->file[k].path, path) == 0) return;
+// "ctrl/./../../air/polars.yaml" as "../air/polars.yaml": so many folders up, then none.
+static const char *tidy(bough_arena *arena, const char *path) {
+    char *text = bough_arena_take(arena, strlen(path) + 1);
+    size_t used = 0, least = 0; // what is before `least` leads up
+    for (size_t length; *path; path += length + (path[length] == '/')) {
+        length = strcspn(path, "/");
+        bool up = length == 2 && strncmp(path, "..", 2) == 0;
+        if (length == 0 || (length == 1 && path[0] == '.')) continue;
+        if (up && used > least) {
+            used--; // its slash
+            while (used > least && text[used - 1] != '/') used--;
+            continue;
+        }
+        memcpy(text + used, path, length);
+        used += length;
+        if (path[length] == '/') text[used++] = '/';
+        if (up) least = used;
     }
-    if (x->n_file < MOST_FILES) x->file[x->n_file++].path = path;
-}
-
-static void list_files(export *x) {
-    const bough_scene *scene = x->simulation->scene;
-    add_path(x, scene->file);
-    for (int i = 0; i < scene->n_body; i++) {
-        const bough_node *node = scene->body[i].rod.structure.node;
-        if (node && node->line > 0) add_path(x, node->file);
-    }
-    if (scene->aero.blade.node) add_path(x, scene->aero.blade.node->file);
-    if (scene->aero.polars.node) add_path(x, scene->aero.polars.node->file);
-    if (scene->aero.wind.def.file) add_path(x, scene->aero.wind.def.file);
-    if (scene->control.kind == BOUGH_SCENE_BLADED && scene->control.node) {
-        add_path(x, scene->control.library);
-        if (scene->control.input[0]) add_path(x, scene->control.input);
-    }
+    text[used] = '\0';
+    return text;
 }
 
 // Files that lie above the scene need as many folders below resources/.
 static bough_status place_files(export *x) {
-    const char *slash = strrchr(x->file[0].path, '/');
-    size_t length = slash ? (size_t)(slash + 1 - x->file[0].path) : 0;
+    const char *scene = x->files.item[0].path, *slash = strrchr(scene, '/');
+    size_t length = slash ? (size_t)(slash + 1 - scene) : 0;
     int depth = 0;
-    for (int k = 0; k < x->n_file; k++) {
-        const char *path = x->file[k].path;
-        if (strncmp(path, x->file[0].path, length) != 0 || (length == 0 && path[0] == '/')) {
+    x->name = bough_arena_take(x->arena, (size_t)x->files.n * sizeof *x->name);
+    for (int k = 0; k < x->files.n; k++) {
+        const bough_scene_file *file = &x->files.item[k];
+        if (file->absolute) {
             return bough_fail(BOUGH_INVALID,
-                              "'%.200s' is not given relative to the scene; an FMU must contain "
-                              "it",
-                              path);
+                              "%.80s: '%.200s' is not given relative to the scene; an FMU must contain it",
+                              file->key, file->path);
         }
-        x->file[k].name = path + length;
+        x->name[k] = tidy(x->arena, file->path + length);
         int up = 0;
-        for (const char *c = x->file[k].name; strncmp(c, "../", 3) == 0; c += 3) up++;
+        for (const char *c = x->name[k]; strncmp(c, "../", 3) == 0; c += 3) up++;
         if (up > depth) depth = up;
     }
-    for (int k = 0; k < x->n_file; k++) {
-        const char *name = x->file[k].name, *folder = "";
+    for (int k = 0; k < x->files.n; k++) {
+        const char *name = x->name[k], *folder = "";
         int down = depth;
         for (; strncmp(name, "../", 3) == 0; name += 3) down--;
         for (; down > 0; down--) folder = print(x->arena, folder, "scene/", "");
-        x->file[k].name = print(x->arena, "resources/", folder, name);
+        x->name[k] = print(x->arena, "resources/", folder, name);
     }
-    x->scene = x->file[0].name + strlen("resources/");
+    x->scene = x->name[0] + strlen("resources/");
     return bough_ok();
 }
 
@@ -303,8 +299,11 @@ static bough_status write_archive(export *x, const char *path) {
     status = add_text(x, "modelDescription.xml", put_description, &archive);
     if (bough_is_ok(&status)) status = add_library(&archive);
     if (bough_is_ok(&status)) status = add_text(x, "resources/scene.txt", put_settings, &archive);
-    for (int k = 0; k < x->n_file && bough_is_ok(&status); k++)
-        status = bough_archive_copy(&archive, x->file[k].name, x->file[k].path);
+    for (int k = 0; k < x->files.n && bough_is_ok(&status); k++) {
+        bool there = false; // by another spelling of its path
+        for (int i = 0; i < k && !there; i++) there = strcmp(x->name[i], x->name[k]) == 0;
+        if (!there) status = bough_archive_copy(&archive, x->name[k], x->files.item[k].path);
+    }
     if (!bough_is_ok(&status)) {
         bough_folder_discard(path, file);
         return status;
@@ -315,7 +314,7 @@ static bough_status write_archive(export *x, const char *path) {
 
 static void make_token(export *x) {
     uint64_t hash = BOUGH_FINGERPRINT_START;
-    bough_mix_scene(&hash, x->simulation->scene);
+    bough_mix_scene(&hash, &(bough_file_sums){.arena = x->arena}, x->simulation->scene);
     for (int k = 0; k < x->options->n_set; k++) bough_mix_text(&hash, x->options->set[k]);
     if (x->options->body) bough_mix_text(&hash, x->options->body);
     snprintf(x->token, sizeof x->token, "{bough-" BOUGH_VERSION "-%016" PRIx64 "}", hash);
@@ -351,7 +350,7 @@ bough_status bough_verb_export(bough_arena *arena, const bough_options *options)
     status = bough_simulation_known(simulation, "it has files of its own, which are not exported");
     if (bough_is_ok(&status)) status = list_variables(&x);
     if (!bough_is_ok(&status)) return status;
-    list_files(&x);
+    x.files = bough_scene_list_files(arena, simulation->scene);
     status = place_files(&x);
     make_token(&x);
     const char *folder = bough_out_folder(arena, &named);

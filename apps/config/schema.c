@@ -8,14 +8,6 @@
 #include <errno.h>
 #include <string.h>
 
-// A file that was read; bodies that name the same one share its tables.
-struct bough_schema_file {
-    struct bough_schema_file *next;
-    const char *path;
-    const bough_schema *schema;
-    void *item;
-};
-
 static void read_value(bough_schema_reader *r, const bough_key *key, const bough_node *node, void *item);
 
 static int errors_so_far(const bough_schema_reader *r) { return r->errors->n + r->errors->dropped; }
@@ -173,20 +165,38 @@ static void read_table(bough_schema_reader *r, const bough_key *key, const bough
 
 // -- files ----------------------------------------------------------------------------------------
 
-const char *bough_schema_path(bough_schema_reader *r, const char *name) {
-    if (name[0] == '/') return name;
+// What a schema has read of the file, or without a schema its name alone; NULL: not so far.
+static const bough_schema_file *find_file(const bough_schema_reader *r, const char *path,
+                                          const bough_schema *schema) {
+    const bough_schema_file *f = r->files;
+    while (f != NULL && (f->schema != schema || strcmp(f->path, path) != 0)) f = f->next;
+    return f;
+}
+
+static void add_file(bough_schema_reader *r, bough_schema_file added) {
+    bough_schema_file *file = bough_arena_take(r->arena, sizeof *file);
+    *file = added;
+    file->next = r->files;
+    r->files = file;
+}
+
+const char *bough_schema_path(bough_schema_reader *r, const char *key, const char *name) {
     size_t size = strlen(r->directory) + strlen(name) + 1;
     char *path = bough_arena_take(r->arena, size);
-    snprintf(path, size, "%s%s", r->directory, name);
+    snprintf(path, size, "%s%s", name[0] == '/' ? "" : r->directory, name);
+    const bough_schema_file *known = find_file(r, path, NULL);
+    if (known != NULL) return known->path;
+    size_t length = key[0] == '\0' ? strlen(r->path) : bough_schema_push_key(r, key);
+    add_file(r, (bough_schema_file){
+                    .key = bough_arena_string(r->arena, r->path), .path = path, .absolute = name[0] == '/'});
+    bough_schema_pop(r, length);
     return path;
 }
 
 // Reads the file's struct; errors inside it have paths that start at the file's top.
 static void *load(bough_schema_reader *r, const bough_schema *schema, const char *path) {
-    struct bough_schema_file *file = bough_arena_take(r->arena, sizeof *file);
     void *item = bough_arena_take(r->arena, schema->size);
-    *file = (struct bough_schema_file){r->files, path, schema, item};
-    r->files = file;
+    add_file(r, (bough_schema_file){.path = path, .schema = schema, .item = item});
     bough_node *root = bough_text_read(r->arena, path, r->errors);
     if (root == NULL) return item;
     char outer[sizeof r->path];
@@ -203,10 +213,10 @@ static void read_file(bough_schema_reader *r, const bough_schema *schema, const 
         bough_schema_expected(r, node, "the name of a file");
         return;
     }
-    const char *path = bough_schema_path(r, node->text);
-    for (struct bough_schema_file *f = r->files; f != NULL; f = f->next) {
-        if (f->schema != schema || strcmp(f->path, path) != 0) continue;
-        memcpy(field, f->item, schema->size);
+    const char *path = bough_schema_path(r, "", node->text);
+    const bough_schema_file *known = find_file(r, path, schema); // bodies that name it share its tables
+    if (known != NULL) {
+        memcpy(field, known->item, schema->size);
         return;
     }
     char why[BOUGH_INPUT_REASON];

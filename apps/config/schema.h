@@ -76,15 +76,24 @@ struct bough_schema {
     void (*check)(bough_schema_reader *reader, void *item);
 };
 
+// A file that a key names.
+typedef struct bough_schema_file {
+    struct bough_schema_file *next;
+    const char *key, *path;     // "bodies[0].rod.structure"; as it is opened
+    bool absolute;              // as it is written
+    const bough_schema *schema; // by which its struct `item` was read; NULL: only the name is known
+    void *item;
+} bough_schema_file;
+
 // Reads a file named `path` relative to the directory of the scene; see BOUGH_KEY_FILE.
 struct bough_schema_reader {
     bough_arena *arena;
     bough_errors *errors;
-    const char *directory;           // with its last slash, "" for the current one
-    const char *unit;                // of plain numbers, from the head of a column; NULL: SI
-    char path[256];                  // of the value being read
-    const bough_key *key;            // whose value `read` of the key is called for
-    struct bough_schema_file *files; // read so far
+    const char *directory;    // with its last slash, "" for the current one
+    const char *unit;         // of plain numbers, from the head of a column; NULL: SI
+    char path[256];           // of the value being read
+    const bough_key *key;     // whose value `read` of the key is called for
+    bough_schema_file *files; // named so far, once each without a schema, once with each that read it
 };
 
 // Fills `item` (zeroed, of the schema's size) from a mapping; NULL fills the defaults.
@@ -95,8 +104,9 @@ void bough_schema_read(bough_schema_reader *reader, const bough_schema *schema, 
 void bough_schema_error(bough_schema_reader *reader, const bough_node *node, const char *key,
                         const char *format, ...) __attribute__((format(printf, 4, 5)));
 
-// The path of a file that the scene names, relative to its directory; NULL without memory.
-const char *bough_schema_path(bough_schema_reader *reader, const char *name);
+// The path of a file that the scene names by the value being read or, unless key is "", by its `.key`:
+// relative to the scene's directory. Every name of a file comes by here and is then in reader->files.
+const char *bough_schema_path(bough_schema_reader *reader, const char *key, const char *name);
 
 // Reads a number with or without a unit; NaN after adding an error.
 double bough_schema_number(bough_schema_reader *reader, const bough_node *node, bough_dimension dimension);

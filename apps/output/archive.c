@@ -24,31 +24,38 @@ static void put(FILE *file, uint32_t value, int bytes) {
 }
 
 // What the head of a file and its line in the directory share.
-static void put_entry(const bough_archive *a, int k) {
-    put(a->file, VERSION, 2);
-    put(a->file, UTF8, 2);
-    put(a->file, 0, 2); // stored
-    put(a->file, 0, 2); // midnight
-    put(a->file, DAY, 2);
-    put(a->file, a->entry[k].sum, 4);
-    put(a->file, a->entry[k].size, 4);
-    put(a->file, a->entry[k].size, 4);
-    put(a->file, (uint32_t)strlen(a->entry[k].name), 2);
-    put(a->file, 0, 2);
+static void put_entry(FILE *file, const bough_archive_entry *entry) {
+    put(file, VERSION, 2);
+    put(file, UTF8, 2);
+    put(file, 0, 2); // stored
+    put(file, 0, 2); // midnight
+    put(file, DAY, 2);
+    put(file, entry->sum, 4);
+    put(file, entry->size, 4);
+    put(file, entry->size, 4);
+    put(file, (uint32_t)strlen(entry->name), 2);
+    put(file, 0, 2);
+}
+
+static bough_archive_entry *next_entry(bough_archive *a) {
+    if (a->n == a->room) {
+        bough_archive_entry *old = a->entry;
+        a->room = 2 * a->room + 16;
+        a->entry = bough_arena_take(a->arena, (size_t)a->room * sizeof *a->entry);
+        if (a->n > 0) memcpy(a->entry, old, (size_t)a->n * sizeof *old);
+    }
+    return &a->entry[a->n++];
 }
 
 bough_status bough_archive_add(bough_archive *a, const char *name, const void *bytes, size_t size) {
     long at = ftell(a->file);
-    if (a->n == BOUGH_ARCHIVE_FILES || at < 0 || size + (size_t)at > UINT32_MAX - (1u << 20)) {
+    if (a->n == UINT16_MAX || at < 0 || size + (size_t)at > UINT32_MAX - (1u << 20)) {
         return bough_fail(BOUGH_INVALID, "the archive has no room for '%.200s'", name);
     }
-    int k = a->n++;
-    a->entry[k].name = name;
-    a->entry[k].size = (uint32_t)size;
-    a->entry[k].sum = checksum(bytes, size);
-    a->entry[k].at = (uint32_t)at;
+    bough_archive_entry *entry = next_entry(a);
+    *entry = (bough_archive_entry){name, checksum(bytes, size), (uint32_t)size, (uint32_t)at};
     put(a->file, LOCAL, 4);
-    put_entry(a, k);
+    put_entry(a->file, entry);
     fputs(name, a->file);
     fwrite(bytes, 1, size, a->file);
     return bough_ok();
@@ -70,7 +77,7 @@ void bough_archive_end(bough_archive *a) {
     for (int k = 0; k < a->n; k++) {
         put(a->file, CENTRAL, 4);
         put(a->file, VERSION, 2);
-        put_entry(a, k);
+        put_entry(a->file, &a->entry[k]);
         put(a->file, 0, 2); // comment
         put(a->file, 0, 2);
         put(a->file, 0, 2);

@@ -8,19 +8,19 @@
 #include <stdint.h>
 #include <stdio.h>
 
-enum { BOUGH_ARCHIVE_FILES = 64 };
+typedef struct bough_archive_entry {
+    const char *name; // "resources/scene.yaml"; borrowed until the end
+    uint32_t sum, size, at;
+} bough_archive_entry;
 
 typedef struct bough_archive {
-    bough_arena *arena; // of copies
+    bough_arena *arena; // of copies and entries
     FILE *file;         // open for writing, at its start
-    int n;
-    struct {
-        const char *name; // "resources/scene.yaml"; borrowed until the end
-        uint32_t sum, size, at;
-    } entry[BOUGH_ARCHIVE_FILES];
+    int n, room;
+    bough_archive_entry *entry; // (room), n of them filled
 } bough_archive;
 
-// Appends a file of `size` bytes. BOUGH_INVALID when it does not fit.
+// Appends a file of `size` bytes. BOUGH_INVALID when it does not fit: 4 GB or 65535 files.
 bough_status bough_archive_add(bough_archive *archive, const char *name, const void *bytes, size_t size);
 
 // Appends a copy of the file at `path`. BOUGH_IO when it cannot be read.

@@ -1,6 +1,6 @@
 #include "apps/scene/fingerprint.h"
 
-#include "apps/config/schema.h"
+#include "apps/scene/scene_files.h"
 #include "core/input_file.h"
 
 #include <stdio.h>
@@ -21,16 +21,32 @@ void bough_mix_file(uint64_t *hash, const char *path) {
     fclose(file);
 }
 
-static void mix_node_file(uint64_t *hash, const bough_node *node) {
-    if (node) bough_mix_file(hash, node->file);
+struct bough_file_sum {
+    struct bough_file_sum *next;
+    const char *path;
+    uint64_t sum;
+};
+
+static uint64_t sum_of(bough_file_sums *sums, const char *path) {
+    for (const struct bough_file_sum *s = sums->known; s; s = s->next) {
+        if (strcmp(s->path, path) == 0) return s->sum;
+    }
+    struct bough_file_sum *s = bough_arena_take(sums->arena, sizeof *s);
+    *s = (struct bough_file_sum){sums->known, bough_arena_string(sums->arena, path), BOUGH_FINGERPRINT_START};
+    bough_mix_file(&s->sum, path);
+    sums->known = s;
+    return s->sum;
 }
 
-void bough_mix_scene(uint64_t *hash, const bough_scene *scene) {
-    bough_mix_file(hash, scene->file);
-    for (int i = 0; i < scene->n_body; i++) mix_node_file(hash, scene->body[i].rod.structure.node);
-    mix_node_file(hash, scene->aero.blade.node);
-    mix_node_file(hash, scene->aero.polars.node);
-    if (scene->aero.wind.def.file) bough_mix_file(hash, scene->aero.wind.def.file);
+void bough_mix_scene(uint64_t *hash, bough_file_sums *sums, const bough_scene *scene) {
+    bough_arena *own = bough_arena_child(sums->arena);
+    bough_scene_files files = bough_scene_list_files(own, scene);
+    for (int k = 0; k < files.n; k++) {
+        uint64_t sum = sum_of(sums, files.item[k].path);
+        bough_mix_text(hash, files.item[k].key);
+        bough_mix(hash, &sum, sizeof sum);
+    }
+    bough_arena_destroy(own);
 }
 
 void bough_mix_program(uint64_t *hash) { bough_mix_file(hash, "/proc/self/exe"); }

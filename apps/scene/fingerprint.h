@@ -14,8 +14,14 @@ void bough_mix_text(uint64_t *hash, const char *text);
 // What the file holds; nothing of one that cannot be read.
 void bough_mix_file(uint64_t *hash, const char *path);
 
-// The scene's file and those that it names, but for a controller's.
-void bough_mix_scene(uint64_t *hash, const bough_scene *scene);
+// Sums of files, so that each is read once for scenes that share it.
+typedef struct bough_file_sums {
+    bough_arena *arena;
+    struct bough_file_sum *known; // NULL at the beginning
+} bough_file_sums;
+
+// What all files of bough_scene_list_files hold.
+void bough_mix_scene(uint64_t *hash, bough_file_sums *sums, const bough_scene *scene);
 
 // The running program, where the system shows it.
 void bough_mix_program(uint64_t *hash);

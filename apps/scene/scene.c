@@ -50,6 +50,7 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     bough_schema_read(&reader, &bough_scene_schema, root, s);
     if (s->node != NULL && errors->n == 0) bough_scene_repeat(&reader, s);
     if (s->node != NULL) bough_scene_link(&reader, s);
+    s->named = reader.files;
     bough_status status = finish(path, errors);
     if (bough_is_ok(&status)) *scene = s;
     return status;

@@ -57,24 +57,17 @@ static bough_status open_series(bough_arena *arena, const bough_load_case *c, co
 
 // -- the run --------------------------------------------------------------------------------------
 
-// Every scene was read when the study began: an error now is none of the case.
-static bough_status read_scene(bough_arena *arena, const bough_load_case *c, bough_scene **scene) {
-    bough_errors errors = {.arena = arena};
-    bough_status status = bough_scene_read(arena, c->scene, c->set, c->n_set, &errors, scene);
-    if (status.code != BOUGH_INVALID) return status;
-    return bough_fail(BOUGH_IO,
-                      "the scene '%.150s' or a file of it has changed or is gone since the "
-                      "study began",
-                      c->scene);
-}
-
 // What cannot be built is a case that fails.
 static bough_status build(bough_arena *arena, const bough_load_case *c, const char *folder, case_run *r) {
     bough_scene *scene;
-    bough_status status = read_scene(arena, c, &scene);
+    bough_study_source source = {c->scene, c->n_set, c->set, c->files};
+    bough_status status = bough_study_read_scene(arena, &source, &scene);
     if (!bough_is_ok(&status)) return status;
     scene->simulation.threads = 1;
-    status = bough_run_create(arena, scene, &r->run);
+    bough_status built = bough_run_create(arena, scene, &r->run);
+    status = bough_study_same_files(arena, scene, c->files);
+    if (!bough_is_ok(&status)) return status;
+    status = built;
     const bough_load_set *s = r->set;
     r->chosen = bough_arena_doubles(arena, (size_t)s->n_channel);
     if (bough_is_ok(&status))

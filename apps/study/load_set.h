@@ -43,6 +43,7 @@ typedef struct bough_load_case {
     const char *settings; // "speed=12 m/s, seed=3"
     const char *command;  // that runs it alone
     double share;         // of its group's hours or events
+    uint64_t files;       // fingerprint of the scene's files, which must stay as they are; 0: may change
     uint64_t fingerprint; // of all that its result depends on
 } bough_load_case;
 

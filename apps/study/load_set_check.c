@@ -55,11 +55,10 @@ static bough_status check_channels(bough_arena *arena, bough_arena *own, bough_l
 
 // -- cases ----------------------------------------------------------------------------------------
 
-static uint64_t fingerprint(const bough_load_set *s, const bough_load_case *c, uint64_t program,
-                            const bough_scene *scene) {
+static uint64_t fingerprint(const bough_load_set *s, const bough_load_case *c, uint64_t program) {
     uint64_t hash = program;
     char numbers[64];
-    bough_mix_scene(&hash, scene);
+    bough_mix(&hash, &c->files, sizeof c->files);
     for (int i = 0; i < c->n_set; i++) bough_mix_text(&hash, c->set[i]);
     snprintf(numbers, sizeof numbers, "%.17g %d %d %d", s->from, s->sweep, s->series, s->n_wanted);
     bough_mix_text(&hash, numbers);
@@ -79,7 +78,7 @@ static void check_from(const bough_load_set *s, const bough_scene *scene, const 
 }
 
 static bough_status check_case(bough_arena *arena, bough_load_set *s, int i, uint64_t program,
-                               bough_errors *errors) {
+                               bough_file_sums *sums, bough_errors *errors) {
     bough_arena *own = bough_arena_child(arena);
     bough_errors found = {.arena = own};
     bough_load_case *c = &s->cases[i];
@@ -89,7 +88,9 @@ static bough_status check_case(bough_arena *arena, bough_load_set *s, int i, uin
         bough_study_tell(&found.item[k], c->scene, origin(s, c, &found.item[k]), errors);
     if (status.code == BOUGH_INVALID) status = bough_ok();
     if (scene) {
-        c->fingerprint = fingerprint(s, c, program, scene);
+        c->files = BOUGH_FINGERPRINT_START;
+        bough_mix_scene(&c->files, sums, scene);
+        c->fingerprint = fingerprint(s, c, program);
         check_from(s, scene, c, errors);
     }
     bool first = i == 0 || c->group != s->cases[i - 1].group;
@@ -100,9 +101,10 @@ static bough_status check_case(bough_arena *arena, bough_load_set *s, int i, uin
 
 bough_status bough_load_set_check(bough_arena *arena, bough_load_set *s, bough_errors *errors) {
     uint64_t program = BOUGH_FINGERPRINT_START;
+    bough_file_sums sums = {.arena = arena};
     bough_mix_program(&program);
     bough_status status = bough_ok();
     for (int i = 0; i < s->n_case && bough_is_ok(&status) && errors->dropped == 0; i++)
-        status = check_case(arena, s, i, program, errors);
+        status = check_case(arena, s, i, program, &sums, errors);
     return status;
 }

@@ -80,6 +80,7 @@ typedef struct bough_study_cell {
     int n_set;
     const char **set;     // (n_set) replacements in the scene
     int reference;        // to compare with
+    uint64_t files;       // fingerprint of the scene's files, which must stay as they are; 0: may change
     const char *settings; // those that tell it from the other cells, "scheme=ramp, macro_step=5 ms"
 } bough_study_cell;
 
@@ -107,8 +108,7 @@ typedef struct bough_study {
     double duration, interval; // [s] interval: between the common output times
     int n_channel;
     const char **channel; // (n_channel) of all measures in their order
-    uint64_t fingerprint; // of all that the cells' results depend on, besides their settings
-    uint64_t scene_sum;   // of the scene's text, which must stay as it is; 0: may change
+    uint64_t fingerprint; // of all that the cells' results depend on, besides their settings and files
 } bough_study;
 
 // Reads a study and checks it with every scene that its runs see. `threads` replaces the scene's

@@ -18,6 +18,8 @@ typedef struct work {
 // Named by what it depends on: the place in the grid may change.
 static bough_result_file file_of(const char *folder, const bough_study *s, const bough_study_cell *cell) {
     bough_result_file file = {.folder = folder, .fingerprint = s->fingerprint};
+    const uint64_t files[] = {s->reference_cell[cell->reference].files, cell->files};
+    bough_mix(&file.fingerprint, files, sizeof files);
     bough_mix_text(&file.fingerprint, cell->settings);
     snprintf(file.name, sizeof file.name, "%016" PRIx64, file.fingerprint);
     return file;

@@ -26,11 +26,10 @@ static void mix_measure(uint64_t *hash, const bough_study_measure *m) {
 
 // The title and the grid's values are not in it: a grid may grow and keeps what was run. The
 // program is, where the system shows it: results of another one are not to be mixed in.
-static uint64_t fingerprint(const bough_study *s, const bough_scene *scene) {
+static uint64_t fingerprint(const bough_study *s) {
     uint64_t hash = BOUGH_FINGERPRINT_START;
     char numbers[80];
     bough_mix_program(&hash);
-    bough_mix_scene(&hash, scene);
     for (int i = 0; i < s->reference_cell->n_set; i++) bough_mix_text(&hash, s->reference_cell->set[i]);
     for (int i = 0; i < s->common.n; i++) bough_mix_text(&hash, s->common.item[i].set);
     for (int i = 0; i < s->grid.n; i++) bough_mix_text(&hash, s->grid.axis[i].key);
@@ -123,13 +122,25 @@ static void check_times(const bough_study *s, const bough_study_cell *cell, cons
     }
 }
 
-static void check_cells(bough_study *s, bool times, bough_errors *errors) {
-    for (int i = 0; i < s->n_cell && errors->dropped == 0; i++) {
-        bough_arena *arena = bough_arena_child(errors->arena);
-        const bough_scene *scene = read_scene(arena, s, &s->cell[i], errors);
-        if (scene && times) check_times(s, &s->cell[i], &scene->simulation, errors);
-        bough_arena_destroy(arena);
+static void check_cell(bough_study *s, bough_study_cell *cell, bool times, bough_file_sums *sums,
+                       bough_errors *errors) {
+    bough_arena *arena = bough_arena_child(errors->arena);
+    const bough_scene *scene = read_scene(arena, s, cell, errors);
+    if (scene && times) check_times(s, cell, &scene->simulation, errors);
+    if (scene) {
+        cell->files = BOUGH_FINGERPRINT_START;
+        bough_mix_scene(&cell->files, sums, scene);
     }
+    bough_arena_destroy(arena);
+}
+
+// Of the references the first says the times.
+static void check_cells(bough_study *s, bool times, bough_errors *errors) {
+    bough_file_sums sums = {.arena = errors->arena};
+    for (int i = 0; i < s->n_reference && errors->dropped == 0; i++)
+        check_cell(s, &s->reference_cell[i], false, &sums, errors);
+    for (int i = 0; i < s->n_cell && errors->dropped == 0; i++)
+        check_cell(s, &s->cell[i], times, &sums, errors);
 }
 
 // -- channels -------------------------------------------------------------------------------------
@@ -195,9 +206,7 @@ bough_status bough_study_check(bough_arena *arena, bough_study *s, bough_errors 
     if (scene) {
         s->duration = scene->simulation.duration;
         s->interval = scene->simulation.output.interval;
-        s->fingerprint = fingerprint(s, scene);
-        s->scene_sum = BOUGH_FINGERPRINT_START;
-        bough_mix_file(&s->scene_sum, scene->file);
+        s->fingerprint = fingerprint(s);
         status = check_channels(own, s, scene, errors);
     }
     bough_arena_destroy(own);

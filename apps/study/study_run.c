@@ -100,22 +100,25 @@ bough_status bough_study_columns(bough_arena *arena, const bough_channels *chann
     return bough_ok();
 }
 
-// Every cell was read when the study began: an error now is none of the cell, nor may a changed scene
-// be compared with runs of the old one.
-static bough_status read_scene(bough_arena *arena, const bough_study *study, const bough_study_cell *cell,
-                               bough_scene **scene) {
-    bough_errors errors = {.arena = arena};
-    bough_status status = bough_scene_read(arena, study->scene, cell->set, cell->n_set, &errors, scene);
-    if (study->scene_sum == 0 || (!bough_is_ok(&status) && status.code != BOUGH_INVALID)) {
-        return status;
-    }
-    uint64_t sum = BOUGH_FINGERPRINT_START;
-    bough_mix_file(&sum, study->scene);
-    if (bough_is_ok(&status) && sum == study->scene_sum) return status;
+static bough_status changed(const char *scene, const char *why) {
     return bough_fail(BOUGH_IO,
                       "the scene '%.150s' or a file of it has changed or is gone since the study "
                       "began%s%.100s; runs so far are kept",
-                      study->scene, errors.n > 0 ? ": " : "", errors.n > 0 ? errors.item[0].text : "");
+                      scene, why[0] ? ": " : "", why);
+}
+
+bough_status bough_study_read_scene(bough_arena *arena, const bough_study_source *from, bough_scene **scene) {
+    bough_errors errors = {.arena = arena};
+    bough_status status = bough_scene_read(arena, from->scene, from->set, from->n_set, &errors, scene);
+    if (from->files == 0 || status.code != BOUGH_INVALID) return status;
+    return changed(from->scene, errors.n > 0 ? errors.item[0].text : "");
+}
+
+bough_status bough_study_same_files(bough_arena *arena, const bough_scene *scene, uint64_t files) {
+    uint64_t now = BOUGH_FINGERPRINT_START;
+    if (files == 0) return bough_ok();
+    bough_mix_scene(&now, &(bough_file_sums){.arena = arena}, scene);
+    return now == files ? bough_ok() : changed(scene->file, "");
 }
 
 // Chooses the cheapest error estimate for the cells, whose true error against the reference is known: by
@@ -130,15 +133,17 @@ static void estimate_cheaply(bough_scene *scene) {
 
 static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell_run *r) {
     bough_scene *scene;
-    bough_status status = read_scene(arena, r->study, cell, &scene);
+    bough_study_source source = {r->study->scene, cell->n_set, cell->set, cell->files};
+    bough_status status = bough_study_read_scene(arena, &source, &scene);
     if (!bough_is_ok(&status)) return status;
     if (r->study->kind == BOUGH_STUDY_STABILITY)
         scene->simulation.threads = 1;
     else if (r->study->threads > 0)
         scene->simulation.threads = r->study->threads;
     estimate_cheaply(scene);
-    status = bough_run_create(arena, scene, &r->run);
-    if (!bough_is_ok(&status)) return status;
+    bough_status built = bough_run_create(arena, scene, &r->run);
+    status = bough_study_same_files(arena, scene, cell->files);
+    if (!bough_is_ok(&status) || !bough_is_ok(&built)) return bough_is_ok(&status) ? built : status;
     const bough_study *s = r->study;
     r->gathered = bough_arena_doubles(arena, (size_t)s->n_channel);
     r->zero = bough_arena_doubles(arena, (size_t)s->n_channel);

@@ -40,6 +40,23 @@ typedef struct bough_study_drive {
     const char *folder;      // where every run writes all its channels; NULL: nowhere
 } bough_study_drive;
 
+// Where a run's scene is from: its file with replacements, and the fingerprint of the files that they name
+// when the study began; 0: they may change.
+typedef struct bough_study_source {
+    const char *scene;
+    int n_set;
+    const char *const *set; // (n_set)
+    uint64_t files;
+} bough_study_source;
+
+// Every scene was read when the study began, so that an error now, BOUGH_IO, is of the study and not of the
+// run.
+bough_status bough_study_read_scene(bough_arena *arena, const bough_study_source *from, bough_scene **scene);
+
+// BOUGH_IO when the files of a scene that has been built are others than when the study began: its run must
+// not be compared with earlier ones, nor what cannot be built be kept as a result.
+bough_status bough_study_same_files(bough_arena *arena, const bough_scene *scene, uint64_t files);
+
 bough_study_series bough_study_series_take(bough_arena *arena, const bough_study *study);
 
 // Whether a run that ends so ends the study: a run that fails says something about its settings, memory,
