@@ -39,6 +39,12 @@ cmake -G Ninja -S "$folder/project" -B "$folder/b" -DCMAKE_PREFIX_PATH="$folder/
 cmake --build "$folder/b" >/dev/null
 "$folder/b/example" "$source/apps/mechanisms/pendulum.yaml" bobX >"$folder/rows"
 [ "$(wc -l <"$folder/rows")" -ge 100 ]
+export PKG_CONFIG_PATH="$(dirname "$library")/pkgconfig"
+# shellcheck disable=SC2046 # a list of words
+cc -o "$folder/by-pkg-config" "$folder/project/example.c" $(pkg-config --cflags --libs bough)
+LD_LIBRARY_PATH=$(dirname "$library") "$folder/by-pkg-config" "$source/apps/mechanisms/pendulum.yaml" bobX |
+    cmp - "$folder/rows"
+[ "$(pkg-config --modversion bough)" = "$("$folder/usr/bin/bough" --version | sed 's/^bough //;s/ .*//')" ]
 if "$folder/b/example" "$source/apps/mechanisms/pendulum.yaml" nothing 2>/dev/null; then exit 1; fi
 "$folder/b/what_if" "$source/apps/mechanisms/pendulum.yaml" 0.5 'gravity=[0, 0, -1.62]' bobX >"$folder/rows"
 awk '{apart = ($2 - $3) ^ 2} NR == 1 && apart > 1e-6 {exit 1} END {exit !(apart > 1e-4)}' "$folder/rows"
