@@ -23,10 +23,14 @@ static double wake_strength(const bough_rotor *rotor, const bough_rotor_data *da
 
 void bough_rotor_survey(const bough_rotor *rotor, const bough_rotor_motion *motion, bough_rotor_data *data) {
     struct bough_rotor_scratch *scratch = data->scratch;
-    bough_vec3 wind = {0, 0, 0};
-    for (int b = 0; b < rotor->n_blade; b++) wind = bough_add(wind, scratch->wind[b]);
+    bough_vec3 wind = {0, 0, 0}, velocity = {0, 0, 0};
+    for (int b = 0; b < rotor->n_blade; b++) {
+        wind = bough_add(wind, scratch->wind[b]);
+        velocity = bough_add(velocity, scratch->velocity[b]);
+    }
     wind = bough_scale(1. / (rotor->n_blade * rotor->n_station), wind);
     data->disk_wind = wind;
+    data->disk_velocity = bough_scale(1. / (rotor->n_blade * rotor->n_station), velocity);
     double axial = bough_dot(wind, motion->shaft);
     bough_vec3 across = bough_axpy(-axial, motion->shaft, wind);
     double size = bough_norm(across);
@@ -349,6 +353,7 @@ void bough_rotor_told_snapshot(const bough_rotor *rotor, bough_rotor_data *data,
     bough_snapshot_doubles(s, &data->thrust, 1);
     bough_snapshot_doubles(s, &data->torque, 1);
     bough_snapshot_take(s, &data->disk_wind, sizeof data->disk_wind);
+    bough_snapshot_take(s, &data->disk_velocity, sizeof data->disk_velocity);
     for (int b = 0; b < rotor->n_blade; b++) {
         const blade_rows *r = data->scratch->blade + b;
         double *const row[] = {r->radius,

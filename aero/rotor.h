@@ -122,7 +122,8 @@ typedef struct bough_rotor_data {
                    // its rate [N s/m, N, N s; N s, N m, N m s]
     double thrust; // along the shaft [N]
     double torque; // about the shaft [N m]
-    bough_vec3 disk_wind; // mean of the disturbed wind over all stations [m/s]
+    bough_vec3 disk_wind;     // mean of the disturbed wind over all stations [m/s]
+    bough_vec3 disk_velocity; // mean of the stations' velocities [m/s]
     struct bough_rotor_scratch *scratch;
 } bough_rotor_data;
 

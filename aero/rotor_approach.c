@@ -142,6 +142,14 @@ static bough_vec3 blow(const bough_rotor *rotor, double time, blade_rows *rows) 
     return sum;
 }
 
+// The sum of the stations' velocities, in ground axes.
+static bough_vec3 sum_velocity(const bough_rotor *rotor, const bough_mat3 frame, const blade_rows *rows) {
+    bough_vec3 sum = {0, 0, 0};
+    for (int j = 0; j < rotor->n_station; j++)
+        sum = bough_add(sum, lane_load(rows->velocity, rotor->stride, j));
+    return bough_mat3_mul(frame, sum);
+}
+
 // What the momentum balance asks of the stations.
 static void meet_wind(const bough_rotor *rotor, const bough_rotor_motion *motion, int blade,
                       blade_rows *restrict to) {
@@ -182,6 +190,7 @@ void bough_rotor_approach(const bough_rotor *rotor, const bough_rotor_motion *mo
     blade_rows *r = data->scratch->blade + blade;
     move_stations(rotor, motion, blade, r);
     data->scratch->wind[blade] = blow(rotor, motion->time, r);
+    data->scratch->velocity[blade] = sum_velocity(rotor, motion->blade[blade].frame.rotation, r);
     meet_wind(rotor, motion, blade, r);
 }
 

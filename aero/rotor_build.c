@@ -247,6 +247,7 @@ void bough_rotor_data_build(bough_arena *arena, const bough_rotor *rotor, bough_
     data->scratch = s;
     s->blade = bough_arena_take(arena, n_blade * sizeof *s->blade);
     s->wind = bough_arena_take(arena, n_blade * sizeof *s->wind);
+    s->velocity = bough_arena_take(arena, n_blade * sizeof *s->velocity);
     s->thrust = bough_arena_doubles(arena, n_blade);
     s->torque = bough_arena_doubles(arena, n_blade);
     for (int b = 0; b < rotor->n_blade; b++) take_rows(arena, rotor, s->blade + b);

@@ -68,6 +68,7 @@ typedef struct blade_rows {
 struct bough_rotor_scratch {
     blade_rows *blade;       // (n_blade)
     bough_vec3 *wind;        // (n_blade) sum over the stations, in ground axes [m/s]
+    bough_vec3 *velocity;    // (n_blade) the same of the stations' own motion
     double *thrust, *torque; // (n_blade)
     // what the whole rotor tells each station
     double skew;         // acute angle of the wind and the shaft [rad]

@@ -79,14 +79,12 @@ static double largest(const double *x, int n) {
 // Force and moment about the ground's origin that a blade's body receives.
 static bough_wrench received(const fixture *f, int blade) {
     const bough_beam *beam = &f->s->beam[blade];
-    bough_transform pose =
-        bough_tree_frame_pose(f->s->view, &f->s->tree->markers[beam->marker]);
+    bough_transform pose = bough_tree_frame_pose(f->s->view, &f->s->tree->markers[beam->marker]);
     signal x = signal_of(f, blade);
     if (beam->rod == NULL) return bough_wrench_to_parent(&pose, bough_wrench_load(x.value));
     bough_vec3 position[SEGMENTS + 1], velocity[SEGMENTS + 1], angular[SEGMENTS + 1];
     bough_mat3 rotation[SEGMENTS + 1];
-    bough_simulation_beam_motion(f->s, beam, (bough_beam_motion){position, velocity, angular,
-                                                                 rotation});
+    bough_simulation_beam_motion(f->s, beam, (bough_beam_motion){position, velocity, angular, rotation});
     bough_wrench sum = {{0, 0, 0}, {0, 0, 0}};
     for (int i = 0; i <= SEGMENTS; i++) {
         double w[6];
@@ -155,15 +153,42 @@ static void rotor_sees_the_motion_of_the_hub(void **context) {
     close_turbine(&f);
 }
 
+// The blades' mean velocity is the nacelle's: two opposite blades turn about their middle. RtVAvgxh and RtTSR
+// are of the wind relative to it.
+static void rotor_tells_the_wind_relative_to_the_blades(void **context) {
+    (void)context;
+    static const char *const sets[2][3] = {
+        {"bodies[2].joint.speed=3 rad/s", NULL},
+        {"bodies[2].joint.speed=3 rad/s",
+         "bodies[1].joint={kind: prismatic, axis: x, parent: tower, placement: [move z 20 m], "
+         "motion: {speed: 2 m/s}}",
+         NULL}};
+    double wind[2], ratio[2];
+    for (int i = 0; i < 2; i++) {
+        fixture f = open_turbine(sets[i]);
+        bough_channels list = bough_channels_start(f.arena);
+        bough_status status = bough_simulation_channels(f.s, &list);
+        assert_int_equal(status.code, BOUGH_OK);
+        sample(&f, 0, period);
+        wind[i] = scene_channel(f.s, &list, "RtVAvgxh");
+        ratio[i] = scene_channel(f.s, &list, "RtTSR");
+        close_turbine(&f);
+    }
+    check_near(wind[0] - wind[1], 2 * cos(5 * BOUGH_PI / 180), 1e-6, 0);
+    check_near(ratio[1] / ratio[0], wind[0] / wind[1], 1e-6, 0);
+}
+
 // Mean over the stations, which the tower disturbs a little; the 12 m/s of the scene at 50 m.
 static void wind_of_the_scene_reaches_the_rotor(void **context) {
     (void)context;
     static const char *const sets[][6] = {
         {"aero.wind.direction=90 deg", "aero.wind.vertical=2 m/s", NULL},
         {"aero.wind={table: {times: [0 s, 2 s], speeds: [12, 6]}, kind: power, exponent: 0.5,"
-         " reference_height: 500 m}", NULL},
+         " reference_height: 500 m}",
+         NULL},
         {"aero.wind={table: {times: [0 s, 2 s], speeds: [12, 6]}, kind: log, roughness: 1 m,"
-         " reference_height: 10000 m}", NULL},
+         " reference_height: 10000 m}",
+         NULL},
     };
     for (int i = 0; i < 3; i++) {
         fixture f = open_turbine(sets[i]);
@@ -172,9 +197,7 @@ static void wind_of_the_scene_reaches_the_rotor(void **context) {
         const bough_rotor_data *data = bough_aero_link_data(f.s->aero, &factor);
         bough_vec3 hub = bough_tree_frame_pose(f.s->view, &f.s->tree->bodies[HUB]).position;
         z = hub.z;
-        const bough_vec3 expected[3] = {{0, 12, 2},
-                                        {9 * sqrt(z / 500), 0, 0},
-                                        {9 * log(z) / log(1e4), 0, 0}};
+        const bough_vec3 expected[3] = {{0, 12, 2}, {9 * sqrt(z / 500), 0, 0}, {9 * log(z) / log(1e4), 0, 0}};
         check_vec3(data->disk_wind, expected[i], 0.5);
         close_turbine(&f);
     }
@@ -189,8 +212,10 @@ static void wind_of_a_file_reaches_the_rotor(void **context) {
     static const char text[] = "! time speed direction\n0 12 0 0 0 0 0 0\n2 6 0 4 0 0 0 0\n";
     assert_int_equal(write(file, text, sizeof text - 1), sizeof text - 1);
     close(file);
-    snprintf(set, sizeof set, "aero.wind={kind: wnd, file: %s, reference_height: 90 m, "
-             "reference_length: 126 m, direction: 90 deg}", path);
+    snprintf(set, sizeof set,
+             "aero.wind={kind: wnd, file: %s, reference_height: 90 m, "
+             "reference_length: 126 m, direction: 90 deg}",
+             path);
     const char *const sets[] = {set, NULL};
     fixture f = open_turbine(sets);
     sample(&f, 1, 1 + period);
@@ -284,11 +309,10 @@ static void whole_load(const fixture *f, double t, double load[2 * SEGMENTS]) {
                 norm += p[k * n] * p[k * n];
             }
             int at = c * s + i + 1;
-            load[c * n + i] = l->value[at] + dt * (l->rate[at] + dt * l->curve[at]) +
-                              slope[0] * state[BOUGH_ROD_U * n + i] +
-                              slope[s] * state[(BOUGH_ROD_U + 1) * n + i] +
-                              slope[2 * s] * angle / sqrt(norm) +
-                              slope[3 * s] * state[(BOUGH_ROD_W + 2) * n + i];
+            load[c * n + i] =
+                l->value[at] + dt * (l->rate[at] + dt * l->curve[at]) +
+                slope[0] * state[BOUGH_ROD_U * n + i] + slope[s] * state[(BOUGH_ROD_U + 1) * n + i] +
+                slope[2 * s] * angle / sqrt(norm) + slope[3 * s] * state[(BOUGH_ROD_W + 2) * n + i];
         }
     }
 }
@@ -341,8 +365,13 @@ static void start_suddenly(const char *rate, const char *fidelity, double tip[RO
     char set[32], kind[40];
     snprintf(set, sizeof set, "aero.rate=%s", rate);
     snprintf(kind, sizeof kind, "bodies[3-5].fidelity=%s", fidelity);
-    const char *const sets[] = {set, kind, "aero.ramp=[0 s, 0 s]", "simulation.macro_step=2.5 ms",
-                                "simulation.micro.step=2.5 ms", "simulation.threads=1", NULL};
+    const char *const sets[] = {set,
+                                kind,
+                                "aero.ramp=[0 s, 0 s]",
+                                "simulation.macro_step=2.5 ms",
+                                "simulation.micro.step=2.5 ms",
+                                "simulation.threads=1",
+                                NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = scene_build(arena, "apps/turbine/runup.yaml", sets);
     for (int k = 0; k < ROWS; k++) {
@@ -463,6 +492,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bodies_receive_what_the_rotor_gives),
         cmocka_unit_test(rotor_sees_the_motion_of_the_hub),
+        cmocka_unit_test(rotor_tells_the_wind_relative_to_the_blades),
         cmocka_unit_test(wind_of_the_scene_reaches_the_rotor),
         cmocka_unit_test(wind_of_a_file_reaches_the_rotor),
         cmocka_unit_test(inflow_of_the_scene_reaches_the_rotor),

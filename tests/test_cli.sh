@@ -357,7 +357,9 @@ EOF
     awk '/^ *Time/ { for (i = 1; i <= NF; i++) at[$i] = i }
         $1 + 0 > 0.095 { for (name in at) print name, $at[name] }' sensed/channels.out >../sensed
     value() { sed -n "s/^$1 //p" ../sensed; }
-    near ../sensed '^Spn1MLyb1 ' 2 "$(value RootMyb1)" 1e-3
+    # the table begins with a twist of 13.308 deg, as in OpenFAST
+    near ../sensed "^Spn1MLyb1 " 2 "$(awk "BEGIN { t = 13.308 / 57.29578; print cos(t) * $(value RootMyb1) + sin(t) * $(value RootMxb1) }")" 1e-3
+    near ../sensed "^Spn1MLxb1 " 2 "$(awk "BEGIN { t = 13.308 / 57.29578; print cos(t) * $(value RootMxb1) - sin(t) * $(value RootMyb1) }")" 1e-3
     near ../sensed '^TwHt1MLyt ' 2 "$(value TwrBsMyt)" 1e-3
     near ../sensed '^TwHt2FLzt ' 2 "$(value YawBrFzp)" 1
     near ../sensed '^RotTorq ' 2 59.5 1e-3 # 11.9 MN m at a two hundredth of the ramp

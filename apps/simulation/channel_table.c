@@ -18,8 +18,8 @@
     OURS(name "X", unit, text "x" after), OURS(name "Y", unit, text "y" after),                    \
     OURS(name "Z", unit, text "z" after)
 static const bough_channel_row rotor[] = {
-    SAME("RotSpeed", "rpm", "speed of the rotor's joint, positive about its axis"),
-    SAME("Azimuth", "deg", "angle of the rotor's joint, from 0 to 360"),
+    SAME("RotSpeed", "rpm", "speed of the hub about the shaft, positive about the axis of the rotor's joint: of that joint and of a joint between generator and hub"),
+    SAME("Azimuth", "deg", "angle of the hub about the shaft, from 0 to 360; 0 as the scene places the blades (OpenFAST: AzimB1Up 0)"),
 };
 static const bough_channel_row revolute[] = {
     {"{a}Pos", "deg", "angle of the joint about its axis", NULL},
@@ -126,8 +126,8 @@ static const bough_channel_row tower_section[] = {SECTION("TwHt{b}", "t", SAME_X
 static const bough_channel_row section[] = {SECTION("{a}Spn{b}", "", XYZ, OURS)};
 #undef SECTION
 static const bough_channel_row shaft[] = {
-    SAME("RotTorq", "kN-m", "torque of the rotor on loads, spring, generator and motion of its joint; positive when these brake a rotor that turns forward"),
-    SAME("RotPwr", "kW", "RotTorq times the rotor's speed"),
+    SAME("RotTorq", "kN-m", "torque of the hub on the shaft, positive when the shaft brakes a rotor that turns forward: that of the spring between generator and hub, or on a rigid shaft that of the generator and what accelerates the bodies between the rotor's joint and the hub"),
+    SAME("RotPwr", "kW", "RotTorq times RotSpeed"),
 };
 static const bough_channel_row yaw_bearing[] = {
     SAME_XYZ("YawBrF", "p", "kN", "force of the nacelle on the tower's top, ", " axis of the top section"),
@@ -136,14 +136,14 @@ static const bough_channel_row yaw_bearing[] = {
 static const bough_channel_row air[] = {
     SAME("RtAeroFxh", "N", "thrust of the air on the rotor, along the hub's x"),
     SAME("RtAeroMxh", "N-m", "torque of the air on the rotor, about the hub's x"),
-    SAME("RtAeroPwr", "W", "RtAeroMxh times the rotor's speed"),
+    SAME("RtAeroPwr", "W", "RtAeroMxh times the angular velocity of the hub about the shaft"),
 };
 static const bough_channel_row wind[] = {
     SAME("Wind1VelX", "m/s", "undisturbed wind at the initial position of the hub, along ground x"),
     SAME("Wind1VelY", "m/s", "undisturbed wind at the initial position of the hub, along ground y"),
     SAME("Wind1VelZ", "m/s", "undisturbed wind at the initial position of the hub, along ground z"),
-    SAME_XYZ("RtVAvg", "h", "m/s", "mean wind over the rotor, with the tower's influence, along the hub's ", ""),
-    SAME("RtTSR", "-", "tip-speed ratio: rotor speed times the undeformed rotor's radius, divided by RtVAvgxh"),
+    SAME_XYZ("RtVAvg", "h", "m/s", "wind relative to the blades, mean over all blade elements, with the tower's influence, along the hub's ", ""),
+    SAME("RtTSR", "-", "tip-speed ratio: angular velocity of the hub about the shaft times the undeformed rotor's radius, divided by RtVAvgxh"),
 };
 static const bough_channel_row element[] = {
     SAME("AB{a}N{b}VRel", "m/s", "speed of the air relative to the element"),
@@ -155,11 +155,11 @@ static const bough_channel_row element[] = {
     SAME("AB{a}N{b}Cd", "-", "drag coefficient"),
     SAME("AB{a}N{b}Cm", "-", "moment coefficient"),
     SAME("AB{a}N{b}Fx", "N/m", "force per length normal to the rotor plane"),
-    SAME("AB{a}N{b}Fy", "N/m", "force per length in the rotor plane, positive against the rotation where the air brakes"),
+    SAME("AB{a}N{b}Fy", "N/m", "force per length in the rotor plane, positive where it drives the rotor"),
 };
 static const bough_channel_row control[] = {
-    SAME("GenSpeed", "rpm", "speed of the generator: rotor speed times gear ratio"),
-    SAME("GenTq", "kN-m", "torque of the generator at the fast shaft, positive when it brakes"),
+    SAME("GenSpeed", "rpm", "speed of the generator, at the last sample of the control: speed of the rotor's joint times the gear ratio"),
+    SAME("GenTq", "kN-m", "torque of the generator at the fast shaft, positive when it brakes, as demanded at the last sample of the control"),
     SAME("GenPwr", "kW", "electrical power"),
 };
 static const bough_channel_row pitch[] = {
@@ -197,14 +197,14 @@ const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS] = {
     [BOUGH_CHANNELS_TIP] = {"Any other body with a rod", "{a}: its name", N(tip)},
     [BOUGH_CHANNELS_FMU] = {"Body of fidelity fmu", named, N(fmu)},
     [BOUGH_CHANNELS_BLADE_SECTION] = {"Sensor on a blade",
-        "{a}: number of the blade; {b}: number of the place in the sensor's list, from 1. The section axes are the body's "
-        "axes, turned with the section", N(blade_section)},
+        "{a}: number of the blade; {b}: number of the place in the sensor's list, from 1. The section axes are those "
+        "of the rod's table, with the initial twist, turned with the deformed section", N(blade_section)},
     [BOUGH_CHANNELS_TOWER_SECTION] = {"Sensor on a tower of one rod",
-        "{b}: number of the place in the sensor's list, from 1. The section axes are the body's axes, turned with the "
-        "section", N(tower_section)},
+        "{b}: number of the place in the sensor's list, from 1. The section axes are those of the rod's table, "
+        "with the initial twist, turned with the deformed section", N(tower_section)},
     [BOUGH_CHANNELS_SECTION] = {"Sensor on any other rod",
-        "{a}: the body's name; {b}: number of the place in the sensor's list, from 1. The section axes are the body's "
-        "axes, turned with the section", N(section)},
+        "{a}: the body's name; {b}: number of the place in the sensor's list, from 1. The section axes are those "
+        "of the rod's table, with the initial twist, turned with the deformed section", N(section)},
     [BOUGH_CHANNELS_SHAFT] = {"Shaft of a turbine", NULL, N(shaft)},
     [BOUGH_CHANNELS_YAW_BEARING] = {"Top of a tower", NULL, N(yaw_bearing)},
     [BOUGH_CHANNELS_AIR] = {"Air on a rotor, at the last aerodynamic sample", NULL, N(air)},
@@ -261,8 +261,10 @@ void bough_channel_table_help(FILE *stream) {
           "`bough check SCENE` prints\ntheir number; `simulation.output.channels` selects some of "
           "them. Ground axes have z up. The blade's axes are those of\nits body: z runs from root to "
           "tip, and the axes turn with the pitch. The last column has OpenFAST's name of the "
-          "same\nquantity. Section loads are given in axes that do not turn with the section's initial "
-          "twist.\n",
+          "same\nquantity. Where OpenFAST has small angles or a straight blade, the two agree to first order: "
+          "displacements count\nfrom the undeformed blade, bent or not, and rotations are rotation vectors. "
+          "The nacelle's forces on the tower's top\nare of all that the scene puts there, also of the "
+          "yaw bearing. Rigid blades have no root loads: these are zero.\n",
           stream);
     for (int i = 0; i < BOUGH_CHANNEL_PARTS; i++) print_family(&bough_channel_families[i], stream);
 }

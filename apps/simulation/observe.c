@@ -24,16 +24,6 @@ static void joint_state(const bough_simulation *s, int body, double *coordinate,
     *speed = s->leader.state[v];
 }
 
-static void sample_rotor(void *self, double t, double *value) {
-    (void)t;
-    const bough_simulation *s = self;
-    double angle, speed;
-    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
-    double turn = fmod(angle / DEGREE, 360);
-    value[0] = speed / RPM;
-    value[1] = turn < 0 ? turn + 360 : turn;
-}
-
 static bool is_rotor(const bough_scene *scene, int body) {
     return scene->turbine.node != NULL && scene->turbine.rotor == body;
 }
@@ -130,11 +120,6 @@ static void add_free_bodies(bough_simulation *s, bough_channels *list) {
             bough_channel_family_add(list, BOUGH_CHANNELS_TURNING, body->name, "");
         }
     }
-}
-
-static void add_rotor(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_rotor, s);
-    bough_channel_family_add(list, BOUGH_CHANNELS_ROTOR, "", "");
 }
 
 // Whether coordinate k of a joint is prescribed
@@ -378,30 +363,34 @@ static void add_tips(bough_simulation *s, bough_channels *list) {
 
 // -- aerodynamics ---------------------------------------------------------------------------------
 
+// The hub's angular velocity about the shaft [rad/s].
+static double hub_spin(const bough_simulation *s) {
+    int hub = s->scene->body[s->scene->turbine.blade[0]].joint.parent;
+    bough_vec3 velocity = bough_tree_frame_velocity(s->view, &s->tree->bodies[hub]).angular;
+    return bough_dot(velocity, bough_simulation_rotor(s).axis);
+}
+
 static void sample_aero(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
-    double factor, angle, speed;
+    double factor;
     const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
-    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
     value[0] = factor * data->thrust;
     value[1] = factor * data->torque;
-    value[2] = factor * data->torque * speed;
+    value[2] = factor * data->torque * hub_spin(s);
 }
 
 // The undisturbed wind where the hub stood at the start, in ground axes, and the mean over the rotor
-// of the wind with the tower's influence, in the hub's.
+// of the wind with the tower's influence relative to the blades, in the hub's.
 static void sample_wind(void *self, double t, double *value) {
     const bough_simulation *s = self;
     double factor;
     const bough_frame *rotor = &s->tree->bodies[s->scene->turbine.rotor];
     bough_mat3 axes = bough_tree_frame_pose(s->view, rotor).rotation;
     bough_vec3 wind = bough_aero_link_hub_wind(s->aero, t);
-    bough_vec3 mean = bough_mat3_mul(bough_mat3_transpose(axes),
-                                     bough_aero_link_data(s->aero, &factor)->disk_wind);
-    double angle, speed;
-    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
-    double ratio = speed * bough_simulation_rotor(s).radius / mean.x;
+    const bough_rotor_data *data = bough_aero_link_data(s->aero, &factor);
+    bough_vec3 mean = bough_mat3_tmul(axes, bough_sub(data->disk_wind, data->disk_velocity));
+    double ratio = hub_spin(s) * bough_simulation_rotor(s).radius / mean.x;
     const double values[] = {wind.x, wind.y, wind.z, mean.x, mean.y, mean.z,
                              isfinite(ratio) ? ratio : 0};
     memcpy(value, values, sizeof values);
@@ -512,7 +501,7 @@ static void add_law(bough_simulation *s, bough_channels *list) {
 bough_status bough_simulation_channels(bough_simulation *s, bough_channels *channels) {
     bool turbine = s->scene->turbine.node != NULL;
     const bough_scene_control *control = &s->scene->control;
-    if (turbine) add_rotor(s, channels);
+    if (turbine) bough_observe_turn(s, channels);
     add_joints(s, channels);
     add_free_bodies(s, channels);
     add_drives(s, channels);

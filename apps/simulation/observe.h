@@ -13,8 +13,11 @@ static inline double *bough_observe_vector(bough_vec3 x, double unit, double *va
 // Motion and section loads of rods at the places of the scene's sensors.
 void bough_observe_sections(bough_simulation *s, bough_channels *list);
 
-// Torque and power in the rotor's shaft; the wrench of the nacelle on the tower's top.
+// Speed and azimuth of the hub; torque and power of the hub on the drive train.
+void bough_observe_turn(bough_simulation *s, bough_channels *list);
 void bough_observe_shaft(bough_simulation *s, bough_channels *list);
+
+// The wrench of the nacelle on the tower's top.
 void bough_observe_yaw_bearing(bough_simulation *s, bough_channels *list);
 
 #endif

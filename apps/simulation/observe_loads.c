@@ -1,4 +1,4 @@
-// Loads inside the structure: in sections of rods, in the rotor's shaft, on the tower's top.
+// Loads inside the structure: in sections of rods, on the tower's top.
 #include "apps/simulation/channel_table.h"
 #include "apps/simulation/observe.h"
 #include "apps/simulation/section_load.h"
@@ -49,6 +49,14 @@ static bough_vec3 vertex_turn(const sensor *x, int i) {
     return bough_quaternion_logarithm(bough_quaternion_product(vertex_rotation(x, i), back));
 }
 
+// Between two sections' axes.
+static bough_mat3 axes_between(bough_quaternion p, bough_quaternion q, double share) {
+    bough_quaternion back = bough_quaternion_conjugate(p);
+    bough_vec3 whole = bough_quaternion_logarithm(bough_quaternion_product(back, q));
+    bough_quaternion part = bough_quaternion_exponential(bough_scale(share, whole));
+    return bough_rotation_matrix(bough_quaternion_product(p, part));
+}
+
 static void sample_place(const sensor *x, place at, double *value) {
     int left = at.segment, right = left + 1;
     const bough_rod_def *def = &x->beam->def;
@@ -56,7 +64,7 @@ static void sample_place(const sensor *x, place at, double *value) {
                              bough_sub(vertex_position(x, right), def->position[right]), at.share);
     bough_vec3 turn = blend(vertex_turn(x, left), vertex_turn(x, right), at.share);
     bough_section_load load = bough_section_in_segment(x->beam, &x->scratch, left, at.share);
-    bough_mat3 axes = bough_rotation_matrix(bough_quaternion_exponential(turn));
+    bough_mat3 axes = axes_between(vertex_rotation(x, left), vertex_rotation(x, right), at.share);
     bough_vec3 force = bough_mat3_tmul(axes, load.force);
     bough_vec3 moment = bough_mat3_tmul(axes, load.moment);
     value = bough_observe_vector(turn, degree, bough_observe_vector(shift, 1, value));
@@ -79,8 +87,7 @@ static place find_place(const bough_rod_def *def, double span) {
 }
 
 // Blades and a tower of one rod have OpenFAST's names.
-static void add_place(const bough_simulation *s, const bough_beam *beam, int number,
-                              bough_channels *list) {
+static void add_place(const bough_simulation *s, const bough_beam *beam, int number, bough_channels *list) {
     const bough_scene_turbine *turbine = &s->scene->turbine;
     int body = (int)(beam->body - s->scene->body);
     char b[12], a[12];
@@ -96,8 +103,7 @@ static void add_place(const bough_simulation *s, const bough_beam *beam, int num
                              tower ? "" : beam->body->name, b);
 }
 
-static void add_sensor(bough_simulation *s, const bough_scene_sensor *from,
-                       bough_channels *list) {
+static void add_sensor(bough_simulation *s, const bough_scene_sensor *from, bough_channels *list) {
     bough_arena *arena = list->arena;
     sensor *x = bough_arena_take(arena, sizeof *x);
     *x = (sensor){s, bough_simulation_beam(s, from->body), from->n_at, NULL, {0}};
@@ -111,34 +117,7 @@ static void add_sensor(bough_simulation *s, const bough_scene_sensor *from,
 }
 
 void bough_observe_sections(bough_simulation *s, bough_channels *list) {
-    for (int k = 0; k < s->scene->n_sensor; k++)
-        add_sensor(s, &s->scene->sensor[k], list);
-}
-
-// -- shaft ----------------------------------------------------------------------------------------
-
-// What acts on the rotor's joint besides inertia: loads, its spring, the motion that drives it.
-static void sample_shaft(void *self, double t, double *value) {
-    const bough_simulation *s = self;
-    const bough_tree *tree = s->tree;
-    int body = s->scene->turbine.rotor, q, v;
-    bough_tree_joint_rows(tree, body, &q, &v);
-    int row = v - tree->n_q;
-    double torque = s->view->passive[row];
-    for (int k = 0; k < tree->n_loads; k++) {
-        const bough_joint_load_def *load = &tree->loads[k];
-        if (load->body != tree->bodies[body].link) continue;
-        torque += load->n > 0 ? bough_table_value(load->n, load->times, load->values, t)
-                              : load->value * bough_ramp_factor(load->start, load->end, t);
-    }
-    if (s->scene->body[body].joint.motion.node != NULL) torque += s->view->drive[row];
-    value[0] = -torque / 1e3;
-    value[1] = -torque * s->leader.state[v] / 1e3;
-}
-
-void bough_observe_shaft(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_shaft, s);
-    bough_channel_family_add(list, BOUGH_CHANNELS_SHAFT, "", "");
+    for (int k = 0; k < s->scene->n_sensor; k++) add_sensor(s, &s->scene->sensor[k], list);
 }
 
 // -- yaw bearing ----------------------------------------------------------------------------------
