@@ -15,7 +15,8 @@ typedef struct bough_motion_def {
     double start, end;            // of the ramp [s]
     int n;                        // rows of a table in place of the ramp, 0: none
     const double *times, *values; // (n) times increasing [s]; copied. Between them a speed is
-                                  // linear, q a cubic spline at rest at both ends; held outside
+                                  // linear, q a cubic spline at rest at both ends that
+                                  // rises and falls only where the values do; held outside
 } bough_motion_def;
 
 typedef struct bough_motion {

@@ -114,6 +114,34 @@ static void a_stuck_blade_stays_while_the_others_feather(void **state) {
     bough_arena_destroy(f.arena);
 }
 
+// A step at the law's rate, then a ramp; the law sets the torque. A stop prevails over both, wherever it
+// stands.
+static void the_pitch_goes_to_given_angles(void **state) {
+    (void)state;
+    fixture f =
+        open_run("control.events=[{kind: emergency-stop, at: 12 s}, {kind: pitch-to, at: 2 s, angle: 4 deg}, "
+                 "{kind: pitch-to, at: 6 s, angle: -1 deg, rate: 2 deg/s}]",
+                 NULL);
+    go_to(&f, 2);
+    double before = channel(&f, "BldPitch1");
+    go_to(&f, 2.2);
+    check_near(channel(&f, "BldPitch1") - before, 8 * 0.2, 0.1, 0);
+    go_to(&f, 6);
+    for (int b = 1; b <= 3; b++) {
+        char name[16];
+        snprintf(name, sizeof name, "BldPitch%d", b);
+        check_near(channel(&f, name), 4, 1e-9, 0);
+    }
+    assert_true(channel(&f, "GenTq") > 1);
+    go_to(&f, 8);
+    check_near(channel(&f, "BldPitch1"), 0, 0, 0.05);
+    go_to(&f, 12);
+    check_near(channel(&f, "BldPitch3"), -1, 1e-9, 0);
+    go_to(&f, 14);
+    check_near(channel(&f, "BldPitch3"), 15, 0.02, 0);
+    bough_arena_destroy(f.arena);
+}
+
 // The rotor speeds up until a threshold takes the load away, then until another stops it.
 static void thresholds_trigger(void **state) {
     (void)state;
@@ -218,6 +246,9 @@ static void senseless_events_are_refused(void **state) {
     refused("control.events=[{kind: stop, channel: RotSped, above: 3}]", "did you mean 'RotSpeed'");
     refused("control.events=[{kind: pitch-stuck, at: 1 s}]", "blade");
     refused("control.events=[{kind: stop, at: 1 s, blade: 2}]", "only used with");
+    refused("control.events=[{kind: pitch-to, at: 1 s}]", "needs its 'angle'");
+    refused("control={kind: variable-speed, pitch: false, events: [{kind: stop, at: 1 s}]}",
+            "control.pitch: true");
     refused("control.events=[{kind: yaw-runaway, at: 1 s, body: nacelle}]", "has no 'motion'");
 }
 
@@ -227,6 +258,7 @@ int main(void) {
         cmocka_unit_test(stop_takes_the_torque_away_in_ten_seconds),
         cmocka_unit_test(stop_does_not_drive_a_rotor_that_stands),
         cmocka_unit_test(a_stuck_blade_stays_while_the_others_feather),
+        cmocka_unit_test(the_pitch_goes_to_given_angles),
         cmocka_unit_test(thresholds_trigger),
         cmocka_unit_test(before_its_start_the_turbine_idles),
         cmocka_unit_test(a_yaw_drive_turns_the_nacelle),

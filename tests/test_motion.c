@@ -19,8 +19,8 @@ static bough_motion *motion_of(bough_arena *arena, bough_motion_def def, double 
 static void ramp_of_speed_is_the_published_one(void **state) {
     (void)state;
     bough_arena *arena = bough_arena_create();
-    bough_motion *m = motion_of(
-        arena, (bough_motion_def){.speed = true, .to = 6, .start = 0, .end = 15}, 0.7);
+    bough_motion *m =
+        motion_of(arena, (bough_motion_def){.speed = true, .to = 6, .start = 0, .end = 15}, 0.7);
     for (int k = 0; k <= 40; k++) {
         double t = 0.5 * k, w = 2 * pi / 15;
         double angle = t < 15 ? 0.4 * (0.5 * t * t + (cos(w * t) - 1) / (w * w)) : 6 * t - 45;
@@ -71,9 +71,53 @@ static void speeds_and_accelerations_are_derivatives(void **state) {
         check_near(bough_motion_at(table, times[i]).v, values[i], 1e-14, 0);
     }
     check_near(bough_motion_at(table, 0).q, 0.4, 1e-15, 0);
-    check_near(bough_motion_at(table, 5).q - bough_motion_at(table, 2.5).q, 1.75 * 1.5 + 0.5, 1e-14,
-               0);
+    check_near(bough_motion_at(table, 5).q - bough_motion_at(table, 2.5).q, 1.75 * 1.5 + 0.5, 1e-14, 0);
     check_near(bough_motion_at(spline, 9).v, 0, 0, 0);
+    bough_arena_destroy(arena);
+}
+
+// Where values rise, fall or stay, the motion does: plateaus beside a step, steps between ramps, uneven
+// times.
+static void tables_of_positions_do_not_overshoot(void **state) {
+    (void)state;
+    static const double times[][8] = {
+        {0, 15, 16, 30}, {0, 1, 1.1, 5, 5.01, 9, 9.5, 12}, {0, 1, 2, 3, 4, 5, 6, 7}, {0, 15, 16, 30, 31, 45}};
+    static const double values[][8] = {
+        {0, 0, 5, 5}, {0, 1, 8, 8, -3, -3.1, -3.2, -9}, {0, 1, 4, 4, 3.9, 0, 0, 0}, {0, 0, 5, 5, 0, 0}};
+    static const int n[] = {4, 8, 8, 6};
+    bough_arena *arena = bough_arena_create();
+    for (int k = 0; k < 4; k++) {
+        bough_motion_def def = {.n = n[k], .times = times[k], .values = values[k]};
+        const bough_motion *m = motion_of(arena, def, 0);
+        for (int i = 0; i + 1 < n[k]; i++) {
+            double d = times[k][i + 1] - times[k][i], rise = values[k][i + 1] - values[k][i];
+            double a = fmin(values[k][i], values[k][i + 1]), b = fmax(values[k][i], values[k][i + 1]);
+            for (int j = 0; j < 100; j++) {
+                bough_motion_point p = bough_motion_at(m, times[k][i] + 0.01 * j * d);
+                assert_true(p.q >= a - 1e-12 && p.q <= b + 1e-12);
+                assert_true(p.v * rise >= -1e-12 && fabs(p.v) <= 3 * fabs(rise) / d + 1e-12);
+            }
+            double t = times[k][i + 1];
+            check_near(bough_motion_at(m, t - 1e-12).v, bough_motion_at(m, t).v, 1e-5, 1e-5);
+        }
+    }
+    bough_arena_destroy(arena);
+}
+
+// A sampled sine keeps its accelerations, at the maxima between its samples too.
+static void smooth_tables_stay_smooth(void **state) {
+    (void)state;
+    enum { SAMPLES = 41 };
+    double times[SAMPLES], values[SAMPLES], w = 1.3;
+    for (int i = 0; i < SAMPLES; i++) times[i] = 0.25 * i, values[i] = sin(w * times[i]);
+    bough_arena *arena = bough_arena_create();
+    bough_motion_def def = {.n = SAMPLES, .times = times, .values = values};
+    const bough_motion *m = motion_of(arena, def, 0);
+    for (double t = 2; t < 8; t += 0.03) {
+        check_near(bough_motion_at(m, t).q, sin(w * t), 0, 1e-4);
+        check_near(bough_motion_at(m, t).v, w * cos(w * t), 0, 2e-3);
+        check_near(bough_motion_at(m, t).a, -w * w * sin(w * t), 0, 2e-2);
+    }
     bough_arena_destroy(arena);
 }
 
@@ -100,12 +144,11 @@ static fixture satellite(bough_joint_kind base, double rtol) {
     b[3].spring.stiffness = 3;
     bough_marker_def marker = {"end", 3, bough_transform_identity()};
     bough_port_def port = {.name = "end", .root = {.mass = 0.1}};
-    bough_tree_def def = {.n_bodies = 4, .bodies = b, .n_markers = 1, .markers = &marker,
-                          .n_ports = 1, .ports = &port};
+    bough_tree_def def = {
+        .n_bodies = 4, .bodies = b, .n_markers = 1, .markers = &marker, .n_ports = 1, .ports = &port};
     if (base == BOUGH_JOINT_FIXED) def.gravity = bough_v3(0, 3, -9.81);
     return build(&def, rtol);
 }
-
 
 // What drives the wheel is an inner torque: momenta stay, and the motion is the given one exactly.
 static void driven_joints_keep_the_momenta(void **state) {
@@ -136,16 +179,15 @@ static void energy_is_what_the_drives_put_in(void **state) {
     for (int k = 0; k <= 100; k++) {
         if (k > 0) advance(&f, h * k, false);
         bough_tree_kinematics(f.tree, f.m->state, f.data);
-        assert_true(
-            bough_tree_forward_dynamics(f.tree, f.data, h * k, NULL, acceleration));
+        assert_true(bough_tree_forward_dynamics(f.tree, f.data, h * k, NULL, acceleration));
         last = tree_sum(f.tree, f.data);
         if (k == 0) first = last;
         const double *v = f.m->state + f.tree->n_q;
         power = f.data->drive[0] * v[0] + f.data->drive[1] * v[1];
         work += h * power * (k % 100 == 0 ? 1 : k % 2 == 1 ? 4 : 2) / 3; // Simpson
     }
-    double gained = last.kinetic + last.potential + last.elastic - first.kinetic -
-                    first.potential - first.elastic;
+    double gained =
+        last.kinetic + last.potential + last.elastic - first.kinetic - first.potential - first.elastic;
     assert_true(fabs(gained) > 1);
     check_near(work, gained, 1e-5, 0);
     bough_arena_destroy(f.arena);
@@ -256,6 +298,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ramp_of_speed_is_the_published_one),
         cmocka_unit_test(speeds_and_accelerations_are_derivatives),
+        cmocka_unit_test(tables_of_positions_do_not_overshoot),
+        cmocka_unit_test(smooth_tables_stay_smooth),
         cmocka_unit_test(driven_joints_keep_the_momenta),
         cmocka_unit_test(energy_is_what_the_drives_put_in),
         cmocka_unit_test(recursions_agree_on_driven_joints),

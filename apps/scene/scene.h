@@ -416,6 +416,7 @@ typedef enum bough_scene_event_kind {
     BOUGH_SCENE_GRID_LOSS,
     BOUGH_SCENE_PITCH_STUCK,
     BOUGH_SCENE_PITCH_RUNAWAY,
+    BOUGH_SCENE_PITCH_TO,
     BOUGH_SCENE_YAW_RUNAWAY,
 } bough_scene_event_kind;
 
@@ -431,7 +432,7 @@ typedef struct bough_scene_event {
     int blade;             // from 1, of the faults of one blade; else 0
     const char *body_name; // YAW_RUNAWAY: on the yaw joint
     int body;              // its index
-    double angle;          // pitch of stops and a runaway, yaw [rad]; stops: 0: 90 degrees ("auto")
+    double angle;          // final, of pitch or yaw [rad]; stops: 0: 90 degrees ("auto")
     double rate;           // with which it is gone to [rad/s]; 0: that of the kind ("auto")
 } bough_scene_event;
 

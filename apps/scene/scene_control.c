@@ -45,17 +45,19 @@ static const bough_schema law_schema = {
     SCHEMA("the law's constants", bough_controller_def, law_keys)};
 
 #define FAULTS "pitch-stuck|pitch-runaway"
+#define TURNS  "stop|emergency-stop|pitch-runaway|pitch-to|yaw-runaway"
 #define FILLS bough_scene_event
 static const bough_key event_keys[] = {
     {KEY(CHOICE, kind),
      CHOICES("start", "stop", "emergency-stop", "grid-loss", "pitch-stuck", "pitch-runaway",
-             "yaw-runaway"),
+             "pitch-to", "yaw-runaway"),
      .required = true,
      .help = "start: until then the turbine idles with the pitch of its joints; stop: pitch to "
              "feather, torque to zero in 10 s and as the rotor stops; emergency-stop: pitch to feather at the largest "
              "rate, no torque; grid-loss: no torque, the pitch is controlled; pitch-stuck: one "
-             "blade keeps its pitch; pitch-runaway: one blade pitches to 'angle'; yaw-runaway: the "
-             "yaw drive turns to 'angle'"},
+             "blade keeps its pitch; pitch-runaway: one blade pitches to 'angle'; pitch-to: all "
+             "blades pitch to 'angle' and stay there, while the torque is controlled, until a stop or a "
+             "later pitch-to of the list; yaw-runaway: the yaw drive turns to 'angle'"},
     {KEY(NUMBER, at), UNIT(TIME), .range = ">= 0", .fallback = "0", .example = "90 s",
      .help = "time of the event; with a channel the earliest time"},
     {KEY(TEXT, channel), .example = "GenSpeed",
@@ -69,10 +71,11 @@ static const bough_key event_keys[] = {
     {NAMED("body", TEXT), AT(body_name), .required = true, WHEN("kind", "yaw-runaway"),
      .example = "yaw", .help = "body on the yaw joint, which must have a motion"},
     {KEY(NUMBER, angle), UNIT(ANGLE), .word = "auto", .fallback = "auto",
-     WHEN("kind", "stop|emergency-stop|pitch-runaway|yaw-runaway"), .example = "20 deg",
-     .help = "final angle; auto: 90 degrees for stops, else 0"},
+     WHEN("kind", TURNS), .example = "20 deg",
+     .help = "final angle, of blades the pitch, positive towards feather; auto: 90 degrees for stops, 0 "
+             "for runaways; pitch-to needs a value"},
     {KEY(NUMBER, rate), UNIT(ANGULAR_SPEED), .range = "> 0", .word = "auto", .fallback = "auto",
-     WHEN("kind", "stop|emergency-stop|pitch-runaway|yaw-runaway"), .example = "2 deg/s",
+     WHEN("kind", TURNS), .example = "2 deg/s",
      .help = "rate of the motion, for pitch at most the law's pitch_rate; auto: 4 deg/s for a "
              "stop, 0.3 deg/s for the yaw, else the law's pitch_rate"},
 };
@@ -87,6 +90,9 @@ static void check_event(bough_schema_reader *r, void *item) {
     }
     if (!e->channel && !bough_node_find(e->node, "at")) {
         bough_schema_error(r, e->node, "", "expected 'at' or 'channel' as the time of the event");
+    }
+    if (e->kind == BOUGH_SCENE_PITCH_TO && !bough_node_find(e->node, "angle")) {
+        bough_schema_error(r, e->node, "", "pitch-to needs its 'angle'");
     }
     e->falls = below;
     e->threshold = below ? e->below : e->above;

@@ -154,11 +154,13 @@ static bool has_pitch_joint(const bough_scene_body *b) {
 static void link_event(bough_schema_reader *r, bough_scene *s, int i) {
     bough_scene_event *e = &s->control.event[i];
     bool pitches = e->kind == BOUGH_SCENE_START || e->kind == BOUGH_SCENE_STOP ||
-                   e->kind == BOUGH_SCENE_EMERGENCY_STOP || e->blade > 0;
+                   e->kind == BOUGH_SCENE_EMERGENCY_STOP || e->kind == BOUGH_SCENE_PITCH_TO || e->blade > 0;
     bough_link_at(r, "control.events[%d]", i);
     if (pitches && s->turbine.n_blade > 0 && s->turbine.blade[0] >= 0 &&
         !has_pitch_joint(&s->body[s->turbine.blade[0]])) {
         bough_schema_error(r, e->node, "", "needs blades on pitch joints: revolute with 'motion'");
+    } else if (pitches && e->kind != BOUGH_SCENE_START && !s->control.pitch) {
+        bough_schema_error(r, e->node, "", "needs 'control.pitch: true': no pitch is changed else");
     }
     if (e->blade > s->turbine.n_blade) {
         bough_schema_error(r, bough_link_value(e->node, "blade"), "blade", "the turbine has %d blades",

@@ -136,7 +136,8 @@ static const bough_key joint_keys[] = {
      .help = "prescribes the motion of the joint; the channel Trq or Frc is the torque or force "
              "that this needs; a ramp is smooth to the second derivative; a table of speeds is "
              "linear between its times, a table of positions is a cubic spline at rest at its "
-             "ends"},
+             "ends, with slopes made so small that it rises and falls only where the values do; "
+             "the angle of a blade's joint about z is minus the pitch that it adds"},
     {NAMED("stiffness", NUMBER), AT(spring.stiffness), .range = ">= 0", .fallback = "0",
      WHEN("kind", "revolute|prismatic"), .example = "8.7e8",
      .help = "of a spring along the axis, in N m/rad or N/m"},
@@ -218,7 +219,8 @@ static const bough_key body_keys[] = {
     {KEY(MAPPING, joint), .of = &joint_schema, .required = true,
      .help = "the joint that carries the body"},
     {KEY(NUMBER, pitch), UNIT(ANGLE), .fallback = "0", .example = "6.5 deg",
-     .help = "rotation of a body with a rod about its z axis by -pitch, after the joint"},
+     .help = "rotation of a body with a rod about its z axis by -pitch, after the joint: positive towards "
+             "feather, against the sign of a joint's angle"},
     {KEY(NUMBER, mass), UNIT(MASS), .range = "[0, 1e12]", .fallback = "0",
      WHEN("fidelity", "rigid|fmu"), .example = "240 t",
      .help = "of a rigid body without a rod; of an FMU what it leaves to its carrier"},

@@ -163,7 +163,7 @@ static const bough_channel_row control[] = {
     SAME("GenPwr", "kW", "electrical power"),
 };
 static const bough_channel_row pitch[] = {
-    SAME("BldPitch{a}", "deg", "pitch of the blade: sum of the body's pitch and the joint's angle, positive towards feather"),
+    SAME("BldPitch{a}", "deg", "pitch of the blade: the body's pitch minus the joint's angle, positive towards feather"),
 };
 static const bough_channel_row law[] = {
     {"LawGenSpeed", "rad/s", "speed of the generator now, as a control law uses it, without rounding", NULL},

@@ -106,11 +106,15 @@ static double rate_of(const bough_events *e, const bough_scene_event *event) {
     return event->kind == BOUGH_SCENE_YAW_RUNAWAY ? yaw : e->simulation->scene->control.law.pitch_rate;
 }
 
-static void feather(const bough_events *e, const bough_scene_event *event, const bough_discon_sensed *sensed,
-                    bough_discon_demand *demand) {
-    double to = event->angle > 0 ? event->angle : BOUGH_PI / 2;
+static void pitch_to(const bough_events *e, const bough_scene_event *event, double to,
+                     const bough_discon_sensed *sensed, bough_discon_demand *demand) {
     double reach = rate_of(e, event) * sensed->step;
     for (int b = 0; b < sensed->n_blade; b++) demand->pitch[b] = towards(sensed->pitch[b], to, reach);
+}
+
+static void feather(const bough_events *e, const bough_scene_event *event, const bough_discon_sensed *sensed,
+                    bough_discon_demand *demand) {
+    pitch_to(e, event, event->angle > 0 ? event->angle : BOUGH_PI / 2, sensed, demand);
 }
 
 // Pitched, the law demands rated power at any speed, which would stop a rotor that starts: until it is at
@@ -143,6 +147,13 @@ static void turn_yaw(const bough_events *e, const bough_scene_event *event, cons
                      (bough_motion_point){now, speed, 0}, (bough_motion_point){then, speed, 0});
 }
 
+// Later orders prevail: a stop over a change of pitch, the fault of one blade over what all blades shall do.
+enum { ORDERS = 3 };
+
+static int order_of(const bough_scene_event *event) {
+    return event->blade > 0 ? 2 : event->kind != BOUGH_SCENE_PITCH_TO;
+}
+
 static void change(const bough_events *e, int i, const bough_discon_sensed *sensed, bough_event_state *state,
                    bough_discon_demand *demand) {
     const bough_scene_event *event = &e->event[i];
@@ -166,6 +177,7 @@ static void change(const bough_events *e, int i, const bough_discon_sensed *sens
     case BOUGH_SCENE_PITCH_RUNAWAY:
         demand->pitch[b] = towards(sensed->pitch[b], event->angle, rate_of(e, event) * sensed->step);
         break;
+    case BOUGH_SCENE_PITCH_TO: pitch_to(e, event, event->angle, sensed, demand); break;
     case BOUGH_SCENE_YAW_RUNAWAY: turn_yaw(e, event, sensed, state); break;
     }
 }
@@ -176,11 +188,10 @@ void bough_events_change(const bough_events *e, const bough_discon_sensed *sense
         demand->torque = 0;
         for (int b = 0; b < sensed->n_blade; b++) demand->pitch[b] = sensed->pitch[b];
     }
-    // faults of one blade stand above what all are told
-    for (int fault = 0; fault < 2; fault++) {
+    for (int order = 0; order < ORDERS; order++) {
         for (int i = 0; i < e->n; i++) {
-            bool single = e->event[i].blade > 0;
-            if (state[i].happened != 0 && single == (fault == 1)) change(e, i, sensed, &state[i], demand);
+            if (state[i].happened != 0 && order_of(&e->event[i]) == order)
+                change(e, i, sensed, &state[i], demand);
         }
     }
 }
