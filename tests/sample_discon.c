@@ -7,6 +7,16 @@
 
 void DISCON(float *swap, int *fail, char *input, char *output, char *message);
 
+// Puts one more letter into the file: how many it has.
+static long marks(const char *path) {
+    FILE *file = fopen(path, "a");
+    if (!file) return 0;
+    fputc('x', file);
+    long n = ftell(file);
+    fclose(file);
+    return n;
+}
+
 void DISCON(float *swap, int *fail, char *input, char *output, char *message) {
     int n = (int)swap[49];
     (void)output;
@@ -28,6 +38,10 @@ void DISCON(float *swap, int *fail, char *input, char *output, char *message) {
     if (strncmp(input, "record ", 7) == 0) swap[46] = swap[atoi(input + 7) - 1];
     if (strcmp(input, "nan") == 0) swap[46] = NAN;
     if (strcmp(input, "warn") == 0) *fail = 1;
+    const char *slash = strrchr(input, '/');
+    if (slash && strcmp(slash, "/crash") == 0) abort();
+    if (slash && strcmp(slash, "/refuse") == 0) *fail = -1;
+    if (slash && strcmp(slash, "/third") == 0 && swap[0] == 0) *fail = marks(input) < 3 ? -1 : 0;
     if (strcmp(input, "fail") == 0 && swap[1] > 0.5f) {
         *fail = -1;
         snprintf(message, (size_t)swap[48], "too late");

@@ -3,6 +3,7 @@
 
 #include "apps/api/bough.h"
 #include "apps/import/section.h"
+#include "apps/import/trial.h"
 #include "tests/scratch.h"
 
 // A reference line of 5 m along z and 5 m on a slope of 3 to 4; a station at 6.25 m of it.
@@ -246,6 +247,74 @@ static void controller_libraries_and_wind_files_stay_in_place(void **context) {
     a_scene_steps(&library, &(edit){"parts/elasto.dat", "True          DrTrDOF", "F  DrTrDOF"});
 }
 
+static void put_library(char line[512], const char *input) {
+    snprintf(line, 512, "5  VSContrl\n5  PCMode\n\"%s\"  DLL_FileName\n\"%s\"  DLL_InFile\n0  XContrl",
+             BOUGH_SAMPLE_DISCON, input);
+}
+
+// Each trial is a process of its own, which calls the library from its first call on.
+static void trials_call_the_library(void **context) {
+    (void)context;
+    char line[512];
+    const edit library = {"parts/servo.dat", "0   PCMode", line};
+    put_library(line, "third"); // reports a failure twice
+    trial t = import(&library);
+    assert_string_equal(t.status.message, "");
+    assert_true(list_says(&t, "\ntried:\n  rtol 4.5e-4: "));
+    assert_true(list_says(&t, "\n  rtol 1.5e-4: "));
+    assert_true(list_says(&t, "\n  0.04 s in macro steps of 0.02 s with rtol 5e-05\n"));
+    check_near(number(read_file(&t, "scene.yaml"), "simulation.master.rtol"), 5e-5, 1e-12, 0);
+    done(&t);
+    put_library(line, "refuse");
+    t = import(&library);
+    assert_int_equal(t.status.code, BOUGH_FAILED);
+    assert_non_null(strstr(t.status.message, "cannot run, not even with rtol 1.5e-5: "));
+    assert_int_not_equal(access(t.out, F_OK), 0);
+    done(&t);
+    put_library(line, "crash");
+    t = import(&library);
+    assert_int_equal(t.status.code, BOUGH_INVALID);
+    assert_non_null(strstr(t.status.message, BOUGH_SAMPLE_DISCON "' crashes in its first calls: Abort"));
+    assert_int_not_equal(access(t.out, F_OK), 0);
+    done(&t);
+}
+
+static bough_status try_with(const trial *t, bough_scene *scene, double rtol, double bound) {
+    scene->simulation.master.rtol = rtol;
+    return bough_import_trial(t->arena, scene, 10, bound);
+}
+
+// Errors fall with the tolerance, so that some bound lies between those of two.
+static void trials_judge_errors(void **context) {
+    (void)context;
+    trial t = import(&(edit){"parts/servo.dat", "5E+07   YawSpr", "0   YawSpr"});
+    char path[SCRATCH_PATH];
+    snprintf(path, sizeof path, "%s/scene.yaml", t.out);
+    bough_errors errors = {.arena = t.arena};
+    bough_scene *scene;
+    bough_status status = bough_scene_read(t.arena, path, NULL, 0, &errors, &scene);
+    assert_true(bough_is_ok(&status));
+    status = try_with(&t, scene, 1e-3, 0);
+    assert_string_equal(status.message, "");
+    double bound = 1;
+    while (bound > 1e-9 && (status = try_with(&t, scene, 1e-3, bound), bough_is_ok(&status))) bound /= 4;
+    assert_int_equal(status.code, BOUGH_FAILED);
+    assert_non_null(strstr(status.message, "the error bound"));
+    status = try_with(&t, scene, 1e-7, bound);
+    assert_string_equal(status.message, "");
+    done(&t);
+}
+
+// As the command does it: what it writes has been tried for 150 steps.
+static void scenes_are_tried(void **context) {
+    (void)context;
+    const edit wind = {"parts/wind.dat", "15    PropagationDir", "-30    PropagationDir"};
+    trial t = import_given("main.fst", &wind, NULL, &(bough_import_options){.trial_steps = 150});
+    assert_string_equal(t.status.message, "");
+    assert_true(list_says(&t, "3 s in macro steps of 0.02 s with rtol "));
+    done(&t);
+}
+
 // The decks' titles begin as values do, "2 NumBl and 90 m TowerHt": every test here reads past them. Nor is
 // there a value in the list of output channels, and of several numbers before a name the first counts.
 static void lines_have_places_before_names(void **context) {
@@ -334,6 +403,9 @@ int main(void) {
         cmocka_unit_test(frequencies_are_those_of_beams),
         cmocka_unit_test(scenes_step),
         cmocka_unit_test(controller_libraries_and_wind_files_stay_in_place),
+        cmocka_unit_test(trials_call_the_library),
+        cmocka_unit_test(trials_judge_errors),
+        cmocka_unit_test(scenes_are_tried),
         cmocka_unit_test(lines_have_places_before_names),
         cmocka_unit_test(bad_decks_are_told_where),
     };

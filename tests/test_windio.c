@@ -109,12 +109,12 @@ static void turbine_has_the_files_values(void **context) {
     check_near(number(s, "aero.wind.speed"), 0.75 * 3 * 11 * cos(0.05) / 7, 1e-5, 0);
     check_near(number(s, "control.law.rated_speed"), 0.99 * 30, 1e-9, 0);
     check_near(number(s, "control.law.reference_speed"), 30, 1e-9, 0);
-    check_near(number(s, "control.law.rated_power"), 5e4 / 0.95, 1e-9, 0);
-    check_near(number(s, "control.law.most_torque"), 1.1 * 5e4 / 0.95 / 29.7, 1e-9, 0);
+    check_near(number(s, "control.law.rated_power"), 5e3 / 0.95, 1e-9, 0);
+    check_near(number(s, "control.law.most_torque"), 1.1 * 5e3 / 0.95 / 29.7, 1e-9, 0);
     // Ω I ω²/(N 4.8 P) with ω = 0.2, and twice that over ω
     double mass[] = {50 * sqrt(25.0025), 25 * sqrt(25.1625)};
     double inertia = 900 + 3 * (mass[0] * 3.5 * 3.5 + mass[1] * 8.5 * 8.5);
-    double integral = 3 * inertia * 0.04 / (10 * 4.8 * 5e4);
+    double integral = 3 * inertia * 0.04 / (10 * 4.8 * 5e3);
     check_near(number(s, "control.law.integral"), integral, 1e-9, 0);
     check_near(number(s, "control.law.proportional"), 10 * integral, 1e-9, 0);
     check_near(number(s, "control.law.most_pitch"), 1.5, 1e-9, 0);

@@ -6,6 +6,8 @@
 
 #include <string.h>
 
+enum { TRIAL_STEPS = 500 };
+
 bough_status bough_verb_import(bough_arena *arena, const bough_options *options) {
     bool windio = strcmp(options->operand, "windio") == 0;
     if (!windio && strcmp(options->operand, "openfast") != 0) {
@@ -15,7 +17,7 @@ bough_status bough_verb_import(bough_arena *arena, const bough_options *options)
     bough_options named = *options; // the folder's name comes from the model's
     named.operand = options->second;
     const char *folder = bough_out_folder(arena, &named);
-    const bough_import_options given = {options->wind, options->controller, options->clamp_base};
+    const bough_import_options given = {options->wind, options->controller, options->clamp_base, TRIAL_STEPS};
     bough_status status = windio ? bough_import_windio(options->second, folder, &given, stdout)
                                  : bough_import_openfast(options->second, folder, &given, stdout);
     if (bough_is_ok(&status)) printf("scene: %s/scene.yaml\n", folder);

@@ -1,9 +1,9 @@
 #include "apps/import/draft.h"
 
 #include "apps/config/text.h"
+#include "apps/import/trial.h"
 #include "apps/output/folder.h"
 #include "apps/scene/scene.h"
-#include "apps/simulation/run.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -17,7 +17,9 @@
 // Macro steps [s], and by how much the rotor may turn in one [rad].
 static const double longest_step = 0.02, shortest_step = 0.02 / 32, most_turn = 0.07;
 
-enum { TRIAL_STEPS = 2 };
+// Tolerances of the integrator, tried from the first on, all of one length.
+static const char *const tolerance[] = {"4.5e-4", "1.5e-4", "5.0e-5", "1.5e-5"};
+enum { N_TOLERANCE = sizeof tolerance / sizeof *tolerance, TRIAL_STEPS = 2 };
 
 const char *const bough_import_name[BOUGH_N_IMPORT_FILE] = {"scene.yaml",           "blade-structure.yaml",
                                                             "tower-structure.yaml", "blade-aero.yaml",
@@ -129,14 +131,18 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
             "title: ",
             origin);
     bough_text_quoted(file, title);
+    fprintf(file,
+            "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
+            "  macro_step: %g s\n"
+            "  coupling: {scheme: monolithic} # all bodies coupled at the stages of the steps\n"
+            "  master: {solver: rosenbrock, step: %g ms, rtol: ",
+            -gravity, steps * step, step, 500 * step);
+    d->tolerance_at = ftell(file);
     fprintf(
         file,
-        "\ngravity: [0, 0, %.10g]\nsimulation:\n  duration: %.10g s\n"
-        "  macro_step: %g s\n"
-        "  coupling: {scheme: monolithic} # all bodies coupled at the stages of the steps\n"
-        "  master: {solver: rosenbrock, step: %g ms, rtol: 4.5e-4}\n"
+        "%s}\n"
         "  error_estimate: linearised # with a controller: second-solution, at three times the cost\n  threads: 2\n",
-        -gravity, steps * step, step, 500 * step);
+        tolerance[0]);
 }
 
 // -- files ----------------------------------------------------------------------------------------
@@ -162,37 +168,58 @@ static bough_status write_box(const char *folder, const bough_wind_box *box) {
     return bough_fail(BOUGH_IO, "cannot write '%.200s'", path);
 }
 
+static bough_status write_file(const char *folder, const bough_draft *d, int i) {
+    const char *text = d->file_text[i];
+    return text[0] ? bough_folder_write(folder, bough_import_name[i], put_text, text) : bough_ok();
+}
+
 static bough_status write_files(const char *folder, const bough_draft *d) {
     bough_status status = bough_folder_make(folder);
-    for (int i = 0; i < BOUGH_N_IMPORT_FILE && bough_is_ok(&status); i++) {
-        const char *text = d->file_text[i];
-        if (text[0]) status = bough_folder_write(folder, bough_import_name[i], put_text, text);
-    }
+    for (int i = 0; i < BOUGH_IMPORT_LIST && bough_is_ok(&status); i++) status = write_file(folder, d, i);
     if (d->box && bough_is_ok(&status)) status = write_box(folder, d->box);
     return status;
 }
 
-// The scene's model can be built and goes its first steps; a controller's library, which is another's
-// program, is loaded but not called.
-static bough_status try_scene(bough_arena *arena, bough_scene *scene) {
-    bough_run run;
-    scene->simulation.threads = 1;
-    bool calls = scene->control.node && scene->control.kind == BOUGH_SCENE_BLADED;
-    bough_status status = bough_run_create(arena, scene, &run);
-    for (int i = 0; i < TRIAL_STEPS && !calls && bough_is_ok(&status) && !bough_run_done(&run); i++)
-        status = bough_run_step(&run);
-    if (bough_is_ok(&status)) return status;
-    return bough_fail(status.code, "the model gives a scene that cannot run: %.300s", status.message);
+// -- trials ---------------------------------------------------------------------------------------
+
+static void note_trial(bough_draft *d, const bough_scene *scene, int steps) {
+    const bough_scene_simulation *s = &scene->simulation;
+    bough_draft_note(d, BOUGH_TRIED, "%g s in macro steps of %g s with rtol %g",
+                     fmin(steps * s->macro_step, s->duration), s->macro_step, s->master.rtol);
+}
+
+// With one tolerance after the other, until the errors are small enough: well below the scene's bound, since
+// a whole run may err by more than its first steps, unless there is no smaller tolerance. The scene's text
+// gets that tolerance.
+static bough_status try_scene(bough_draft *d, const char *folder, bough_scene *scene) {
+    const double usual = 0.5; // of the bound
+    int steps = d->trial_steps > 0 ? d->trial_steps : TRIAL_STEPS;
+    bough_status status = bough_ok();
+    for (int i = 0; i < N_TOLERANCE; i++) {
+        double part = d->trial_steps == 0 ? 0 : i + 1 < N_TOLERANCE ? usual : 1;
+        scene->simulation.master.rtol = strtod(tolerance[i], NULL);
+        memcpy(d->file_text[BOUGH_IMPORT_SCENE] + d->tolerance_at, tolerance[i], strlen(tolerance[i]));
+        status = bough_import_trial(d->arena, scene, steps, part * scene->simulation.error_bound);
+        if (status.code != BOUGH_FAILED) break;
+        bough_draft_note(d, BOUGH_TRIED, "rtol %s: %s", tolerance[i], status.message);
+    }
+    if (bough_is_ok(&status)) {
+        note_trial(d, scene, steps);
+        return write_file(folder, d, BOUGH_IMPORT_SCENE);
+    }
+    const char *last = status.code == BOUGH_FAILED ? tolerance[N_TOLERANCE - 1] : NULL;
+    return bough_fail(status.code, "the model gives a scene that cannot run%s%s: %.500s",
+                      last ? ", not even with rtol " : "", last ? last : "", status.message);
 }
 
 // What the deck's own checks have let through.
-static bough_status check_scene(bough_arena *arena, const char *folder) {
+static bough_status check_scene(bough_draft *d, const char *folder) {
     char path[BOUGH_PATH_MAX];
-    bough_errors errors = {.arena = arena};
+    bough_errors errors = {.arena = d->arena};
     bough_scene *scene;
     bough_status status = bough_folder_path(folder, bough_import_name[BOUGH_IMPORT_SCENE], path);
-    if (bough_is_ok(&status)) status = bough_scene_read(arena, path, NULL, 0, &errors, &scene);
-    if (errors.n == 0) return bough_is_ok(&status) ? try_scene(arena, scene) : status;
+    if (bough_is_ok(&status)) status = bough_scene_read(d->arena, path, NULL, 0, &errors, &scene);
+    if (errors.n == 0) return bough_is_ok(&status) ? try_scene(d, folder, scene) : status;
     const bough_error *e = errors.item;
     const char *slash = strrchr(e->file, '/');
     return bough_fail(BOUGH_INVALID, "the model gives no scene: %.40s:%d: %.80s: %.200s",
@@ -217,28 +244,6 @@ static bough_status finish_files(const char *from, const char *folder, bool good
     return status;
 }
 
-// The files are read as a scene before they take their place.
-static bough_status publish(bough_draft *d, const char *folder) {
-    char draft[BOUGH_PATH_MAX];
-    bool present = access(folder, F_OK) == 0;
-    bough_status status = bough_folder_path(folder, "import.partial", draft);
-    if (!bough_is_ok(&status)) return status;
-    status = write_files(draft, d);
-    if (bough_is_ok(&status)) status = check_scene(d->arena, draft);
-    bough_status finished = finish_files(draft, folder, bough_is_ok(&status));
-    if (bough_is_ok(&status)) status = finished;
-    if (!bough_is_ok(&status) && !present) rmdir(folder);
-    return status;
-}
-
-static void put_list(bough_draft *d) {
-    static const char *const head[BOUGH_N_NOTE] = {"taken", "approximated", "left out"};
-    for (int i = 0; i < BOUGH_N_NOTE; i++) {
-        const char *note = d->note_text[i];
-        fprintf(d->file[BOUGH_IMPORT_LIST], "%s:\n%s", head[i], note[0] ? note : "  nothing\n");
-    }
-}
-
 // Closes texts; whether all were written whole.
 static bool close_all(FILE **file, int n) {
     bool good = true;
@@ -249,15 +254,38 @@ static bool close_all(FILE **file, int n) {
     return good;
 }
 
+// The list with what the trials have told.
+static bough_status write_list(bough_draft *d, const char *folder) {
+    static const char *const head[BOUGH_N_NOTE] = {"taken", "approximated", "left out", "tried"};
+    FILE **list = &d->file[BOUGH_IMPORT_LIST];
+    bool good = close_all(d->note, BOUGH_N_NOTE);
+    for (int i = 0; i < BOUGH_N_NOTE && good; i++)
+        fprintf(*list, "%s:\n%s", head[i], d->note_text[i][0] ? d->note_text[i] : "  nothing\n");
+    if (!close_all(list, 1) || !good) return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
+    return write_file(folder, d, BOUGH_IMPORT_LIST);
+}
+
+// The files are read and tried as a scene before they take their place.
+static bough_status publish(bough_draft *d, const char *folder) {
+    char draft[BOUGH_PATH_MAX];
+    bool present = access(folder, F_OK) == 0;
+    bough_status status = bough_folder_path(folder, "import.partial", draft);
+    if (!bough_is_ok(&status)) return status;
+    status = write_files(draft, d);
+    if (bough_is_ok(&status)) status = check_scene(d, draft);
+    if (bough_is_ok(&status)) status = write_list(d, draft);
+    bough_status finished = finish_files(draft, folder, bough_is_ok(&status));
+    if (bough_is_ok(&status)) status = finished;
+    if (!bough_is_ok(&status) && !present) rmdir(folder);
+    return status;
+}
+
 static bough_status import(bough_arena *arena, void *self) {
     const bough_draft_def *def = self;
     bough_draft *d = def->draft;
     d->arena = arena;
     def->convert(def->self, def->path);
-    bool good = close_all(d->note, BOUGH_N_NOTE);
-    if (good && bough_is_ok(d->status)) put_list(d);
-    good = close_all(d->file, BOUGH_N_IMPORT_FILE) && good;
-    if (!good) return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
+    if (!close_all(d->file, BOUGH_IMPORT_LIST)) return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
     if (bough_is_ok(d->status)) *d->status = publish(d, def->folder);
     if (bough_is_ok(d->status) && def->echo) fputs(d->file_text[BOUGH_IMPORT_LIST], def->echo);
     return *d->status;
@@ -267,7 +295,7 @@ bough_status bough_draft_import(const bough_draft_def *def) {
     bough_draft *d = def->draft;
     bough_draft_def own = *def;
     bough_status kept = bough_ok();
-    *d = (bough_draft){.status = &kept};
+    *d = (bough_draft){.status = &kept, .trial_steps = def->trial_steps};
     bough_status status = open_texts(d);
     if (bough_is_ok(&status)) status = bough_arena_use(import, &own);
     close_all(d->note, BOUGH_N_NOTE);

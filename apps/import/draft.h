@@ -14,6 +14,7 @@ typedef enum bough_import_note {
     BOUGH_TAKEN,
     BOUGH_APPROXIMATED,
     BOUGH_LEFT_OUT,
+    BOUGH_TRIED,
     BOUGH_N_NOTE
 } bough_import_note;
 
@@ -37,18 +38,21 @@ typedef struct bough_draft {
     char *note_text[BOUGH_N_NOTE], *file_text[BOUGH_N_IMPORT_FILE];
     size_t note_size[BOUGH_N_NOTE], file_size[BOUGH_N_IMPORT_FILE];
     double macro_step;         // [s]; air and control are sampled as often
+    long tolerance_at;         // where the scene's text has the integrator's tolerance
+    int trial_steps;           // of the definition
     const bough_wind_box *box; // to be written as wind.bts; NULL: none
 } bough_draft;
 
 #define BOUGH_IMPORT_BOX "wind.bts"
 
 // An import: convert(self, path) fills the draft, then the files are written unless there was a failure or
-// they make no scene that can be built and stepped; the list also to `echo` (NULL: nobody).
+// they make no scene that runs; the list also to `echo` (NULL: nobody).
 typedef struct bough_draft_def {
     bough_draft *draft;
     void (*convert)(void *self, const char *path);
     void *self;
     const char *path, *folder;
+    int trial_steps; // as in the options
     FILE *echo;
 } bough_draft_def;
 

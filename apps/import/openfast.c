@@ -180,6 +180,11 @@ static void convert(void *self, const char *path) {
 bough_status bough_import_openfast(const char *path, const char *folder, const bough_import_options *options,
                                    FILE *echo) {
     bough_openfast o = {.options = options};
-    return bough_draft_import(&(bough_draft_def){
-        .draft = &o.draft, .convert = convert, .self = &o, .path = path, .folder = folder, .echo = echo});
+    return bough_draft_import(&(bough_draft_def){.draft = &o.draft,
+                                                 .convert = convert,
+                                                 .self = &o,
+                                                 .path = path,
+                                                 .folder = folder,
+                                                 .trial_steps = options->trial_steps,
+                                                 .echo = echo});
 }

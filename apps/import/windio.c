@@ -156,6 +156,11 @@ static void convert(void *self, const char *path) {
 bough_status bough_import_windio(const char *path, const char *folder, const bough_import_options *options,
                                  FILE *echo) {
     bough_windio w = {.options = options};
-    return bough_draft_import(&(bough_draft_def){
-        .draft = &w.draft, .convert = convert, .self = &w, .path = path, .folder = folder, .echo = echo});
+    return bough_draft_import(&(bough_draft_def){.draft = &w.draft,
+                                                 .convert = convert,
+                                                 .self = &w,
+                                                 .path = path,
+                                                 .folder = folder,
+                                                 .trial_steps = options->trial_steps,
+                                                 .echo = echo});
 }

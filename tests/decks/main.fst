@@ -1,5 +1,5 @@
 ------- A small turbine on land, for the tests ---------------------------------
-Floating MHK turbine: a title, names and layout as OpenFAST's, values invented
+Floating MHK turbine, by its title; names and layout as OpenFAST's, values invented
          3.01  TMax            - Total run time (s)
         0.01   DT              - Time step (s)
 ------ switches ---

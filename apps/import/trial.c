@@ -1,0 +1,72 @@
+#include "apps/import/trial.h"
+
+#include "apps/simulation/run.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static bough_status widen(void *self, double t) {
+    bough_run *run = self;
+    (void)t;
+    bough_error_probe_widen(&run->probe, bough_run_values(run));
+    return bough_ok();
+}
+
+static bough_status take_steps(bough_arena *arena, bough_scene *scene, int steps, double bound) {
+    bough_run run;
+    scene->simulation.threads = 1;
+    bough_status status = bough_run_create(arena, scene, &run);
+    if (!bough_is_ok(&status)) return status;
+    const double interval = scene->simulation.output.interval;
+    bough_run_record_at(&run, (bough_run_record){interval, true, .sample = widen, .self = &run});
+    status = bough_run_start(&run);
+    for (int i = 0; i < steps && bough_is_ok(&status) && !bough_run_done(&run); i++) {
+        status = bough_run_step(&run);
+        if (bough_error_probe_hopeless(&run.probe)) break;
+    }
+    return bough_is_ok(&status) ? bough_error_probe_judge(&run.probe, bound) : status;
+}
+
+static bool calls_library(const bough_scene *scene) {
+    return scene->control.node && scene->control.kind == BOUGH_SCENE_BLADED;
+}
+
+// Of a process that ended without a result.
+static bough_status crash_of(const bough_scene *scene, int end) {
+    const char *signal = WIFSIGNALED(end) ? strsignal(WTERMSIG(end)) : "it ended the process";
+    if (!calls_library(scene)) return bough_fail(BOUGH_INVALID, "the first steps crash: %s", signal);
+    return bough_fail(BOUGH_INVALID,
+                      "the controller's library '%.200s' crashes in its first calls: %s; --controller FILE "
+                      "takes another",
+                      scene->control.library, signal);
+}
+
+// What a library prints belongs to no import.
+static void silence(void) {
+    int null = open("/dev/null", O_RDWR);
+    if (null < 0) return;
+    dup2(null, STDIN_FILENO);
+    dup2(null, STDOUT_FILENO);
+}
+
+bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int steps, double bound) {
+    int ends[2], end = 0;
+    bough_status status;
+    if (pipe(ends) != 0) return bough_fail(BOUGH_IO, "cannot start a trial: %s", strerror(errno));
+    pid_t child = fork();
+    if (child == 0) {
+        silence();
+        status = take_steps(arena, scene, steps, bound);
+        bool told = write(ends[1], &status, sizeof status) == (ssize_t)sizeof status;
+        _exit(told ? 0 : 1);
+    }
+    close(ends[1]);
+    ssize_t got = child > 0 ? read(ends[0], &status, sizeof status) : 0;
+    close(ends[0]);
+    if (child < 0) return bough_fail(BOUGH_IO, "cannot start a trial: %s", strerror(errno));
+    while (waitpid(child, &end, 0) < 0 && errno == EINTR) continue;
+    return got == (ssize_t)sizeof status ? status : crash_of(scene, end);
+}
