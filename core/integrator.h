@@ -14,7 +14,8 @@
 
 // Work done so far, for the summary.
 typedef struct bough_statistics {
-    long steps, failed_steps, derivatives, jacobians, factorisations, iterations, restarts;
+    long steps, failed_steps, derivatives, jacobians, factorisations, iterations;
+    long starts; // the first, those after jumps of the input or the state, and at every checkpoint
 } bough_statistics;
 
 static inline void bough_statistics_add(bough_statistics *sum, const bough_statistics *part) {
@@ -24,7 +25,7 @@ static inline void bough_statistics_add(bough_statistics *sum, const bough_stati
     sum->jacobians += part->jacobians;
     sum->factorisations += part->factorisations;
     sum->iterations += part->iterations;
-    sum->restarts += part->restarts;
+    sum->starts += part->starts;
 }
 
 static inline void bough_statistics_subtract(bough_statistics *from, const bough_statistics *part) {
@@ -34,7 +35,7 @@ static inline void bough_statistics_subtract(bough_statistics *from, const bough
     from->jacobians -= part->jacobians;
     from->factorisations -= part->factorisations;
     from->iterations -= part->iterations;
-    from->restarts -= part->restarts;
+    from->starts -= part->starts;
 }
 
 // ẏ = f(t, y). Callbacks return false where there is no finite value.
@@ -69,9 +70,9 @@ typedef enum bough_integrator_kind {
 
 typedef struct bough_integrator_options {
     bough_integrator_kind kind;
-    double rtol; // tolerance per state: rtol · scale; of Newton's method in generalised-α
-    double step; // longest step of generalised-α and the Rosenbrock method [s]; 0: none
-    double rho;  // of generalised-α: spectral radius at infinite frequency, 0 … 1
+    double rtol;    // tolerance per state: rtol · scale; of Newton's method in generalised-α
+    double step;    // longest step of generalised-α and the Rosenbrock method [s]; 0: none
+    double rho;     // of generalised-α: spectral radius at infinite frequency, 0 … 1
     int most_steps; // of IDA and the Rosenbrock method in a macro step; 0: their own limits
 } bough_integrator_options;
 
@@ -80,13 +81,11 @@ typedef struct bough_integrator_ops {
     const char *name;  // in scenes
     const char *title; // in messages
     int most_states;   // largest system that it suits; 0: any
-    void *(*create)(bough_arena *arena, const bough_ode *ode,
-                    const bough_integrator_options *options);
+    void *(*create)(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options);
     // Integrates y (n) from *t to exactly t1 and never evaluates f beyond t1. A method that can stop
     // early returns after the first step that reaches `pause`. *t is then the time of y. `restart`: y
     // was changed, or f jumps at *t.
-    bough_status (*advance)(void *self, double *t, double pause, double t1, bool restart,
-                            double *y);
+    bough_status (*advance)(void *self, double *t, double pause, double t1, bool restart, double *y);
     void (*statistics)(const void *self, bough_statistics *sum); // added to sum
     // (n) sum of the errors of all steps, by the method's own estimate. NULL: it has none.
     double *(*own_error)(void *self);
@@ -108,11 +107,9 @@ const char *bough_integrator_name(int index);
 // The integrator of the options' kind in the arena. BOUGH_INVALID where the method does not suit so
 // large a system.
 bough_status bough_integrator_create(bough_arena *arena, const bough_ode *ode,
-                                     const bough_integrator_options *options,
-                                     bough_integrator *integrator);
+                                     const bough_integrator_options *options, bough_integrator *integrator);
 
-extern const bough_integrator_ops bough_integrator_ida, bough_integrator_cvode,
-    bough_integrator_arkode, bough_integrator_radau, bough_integrator_alpha,
-    bough_integrator_rosenbrock, bough_integrator_automatic;
+extern const bough_integrator_ops bough_integrator_ida, bough_integrator_cvode, bough_integrator_arkode,
+    bough_integrator_radau, bough_integrator_alpha, bough_integrator_rosenbrock, bough_integrator_automatic;
 
 #endif

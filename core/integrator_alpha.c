@@ -170,7 +170,7 @@ static bool take_step(alpha *m, double t, double h, double *y) {
 }
 
 static bool start(alpha *m, double t, const double *y) {
-    if (m->started) m->sum.restarts++;
+    m->sum.starts++;
     m->started = true;
     m->stale = true;
     m->last = 0;

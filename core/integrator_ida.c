@@ -93,7 +93,6 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     bough_newton_run *run = bough_newton_run_create(arena, ode, options->rtol, &library, destroy);
     run->newton.scaled = true; // (cj − J)⁻¹ b
     run->most_steps = options->most_steps > 0 ? options->most_steps : MOST_STEPS;
-    run->counts_start = true;
     run->memory = IDACreate(run->newton.context);
     if (run->memory == NULL || !configure(run)) bough_arena_leave(arena);
     return run;

@@ -367,7 +367,7 @@ static void start(radau *r, double t) {
     double step = r->past->started ? r->past->step : 0;
     *r->past = (history){.time = t, .step = step, .remainder = 1, .started = true};
     r->present = 0;
-    r->count.restarts++;
+    r->count.starts++;
 }
 
 static bough_status failure(const radau *r, const char *what) {

@@ -308,7 +308,7 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
                             double *y) {
     rosenbrock *m = self;
     if (restart || !m->started) {
-        if (m->started) m->sum.restarts++;
+        m->sum.starts++;
         m->started = true;
         m->age = MOST_AGE;
         m->drifted = MOST_DRIFTED;

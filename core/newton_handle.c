@@ -157,8 +157,7 @@ static bough_status start(bough_newton_run *run, double t) {
         return bough_fail(BOUGH_FAILED, "%s at t = %.6g s: %s cannot start: %s", newton->ode.name, t,
                           run->library->name, newton->text);
     }
-    if (run->counts_start) run->past.restarts++;
-    run->counts_start = true;
+    run->past.starts++;
     return bough_ok();
 }
 

@@ -58,7 +58,6 @@ struct bough_newton_run {
     void *memory;
     int most_steps; // in a macro step
     bool started;
-    bool counts_start;     // the next start is counted
     double *own_error;     // (n)
     N_Vector beside;       // (n) errors of the last step; of IDA ẏ
     bough_statistics past; // of the integrations before the last start

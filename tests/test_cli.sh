@@ -202,7 +202,7 @@ complete_run() {
         [ "$(grep -c "\"$key\": " $out/summary.json)" -eq 2 ] || fail "$said: $key of 2 subsystems"
     done
     # the monolithic scheme's integrator of the whole beside them
-    for key in solver steps derivatives jacobians factorisations iterations restarts; do
+    for key in solver steps derivatives jacobians factorisations iterations starts; do
         [ "$(grep -c "\"$key\": " $out/summary.json)" -eq 3 ] || fail "$said: $key of 2 and the whole"
     done
     missing $out/channels.out.partial

@@ -167,7 +167,7 @@ static void counts_its_work(void **context) {
     integrator_advance(&p.micro, 0.1, 0.2, true, y);
     p.micro.ops->statistics(p.micro.self, &sum);
     assert_int_equal(sum.steps, 20);
-    assert_int_equal(sum.restarts, 1);
+    assert_int_equal(sum.starts, 2);
     assert_int_equal(sum.failed_steps, 0);
     bough_arena_destroy(arena);
 }

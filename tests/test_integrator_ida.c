@@ -130,7 +130,7 @@ static void restarting_repeats_bit_by_bit(void **state) {
     advance(&ida, 0, 0.7, true, second);
     assert_memory_equal(first, second, sizeof first);
     ida.ops->statistics(ida.self, &after);
-    assert_int_equal(after.restarts, 2);
+    assert_int_equal(after.starts, 2);
     assert_true(after.steps > 2 * count.steps); // counted across the restart
     assert_int_equal(after.jacobians, o.setups);
     assert_int_equal(after.factorisations, o.setups);

@@ -38,6 +38,10 @@ static void take_job(bough_job *job, bough_snapshot *s) {
     bough_snapshot_take(s, &job->rows, sizeof job->rows);
     bough_snapshot_take(s, &job->frames_kept, sizeof job->frames_kept);
     bough_snapshot_take(s, job->statistics, (size_t)job->recorded.count * sizeof *job->statistics);
+    if (job->shares.row) {
+        bough_snapshot_take(s, &job->shares.n_row, sizeof job->shares.n_row);
+        bough_snapshot_doubles(s, job->shares.row, job->shares.most * job->shares.n_channel);
+    }
     bough_snapshot_take(s, &run->wall_s, sizeof run->wall_s);
     bough_snapshot_take(s, &run->cpu_s, sizeof run->cpu_s);
 }

@@ -217,7 +217,7 @@ static void write_work(bough_summary *s, const bough_statistics *done) {
     bough_summary_integer(s, "jacobians", done->jacobians);
     bough_summary_integer(s, "factorisations", done->factorisations);
     bough_summary_integer(s, "iterations", done->iterations);
-    bough_summary_integer(s, "restarts", done->restarts);
+    bough_summary_integer(s, "starts", done->starts);
 }
 
 // The integrator of all bodies together, where the scheme has one.

@@ -117,14 +117,14 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
     }
     *t = t1;
     o->advances++;
-    o->restarts += restart;
+    o->starts += restart;
     return bough_ok();
 }
 
 static void statistics(const void *self, bough_statistics *sum) {
     const bough_oscillator *o = self;
     sum->steps += o->advances;
-    sum->restarts += o->restarts;
+    sum->starts += o->starts;
 }
 
 // Its states are all that a step depends on.

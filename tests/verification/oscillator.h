@@ -16,7 +16,7 @@ typedef struct bough_oscillator {
     int n_input, n_output;
     double y[2], scale[2], integrated[2];
     const bough_member *member; // that it is
-    long advances, restarts;
+    long advances, starts;
 } bough_oscillator;
 
 // A mass on a spring to the wall.
