@@ -149,7 +149,7 @@ killed "$bar" 20ms --set 'simulation.duration=1.5 s' --set 'simulation.output.in
     --set 'simulation.output.frames=50 ms'
 killed "$turbine" 40ms --set 'simulation.duration=1 s' --set 'simulation.macro_step=2.5 ms' \
     --set 'simulation.output.interval=15 ms' --set 'simulation.output.frames=0.2 s'
-killed "$turbine" 40ms --set 'simulation.duration=1 s' --set simulation.error_shares=true \
+killed "$turbine" 40ms --set 'simulation.duration=1 s' --set simulation.error_shares=true --set simulation.error_bound=1 \
     --set 'bodies[3-5].rod.segments=8' --set 'simulation.output.frames=0.2 s'
 wrong_checkpoints
 wrong_intervals
