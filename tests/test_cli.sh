@@ -534,7 +534,7 @@ END
     has ../stdout ' 0 of 4 cells still missing'
     rm -r out
     refused 'expects K/N' study ../spread.yaml --part 3/2
-    refused 'kind: .two-mass. is a study of .*bough-verify' study "$folder/apps/studies/two-mass.yaml"
+    refused 'kind: expected one of work-precision' study "$folder/tests/verification/two-mass.yaml"
 }
 
 usage

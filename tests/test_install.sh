@@ -14,6 +14,25 @@ if python=$(command -v python3) && "$python" -c "import ctypes" 2>/dev/null; the
 import bough
 print('python:', len(bough.Session('$source/apps/mechanisms/pendulum.yaml').names), 'channels')"
 fi
+# Every scene that is installed can be built, every study read with the scenes of its runs; what is neither
+# is data that one of them names.
+scenes=0
+for file in $(find "$folder/usr/share/bough" -name '*.yaml'); do
+    if grep -q '^bodies:' "$file"; then
+        "$folder/usr/bin/bough" check "$file" >"$folder/said" 2>&1 || { cat "$folder/said"; exit 1; }
+        scenes=$((scenes + 1))
+    elif grep -q '^kind:' "$file"; then
+        # part of none; the kinds without parts say so when all is read
+        "$folder/usr/bin/bough" study "$file" --part 99999/99999 --out "$folder/studied" --quiet \
+            >"$folder/said" 2>&1 || grep -q 'error: only studies of kind .* run in parts' "$folder/said" ||
+            { cat "$folder/said"; exit 1; }
+        scenes=$((scenes + 1))
+    else
+        grep -rq --include='*.yaml' "[:,] *[./a-z]*$(basename "$file")" "$folder/usr/share/bough" "$source/tests" ||
+            { echo "nobody names $file"; exit 1; }
+    fi
+done
+[ $scenes -gt 40 ]
 grep -q '^\.SS study' "$folder/usr/share/man/man1/bough.1"
 completed=$(bash -c '. "$1/usr/share/bash-completion/completions/bough"
     complete_words() { COMP_WORDS=("$@") COMP_CWORD=$(($# - 1)); _bough "$bough"; echo "${COMPREPLY[*]}"; }

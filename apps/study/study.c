@@ -297,22 +297,6 @@ static bough_status finish(const char *path, bough_errors *errors) {
     return bough_fail(BOUGH_INVALID, "%s: %d error%s in the study", path, n, n == 1 ? "" : "s");
 }
 
-// The kinds of the project's verification of itself, which no installed program runs.
-static bool is_verification(const bough_node *root, bough_errors *errors) {
-    static const char *const kinds[] = {"verify", "two-mass", "added-mass", "blade-models"};
-    const bough_node *kind = bough_node_find(root, "kind");
-    for (size_t i = 0; kind && kind->kind == BOUGH_SCALAR && i < sizeof kinds / sizeof *kinds; i++) {
-        if (strcmp(kind->text, kinds[i]) != 0) continue;
-        bough_errors_add(errors, kind, "kind",
-                         "'%s' is a study of bough's verification; run it by "
-                         "build/release/tests/bough-verify FILE, which is built with the "
-                         "tests",
-                         kinds[i]);
-        return true;
-    }
-    return false;
-}
-
 // A scene is told as such, in place of an error for each of its keys.
 static bool is_scene(const char *path, const bough_node *root, bough_errors *errors) {
     const bough_node *bodies = bough_node_find(root, "bodies");
@@ -345,7 +329,7 @@ bough_status bough_study_read(bough_arena *arena, const char *path, int threads,
     if (!root) return finish(path, errors);
     s->file = bough_arena_string(arena, path);
     s->threads = threads;
-    if (is_verification(root, errors) || is_scene(path, root, errors)) return finish(path, errors);
+    if (is_scene(path, root, errors)) return finish(path, errors);
     if (is_load_set(root)) {
         bough_status status = read_load_set(arena, root, errors, s);
         if (bough_is_ok(&status)) status = finish(path, errors);

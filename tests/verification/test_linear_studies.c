@@ -9,7 +9,7 @@ static void perform(const char *folder, const char *name, const char *csv, int r
     bough_errors errors = {.arena = arena};
     bough_verification study;
     FILE *stream = tmpfile();
-    snprintf(path, sizeof path, BOUGH_SOURCE_DIR "/apps/studies/%s", name);
+    snprintf(path, sizeof path, BOUGH_SOURCE_DIR "/tests/verification/%s", name);
     bough_status status = bough_verification_read(arena, path, &errors, &study);
     bough_errors_print(&errors, stderr);
     assert_int_equal(status.code, BOUGH_OK);
