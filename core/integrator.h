@@ -76,11 +76,15 @@ typedef struct bough_integrator_options {
     int most_steps; // of IDA and the Rosenbrock method in a macro step; 0: their own limits
 } bough_integrator_options;
 
+// Options besides rtol that only some methods read.
+enum { BOUGH_METHOD_READS_STEP = 1, BOUGH_METHOD_READS_RHO = 2 };
+
 // A method. `create` returns its memory, which the other calls get as `self`.
 typedef struct bough_integrator_ops {
     const char *name;  // in scenes
     const char *title; // in messages
     int most_states;   // largest system that it suits; 0: any
+    unsigned reads;    // BOUGH_METHOD_READS_…
     void *(*create)(bough_arena *arena, const bough_ode *ode, const bough_integrator_options *options);
     // Integrates y (n) from *t to exactly t1 and never evaluates f beyond t1. A method that can stop
     // early returns after the first step that reaches `pause`. *t is then the time of y. `restart`: y

@@ -214,6 +214,7 @@ static void statistics(const void *self, bough_statistics *sum) {
 const bough_integrator_ops bough_integrator_alpha = {
     .name = "generalized-alpha",
     .title = "generalised-α",
+    .reads = BOUGH_METHOD_READS_STEP | BOUGH_METHOD_READS_RHO,
     .create = create,
     .advance = advance,
     .statistics = statistics,

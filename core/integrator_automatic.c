@@ -93,6 +93,7 @@ static void statistics(const void *self, bough_statistics *sum) {
 const bough_integrator_ops bough_integrator_automatic = {
     .name = "automatic",
     .title = "Rosenbrock or IDA",
+    .reads = BOUGH_METHOD_READS_STEP,
     .create = create,
     .advance = advance,
     .statistics = statistics,

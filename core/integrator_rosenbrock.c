@@ -336,6 +336,7 @@ static void statistics(const void *self, bough_statistics *sum) {
 const bough_integrator_ops bough_integrator_rosenbrock = {
     .name = "rosenbrock",
     .title = "Rosenbrock",
+    .reads = BOUGH_METHOD_READS_STEP,
     .create = create,
     .advance = advance,
     .statistics = statistics,

@@ -19,6 +19,18 @@ SCHEMES(DECLARATION)
 static const bough_scheme *const schemes[] = {SCHEMES(ADDRESS)};
 enum { N_SCHEME = sizeof schemes / sizeof *schemes };
 
+static const bough_scheme_key keys[] = {
+    {"coupling.order", BOUGH_READS_ORDER},
+    {"coupling.theta", BOUGH_READS_THETA},
+    {"coupling.exchange", BOUGH_READS_EXCHANGE},
+    {"coupling.accelerator", BOUGH_READS_ACCELERATOR},
+    {"coupling.relaxation", BOUGH_READS_ACCELERATOR},
+    {"coupling.tolerance", BOUGH_READS_ACCELERATOR},
+    {"coupling.iterations", BOUGH_READS_ACCELERATOR},
+    {"micro", BOUGH_READS_MEMBERS},
+    {"step_control", BOUGH_READS_MEMBERS},
+};
+
 bough_scheme_options bough_scheme_options_default(void) {
     return (bough_scheme_options){.name = "ramp",
                                   .order = 1,
@@ -44,6 +56,14 @@ const bough_scheme *bough_scheme_find(const char *name) {
 
 const char *bough_scheme_name(int index) {
     return index >= 0 && index < N_SCHEME ? schemes[index]->name : NULL;
+}
+
+bool bough_scheme_reads(const bough_scheme *s, unsigned option) {
+    return option == BOUGH_READS_MEMBERS ? !s->one_system : (s->reads & option) != 0;
+}
+
+const bough_scheme_key *bough_scheme_key_at(int index) {
+    return index < (int)(sizeof keys / sizeof *keys) ? &keys[index] : NULL;
 }
 
 bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assembly,

@@ -12,13 +12,14 @@ enum {
     BOUGH_READS_THETA = 2,
     BOUGH_READS_EXCHANGE = 4,
     BOUGH_READS_ACCELERATOR = 8, // relaxation, tolerance and iterations too
+    BOUGH_READS_MEMBERS = 16,    // the integrators of single members and the step control
 };
 
 // The entry of a scheme. Fields that it leaves out are false, 0 or NULL.
 struct bough_scheme {
     const char *name;
     const char *summary;  // one line for help: what is exchanged, order, stability
-    unsigned reads;       // BOUGH_READS_… of the options
+    unsigned reads;       // BOUGH_READS_… of the options, but of members: see bough_scheme_reads
     bool explicit_forces; // forces are frozen or extrapolated: unstable beyond some macro step
     bool judged;          // may be unstable: its eigenvalues are computed before the run
     bool one_system;      // all members are one system: there is no coupling error to judge or estimate
@@ -54,6 +55,18 @@ bough_status bough_scheme_couple(bough_arena *arena, const bough_assembly *assem
 // Name of the scheme at that place of the table, for messages and help; NULL beyond its end.
 const char *bough_scheme_name(int index);
 int bough_scheme_index(const char *name); // −1: there is none
+
+// Whether the scheme reads an option, one of BOUGH_READS_….
+bool bough_scheme_reads(const bough_scheme *s, unsigned option);
+
+// A key of the settings of a run that not every scheme reads.
+typedef struct bough_scheme_key {
+    const char *path; // below the settings of the run: "coupling.order"
+    unsigned option;  // BOUGH_READS_… of the schemes that read it
+} bough_scheme_key;
+
+// The key at that place of their table; NULL beyond its end.
+const bough_scheme_key *bough_scheme_key_at(int index);
 
 // Order of the interface defects in the macro step.
 int bough_scheme_defect_order(const bough_scheme *s, const bough_scheme_options *options);

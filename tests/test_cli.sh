@@ -51,6 +51,8 @@ usage() {
     refused "unknown command 'rnu' (did you mean 'run'?)" rnu
     refused 'known: run, check, static' frobnicate
     refused "unknown option '--treads' (did you mean '--threads'?)" run "$bar" --treads 2
+    refused "unknown option '--thread' (did you mean '--threads'?)" run "$bar" --thread 2
+    refused "unknown option '--thread=2' (did you mean '--threads'?)" run "$bar" --thread=2
     refused "unknown option '-x'" run -x "$bar"
     refused "unknown option '--out'" check "$bar" --out x
     refused '\-\-quiet takes no value' run "$bar" --quiet=1
@@ -112,6 +114,36 @@ bad_scenes() {
     refused "this is a scene, not a study: 'bough run $bar' runs it" study "$bar"
 }
 
+# A setting that is read by no part of the run is named, at its place, unless the command line has replaced
+# the choice that it belongs to.
+unused_settings() {
+    unused="warning: simulation.coupling.order: not used with 'scheme: ramp', only with extrapolated, iterated"
+    expect 0 check "$turbine"
+    empty ../stderr
+    expect 0 check "$turbine" --set simulation.coupling.order=2
+    has ../stderr "^--set: $unused\$"
+    expect 0 check "$turbine" --set simulation.coupling.scheme=monolithic
+    empty ../stderr
+    sed "s/^simulation: {/&coupling: {scheme: ramp, order: 2}, master: {solver: ida, rho: 0.5}, /" "$beam" >../unused.yaml
+    expect 0 check ../unused.yaml
+    has ../stderr "^\.\./unused\.yaml:3:46: $unused\$"
+    has ../stderr "^\.\./unused\.yaml:3:77: warning: simulation.master.rho: not used with 'solver: ida'\$"
+    [ "$(wc -l <../stderr)" -eq 2 ] || fail "$said: more than the two warnings"
+    expect 0 check "$bar" --set 'simulation.micro.rtol=1e-5' --set simulation.step_control.tolerance=1e-3 \
+        --set 'bodies[bar].micro.rtol=1e-5' --set simulation.coupling.scheme=monolithic
+    has ../stderr "^--set: warning: simulation.micro: not used with 'scheme: monolithic', only with frozen"
+    has ../stderr "^--set: warning: simulation.step_control: not used with 'scheme: monolithic', only"
+    has ../stderr "^--set: warning: body 'bar': micro: not used with 'scheme: monolithic'\$"
+    # every key of the coupling that only some schemes read, with one that does not
+    for key in order=1 exchange=waveform accelerator=aitken relaxation=0.5 tolerance=1e-5 iterations=5; do
+        expect 0 check "$turbine" --set "simulation.coupling.$key"
+        has ../stderr "warning: simulation.coupling.${key%%=*}: not used with 'scheme: ramp', only with .*iterated"
+    done
+    expect 0 check "$bar" --set simulation.coupling.theta=0.6
+    has ../stderr "warning: simulation.coupling.theta: not used with 'scheme: monolithic', only with ramp"
+    nothing_written
+}
+
 checks() {
     expect 0 check "$bar" --set 'bodies[0].rod.segments=8'
     has ../stdout '^body bar: rod; revolute about y on ground: 1 degree of freedom; 8 segments, 104 states'
@@ -149,6 +181,17 @@ checks() {
     expect 0 check ../odd.yaml
     has ../stderr "^../odd.yaml:[0-9]*:[0-9]*: warning: body '.*': no mass distribution has the inertia"
     refused 'mass: must be in \[0, 1e12\] kg' run "$mechanisms/pendulum.yaml" --set 'bodies[0].mass=1e300 t'
+    refused "error: aero.wind.speed: must be in \[0, 150\] m/s, got '300'" check "$turbine" --set aero.wind.speed=300
+    refused "solver: expected one of .*, got 'cvode' (did you mean 'cvode-bdf'?)" check "$bar" --set simulation.micro.solver=cvode
+    for key in interval from frames vertices; do
+        expect 0 check "$bar" --set "simulation.output.$key=1000 s"
+        has ../stderr "^--set: warning: simulation.output.$key: 1000 s is longer than the run, 1 s\$"
+    done
+    refused "error: --set: control.library: the controller cannot be loaded: .*no.so" check \
+        "$folder/apps/turbine/power.yaml" --set 'control={kind: bladed, library: no.so}'
+    refused "error: --set: aero.wind.file: cannot open the wind file .*no.bts" check "$turbine" --set 'aero.wind={kind: bts, file: no.bts}'
+    expect 0 check "$beam" --set 'bodies[beam].rod.segments=1'
+    has ../stdout '^warning: beam at 0 s: a rod of one segment bends by a third too little'
     refused 'at most 1e+09 are taken' check "$bar" --set 'simulation.duration=1e30 s'
     expect 0 check "$scenes/joints.yaml"
     has ../stdout '^body fork: rigid; universal about x and y on ground: 2 degrees of freedom'
@@ -347,7 +390,10 @@ EOF
     refused "bodies\[0\]\|sensors\[0\].body: there is no body 'b'" run ../bar.yaml --set 'sensors[0].body=b'
     refused "3 m is beyond the end of 'bar', at 2 m" run ../bar.yaml --set 'sensors[0].at=[3 m]'
     expect 2 run ../bar.yaml --set 'simulation.output.channels=[Rot*]'
-    has ../stderr "simulation.output.channels: no channel matches 'Rot\*'"
+    has ../stderr "simulation.output.channels\[0\]: no channel matches 'Rot\*'"
+    sed 's/^simulation: {/&output: {channels: [beamTipZ, beamTipQ]}, /' "$beam" >../named.yaml
+    expect 2 check ../named.yaml
+    has ../stderr "error: \.\./named\.yaml:3:44: simulation.output.channels\[1\]: no channel matches 'beamTipQ' (did you mean 'beamTip.'?)"
     expect 0 check ../bar.yaml --set 'bodies[bar].rod.segments=4'
     has ../stdout '^body bar: .* 4 segments'
     refused "there is no item with 'name: baz' in that list (did you mean 'bar'?)" check ../bar.yaml --set 'bodies[baz].rod.segments=4'
@@ -540,6 +586,7 @@ END
 usage
 help
 bad_scenes
+unused_settings
 checks
 complete_run
 failed_run

@@ -236,7 +236,7 @@ static void tables_of_joint_loads_are_checked(void **state) {
                "  - {joint: a, torque: " more "}\n"
     accepts(LOADED("{times: [0, 1 s], values: [2 kN m, 0]}"));
     refuses(LOADED("{times: [0, 1, 1], values: [2, 0, 1]}"),
-            "s.yaml:8:39: error: loads[0].torque.times: must increase\n");
+            "s.yaml:8:39: error: loads[0].torque.times[2]: must be more than the 1 s before it, got 1 s\n");
     refuses(LOADED("{times: [0, 1], values: [2, 0, 1]}"),
             "s.yaml:8:24: error: loads[0].torque: 2 times, but 3 values\n");
     refuses(LOADED("{times: [0, 1]}"),

@@ -126,14 +126,24 @@ static void body_keys_fit_the_fidelity(void **state) {
     refuses(ONE_BODY "    mass: 1\n    inertia: [1, 1, 1]\n"
                      "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, 0, 0, 1, 1, "
                      "0]}\n",
-            "s.yaml:6:11: error: bodies[0].mass: follows from the body's rod\n"
-            "s.yaml:7:14: error: bodies[0].inertia: follows from the body's rod\n");
+            "s.yaml:8:10: error: bodies[0].rod: a rigid body gets its mass from a rod or from 'mass', "
+            "'centre_of_mass' and 'inertia', not from both\n");
+    refuses(ONE_BODY "    mass: 1\n    centre_of_mass: [1, 0, 0]\n    inertia: [1, 1, 1]\n    rod: {segments: 4}\n",
+            "s.yaml:9:10: error: bodies[0].rod: a rigid body gets its mass from a rod or from 'mass', "
+            "'centre_of_mass' and 'inertia', not from both\n");
     refuses(ROD_BODY "    rod: {part: [0, 1], length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [1, "
                      "0, 0, 1, 1, 0]}\n",
             "s.yaml:6:17: error: bodies[0].rod.part: only used with a table\n");
     refuses(ONE_BODY "    inertia: [1, 1, 1, 2, 0, 0]\n",
             "s.yaml:6:14: error: bodies[0].inertia: the inertia matrix must not be negative about "
-            "any axis\n");
+            "any axis, but Ixx Iyy - Ixy^2 is\n");
+    refuses(ONE_BODY "    inertia: [1, 1, -1]\n",
+            "s.yaml:6:14: error: bodies[0].inertia: the inertia matrix must not be negative about "
+            "any axis, but Izz is\n");
+    // Each plane is positive, the space is not.
+    refuses(ONE_BODY "    inertia: [1, 1, 1, 0.9, 0.9, -0.9]\n",
+            "s.yaml:6:14: error: bodies[0].inertia: the inertia matrix must not be negative about "
+            "any axis, but the determinant is\n");
     refuses(ONE_BODY "    inertia: [1, 2]\n",
             "s.yaml:6:14: error: bodies[0].inertia: expected a list [Ixx, Iyy, Izz] or with Ixy, "
             "Ixz, Iyz, got 2 items\n");
@@ -143,11 +153,10 @@ static void rods_are_complete(void **state) {
     (void)state;
     refuses(
         ROD_BODY "    rod: {segments: 4}\n",
-        "s.yaml:6:10: error: bodies[0].rod: required key 'length' is missing (without a "
-        "table)\n"
-        "s.yaml:6:10: error: bodies[0].rod: required key 'stiffness' is missing (without a "
-        "table)\n"
-        "s.yaml:6:10: error: bodies[0].rod: required key 'mass' is missing (without a table)\n");
+        "s.yaml:6:10: error: bodies[0].rod: required keys 'length', 'stiffness', 'mass' are missing (without a "
+        "table)\n");
+    refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1]}\n",
+            "s.yaml:6:10: error: bodies[0].rod: required key 'mass' is missing (without a table)\n");
     refuses(
         ROD_BODY "    rod: {table: none.yaml, segments: 0}\n",
         "s.yaml:6:18: error: bodies[0].rod.table: file 'none.yaml' cannot be read: No such file "
@@ -170,25 +179,25 @@ static void section_matrices_are_checked(void **state) {
             "    rod:\n      length: 1\n"
             "      stiffness: [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 2, 0, 1, 0, "
             "1]\n      mass: [1, 0, 0, 1, 1, 0]\n",
-            "s.yaml:8:18: error: bodies[0].rod.stiffness: the stiffness matrix must be positive "
-            "definite\n");
+            "s.yaml:8:73: error: bodies[0].rod.stiffness[18]: the stiffness matrix must be positive definite: "
+            "in the row of bend about y the entries off the diagonal are too large\n");
     refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 0], mass: [0, 0, 0, 1, 1, "
                      "0]}\n",
-            "s.yaml:6:33: error: bodies[0].rod.stiffness: the stiffness matrix must be positive "
-            "definite\n"
+            "s.yaml:6:49: error: bodies[0].rod.stiffness[5]: the stiffness matrix must be positive definite: "
+            "the diagonal has 0 for twist\n"
             "s.yaml:6:60: error: bodies[0].rod.mass: the mass per length must be > 0 kg/m\n");
     // Negative in the last pivot only.
     refuses(ROD_BODY
             "    rod:\n      length: 1\n"
             "      stiffness: [1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 2, "
             "1]\n      mass: [1, 0, 0, 1, 1, 0]\n",
-            "s.yaml:8:18: error: bodies[0].rod.stiffness: the stiffness matrix must be positive "
-            "definite\n");
+            "s.yaml:8:79: error: bodies[0].rod.stiffness[20]: the stiffness matrix must be positive definite: "
+            "in the row of twist the entries off the diagonal are too large\n");
     // About the mass centre nothing is left of Iyy = m cx².
     refuses(ROD_BODY "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1, "
                      "0]}\n",
             "s.yaml:6:59: error: bodies[0].rod.mass: the inertia about the mass centre must be "
-            "positive definite\n");
+            "positive definite: the diagonal has 0 for Iyy - m cx^2\n");
     accepts(ROD_BODY
             "    rod: {length: 1, stiffness: [1, 1, 1, 1, 1, 1], mass: [4, 0.5, 0, 1, 1.01, "
             "0]}\n");

@@ -66,7 +66,7 @@ static void bad_replacements_are_refused(void **state) {
         f.printed, "--set: error: abc: expected KEY=VALUE\n"
                    "--set: error: =1: expected KEY=VALUE\n"
                    "--set: error: title: expected a value after '='\n"
-                   "--set: error: bodies[7].pitch: index [7].pitch is beyond the last, [4]\n"
+                   "--set: error: bodies[7].pitch: index [7] is beyond the last, [4]\n"
                    "--set: error: bodies[x].pitch: there is no item with 'name: x' in that list\n"
                    "--set: error: bodies[0: expected an index such as [0] or [0-2], or a name as [blade1]\n"
                    "--set: error: title.x: key 'x' is looked for in 'Two-bladed example'\n"

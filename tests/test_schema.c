@@ -494,6 +494,10 @@ static void nearest_words_are_found(void **state) {
     assert_string_equal(bough_nearest("durration", words, 5), "duration");
     assert_string_equal(bough_nearest("makrostep", words, 5), "macro_step");
     assert_string_equal(bough_nearest("hbu", words, 5), "hub");
+    static const char *const methods[] = {"ida", "cvode-bdf", "generalized-alpha"};
+    assert_string_equal(bough_nearest("cvode", methods, 3), "cvode-bdf");
+    assert_string_equal(bough_nearest("alpha", methods, 3), "generalized-alpha");
+    assert_null(bough_nearest("general", methods, 3));
     assert_null(bough_nearest("velocity", words, 5));
     assert_null(bough_nearest("abc", words, 5));
     char text[300];

@@ -17,7 +17,7 @@ static const char text[] =
     "  simulation.coupling.scheme: [frozen, monolithic]\n"
     "  simulation.macro_step: [1 ms, 2 ms, 4 ms]\n"
     "common: {simulation.duration: 20 ms, simulation.output.interval: 4 ms,\n"
-    "         simulation.master.rtol: 1e-8}\n"
+    "         simulation.master.rtol: 1e-8, simulation.micro.rtol: 1e-6}\n"
     "measures:\n  - {name: tip, channels: [barTipX, barTipZ]}\n";
 
 enum { CELLS = 12, REFERENCES = 2 };

@@ -39,8 +39,7 @@ static void within_the_limits_nothing_is_told(void **state) {
 // Blades of a few metres on the shaft at 18 rad/s.
 static void a_fast_section_is_told_once(void **state) {
     (void)state;
-    static const char *const sets[] = {"bodies[2].joint.speed=18 rad/s", "aero.ramp=[0 s, 0 s]",
-                                       NULL};
+    static const char *const sets[] = {"bodies[2].joint.speed=18 rad/s", "aero.ramp=[0 s, 0 s]", NULL};
     bough_arena *arena = bough_arena_create();
     bough_simulation *s = run(arena, sets, 4);
     bough_passing first = s->validity->limit[BOUGH_LIMIT_MACH];
@@ -85,6 +84,35 @@ static void a_blade_in_the_tower_is_told(void **state) {
     bough_arena_destroy(arena);
 }
 
+// Each is seen before the first step; a scene without the defect passes nothing, above.
+static void defects_of_the_model_are_told_at_the_start(void **state) {
+    (void)state;
+    static const struct {
+        const char *scene, *set;
+        bough_limit limit;
+        double value;
+        const char *text;
+    } model[] = {
+        {turbine, "bodies[blade2].joint.placement=[rotate x 60 deg, move z 1.5 m]", BOUGH_LIMIT_SPACING, 60,
+         "hub at 0 s: the blades are not evenly spaced about its axis: between two of them are 60 deg"},
+        {turbine, "aero.wind.direction=90 deg", BOUGH_LIMIT_ACROSS, 90,
+         "hub at 0 s: its axis is across the wind, or faces away from it: the angle between them is 90 deg"},
+        {"tests/scenes/example-beam.yaml", "bodies[beam].rod.segments=1", BOUGH_LIMIT_MESH, 1,
+         "beam at 0 s: a rod of one segment bends by a third too little"},
+    };
+    for (int i = 0; i < 3; i++) {
+        const char *const sets[] = {model[i].set, NULL};
+        bough_arena *arena = bough_arena_create();
+        bough_simulation *s = scene_build(arena, model[i].scene, sets);
+        char text[400];
+        assert_int_equal(passed(s), 1 << model[i].limit);
+        check_near(s->validity->limit[model[i].limit].value, model[i].value, 1e-6, 0);
+        bough_validity_describe(s, model[i].limit, text, sizeof text);
+        assert_memory_equal(text, model[i].text, strlen(model[i].text));
+        bough_arena_destroy(arena);
+    }
+}
+
 #define IN_PIECES(blade) "bodies[" blade "].fidelity=segmented-modal", "bodies[" blade "].rod.segments=6"
 
 // Vibrations of the pieces grow under air at 10 Hz, and not at 50 Hz.
@@ -93,9 +121,14 @@ static void samples_too_seldom_for_a_modal_blade_are_told(void **state) {
     for (int rate = 10; rate <= 50; rate += 40) {
         char chosen[32];
         snprintf(chosen, sizeof chosen, "aero.rate=%d", rate);
-        const char *const sets[] = {IN_PIECES("blade1"), IN_PIECES("blade2"), IN_PIECES("blade3"), chosen,
-                                    "aero.ramp=[0, 0]", "simulation.coupling.scheme=monolithic",
-                                    "bodies[hub].joint.speed=1.2 rad/s", NULL};
+        const char *const sets[] = {IN_PIECES("blade1"),
+                                    IN_PIECES("blade2"),
+                                    IN_PIECES("blade3"),
+                                    chosen,
+                                    "aero.ramp=[0, 0]",
+                                    "simulation.coupling.scheme=monolithic",
+                                    "bodies[hub].joint.speed=1.2 rad/s",
+                                    NULL};
         bough_arena *arena = bough_arena_create();
         bough_simulation *s = run_scene(arena, "apps/turbine/runup.yaml", sets, 30);
         assert_int_equal(s->validity->limit[BOUGH_LIMIT_SAMPLES].passed, rate == 10);
@@ -120,6 +153,7 @@ static void singular_positions_are_told(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(within_the_limits_nothing_is_told),
+        cmocka_unit_test(defects_of_the_model_are_told_at_the_start),
         cmocka_unit_test(a_fast_section_is_told_once),
         cmocka_unit_test(a_blade_in_the_tower_is_told),
         cmocka_unit_test(a_turned_segment_is_told),

@@ -91,7 +91,8 @@ static void bad_hub_files_are_refused(void **state) {
                                          {"0 8 0 0 0 0 0\n", ":1:"},
                                          {"0 8 0 0 0 0 0 0\n5 8 0 east 0 0 0 0\n", ":2:"},
                                          {"0 8 0 0 0 0 0 nan\n", ":1:"},
-                                         {"0 8 0 0 0 0 0 0\n0 8 0 0 0 0 0 0\n", "increase"}};
+                                         {"0 8 0 0 0 0 0 0\n0 8 0 0 0 0 0 0\n",
+                                          ":2: the time must be more than the 0 s before it, got 0 s"}};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         bough_wind wind;
         write_file(p, bad[i][0], strlen(bad[i][0]));

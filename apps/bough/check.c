@@ -4,6 +4,7 @@
 #include "apps/bough/open.h"
 #include "apps/bough/verb.h"
 #include "apps/output/progress.h"
+#include "apps/simulation/validity.h"
 
 #include <math.h>
 #include <string.h>
@@ -247,9 +248,7 @@ bough_status bough_verb_check(bough_arena *arena, const bough_options *options) 
     const bough_scene_output *output = &s->scene->simulation.output;
     bough_channels recorded;
     status = bough_simulation_channels(s, &channels);
-    if (bough_is_ok(&status)) {
-        status = bough_channels_choose(&channels, output->n_channel, output->channels, &recorded);
-    }
+    if (bough_is_ok(&status)) status = bough_open_channels(s->scene, &channels, &recorded);
     if (!bough_is_ok(&status)) return status;
     printf("scene: %s\n", s->scene->file);
     printf("title: %s\n", s->scene->title ? s->scene->title : "");
@@ -257,6 +256,7 @@ bough_status bough_verb_check(bough_arena *arena, const bough_options *options) 
     print_coupling(s);
     bough_check_turbine(s, stdout);
     print_loads(s);
+    bough_validity_print(s, stdout);
     printf("channels: %d every %.9g s\n", recorded.count, output->interval);
     status = print_results(arena, s, &recorded);
     if (!bough_is_ok(&status)) return status;

@@ -145,6 +145,11 @@ static void list_options(const bough_syntax *syntax, struct option *list) {
     }
 }
 
+// getopt_long accepts the beginning of a name, which a later option may share.
+static bool is_shortened(const char *word, const char *name) {
+    return strcspn(word + 2, "=") != strlen(name);
+}
+
 static bough_status take(const bough_syntax *syntax, int code, const char *word, bough_options *options) {
     switch (code) {
     case 1: return take_operand(syntax, optarg, options);
@@ -166,7 +171,10 @@ bough_status bough_options_read(bough_arena *arena, int argc, char **argv, const
     opterr = 0; // messages are ours
     // "-": operands come in order, whatever POSIXLY_CORRECT says; ":": tell missing from unknown.
     for (int code; bough_is_ok(&status) && (code = getopt_long(argc, argv, "-:h", list, NULL)) != -1;) {
-        status = take(syntax, code, argv[optind - 1], options);
+        bool apart = code >= FIRST && optarg == argv[optind - 1]; // the value is a word of its own
+        const char *word = argv[optind - 1 - apart];
+        bool shortened = code >= FIRST && is_shortened(word, rows[code - FIRST].name);
+        status = shortened ? unknown_long(syntax, word) : take(syntax, code, word, options);
     }
     for (; bough_is_ok(&status) && optind < argc; optind++) {
         status = take_operand(syntax, argv[optind], options); // after "--"

@@ -112,8 +112,7 @@ bough_status bough_job_build(bough_job *job) {
     bough_status status = bough_open_scene(job->arena, job->options, &scene);
     if (bough_is_ok(&status)) status = bough_run_create(job->arena, scene, &job->run);
     if (!bough_is_ok(&status)) return status;
-    const bough_scene_output *output = &scene->simulation.output;
-    status = bough_channels_choose(&job->run.channels, output->n_channel, output->channels, &job->recorded);
+    status = bough_open_channels(scene, &job->run.channels, &job->recorded);
     if (!bough_is_ok(&status)) return status;
     record(job);
     size_t n = (size_t)job->recorded.count;

@@ -329,12 +329,7 @@ static void tell_warnings(const bough_run *run, FILE *stream) {
             "changes\n",
             m->coupling->unfinished, m->steps);
     }
-    for (int k = 0; k < BOUGH_LIMITS; k++) {
-        char text[LINE];
-        if (!run->simulation->validity->limit[k].passed) continue;
-        bough_validity_describe(run->simulation, k, text, sizeof text);
-        fprintf(stream, "warning: %s\n", text);
-    }
+    bough_validity_print(run->simulation, stream);
 }
 
 void bough_run_report(bough_job *job, FILE *stream) {

@@ -38,6 +38,16 @@ static int edit_distance(const char *a, const char *b) {
     return d[n][m];
 }
 
+// Whether the word is one of those that hyphens join in the candidate: cvode of cvode-bdf.
+static bool is_part(const char *word, const char *candidate) {
+    size_t length = strlen(word);
+    for (const char *c = candidate; length > 0 && c != NULL; c = strchr(c, '-')) {
+        if (*c == '-') c++;
+        if (strncmp(c, word, length) == 0 && (c[length] == '-' || c[length] == '\0')) return true;
+    }
+    return false;
+}
+
 const char *bough_nearest(const char *word, const char *const *candidates, int n) {
     size_t length = strlen(word);
     if (length >= WORD) return NULL;
@@ -45,7 +55,7 @@ const char *bough_nearest(const char *word, const char *const *candidates, int n
     const char *nearest = NULL;
     for (int i = 0; i < n; i++) {
         if (candidates[i] == NULL || strlen(candidates[i]) >= WORD) continue;
-        int distance = edit_distance(word, candidates[i]);
+        int distance = is_part(word, candidates[i]) ? 1 : edit_distance(word, candidates[i]);
         if (distance < best) {
             best = distance;
             nearest = candidates[i];

@@ -111,35 +111,29 @@ static bool matches(const char *name, int n, const char *const *pattern) {
     return false;
 }
 
-static bough_status check_pattern(const bough_channels *all, const char *pattern) {
-    for (int i = 0; i < all->count; i++) {
-        if (fnmatch(pattern, all->channel[i].name, 0) == 0) return bough_ok();
+bool bough_channels_match(const bough_channels *list, const char *pattern) {
+    for (int i = 0; i < list->count; i++) {
+        if (fnmatch(pattern, list->channel[i].name, 0) == 0) return true;
     }
-    return bough_fail(BOUGH_INVALID,
-                      "simulation.output.channels: no channel matches '%.80s'; the first of %d is "
-                      "'%s', 'bough help channels' tells them all",
-                      pattern, all->count, all->count > 0 ? all->channel[0].name : "");
+    return false;
 }
 
-bough_status bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
-                                   bough_channels *chosen) {
+void bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
+                           bough_channels *chosen) {
     *chosen = *all;
-    if (n == 0) return bough_ok();
+    if (n == 0) return;
     bough_arena *arena = all->arena;
     choice *x = bough_arena_take(arena, sizeof *x);
     x->all = all;
     x->from = bough_arena_take(arena, ((size_t)all->count + 1) * sizeof *x->from);
     x->value = bough_arena_doubles(arena, (size_t)all->count + 1);
     *chosen = bough_channels_start(arena);
-    bough_status status = bough_ok();
     bough_channels_group(chosen, sample_choice, x);
-    for (int k = 0; k < n && bough_is_ok(&status); k++) status = check_pattern(all, pattern[k]);
-    for (int i = 0; i < all->count && bough_is_ok(&status); i++) {
+    for (int i = 0; i < all->count; i++) {
         if (!matches(all->channel[i].name, n, pattern)) continue;
         x->from[x->n++] = i;
         bough_channels_add(chosen, all->channel[i].unit, "%s", all->channel[i].name);
     }
-    return status;
 }
 
 void bough_channels_sample(const bough_channels *list, double t, double *value) {

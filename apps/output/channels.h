@@ -6,6 +6,8 @@
 #include "core/arena.h"
 #include "core/status.h"
 
+#include <stdbool.h>
+
 enum { BOUGH_CHANNEL_NAME = 48, BOUGH_CHANNEL_UNIT = 16 };
 
 typedef struct bough_channel {
@@ -47,11 +49,13 @@ void bough_channels_add(bough_channels *list, const char *unit, const char *form
 // The index of the channel with this name, −1 if there is none.
 int bough_channels_find(const bough_channels *list, const char *name);
 
-// A list of those channels of `all`, which outlives it, whose names match one of n shell patterns
-// ("Root*"), in their order there; all of them for n = 0. BOUGH_INVALID names a pattern that none
-// matches.
-bough_status bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
-                                   bough_channels *chosen);
+// Whether the name of a channel matches the shell pattern ("Root*").
+bool bough_channels_match(const bough_channels *list, const char *pattern);
+
+// A list of those channels of `all`, which outlives it, whose names match one of n patterns, in their order
+// there; all of them for n = 0.
+void bough_channels_choose(const bough_channels *all, int n, const char *const *pattern,
+                           bough_channels *chosen);
 
 // Asks every group: value (count).
 void bough_channels_sample(const bough_channels *list, double t, double *value);

@@ -56,6 +56,21 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     return status;
 }
 
+const char *bough_scene_place(const bough_node *value, char *text, size_t size) {
+    text[0] = '\0';
+    if (value == NULL) return text;
+    if (value->line > 0) snprintf(text, size, "%s:%d:%d: ", value->file, value->line, value->column);
+    if (value->line == 0) snprintf(text, size, "%s: ", value->file);
+    return text;
+}
+
+bough_status bough_scene_blame(const bough_node *value, const char *key, bough_status status) {
+    char place[300];
+    if (status.code != BOUGH_INVALID) return status;
+    return bough_fail(status.code, "%s%s: %s", bough_scene_place(value, place, sizeof place), key,
+                      status.message);
+}
+
 const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const bough_scene_body *body) {
     return body->micro.node != NULL ? &body->micro : &scene->simulation.micro;
 }

@@ -534,8 +534,14 @@ typedef struct bough_scene {
 bough_status bough_scene_read(bough_arena *arena, const char *path, const char *const *sets, int n_set,
                               bough_errors *errors, bough_scene **scene);
 
+// The place of a value before a message, "file:line:column: " or "--set: ", written into `text`; "" of NULL.
+const char *bough_scene_place(const bough_node *value, char *text, size_t size);
+
+// A failure of that value, found while the scene is built: BOUGH_INVALID gets its place and key in front.
+bough_status bough_scene_blame(const bough_node *value, const char *key, bough_status status);
+
 // Writes a warning for each value that is valid but probably an error: an inertia that no mass distribution
-// has.
+// has, a setting that the scheme or the solver does not use.
 void bough_scene_warn(const bough_scene *scene, FILE *stream);
 
 // The sub-solver of a flexible body: its own or the simulation's.

@@ -102,34 +102,6 @@ static void check_name(bough_schema_reader *r, const bough_scene *s, int i) {
     }
 }
 
-static void check_rod_use(bough_schema_reader *r, const bough_scene_body *b) {
-    static const char *const flexible[] = {"", "rod", "modal", "segmented-modal"};
-    if (b->fidelity < 0 || b->node == NULL) return;
-    bool has_rod = bough_node_find(b->node, "rod") != NULL;
-    if (!has_rod) bough_scene_refuse(r, b->node, "pitch", "only used with a rod");
-    if (b->fidelity == BOUGH_SCENE_FMU) {
-        bough_scene_refuse(r, b->node, "rod", "not used with 'fidelity: fmu'");
-        return;
-    }
-    if (b->fidelity != BOUGH_SCENE_RIGID && !has_rod) {
-        bough_schema_error(r, b->node, "", "required key 'rod' is missing (with 'fidelity: %s')",
-                           flexible[b->fidelity]);
-    }
-    const bough_node *pieces = bough_node_find(b->modal.node, "pieces");
-    if (b->fidelity == BOUGH_SCENE_MODAL && pieces != NULL) {
-        bough_schema_error(r, pieces, "modal.pieces", "only used with 'fidelity: segmented-modal'");
-    }
-    if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL && has_rod && b->modal.pieces > b->rod.n_segment) {
-        bough_schema_error(r, b->node, "modal.pieces",
-                           "%d pieces of %d segments: give the rod more"
-                           " segments",
-                           b->modal.pieces, b->rod.n_segment);
-    }
-    if (has_rod && b->fidelity == BOUGH_SCENE_RIGID) {
-        bough_scene_refuse(r, b->node, "mass|centre_of_mass|inertia", "follows from the body's rod");
-    }
-}
-
 static void link_parent(bough_schema_reader *r, bough_scene *s, int i) {
     bough_scene_joint *joint = &s->body[i].joint;
     joint->parent = BOUGH_UNRESOLVED;
@@ -227,7 +199,6 @@ static void link_bodies(bough_schema_reader *r, bough_scene *s) {
     for (int i = 0; i < s->n_body; i++) {
         bough_link_at(r, "bodies[%d]", i);
         check_name(r, s, i);
-        check_rod_use(r, &s->body[i]);
         link_parent(r, s, i);
     }
     if (order_bodies(r, s)) check_moving_mass(r, s);

@@ -40,12 +40,7 @@ bool bough_scene_read_table(bough_schema_reader *r, const bough_node *node, boug
         bough_schema_error(r, node, "", "%d times, but %d values", table->n_time, table->n_value);
         return false;
     }
-    for (int i = 1; i < table->n_time; i++) {
-        if (table->times[i] > table->times[i - 1]) continue;
-        bough_schema_error(r, bough_node_find(node, "times")->value[i], "times", "must increase");
-        return false;
-    }
-    return true;
+    return bough_scene_check_increasing(r, node, "times", table->times, "s");
 }
 
 typedef struct ramp {

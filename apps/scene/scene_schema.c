@@ -42,7 +42,8 @@ const bough_schema bough_scene_micro_schema = {SCHEMA("a solver", bough_scene_so
 #define FILLS bough_scene_coupling
 _Static_assert(sizeof(bough_exchange) == sizeof(int) && sizeof(bough_acceleration) == sizeof(int),
                "choices are stored as int");
-// The schemes' own keys are allowed with any scheme, so that --set may change the scheme alone.
+// The schemes' own keys are allowed with any scheme, so that --set may change the scheme alone; bough_scene_warn
+// names those that are not used.
 static const bough_key coupling_keys[] = {
     {KEY(CHOICE, scheme), .fallback = "monolithic", .choice = bough_scheme_name,
      .help = "how sub-systems exchange their values. The default integrates all bodies as one "

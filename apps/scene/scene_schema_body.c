@@ -241,5 +241,6 @@ static const bough_key body_keys[] = {
      .help = "the model of the other program, at the body's frame"},
 };
 #undef FILLS
-const bough_schema bough_scene_body_schema = {SCHEMA("a body", bough_scene_body, body_keys)};
+const bough_schema bough_scene_body_schema = {SCHEMA("a body", bough_scene_body, body_keys),
+                                                .check = bough_scene_check_body};
 // clang-format on

@@ -119,7 +119,8 @@ static bough_node *put_item(const replacement *s, const bough_node *node, const 
         return refuse(s, "this key has no list, so it takes no index");
     }
     if (last >= node->n) {
-        snprintf(text, sizeof text, "index %.12s is beyond the last, [%d]", rest, node->n - 1);
+        if (node->n == 0) return refuse(s, "the list has no items");
+        snprintf(text, sizeof text, "index [%ld] is beyond the last, [%d]", last, node->n - 1);
         return refuse(s, text);
     }
     bough_node *copy = copy_container(s, node);

@@ -81,16 +81,36 @@ void bough_scene_check_joint(bough_schema_reader *r, void *item) {
 
 // -- matrices -------------------------------------------------------------------------------------
 
-// Whether Cholesky's factorisation of the symmetric n×n matrix, scaled to a diagonal of 1, has pivots above
-// 1e-12.
-static bool is_positive_definite(const double *matrix, int n) {
-    double scaled[36];
-    for (int i = 0; i < n * n; i++) {
-        double row = matrix[i / n * (n + 1)], column = matrix[i % n * (n + 1)];
-        if (!(row > 0) || !(column > 0)) return false;
-        scaled[i] = matrix[i] / sqrt(row * column) - (i / n == i % n ? 1e-12 : 0);
+// The first row of the symmetric n×n matrix, scaled to a diagonal of 1, where Cholesky's factorisation has no
+// pivot above 1e-12; n: there is none, and the matrix is positive definite.
+static int row_without_pivot(const double *matrix, int n) {
+    for (int i = 0; i < n; i++) {
+        if (!(matrix[i * (n + 1)] > 0)) return i;
     }
-    return bough_cholesky_factor(n, scaled);
+    double leading[36];
+    for (int size = 1; size <= n; size++) {
+        for (int i = 0; i < size * size; i++) {
+            int row = i / size, column = i % size;
+            double scale = sqrt(matrix[row * (n + 1)] * matrix[column * (n + 1)]);
+            leading[i] = matrix[row * n + column] / scale - (row == column ? 1e-12 : 0);
+        }
+        if (!bough_cholesky_factor(size, leading)) return size - 1;
+    }
+    return n;
+}
+
+// Says what is wrong in a row of a matrix that is not positive definite: its diagonal, or the rest.
+static void refuse_row(bough_schema_reader *r, const bough_node *at, const char *what, const char *row,
+                       double diagonal) {
+    if (diagonal > 0) {
+        bough_schema_error(r, at, "",
+                           "%s must be positive definite: in the row of %s the entries off the diagonal "
+                           "are too large",
+                           what, row);
+    } else {
+        bough_schema_error(r, at, "", "%s must be positive definite: the diagonal has %g for %s", what,
+                           diagonal, row);
+    }
 }
 
 // field: the upper triangle (21)
@@ -109,13 +129,20 @@ void bough_scene_read_stiffness(bough_schema_reader *r, const bough_node *node, 
             matrix[6 * i + j] = matrix[6 * j + i] = triangle[at];
         }
     }
-    if (!is_positive_definite(matrix, 6)) {
-        bough_schema_error(r, node, "", "the stiffness matrix must be positive definite");
-    }
+    static const char *const strains[] = {"shear x",      "shear y",      "the axial strain",
+                                          "bend about x", "bend about y", "twist"};
+    int row = row_without_pivot(matrix, 6);
+    if (row == 6) return;
+    int entry = n == 6 ? row : 6 * row - row * (row - 1) / 2;
+    size_t length = push_index(r, entry);
+    refuse_row(r, node->value[entry], "the stiffness matrix", strains[row], matrix[7 * row]);
+    r->path[length] = '\0';
 }
 
-// Whether the inertia about the mass centre is positive definite: parallel axes removed.
-static bool has_section_inertia(const bough_section_station *s) {
+// The inertia about the mass centre, parallel axes removed, must be positive definite.
+static void check_section_inertia(bough_schema_reader *r, const bough_node *node,
+                                  const bough_section_station *s) {
+    static const char *const moments[] = {"Ixx - m cy^2", "Iyy - m cx^2", "Izz - m (cx^2 + cy^2)"};
     double cx = s->centre[0], cy = s->centre[1], m = s->mass;
     double central[9] = {s->inertia[0] - m * cy * cy,
                          s->inertia[2] + m * cx * cy,
@@ -126,7 +153,8 @@ static bool has_section_inertia(const bough_section_station *s) {
                          0,
                          0,
                          s->inertia[3] - m * (cx * cx + cy * cy)};
-    return is_positive_definite(central, 3);
+    int row = row_without_pivot(central, 3);
+    if (row < 3) refuse_row(r, node, "the inertia about the mass centre", moments[row], central[4 * row]);
 }
 
 // field: the station
@@ -146,18 +174,28 @@ void bough_scene_read_section_mass(bough_schema_reader *r, const bough_node *nod
     s->inertia[3] = n == 7 ? v[6] : v[3] + v[4];
     if (!(s->mass > 0)) {
         bough_schema_error(r, node->value[0], "", "the mass per length must be > 0 kg/m");
-    } else if (!has_section_inertia(s)) {
-        bough_schema_error(r, node, "", "the inertia about the mass centre must be positive definite");
+    } else {
+        check_section_inertia(r, node, s);
     }
 }
 
-bool bough_scene_semidefinite(const double v[6]) {
+// What is negative of the symmetric matrix xx yy zz xy xz yz: an entry of its diagonal, or its determinant
+// in a plane or in space; NULL: nothing.
+static const char *negative_part(const double v[6]) {
+    static const char *const parts[] = {
+        "Ixx", "Iyy", "Izz", "Ixx Iyy - Ixy^2", "Ixx Izz - Ixz^2", "Iyy Izz - Iyz^2", "the determinant"};
     double a = v[0], b = v[1], c = v[2], d = v[3], e = v[4], f = v[5];
     double t = 1e-12 * (fabs(a) + fabs(b) + fabs(c));
     double determinant = a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e);
-    return a >= 0 && b >= 0 && c >= 0 && a * b - d * d >= -t * t && a * c - e * e >= -t * t &&
-           b * c - f * f >= -t * t && determinant >= -t * t * t;
+    const double value[] = {a, b, c, a * b - d * d, a * c - e * e, b * c - f * f, determinant};
+    const double least[] = {0, 0, 0, -t * t, -t * t, -t * t, -t * t * t};
+    for (int i = 0; i < 7; i++) {
+        if (!(value[i] >= least[i])) return parts[i];
+    }
+    return NULL;
 }
+
+bool bough_scene_semidefinite(const double v[6]) { return negative_part(v) == NULL; }
 
 static const double most_inertia = 1e18; // [kg m²]
 
@@ -173,7 +211,8 @@ void bough_scene_read_inertia(bough_schema_reader *r, const bough_node *node, vo
     } else if (fmax(fmax(v[0], v[1]), v[2]) > most_inertia) {
         bough_schema_error(r, node, "", "must be at most %g kg m^2", most_inertia);
     } else if (!bough_scene_semidefinite(v)) {
-        bough_schema_error(r, node, "", "the inertia matrix must not be negative about any axis");
+        bough_schema_error(r, node, "", "the inertia matrix must not be negative about any axis, but %s is",
+                           negative_part(v));
     }
 }
 
@@ -310,17 +349,19 @@ void bough_scene_check_polars(bough_schema_reader *r, void *item) {
     }
 }
 
-// Numbers that must increase, in the list `key` of a mapping; `unit` is for the message.
-static void check_increasing(bough_schema_reader *r, const bough_node *node, const char *key,
-                             const double *value, const char *unit) {
+bool bough_scene_check_increasing(bough_schema_reader *r, const bough_node *node, const char *key,
+                                  const double *value, const char *unit) {
     const bough_node *list = bough_node_find(node, key);
+    bool good = true;
     for (int i = 1; i < list->n; i++) {
         if (value[i] > value[i - 1]) continue;
         char path[32];
         snprintf(path, sizeof path, "%s[%d]", key, i);
         bough_schema_error(r, list->value[i], path, "must be more than the %g %s before it, got %g %s",
                            value[i - 1], unit, value[i], unit);
+        good = false;
     }
+    return good;
 }
 
 void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
@@ -329,7 +370,7 @@ void bough_scene_check_wind_table(bough_schema_reader *r, void *item) {
         bough_schema_error(r, bough_node_find(t->node, "speeds"), "speeds", "has %d values, but times has %d",
                            t->n_speed, t->n_time);
     }
-    check_increasing(r, t->node, "times", t->time, "s");
+    bough_scene_check_increasing(r, t->node, "times", t->time, "s");
 }
 
 // The wind of a file is all in it; its path becomes relative to where the program runs.
@@ -389,7 +430,7 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
         bough_schema_error(r, bough_node_find(t->node, "drag"), "drag",
                            "has %d values, but height has %d; give one or as many", t->n_drag, n);
     }
-    check_increasing(r, t->node, "height", t->def.height, "m");
+    bough_scene_check_increasing(r, t->node, "height", t->def.height, "m");
     double *drag = bough_arena_doubles(r->arena, (size_t)n);
     for (int i = 0; i < n; i++) drag[i] = t->def.drag[t->n_drag == n ? i : 0];
     t->def.drag = drag;
@@ -398,23 +439,15 @@ void bough_scene_check_tower(bough_schema_reader *r, void *item) {
 // -- rods and ramps -------------------------------------------------------------------------------
 
 // A table, or a uniform section given here, never parts of both.
-static void check_rod_keys(bough_schema_reader *r, const bough_scene_rod *rod, bool table) {
-    static const char *const needed[] = {"length", "stiffness", "mass"};
-    if (table) {
-        bough_scene_refuse(r, rod->node, "length|stiffness|mass|twist", "only used without a table");
-        return;
-    }
-    bough_scene_refuse(r, rod->node, "part", "only used with a table");
-    for (int i = 0; i < 3; i++) {
-        if (bough_node_find(rod->node, needed[i]) != NULL) continue;
-        bough_schema_error(r, rod->node, "", "required key '%s' is missing (without a table)", needed[i]);
-    }
+static void check_table(bough_schema_reader *r, const bough_scene_rod *rod, bool table) {
+    if (table) bough_scene_refuse(r, rod->node, "length|stiffness|mass|twist", "only used without a table");
+    if (!table) bough_scene_refuse(r, rod->node, "part", "only used with a table");
 }
 
 void bough_scene_check_rod(bough_schema_reader *r, void *item) {
     bough_scene_rod *rod = item;
     bool table = bough_node_find(rod->node, "table") != NULL;
-    check_rod_keys(r, rod, table);
+    check_table(r, rod, table);
     if (!table) {
         rod->structure.node = rod->node;
         rod->structure.length = rod->length;
@@ -428,6 +461,61 @@ void bough_scene_check_rod(bough_schema_reader *r, void *item) {
     }
     const bough_node *part = bough_node_find(rod->node, "part");
     if (table && part != NULL) bough_scene_take_part(r, part, rod->part, &rod->structure);
+}
+
+// The uniform section of a rod without a table.
+static void check_section_given(bough_schema_reader *r, const bough_node *rod) {
+    static const char *const needed[] = {"length", "stiffness", "mass"};
+    char missing[48] = "";
+    int n = 0;
+    if (bough_node_find(rod, "table") != NULL) return;
+    for (int i = 0; i < 3; i++) {
+        if (bough_node_find(rod, needed[i]) != NULL) continue;
+        size_t used = strlen(missing);
+        snprintf(missing + used, sizeof missing - used, "%s'%s'", n++ == 0 ? "" : ", ", needed[i]);
+    }
+    if (n == 0) return;
+    bough_schema_error(r, rod, "rod", "required key%s %s %s missing (without a table)", n == 1 ? "" : "s",
+                       missing, n == 1 ? "is" : "are");
+}
+
+static void check_modal(bough_schema_reader *r, const bough_scene_body *b, bool has_rod) {
+    const bough_node *pieces = bough_node_find(b->modal.node, "pieces");
+    if (b->fidelity == BOUGH_SCENE_MODAL && pieces != NULL) {
+        bough_schema_error(r, pieces, "modal.pieces", "only used with 'fidelity: segmented-modal'");
+    }
+    if (b->fidelity == BOUGH_SCENE_SEGMENTED_MODAL && has_rod && b->modal.pieces > b->rod.n_segment) {
+        bough_schema_error(r, b->node, "modal.pieces", "%d pieces of %d segments: give the rod more segments",
+                           b->modal.pieces, b->rod.n_segment);
+    }
+}
+
+// A rigid body gets its mass from keys of its own or from a rod.
+static bool has_two_masses(const bough_scene_body *b) {
+    return b->fidelity == BOUGH_SCENE_RIGID &&
+           (bough_node_find(b->node, "mass") != NULL || bough_node_find(b->node, "centre_of_mass") != NULL ||
+            bough_node_find(b->node, "inertia") != NULL);
+}
+
+void bough_scene_check_body(bough_schema_reader *r, void *item) {
+    static const char *const flexible[] = {"", "rod", "modal", "segmented-modal"};
+    const bough_scene_body *b = item;
+    const bough_node *rod = bough_node_find(b->node, "rod");
+    if (rod == NULL) bough_scene_refuse(r, b->node, "pitch", "only used with a rod");
+    if (b->fidelity == BOUGH_SCENE_FMU) {
+        bough_scene_refuse(r, b->node, "rod", "not used with 'fidelity: fmu'");
+    } else if (rod != NULL && has_two_masses(b)) {
+        bough_schema_error(r, rod, "rod",
+                           "a rigid body gets its mass from a rod or from 'mass', 'centre_of_mass' and "
+                           "'inertia', not from both");
+    } else if (rod != NULL) {
+        check_section_given(r, rod);
+        check_modal(r, b, true);
+    } else if (b->fidelity != BOUGH_SCENE_RIGID) {
+        bough_schema_error(r, b->node, "", "required key 'rod' is missing (with 'fidelity: %s')",
+                           flexible[b->fidelity]);
+        check_modal(r, b, false);
+    }
 }
 
 void bough_scene_check_ramp(bough_schema_reader *r, const bough_node *node, const double ramp[2]) {

@@ -30,9 +30,12 @@ struct bough_aero_link {
 static bough_status same_mesh(const bough_aero_link *l, const bough_beam *beam) {
     const bough_beam *first = l->beam[0];
     if (beam->def.n_segment == first->def.n_segment) return bough_ok();
-    return bough_fail(BOUGH_INVALID, "blades %s and %s have %d and %d segments; the aerodynamics"
-                      " wants the same mesh on all blades", first->body->name, beam->body->name,
-                      first->def.n_segment, beam->def.n_segment);
+    bough_status status =
+        bough_fail(BOUGH_INVALID,
+                   "blades %s and %s have %d and %d segments; the aerodynamics wants the same mesh on all blades",
+                   first->body->name, beam->body->name, first->def.n_segment, beam->def.n_segment);
+    const bough_node *segments = bough_node_find(beam->body->rod.node, "segments");
+    return bough_scene_blame(segments ? segments : beam->body->rod.node, "rod.segments", status);
 }
 
 static bough_status take_blades(bough_arena *arena, bough_aero_link *l) {
@@ -158,7 +161,7 @@ static bough_status check_reach(bough_aero_link *l) {
     double radius = rotor_radius(&scene->aero);
     if (bough_rotor_in_wind(l->rotor, hub, radius)) return bough_ok();
     return bough_fail(BOUGH_INVALID,
-                      "aero.wind: the box of %s is too small for a rotor of %g m radius at %g m",
+                      "the box of %s is too small for a rotor of %g m radius at %g m",
                       scene->aero.wind.def.file ? scene->aero.wind.def.file : "turbulence", radius, hub.z);
 }
 
@@ -173,7 +176,11 @@ bough_status bough_aero_link_build(bough_arena *arena, bough_simulation *simulat
     bough_rotor_def def = rotor_def(l, &t);
     status = bough_rotor_build(arena, &def, &l->rotor);
     if (bough_is_ok(&status)) status = check_reach(l);
-    if (!bough_is_ok(&status)) return status;
+    const bough_scene_aero *aero = &simulation->scene->aero;
+    const bough_node *file = bough_node_find(aero->wind.node, "file");
+    if (!bough_is_ok(&status)) {
+        return bough_scene_blame(file ? file : aero->node, file ? "aero.wind.file" : "aero", status);
+    }
     for (int i = 0; i < 2; i++) bough_rotor_data_build(arena, l->rotor, &l->data[i]);
     l->data[1].memory = l->data[0].memory;
     bough_aero_link_renew(l);

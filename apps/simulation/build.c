@@ -348,6 +348,9 @@ bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene
     if (bough_is_ok(&status) && b.s->control != NULL) {
         status = bough_control_link_watch(arena, b.s->control);
     }
-    if (bough_is_ok(&status)) *simulation = b.s;
+    if (!bough_is_ok(&status)) return status;
+    bough_simulation_update(b.s);
+    bough_validity_start(b.s);
+    *simulation = b.s;
     return status;
 }

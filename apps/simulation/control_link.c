@@ -55,9 +55,11 @@ bough_status bough_control_link_build(bough_arena *arena, bough_simulation *simu
     *link = l;
     if (l->control->kind == BOUGH_SCENE_EXTERNAL) return bough_ok();
     if (l->control->kind == BOUGH_SCENE_VARIABLE_SPEED) {
-        return bough_controller_check(&l->control->law);
+        return bough_scene_blame(l->control->node, "control", bough_controller_check(&l->control->law));
     }
-    return bough_discon_open(arena, l->control->library, l->control->input, l->control->copied, &l->discon);
+    bough_status status =
+        bough_discon_open(arena, l->control->library, l->control->input, l->control->copied, &l->discon);
+    return bough_scene_blame(bough_node_find(l->control->node, "library"), "control.library", status);
 }
 
 bough_status bough_control_link_watch(bough_arena *arena, bough_control_link *link) {

@@ -25,8 +25,11 @@ static bough_status find_channel(bough_arena *arena, bough_events *e, int i) {
     int n = e->channels.count;
     const char **names = bough_arena_take(arena, (size_t)(n + 1) * sizeof *names);
     for (int k = 0; k < n; k++) names[k] = e->channels.channel[k].name;
-    return bough_fail(BOUGH_INVALID, "control.events[%d].channel: the scene has no channel '%.80s'%s", i,
-                      name, bough_suggest(name, names, n).text);
+    char key[40];
+    snprintf(key, sizeof key, "control.events[%d].channel", i);
+    bough_status status = bough_fail(BOUGH_INVALID, "the scene has no channel '%.80s'%s", name,
+                                     bough_suggest(name, names, n).text);
+    return bough_scene_blame(bough_node_find(e->event[i].node, "channel"), key, status);
 }
 
 static bough_status find_channels(bough_arena *arena, bough_events *e) {

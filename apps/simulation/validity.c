@@ -16,6 +16,9 @@ static const double most_turn = 0.25 * BOUGH_PI;
 // Of bough_loops_margin, also relative to the largest so far: on random linkages it stays above 0.02 or above
 // 0.03 of the largest, and falls to 1e-5 to 3e-3 where the links come to lie on one line.
 static const double least_margin = 0.01, least_share = 0.1;
+static const double most_uneven = BOUGH_PI / 180; // of the gap between two blades
+// Cosine of the angle between axis and wind, 60°: beyond every yaw error of operation.
+static const double least_along = 0.5;
 static const double small_turn = 0.98; // cosine of a quarter of most_turn
 
 // Each sentence ends with the value in its unit.
@@ -34,6 +37,16 @@ static const struct {
                                             " between two samples: take a higher aero.rate, or fidelity rod"},
     [BOUGH_LIMIT_TURN] = {"segment_turn", "a segment turns its ends against each other by %.3g deg, more"
                                           " than 45 deg: take more segments"},
+    [BOUGH_LIMIT_SPACING] = {"blade_spacing",
+                             "the blades are not evenly spaced about its axis: between two of them are"
+                             " %.4g deg"},
+    [BOUGH_LIMIT_ACROSS] = {"wind_across",
+                            "its axis is across the wind, or faces away from it: the angle between"
+                            " them is %.4g deg"},
+    [BOUGH_LIMIT_MESH] =
+        {"one_segment",
+         "a rod of one segment bends by a third too little under a load along it, and its first"
+         " frequency is a tenth too high: take more segments than %g"},
     [BOUGH_LIMIT_SINGULAR] = {"singular_position",
                               "its closed loop is near a position from which its bodies can go on in two"
                               " ways, and takes one of them by the smallest difference; margin %.2g"},
@@ -41,8 +54,7 @@ static const struct {
 
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
 
-void bough_validity_pass(bough_validity *v, bough_limit limit, int body, double time,
-                         double value) {
+void bough_validity_pass(bough_validity *v, bough_limit limit, int body, double time, double value) {
     if (v->limit[limit].passed) return;
     v->limit[limit] = (bough_passing){true, body, time, value};
 }
@@ -57,8 +69,7 @@ static void check_air(bough_simulation *s) {
         bough_rotor_extremes x = bough_rotor_look(rotor, data, b);
         int body = s->scene->turbine.blade[b];
         if (x.outside_table) {
-            bough_validity_pass(s->validity, BOUGH_LIMIT_ATTACK, body, time,
-                                x.alpha * (180 / BOUGH_PI));
+            bough_validity_pass(s->validity, BOUGH_LIMIT_ATTACK, body, time, x.alpha * (180 / BOUGH_PI));
         }
         if (x.speed > most_mach * speed_of_sound) {
             bough_validity_pass(s->validity, BOUGH_LIMIT_MACH, body, time, x.speed);
@@ -148,6 +159,64 @@ static void check_closures(bough_simulation *s) {
     bough_validity_pass(v, BOUGH_LIMIT_SINGULAR, body[body[0] == BOUGH_GROUND], t, margin);
 }
 
+// -- at the start ---------------------------------------------------------------------------------
+
+// The angle of a blade's root about the rotor's axis, from a direction across it [rad].
+static double azimuth(const bough_simulation *s, const bough_rotor_place *r, int blade) {
+    const bough_beam *beam = bough_simulation_beam(s, s->scene->turbine.blade[blade]);
+    bough_transform root = bough_tree_frame_pose(s->view, &s->tree->markers[beam->marker]);
+    bough_vec3 along = bough_mat3_mul(root.rotation, bough_v3(0, 0, 1));
+    bool level = fabs(r->axis.z) < 0.9;
+    bough_vec3 side = bough_cross(level ? bough_v3(0, 0, 1) : bough_v3(1, 0, 0), r->axis);
+    bough_vec3 up = bough_cross(r->axis, side);
+    return atan2(bough_dot(along, side), bough_dot(along, up));
+}
+
+// The narrowest gap between two blades [rad].
+static double narrowest_gap(const bough_simulation *s, const bough_rotor_place *r) {
+    double narrowest = 2 * BOUGH_PI;
+    for (int k = 0; k < s->scene->turbine.n_blade; k++) {
+        for (int j = 0; j < k; j++) {
+            double gap = remainder(azimuth(s, r, j) - azimuth(s, r, k), 2 * BOUGH_PI);
+            narrowest = fmin(narrowest, fabs(gap));
+        }
+    }
+    return narrowest;
+}
+
+static void check_rotor(bough_simulation *s) {
+    int n = s->scene->turbine.n_blade, body = s->scene->turbine.rotor;
+    bough_rotor_place r = bough_simulation_rotor(s);
+    double gap = narrowest_gap(s, &r);
+    if (gap < 2 * BOUGH_PI / n - most_uneven) {
+        bough_validity_pass(s->validity, BOUGH_LIMIT_SPACING, body, 0, gap * (180 / BOUGH_PI));
+    }
+    if (!s->aero) return;
+    bough_vec3 wind = bough_aero_link_hub_wind(s->aero, 0);
+    double speed = sqrt(bough_dot(wind, wind)), along = bough_dot(wind, r.axis);
+    if (along >= least_along * speed) return;
+    double angle = acos(fmax(-1, along / speed));
+    bough_validity_pass(s->validity, BOUGH_LIMIT_ACROSS, body, 0, angle * (180 / BOUGH_PI));
+}
+
+// Rods in a row are one rod: only a single one is coarse.
+static void check_mesh(bough_simulation *s) {
+    for (int i = 0; i < s->n_beam; i++) {
+        const bough_beam *beam = &s->beam[i];
+        int parent = beam->body->joint.parent;
+        bool in_row = beam->end >= 0 || (parent >= 0 && s->scene->body[parent].fidelity == BOUGH_SCENE_ROD);
+        if (beam->port < 0 || in_row || beam->def.n_segment > 1) continue;
+        bough_validity_pass(s->validity, BOUGH_LIMIT_MESH, (int)(beam->body - s->scene->body), 0, 1);
+    }
+}
+
+void bough_validity_start(bough_simulation *s) {
+    if (s->scene->turbine.node) check_rotor(s);
+    check_mesh(s);
+}
+
+// -- after each step ------------------------------------------------------------------------------
+
 void bough_validity_check(bough_simulation *s) {
     if (s->tree->n_closures > 0) check_closures(s);
     if (s->aero) check_air(s);
@@ -160,4 +229,13 @@ void bough_validity_describe(const bough_simulation *s, bough_limit limit, char 
     int n = snprintf(text, size, "%s at %.6g s: ", s->scene->body[p->body].name, p->time);
     if (n < 0 || (size_t)n >= size) return;
     snprintf(text + n, size - (size_t)n, limits[limit].text, p->value);
+}
+
+void bough_validity_print(const bough_simulation *s, FILE *stream) {
+    char text[400];
+    for (int k = 0; k < BOUGH_LIMITS; k++) {
+        if (!s->validity->limit[k].passed) continue;
+        bough_validity_describe(s, (bough_limit)k, text, sizeof text);
+        fprintf(stream, "warning: %s\n", text);
+    }
 }

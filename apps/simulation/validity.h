@@ -11,6 +11,9 @@ typedef enum bough_limit {
     BOUGH_LIMIT_TOWER,       // a blade is inside the tower
     BOUGH_LIMIT_SAMPLES,     // the samples of the air are too seldom for the vibrations of a modal blade
     BOUGH_LIMIT_TURN,        // a rod's segment turns its ends against each other by more than 45°
+    BOUGH_LIMIT_SPACING,     // the blades are not evenly spaced about the rotor's axis
+    BOUGH_LIMIT_ACROSS,      // the rotor's axis is across the wind, or faces away from it
+    BOUGH_LIMIT_MESH,        // a rod has one segment
     BOUGH_LIMIT_SINGULAR,    // a closed loop is near a position in which its bodies can go on in two ways
     BOUGH_LIMITS,
 } bough_limit;
@@ -32,11 +35,17 @@ typedef struct bough_validity {
 // Notes that a limit is passed, if it is the first time.
 void bough_validity_pass(bough_validity *v, bough_limit limit, int body, double time, double value);
 
+// Checks the model at the start, with `view` up to date.
+void bough_validity_start(bough_simulation *s);
+
 // Checks the state after a step, without changing a result.
 void bough_validity_check(bough_simulation *s);
 
 // The name of a limit in summary.json, and the sentence about its passing, at most `size` bytes.
 const char *bough_limit_name(bough_limit limit);
 void bough_validity_describe(const bough_simulation *s, bough_limit limit, char *text, size_t size);
+
+// Writes a line for each limit that is passed.
+void bough_validity_print(const bough_simulation *s, FILE *stream);
 
 #endif
