@@ -16,7 +16,6 @@ static void all_errors_are_shown_in_order(void **state) {
         "loads:\n"
         "  - {joint: b, torque: 1}\n",
         "s.yaml:1:1: error: unknown key 'titel' (did you mean 'title'?)\n"
-        "s.yaml:3:3: error: simulation: required key 'macro_step' is missing\n"
         "s.yaml:3:13: error: simulation.duration: expected a time (in s, or with a unit, as '20 "
         "ms'), got '1 kg': the unit 'kg' does not fit\n"
         "s.yaml:4:22: error: simulation.coupling.scheme: expected one of frozen, gauss-seidel, "

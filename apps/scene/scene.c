@@ -48,6 +48,7 @@ bough_status bough_scene_read(bough_arena *arena, const char *path, const char *
     bough_schema_reader reader = {.arena = arena, .errors = errors, .directory = directory_of(arena, path)};
     s->file = bough_arena_string(arena, path);
     bough_schema_read(&reader, &bough_scene_schema, root, s);
+    bough_scene_apply_accuracy(s);
     if (s->node != NULL && errors->n == 0) bough_scene_repeat(&reader, s);
     if (s->node != NULL) bough_scene_link(&reader, s);
     s->named = reader.files;

@@ -66,6 +66,7 @@ typedef struct bough_scene_simulation {
     const bough_node *node;
     double duration;   // [s], a multiple of the macro step
     double macro_step; // [s]
+    double accuracy;   // aimed at, of each channel relative to its range
     bough_scene_step_control step_control;
     int initial; // bough_scene_initial: how the rods and joints start
     bough_scene_coupling coupling;

@@ -79,6 +79,12 @@ void bough_scene_check_body_load(bough_schema_reader *r, const bough_scene *scen
 // Makes single bodies of those in a row.
 void bough_scene_repeat(bough_schema_reader *reader, bough_scene *scene);
 
+// Gives settings that are not named what follows from simulation.accuracy; scene_accuracy.c has the laws.
+void bough_scene_apply_accuracy(bough_scene *scene);
+
+// Whether time/step is a whole number, at least one; true where either is wrong already.
+bool bough_scene_is_multiple(double time, double step);
+
 // Resolves names and checks what spans several parts of the scene.
 void bough_scene_link(bough_schema_reader *r, bough_scene *scene);
 

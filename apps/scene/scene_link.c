@@ -349,8 +349,7 @@ static void link_modes(bough_schema_reader *r, bough_scene *s) {
 
 static const double most_steps = 1e9; // macro steps of a run: hours at the least
 
-// Whether time/step is a whole number, at least one; true where either is wrong already.
-static bool is_multiple(double time, double step) {
+bool bough_scene_is_multiple(double time, double step) {
     if (!(time > 0) || !(step > 0)) return true;
     double count = time / step;
     return count > 0.5 && fabs(count - round(count)) <= 1e-9 * count;
@@ -373,7 +372,7 @@ static void check_times(bough_schema_reader *r, bough_scene *s) {
     const bough_node *interval = bough_node_find(simulation->output.node, "interval");
     if (simulation->output.node == NULL || interval == NULL) simulation->output.interval = step;
     bough_link_at(r, "simulation");
-    if (!is_multiple(simulation->duration, step)) {
+    if (!bough_scene_is_multiple(simulation->duration, step)) {
         bough_schema_error(r, bough_link_value(simulation->node, "duration"), "duration",
                            "%g s is not a multiple of the macro step, %g s", simulation->duration, step);
     }
@@ -383,38 +382,23 @@ static void check_times(bough_schema_reader *r, bough_scene *s) {
                            simulation->duration / step, step, most_steps);
     }
     check_shapes(r, &simulation->output, step);
-    if (interval != NULL && !is_multiple(simulation->output.interval, step)) {
+    if (interval != NULL && !bough_scene_is_multiple(simulation->output.interval, step)) {
         bough_schema_error(r, interval, "output.interval", "%g s is not a multiple of the macro step, %g s",
                            simulation->output.interval, step);
     }
-    if (s->control.node != NULL && s->control.rate > 0 && !is_multiple(1 / s->control.rate, step)) {
+    if (s->control.node != NULL && s->control.rate > 0 &&
+        !bough_scene_is_multiple(1 / s->control.rate, step)) {
         bough_link_at(r, "control");
         bough_schema_error(r, bough_link_value(s->control.node, "rate"), "rate",
                            "its period %g s is not a multiple of the macro step, %g s", 1 / s->control.rate,
                            step);
     }
-    if (s->aero.node != NULL && s->aero.rate > 0 && !is_multiple(1 / s->aero.rate, step)) {
+    if (s->aero.node != NULL && s->aero.rate > 0 && !bough_scene_is_multiple(1 / s->aero.rate, step)) {
         bough_link_at(r, "aero");
         bough_schema_error(r, bough_link_value(s->aero.node, "rate"), "rate",
                            "its period %g s is not a multiple of the macro step, %g s", 1 / s->aero.rate,
                            step);
     }
-}
-
-static const double default_rtol = 1e-5;
-static const double fine_rtol = 1e-6; // below it BDF's high orders serve better
-
-static bool is_named(const bough_node *map, const char *key) { return map && bough_node_find(map, key); }
-
-// Where nothing is said of how bodies are coupled, they are one system under a method with error control
-// over the whole: what holds on most scenes.
-static void choose_coupling(bough_scene_simulation *s) {
-    bough_scene_solver *master = &s->master;
-    if (is_named(s->coupling.node, "scheme") || is_named(master->node, "solver")) return;
-    bool tolerance = is_named(master->node, "rtol");
-    if (tolerance && master->rtol < fine_rtol) return;
-    master->solver = BOUGH_AUTOMATIC;
-    if (!tolerance) master->rtol = default_rtol;
 }
 
 #define LIST(what, items, count, link)                                                                       \
@@ -446,7 +430,6 @@ static void link_lists(bough_schema_reader *r, bough_scene *s) {
 
 void bough_scene_link(bough_schema_reader *r, bough_scene *scene) {
     sort_names(r, scene);
-    choose_coupling(&scene->simulation);
     check_times(r, scene);
     link_bodies(r, scene);
     link_lists(r, scene);

@@ -6,9 +6,9 @@
 
 // -- solvers ------------------------------------------------------------------------------------
 
-#define RTOL(value)                                                                                \
-    {KEY(NUMBER, rtol), .range = "[1e-14, 0.1]", .fallback = value, .example = "1e-5",             \
-     .help = "relative tolerance"}
+#define RTOL                                                                                       \
+    {KEY(NUMBER, rtol), .range = "[1e-14, 0.1]", .example = "1e-5",                                \
+     .help = "relative tolerance; default from simulation.accuracy"}
 #define RHO                                                                                        \
     {KEY(NUMBER, rho), .range = "[0, 1]", .fallback = "0.8", .example = "0.6",                     \
      .help = "of generalized-alpha: spectral radius at infinite frequency"}
@@ -18,8 +18,9 @@ static const bough_key master_keys[] = {
      .help = "ida, cvode-bdf: BDF of variable order; arkode-esdirk: Runge-Kutta of order 4; "
              "radau5: Runge-Kutta of order 5, up to 400 states; generalized-alpha: order 2; "
              "rosenbrock: linearly implicit Runge-Kutta of order 3; automatic: rosenbrock, and ida "
-             "at a tenth of rtol where that takes fewer evaluations"},
-    RTOL("1e-6"),
+             "at a tenth of rtol where that takes fewer evaluations. The monolithic scheme's default "
+             "is automatic, or ida with an rtol below 1e-6"},
+    RTOL,
     {KEY(NUMBER, step), UNIT(TIME), .range = "[1e-7, 10]", .example = "10 ms",
      .help = "of generalized-alpha, rosenbrock and automatic: longest step; default the macro "
              "step"},
@@ -28,9 +29,9 @@ static const bough_key master_keys[] = {
 static const bough_key micro_keys[] = {
     {KEY(CHOICE, solver), .fallback = "cvode-bdf", .choice = bough_integrator_name,
      .help = "time integrator of each rod"},
-    RTOL("1e-4"),
-    {KEY(NUMBER, step), UNIT(TIME), .range = "[1e-7, 10]", .fallback = "5e-3", .example = "10 ms",
-     .help = "of generalized-alpha and rosenbrock: longest step"},
+    RTOL,
+    {KEY(NUMBER, step), UNIT(TIME), .range = "[1e-7, 10]", .example = "10 ms",
+     .help = "of generalized-alpha and rosenbrock: longest step; default from simulation.accuracy"},
     RHO,
 };
 #undef FILLS
@@ -47,8 +48,7 @@ _Static_assert(sizeof(bough_exchange) == sizeof(int) && sizeof(bough_acceleratio
 static const bough_key coupling_keys[] = {
     {KEY(CHOICE, scheme), .fallback = "monolithic", .choice = bough_scheme_name,
      .help = "how sub-systems exchange their values. The default integrates all bodies as one "
-             "system: by automatic to rtol 1e-5, unless master names a solver or an rtol below "
-             "1e-6"},
+             "system"},
     {NAMED("order", INTEGER), AT(options.order), .range = "[0, 2]", .fallback = "1", .example = "2",
      .help = "of extrapolated and of iterated end values: degree of the polynomial"},
     {NAMED("theta", NUMBER), AT(options.theta), .word = "auto", .range = "[0.5, 1]",
@@ -111,8 +111,13 @@ static const bough_schema step_control_schema = {
 static const bough_key simulation_keys[] = {
     {KEY(NUMBER, duration), UNIT(TIME), .range = "> 0", .required = true, .example = "40 s",
      .help = "simulated time, a multiple of the macro step"},
-    {KEY(NUMBER, macro_step), UNIT(TIME), .range = "[1e-7, 1e4]", .required = true,
-     .example = "20 ms", .help = "time between exchanges"},
+    {KEY(NUMBER, accuracy), .range = "[1e-7, 0.1]", .fallback = "0.005", .example = "0.001",
+     .help = "largest error of a channel that the run aims at, relative to the channel's range. "
+             "Tolerances, steps, the rate of the air and segments that the scene does not name "
+             "follow from it"},
+    {KEY(NUMBER, macro_step), UNIT(TIME), .range = "[1e-7, 1e4]", .example = "20 ms",
+     .help = "time between exchanges; default from simulation.accuracy, such that the duration and "
+             "the periods of output, air and control are multiples"},
     {KEY(MAPPING, step_control), .of = &step_control_schema,
      .help = "bisection of the macro step where the coupling error is too large"},
     {KEY(CHOICE, initial), CHOICES("undeformed", "equilibrium", "operation"),

@@ -227,8 +227,9 @@ static const bough_schema tower_schema = {SCHEMA("a tower", bough_scene_tower, t
 
 #define FILLS bough_scene_aero
 static const bough_key aero_keys[] = {
-    {KEY(NUMBER, rate), UNIT(FREQUENCY), .range = "> 0", .required = true, .example = "50 Hz",
-     .help = "sampling rate; the period is a multiple of the macro step"},
+    {KEY(NUMBER, rate), UNIT(FREQUENCY), .range = "> 0", .example = "50 Hz",
+     .help = "sampling rate; the period is a multiple of the macro step; default from "
+             "simulation.accuracy and the rotor's radius"},
     {KEY(NUMBER, air_density), UNIT(DENSITY), .range = "> 0", .fallback = "1.225", .example = "1.2",
      .help = "density of the air"},
     {KEY(MAPPING, wind), .of = &wind_schema, .required = true, .help = "the undisturbed wind"},

@@ -62,8 +62,8 @@ static const bough_key rod_keys[] = {
     {KEY(VECTOR, part), .count = 2, UNIT(LENGTH), .range = ">= 0", .example = "[0, 40 m]",
      .help = "part of the table, from and to along z: several rods in a chain form the whole, and "
              "carry bodies where two of them meet"},
-    {NAMED("segments", INTEGER), AT(n_segment), .range = "[1, 10000]", .fallback = "24",
-     .example = "48", .help = "segments of equal length"},
+    {NAMED("segments", INTEGER), AT(n_segment), .range = "[1, 10000]", .example = "48",
+     .help = "segments of equal length; default from simulation.accuracy"},
     {KEY(VECTOR, damping), .count = 6, UNIT(TIME), .range = ">= 0",
      .example = "[0, 0, 0, 3 ms, 3 ms, 3 ms]", .help = "replaces the damping of the table"},
     {KEY(NUMBER, length), UNIT(LENGTH), .range = "> 0", .example = "2 m",
