@@ -10,15 +10,19 @@ static const char *const files[] = {"scene.yaml", "blade-structure.yaml", "tower
                                     "blade-aero.yaml", "airfoils.yaml"};
 
 // Imports a deck with a text replaced (NULL: none).
-static trial import_of(const char *deck, const edit *change) {
+static trial import_given(const char *deck, const edit *change, const bough_import_options *options) {
     trial t = {.arena = bough_arena_create()};
     char path[SCRATCH_PATH];
     assert_non_null(mkdtemp(scratch_name(t.folder)));
     copy_deck(t.folder, deck, change, NULL);
     snprintf(path, sizeof path, "%s/%s", t.folder, deck);
     snprintf(t.out, sizeof t.out, "%s/out", t.folder);
-    t.status = bough_import_windio(path, t.out, &(bough_import_options){0}, NULL);
+    t.status = bough_import_windio(path, t.out, options, NULL);
     return t;
+}
+
+static trial import_of(const char *deck, const edit *change) {
+    return import_given(deck, change, &(bough_import_options){0});
 }
 
 static trial import_with(const char *from, const char *to) {
@@ -111,12 +115,8 @@ static void turbine_has_the_files_values(void **context) {
     check_near(number(s, "control.law.reference_speed"), 30, 1e-9, 0);
     check_near(number(s, "control.law.rated_power"), 5e3 / 0.95, 1e-9, 0);
     check_near(number(s, "control.law.most_torque"), 1.1 * 5e3 / 0.95 / 29.7, 1e-9, 0);
-    // Ω I ω²/(N 4.8 P) with ω = 0.2, and twice that over ω
-    double mass[] = {50 * sqrt(25.0025), 25 * sqrt(25.1625)};
-    double inertia = 900 + 3 * (mass[0] * 3.5 * 3.5 + mass[1] * 8.5 * 8.5);
-    double integral = 3 * inertia * 0.04 / (10 * 4.8 * 5e3);
-    check_near(number(s, "control.law.integral"), integral, 1e-9, 0);
-    check_near(number(s, "control.law.proportional"), 10 * integral, 1e-9, 0);
+    assert_string_equal(text(s, "control.pitch"), "false"); // the file has no gains
+    assert_true(list_says(&t, "pitch control: the file has no gains, so the pitch is held"));
     check_near(number(s, "control.law.most_pitch"), 1.5, 1e-9, 0);
     check_near(number(s, "control.law.pitch_rate"), 0.1, 1e-9, 0);
     assert_string_equal(text(s, "bodies.3.joint.kind"), "revolute");
@@ -164,12 +164,7 @@ static void both_layouts_give_one_scene(void **context) {
 
 static void what_is_not_given_is_told(void **context) {
     (void)context;
-    trial t = import_with("    elastic_properties_mb: {system_mass: 3000", "    other: {a: 3000");
-    assert_true(list_says(&t, "hub: no mass given"));
-    check_near(number(read_file(&t, "scene.yaml"), "bodies.2.mass"),
-               2.5 * (50 * sqrt(25.0025) + 25 * sqrt(25.1625)), 1e-9, 0);
-    done(&t);
-    t = import_of(
+    trial t = import_of(
         "turbine-2.yaml",
         &(edit){"turbine-2.yaml", "efficiency: 0.95}",
                 "efficiency: 0.95}\n    generator: {elastic_properties: {inertia: [3, 1, 1]}}"});
@@ -193,6 +188,61 @@ static void what_is_not_given_is_told(void **context) {
     t = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "mu: [0, 0, 0, 0, 0, 0]",
                                             "mu: [1.e-3, 0, 0, 0, 4.e-3, 0]"});
     check_near(number(read_file(&t, "blade-structure.yaml"), "damping.4"), 4e-3, 1e-9, 0);
+    done(&t);
+}
+
+// Masses that the file lacks come from the user, not from other turbines.
+static void missing_masses_are_asked_for(void **context) {
+    (void)context;
+    const edit hub = {"turbine-1.yaml", "    elastic_properties_mb: {system_mass: 3000", "    other: {a: 3000"};
+    const edit nacelle = {"turbine-2.yaml", "    elastic_properties:\n      mass: 8000", "    other:\n      mass: 8000"};
+    trial t = import_of("turbine-1.yaml", &hub);
+    assert_non_null(strstr(t.status.message, ": expected the mass of the hub, 'elastic_properties.mass'; --hub-mass KG"));
+    done(&t);
+    t = import_given("turbine-1.yaml", &hub, &(bough_import_options){.hub_mass = 2500});
+    assert_string_equal(t.status.message, "");
+    check_near(number(read_file(&t, "scene.yaml"), "bodies.2.mass"), 2500, 1e-9, 0);
+    check_near(number(read_file(&t, "scene.yaml"), "bodies.2.inertia.0"), 2. / 3 * 2500, 1e-9, 0);
+    done(&t);
+    t = import_of("turbine-2.yaml", &nacelle);
+    assert_non_null(strstr(t.status.message, ": expected the mass of the nacelle"));
+    done(&t);
+    t = import_given("turbine-2.yaml", &nacelle, &(bough_import_options){.nacelle_mass = 9000});
+    assert_string_equal(t.status.message, "");
+    check_near(number(read_file(&t, "scene.yaml"), "bodies.1.mass"), 9000 + 1000, 1e-9, 0);
+    done(&t);
+}
+
+// Matrices of a blade without shear have zeros for it.
+static void no_shear_is_stiff(void **context) {
+    (void)context;
+    trial t = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "K11: [50000000, 5000000]", "K11: [0, 0]"});
+    assert_string_equal(t.status.message, "");
+    assert_true(list_says(&t, "shear stiffness of zero (K11, K22)"));
+    const bough_node *rows = at(read_file(&t, "blade-structure.yaml"), "stations.rows");
+    check_near(number(rows, "0.3.0"), 4e8, 1e-9, 0);
+    check_near(number(rows, "0.3.6"), 6e7, 1e-9, 0);
+    check_near(number(rows, "2.3.0"), 4e7, 1e-9, 0);
+    done(&t);
+}
+
+// The names of version 1 in a file of version 2, which has degrees and rpm; of two limits of the speed the
+// lower one counts.
+static void units_are_those_of_the_layout(void **context) {
+    (void)context;
+    trial t = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "  rated_rotor_speed: 28.64788975654116",
+                                                  "  supervisory: {maxTS: 16}\n  torque: {VS_maxspd: 20}\n"
+                                                  "  pitch: {max_pitch: 80, max_pitch_rate: 3}"});
+    assert_string_equal(t.status.message, "");
+    const bough_node *s = read_file(&t, "scene.yaml");
+    double degree = acos(-1.0) / 180, radius = 11 * cos(2.8647889756541165 * degree);
+    check_near(number(s, "control.law.reference_speed"), 10 * 16 / radius, 1e-9, 0);
+    check_near(number(s, "control.law.most_pitch"), 80 * degree, 1e-9, 0);
+    check_near(number(s, "control.law.pitch_rate"), 3 * degree, 1e-9, 0);
+    done(&t);
+    t = import_of("turbine-2.yaml", &(edit){"turbine-2.yaml", "  rated_rotor_speed: 28.64788975654116",
+                                            "  torque: {VS_maxspd: 20}"});
+    check_near(number(read_file(&t, "scene.yaml"), "control.law.reference_speed"), 10 * 120 * degree, 1e-9, 0);
     done(&t);
 }
 
@@ -228,11 +278,6 @@ static void polars_go_round(void **context) {
     trial t = import_with("[-3.14, -0.5, 0.5, 3.14]", "[-1.5, -0.5, 0.5, 1.5]");
     assert_string_equal(t.status.message, "");
     assert_true(list_says(&t, "from -85.9437 to 85.9437 deg, constant beyond"));
-    done(&t);
-    t = import_with("VS_maxspd", "VS_other");
-    assert_string_equal(t.status.message, "");
-    assert_true(list_says(&t, "no rated rotor speed: tip speed of 80 m/s assumed") ||
-                !list_says(&t, "no rated rotor speed"));
     done(&t);
 }
 
@@ -287,6 +332,8 @@ static void bad_files_are_told_where(void **context) {
          "number_of_blades: expected a whole number from 1 to 16, got 2.5"},
         {"gear_ratio: 10", "gear_ratio: 10\n      gear_ratio: 10", "is given twice"},
         {"gear_ratio: 10", "gear_ratio: -1", "gear_ratio: expected a positive value"},
+        {"[4000, 5000, 6000]", "[0, 0, 0, 0, 0, 6000]", "inertia: expected xx, yy, zz, xy, xz, yz of a matrix"},
+        {"VS_maxspd", "VS_other", "control: expected the rotor's rated speed, 'torque.VS_maxspd' or"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         trial t = import_with(bad[i].from, bad[i].to);
@@ -305,6 +352,9 @@ int main(void) {
         cmocka_unit_test(turbine_has_the_files_values),
         cmocka_unit_test(both_layouts_give_one_scene),
         cmocka_unit_test(what_is_not_given_is_told),
+        cmocka_unit_test(missing_masses_are_asked_for),
+        cmocka_unit_test(no_shear_is_stiff),
+        cmocka_unit_test(units_are_those_of_the_layout),
         cmocka_unit_test(assembly_gives_the_nacelle),
         cmocka_unit_test(any_number_of_blades_is_taken),
         cmocka_unit_test(polars_go_round),

@@ -45,7 +45,8 @@ const bough_verb bough_verbs[] = {
      bough_verb_report},
     {"import",
      {BOUGH_OPERAND_TWO, "KIND FILE",
-      BOUGH_OPTION_OUT | BOUGH_OPTION_WIND | BOUGH_OPTION_CONTROLLER | BOUGH_OPTION_CLAMP_BASE},
+      BOUGH_OPTION_OUT | BOUGH_OPTION_WIND | BOUGH_OPTION_CONTROLLER | BOUGH_OPTION_CLAMP_BASE |
+          BOUGH_OPTION_HUB_MASS | BOUGH_OPTION_NACELLE_MASS},
      "converts 'openfast MAIN.fst' or 'windio TURBINE.yaml' to a scene and lists what it took",
      bough_verb_import},
     {"export",

@@ -37,6 +37,9 @@ static const option_row rows[] = {
      BOUGH_OPTION_CONTROLLER, false},
     {"clamp-base", NULL, "imports an offshore turbine as clamped at the base of its tower",
      BOUGH_OPTION_CLAMP_BASE, false},
+    {"hub-mass", "KG", "mass of the hub of a WindIO turbine without one", BOUGH_OPTION_HUB_MASS, false},
+    {"nacelle-mass", "KG", "mass of the nacelle of a WindIO turbine without one", BOUGH_OPTION_NACELLE_MASS,
+     false},
     {"body", "NAME", "exports only this flexible body, for an FMU inside other models", BOUGH_OPTION_BODY,
      false},
     {"json-schema", NULL, "of scene (default) or study: the keys as JSON Schema, for editors",
@@ -107,6 +110,13 @@ static bough_status take_threads(const char *text, bough_options *options) {
     return bough_ok();
 }
 
+static bough_status take_mass(const char *name, const char *text, double *mass) {
+    char *end;
+    *mass = strtod(text, &end);
+    if (end != text && *end == '\0' && *mass > 0 && *mass <= 1e9) return bough_ok();
+    return bough_fail(BOUGH_INVALID, "--%s expects a mass in kg up to 1e9, got '%.80s'", name, text);
+}
+
 static bough_status take_part(const char *text, bough_options *options) {
     char rest;
     bool good = sscanf(text, "%d/%d%c", &options->part, &options->parts, &rest) == 2 && options->part >= 1 &&
@@ -127,6 +137,8 @@ static bough_status take_option(bough_option_flag flag, const char *text, bough_
     case BOUGH_OPTION_WIND: options->wind = text; break;
     case BOUGH_OPTION_CONTROLLER: options->controller = text; break;
     case BOUGH_OPTION_CLAMP_BASE: options->clamp_base = true; break;
+    case BOUGH_OPTION_HUB_MASS: return take_mass("hub-mass", text, &options->hub_mass);
+    case BOUGH_OPTION_NACELLE_MASS: return take_mass("nacelle-mass", text, &options->nacelle_mass);
     case BOUGH_OPTION_BODY: options->body = text; break;
     case BOUGH_OPTION_PATH: options->path = true; break;
     case BOUGH_OPTION_JSON: options->json = true; break;

@@ -25,6 +25,8 @@ typedef enum bough_option_flag {
     BOUGH_OPTION_SWEEP = 1 << 12,
     BOUGH_OPTION_BODY = 1 << 13,
     BOUGH_OPTION_PATH = 1 << 14,
+    BOUGH_OPTION_HUB_MASS = 1 << 15,
+    BOUGH_OPTION_NACELLE_MASS = 1 << 16,
 } bough_option_flag;
 
 typedef enum bough_operand {
@@ -60,6 +62,7 @@ typedef struct bough_options {
     bool resume;                   // from the last one
     const char *wind, *controller; // files for an imported model; NULL: its own
     bool clamp_base;               // of an imported offshore turbine
+    double hub_mass, nacelle_mass; // of an imported turbine [kg]; 0: its own
     bool path;                     // of equilibria
     bool json;                     // of help: a schema for editors
     bool quiet, help;

@@ -7,8 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double duration = 20;  // [s]: the file has none
-static const double usual_tip = 80; // [m/s]
+static const double duration = 20; // [s]: the file has none
 
 // -- reading --------------------------------------------------------------------------------------
 
@@ -69,8 +68,9 @@ static void read_assembly(bough_windio *w) {
 double bough_windio_control(bough_windio *w, const char *first, const char *second, double second_unit,
                             double fallback) {
     const bough_node *control = bough_entry(w->root, "control");
-    if (bough_entry(control, first)) return bough_entry_number(&w->draft, control, first);
-    return bough_entry_number_or(&w->draft, control, second, fallback / second_unit) * second_unit;
+    const char *name = bough_entry(control, first) ? first : second;
+    double unit = w->second || name == second ? second_unit : 1;
+    return bough_entry_number_or(&w->draft, control, name, fallback / unit) * unit;
 }
 
 const bough_node *bough_windio_material(bough_windio *w, const bough_node *layer) {
@@ -97,12 +97,16 @@ static void choose_start(bough_windio *w) {
     double rpm = BOUGH_PI / 30,
            tip = bough_windio_control(w, "supervisory.maxTS", "max_allowable_blade_tip_speed", 1, 0);
     double ratio = bough_windio_control(w, "torque.tsr", "optimal_tsr", 1, 0);
-    w->rated_speed = bough_windio_control(w, "torque.VS_maxspd", "rated_rotor_speed|max_rotor_speed", rpm, 0);
-    if (!(w->rated_speed > 0)) w->rated_speed = tip / w->radius;
-    if (!(w->rated_speed > 0)) {
-        w->rated_speed = usual_tip / w->radius;
-        bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "no rated rotor speed: tip speed of %g m/s assumed",
-                         usual_tip);
+    double limit = tip > 0 ? tip / w->radius : HUGE_VAL;
+    double given = bough_windio_control(w, "torque.VS_maxspd", "rated_rotor_speed|max_rotor_speed", rpm, 0);
+    // of both limits the lower one counts; a speed at the limit of the tip is taken, by whatever radius it is
+    w->rated_speed = given > 0 && given <= 1.02 * limit ? given : limit;
+    if (!isfinite(w->rated_speed)) {
+        bough_entry_fail(
+            &w->draft, w->root,
+            "control: expected the rotor's rated speed, 'torque.VS_maxspd' or 'rated_rotor_speed', "
+            "or its largest tip speed, 'supervisory.maxTS' or 'max_allowable_blade_tip_speed'");
+        return;
     }
     w->speed = 0.75 * w->rated_speed;
     w->wind = ratio > 0 ? w->speed * w->radius / ratio : 8;
@@ -143,6 +147,7 @@ static void convert(void *self, const char *path) {
     if (!bough_is_ok(w->draft.status)) return;
     bough_draft_note(&w->draft, BOUGH_TAKEN, "%s, in the layout of version %d", path, w->second ? 2 : 1);
     choose_start(w);
+    if (!bough_is_ok(w->draft.status)) return;
     put_head(w, path);
     bough_windio_blade(w);
     bough_windio_tower(w);

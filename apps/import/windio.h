@@ -36,6 +36,7 @@ typedef struct bough_windio {
     bough_windio_shape outline;      // of the blade
     bough_curve axis[3];             // the blade's reference line over its share [m]
     double blade_length, blade_mass; // along z [m]; [kg]
+    bool shear_stiff;                // the blade's matrices have no shear
     double inertia;                  // of the rotor about its axis [kg m2]
     double hub_radius, radius;       // [m]
     double tower_base, tower_top;    // above ground [m]
@@ -46,8 +47,9 @@ typedef struct bough_windio {
     double speed, wind;              // at the start: rotor [rad/s], air [m/s]
 } bough_windio;
 
-// A number of the control block, in version 1 or 2 by other names and units: `second_unit` is what
-// one of the latter is in the former. The fallback is in version 1's unit.
+// A number of the control block, by a name of version 1 or of version 2, of which both stand in either. Its
+// unit is that of the file's version: `second_unit` is what one of version 2 is in version 1. The fallback is
+// in version 1's unit.
 double bough_windio_control(bough_windio *w, const char *first, const char *second, double second_unit,
                             double fallback);
 

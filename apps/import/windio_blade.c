@@ -119,11 +119,26 @@ static matrices read_inertia(bough_windio *w, const bough_node *from) {
 
 // -- stations -------------------------------------------------------------------------------------
 
+// Shear stiffnesses of zero, with nothing beside them, are those of a blade without shear: such a section
+// gets its axial stiffness. Whether there are any.
+static bool stiffen_shear(double k[MATRIX]) {
+    enum { AXIAL = 2 * 7 };
+    bool any = false;
+    for (int i = 0; i < 2; i++) {
+        bool zero = true;
+        for (int j = 0; j < 6; j++) zero = zero && k[6 * i + j] == 0;
+        if (zero) k[7 * i] = k[AXIAL];
+        any = any || zero;
+    }
+    return any;
+}
+
 static void put_station(bough_windio *w, const matrices *stiffness, const matrices *inertia, double share,
                         double twist, double *strange) {
     double k[MATRIX], m[MATRIX];
     matrix_at(stiffness, share, k);
     matrix_at(inertia, share, m);
+    w->shear_stiff = stiffen_shear(k) || w->shear_stiff;
     if (!bough_section_possible(k, m)) {
         bough_entry_fail(&w->draft, stiffness->node,
                          "at %.4g of the span: expected stiffness and inertia of a real section, "
@@ -196,6 +211,11 @@ static void put_stations(bough_windio *w, const bough_node *from, const matrices
                      "%d stations of the blade, %d of them with full stiffness and inertia; it "
                      "weighs %.7g kg",
                      n, stiffness->n, w->blade_mass);
+    if (w->shear_stiff) {
+        bough_draft_note(
+            &w->draft, BOUGH_APPROXIMATED,
+            "blade: shear stiffness of zero (K11, K22) is read as no shear: the axial stiffness");
+    }
     bough_section_note(&w->draft, strange);
 }
 
@@ -234,6 +254,21 @@ static const bough_node *find_matrices(const bough_windio *w) {
     return NULL;
 }
 
+// Whether both are those of a section at each share at which the file gives one of them.
+static bool are_possible(const matrices *stiffness, const matrices *inertia) {
+    const matrices *given[] = {stiffness, inertia};
+    double k[MATRIX], m[MATRIX];
+    for (int g = 0; g < 2; g++) {
+        for (int i = 0; i < given[g]->n; i++) {
+            matrix_at(stiffness, given[g]->grid[i], k);
+            matrix_at(inertia, given[g]->grid[i], m);
+            stiffen_shear(k);
+            if (!bough_section_possible(k, m)) return false;
+        }
+    }
+    return true;
+}
+
 void bough_windio_blade(bough_windio *w) {
     const bough_node *from = find_matrices(w);
     matrices stiffness = {0}, inertia = {0};
@@ -247,7 +282,15 @@ void bough_windio_blade(bough_windio *w) {
     if (from) {
         stiffness = read_stiffness(w, from);
         inertia = read_inertia(w, from);
-    } else {
+    }
+    bool good = from && bough_is_ok(w->draft.status) && are_possible(&stiffness, &inertia);
+    if (bough_windio_has_layers(w) && !good) {
+        if (from) {
+            bough_draft_note(
+                &w->draft, BOUGH_LEFT_OUT,
+                "blade: the matrices of stiffness and inertia, which no section can have: they are "
+                "not positive definite");
+        }
         read_layup(w, &stiffness, &inertia);
     }
     if (bough_is_ok(w->draft.status)) {

@@ -135,12 +135,27 @@ static double by_width(parts *p, const bough_node *part, handle end, int depth) 
     return said(p, bough_entry(part, arc_name[other]), other, depth) + sign * 2 * half;
 }
 
+// Whether the part's entry, a width or a plane, says that it defines this end: values beside it are then
+// those of another program's last run.
+static bool defines(const bough_node *part, const char *key, handle end) {
+    const bough_node *what = bough_entry(bough_entry(part, key), "defines");
+    bool list = what && what->kind == BOUGH_SEQUENCE;
+    for (int i = 0; what && i < (list ? what->n : 1); i++) {
+        const bough_node *one = list ? what->value[i] : what;
+        if (one->kind == BOUGH_SCALAR && strcmp(one->text, arc_name[end]) == 0) return true;
+    }
+    return false;
+}
+
 static double arc_of(parts *p, const bough_node *part, handle end, int depth) {
     if (depth > DEEPEST) {
         bough_entry_fail(&p->w->draft, part, "%s: it refers to itself", arc_name[end]);
         return 0;
     }
-    double arc = said(p, bough_entry(part, arc_name[end]), end, depth);
+    double arc = NAN;
+    if (defines(part, "plane_intersection", end)) arc = crossing(p, part, side_of(part, end));
+    if (isnan(arc) && defines(part, "width", end)) arc = by_width(p, part, end, depth);
+    if (isnan(arc)) arc = said(p, bough_entry(part, arc_name[end]), end, depth);
     if (isnan(arc)) arc = offset_from(p, part, end, depth);
     if (isnan(arc)) arc = by_width(p, part, end, depth);
     if (isnan(arc)) arc = crossing(p, part, side_of(part, end));

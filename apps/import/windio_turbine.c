@@ -7,10 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-// Reference turbines of 3 to 15 MW: nacelle with generator, per rated power [kg/W]; the hub with
-// its pitch system, per blade mass.
-static const double nacelle_per_watt = 0.05, hub_per_blade = 2.5;
-
 // A rigid body's mass properties in the axes of its frame.
 typedef struct lump {
     double mass;       // [kg]
@@ -45,6 +41,14 @@ static void read_inertia(bough_windio *w, const bough_node *from, const char *pa
     for (int i = 0; i < 6; i++) to[i] = row && i < n ? row[i] : 0;
 }
 
+static bool possible_inertia(const double i[6]) {
+    double largest = fmax(fmax(fabs(i[0]), fabs(i[1])), fabs(i[2])), slack = 1e-9 * largest * largest;
+    double xy = i[0] * i[1] - i[3] * i[3], xz = i[0] * i[2] - i[4] * i[4], yz = i[1] * i[2] - i[5] * i[5];
+    double all = i[0] * yz - i[3] * (i[3] * i[2] - i[5] * i[4]) + i[4] * (i[3] * i[5] - i[1] * i[4]);
+    bool minors = xy >= -slack && xz >= -slack && yz >= -slack && all >= -slack * largest;
+    return i[0] >= 0 && i[1] >= 0 && i[2] >= 0 && minors;
+}
+
 // Version 1: elastic_properties_mb {system_mass, system_inertia, system_center_mass}; version 2:
 // elastic_properties {mass, inertia, location}. False: there are none.
 static bool read_lump(bough_windio *w, const bough_node *part, lump *l) {
@@ -58,6 +62,11 @@ static bool read_lump(bough_windio *w, const bough_node *part, lump *l) {
     if (at) memcpy(l->centre, at, sizeof l->centre);
     read_inertia(w, from, "system_inertia|inertia", l->inertia);
     if (l->mass < 0) bough_entry_fail(d, from, "mass: expected no negative one");
+    if (!possible_inertia(l->inertia)) {
+        bough_entry_fail(
+            d, bough_entry(from, "system_inertia|inertia"),
+            "inertia: expected xx, yy, zz, xy, xz, yz of a matrix that is not negative about any axis");
+    }
     return true;
 }
 
@@ -72,28 +81,31 @@ static void add_yaw(bough_windio *w, lump *l) {
     l->mass = sum;
 }
 
+// The mass that the user gives for a part without one; `option` gives it.
+static double given_mass(bough_windio *w, const bough_node *part, const char *name, double given) {
+    if (!(given > 0)) {
+        bough_entry_fail(&w->draft, part,
+                         "expected the mass of the %s, 'elastic_properties.mass'; --%s-mass KG gives it",
+                         name, name);
+    }
+    return given;
+}
+
 static lump hub_lump(bough_windio *w) {
     lump l;
     if (read_lump(w, w->hub, &l)) return l;
-    double inertia = 2.0 / 3 * hub_per_blade * w->blade_mass * w->hub_radius * w->hub_radius;
-    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                     "hub: no mass given: %g times the mass of a blade assumed, as a shell of the "
-                     "hub's radius",
-                     hub_per_blade);
-    return (lump){hub_per_blade * w->blade_mass, {0}, {inertia, inertia, inertia}};
-}
-
-static double hub_mass(bough_windio *w) {
-    lump l;
-    return read_lump(w, w->hub, &l) ? l.mass : hub_per_blade * w->blade_mass;
+    double mass = given_mass(w, w->hub, "hub", w->options->hub_mass);
+    double inertia = 2.0 / 3 * mass * w->hub_radius * w->hub_radius;
+    bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "hub: its inertia is that of a shell of its radius");
+    return (lump){mass, {0}, {inertia, inertia, inertia}};
 }
 
 // What the rotor-nacelle assembly weighs beyond hub and blades.
-static bool assembly_lump(bough_windio *w, double overhang, lump *l) {
+static bool assembly_lump(bough_windio *w, double overhang, double hub, lump *l) {
     const bough_node *part = bough_entry(w->parts, "RNA|rna");
     lump all;
     if (!part || !read_lump(w, part, &all)) return false;
-    double head = hub_mass(w) + w->n_blade * w->blade_mass, mass = all.mass - head;
+    double head = hub + w->n_blade * w->blade_mass, mass = all.mass - head;
     if (!(mass > 0)) {
         bough_entry_fail(&w->draft, part,
                          "mass: %g kg, which is less than the mass of hub and "
@@ -111,10 +123,10 @@ static bool assembly_lump(bough_windio *w, double overhang, lump *l) {
     return true;
 }
 
-static lump nacelle_lump(bough_windio *w, double overhang) {
+static lump nacelle_lump(bough_windio *w, double overhang, double hub) {
     lump l;
     if (!bough_entry(w->train, "elastic_properties_mb|elastic_properties.system_mass|mass") &&
-        assembly_lump(w, overhang, &l)) {
+        assembly_lump(w, overhang, hub, &l)) {
         return l;
     }
     if (read_lump(w, w->train, &l)) {
@@ -122,12 +134,14 @@ static lump nacelle_lump(bough_windio *w, double overhang) {
         add_yaw(w, &l);
         return l;
     }
-    double mass = nacelle_per_watt * w->rated_power, inertia = mass * overhang * overhang / 4;
+    double mass = given_mass(w, w->train, "nacelle", w->options->nacelle_mass);
+    double inertia = mass * overhang * overhang / 4;
     bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                     "nacelle: no mass given: %g kg per kW of rated power at half the hub's "
-                     "height, its radius of gyration half the overhang",
-                     nacelle_per_watt * 1000);
-    return (lump){mass, {0, 0, w->hub_height / 2}, {inertia, inertia, inertia}};
+                     "nacelle: its centre of mass is at half the hub's height above the tower, its radius of "
+                     "gyration half the overhang");
+    l = (lump){mass, {0, 0, w->hub_height / 2}, {inertia, inertia, inertia}};
+    add_yaw(w, &l);
+    return l;
 }
 
 static double generator_inertia(bough_windio *w, double ratio) {
@@ -149,19 +163,17 @@ static void put_lump(FILE *file, const lump *l) {
     fputc('\n', file);
 }
 
-static void put_nacelle(bough_windio *w, bool on_rod, double overhang) {
+static void put_nacelle(bough_windio *w, bool on_rod, const lump *l) {
     FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
-    lump l = nacelle_lump(w, overhang);
     fprintf(file, "  - name: nacelle\n    fidelity: rigid\n    joint: {kind: fixed, parent: %s",
             on_rod ? "tower" : "ground");
     if (!on_rod) fprintf(file, ", placement: [move z %.10g m]", w->tower_top);
     fputs("}\n", file);
-    put_lump(file, &l);
+    put_lump(file, l);
 }
 
-static void put_hub(bough_windio *w, double overhang, double tilt, double ratio) {
+static void put_hub(bough_windio *w, lump l, double overhang, double tilt, double ratio) {
     FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
-    lump l = hub_lump(w);
     l.inertia[0] += generator_inertia(w, ratio);
     w->inertia += l.inertia[0];
     fprintf(file,
@@ -211,8 +223,9 @@ void bough_windio_bodies(bough_windio *w) {
     if (!w->tower) w->tower_top -= w->hub_height;
     fputs("bodies:\n", d->file[BOUGH_IMPORT_SCENE]);
     if (rod) bough_draft_tower(d, w->tower_base); // a rigid one is only a place
-    put_nacelle(w, rod, overhang);
-    put_hub(w, overhang, tilt, gear_ratio(w));
+    lump hub = hub_lump(w), nacelle = nacelle_lump(w, overhang, hub.mass);
+    put_nacelle(w, rod, &nacelle);
+    put_hub(w, hub, overhang, tilt, gear_ratio(w));
     put_blades(w, cone, pitch * 180 / BOUGH_PI);
     bough_draft_note(d, BOUGH_TAKEN,
                      "hub radius %g m, cone %.4g deg, tilt %.4g deg, overhang %g m, pitch %.4g deg",
@@ -258,31 +271,21 @@ void bough_windio_air(bough_windio *w) {
 
 // -- control --------------------------------------------------------------------------------------
 
-// What the pitch takes off the power of the NREL 5 MW turbine at its rated wind, relative to the
-// rated power [1/rad], and the pitch where it takes twice as much [rad].
-static const double pitch_effect = 4.8, doubling_pitch = 0.11;
-
-// The pitch law's gains from the frequency and damping that the speed is to have (Jonkman et al.,
-// NREL/TP-500-38060, section 7.3).
+// The limits of the pitch, whose law no file has.
 static void put_pitch(bough_windio *w, double ratio) {
     double degree = BOUGH_PI / 180;
-    double omega = bough_windio_control(w, "pitch.PC_omega", "PC_omega", 1, 0.2);
-    double zeta = bough_windio_control(w, "pitch.PC_zeta", "PC_zeta", 1, 1);
     double least = bough_windio_control(w, "pitch.min_pitch", "min_pitch_limit|fine_pitch", degree, 0);
     double most = bough_windio_control(w, "pitch.max_pitch", "max_pitch_limit", degree, BOUGH_PI / 2);
     double rate = bough_windio_control(w, "pitch.max_pitch_rate", "max_pitch_rate", degree, 0.1);
-    double gain = w->inertia * w->rated_speed * omega / (ratio * pitch_effect * w->rated_power);
     fprintf(w->draft.file[BOUGH_IMPORT_SCENE],
-            "    reference_speed: %.10g rad/s\n    proportional: %.10g\n    integral: %.10g\n"
-            "    halving_pitch: %.10g rad\n    least_pitch: %.10g rad\n    most_pitch: %.10g rad\n"
+            "    reference_speed: %.10g rad/s\n    least_pitch: %.10g rad\n    most_pitch: %.10g rad\n"
             "    pitch_rate: %.10g rad/s\n",
-            w->rated_speed * ratio, 2 * zeta * gain, omega * gain, doubling_pitch, least, most, rate);
-    bough_draft_note(&w->draft, BOUGH_TAKEN, "pitch from %.4g to %.4g deg by at most %.3g deg/s",
-                     least / degree, most / degree, rate / degree);
-    bough_draft_note(&w->draft, BOUGH_APPROXIMATED,
-                     "pitch control: a speed loop of %g rad/s and damping %g with the sensitivity "
-                     "of the NREL 5 MW turbine's power to the pitch, relative to its rated power",
-                     omega, zeta);
+            w->rated_speed * ratio, least, most, rate);
+    bough_draft_note(
+        &w->draft, BOUGH_LEFT_OUT,
+        "pitch control: the file has no gains, so the pitch is held, which is right below rated wind; "
+        "--controller FILE, or control.pitch: true with control.law.proportional, integral and "
+        "halving_pitch");
 }
 
 static double efficiency_of(bough_windio *w) {
@@ -325,7 +328,7 @@ void bough_windio_law(bough_windio *w) {
     double rate = bough_windio_control(w, "torque.max_torque_rate", "max_torque_rate", 1, 1e9);
     fprintf(d->file[BOUGH_IMPORT_SCENE],
             "control:\n  kind: variable-speed\n  rate: %.10g Hz\n  gear_ratio: %.10g\n"
-            "  efficiency: %.10g\n  law:\n    cut_in: 0 rad/s\n    optimal_from: 1e-3 rad/s\n"
+            "  efficiency: %.10g\n  pitch: false\n  law:\n    cut_in: 0 rad/s\n    optimal_from: 1e-3 rad/s\n"
             "    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n    rated_power: %.10g\n"
             "    most_torque: %.10g\n    torque_rate: %.10g\n",
             1 / d->macro_step, ratio, efficiency, 0.99 * power / (rated * rated * rated), rated, power,
