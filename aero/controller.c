@@ -31,6 +31,10 @@ bough_status bough_controller_check(const bough_controller_def *d) {
         return bough_fail(BOUGH_INVALID, "the controller's cut-in speed, optimal gain and proportional gain "
                                          "must not be negative");
     }
+    if (d->motoring && d->optimal_gain > 0) {
+        return bough_fail(BOUGH_INVALID, "a generator with 'motoring' has its torque by the slip alone: "
+                                         "its optimal_gain must be 0");
+    }
     if (!(d->least_pitch < d->most_pitch)) {
         return bough_fail(BOUGH_INVALID, "the controller's least pitch must be below its most");
     }
@@ -46,6 +50,9 @@ bough_status bough_controller_check(const bough_controller_def *d) {
 double bough_controller_torque(const bough_controller_def *d, double speed, double pitch) {
     bool pitched = pitch >= d->power_pitch;
     double torque;
+    if (d->motoring && speed < synchronous(d)) {
+        return fmax(slope(d) * (speed - synchronous(d)), -d->most_torque);
+    }
     if (speed <= d->cut_in) {
         torque = 0;
     } else if (speed >= d->rated_speed && d->above_rated == BOUGH_CONSTANT_TORQUE) {
@@ -86,7 +93,8 @@ void bough_controller_advance(const bough_controller_def *d, double speed, doubl
     s->speed = speed + (s->speed - speed) * exp(-step * d->corner);
     double most = d->torque_rate * step, torque = bough_controller_torque(d, s->speed, s->pitch);
     s->torque = bough_clamp(torque, s->torque - most, s->torque + most);
-    if (speed <= 0) s->torque = 0; // which the filter and the torque's rate would keep while it reverses
+    if (speed <= 0 && !d->motoring)
+        s->torque = 0; // which the filter and the torque's rate would keep while it reverses
     double share = schedule(d, s->pitch), error = s->speed - d->reference_speed;
     // The integral alone must not ask for more than there is.
     double unit = share * d->integral;

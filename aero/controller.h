@@ -9,18 +9,21 @@
 
 #include "core/status.h"
 
+#include <stdbool.h>
+
 typedef enum bough_above_rated { BOUGH_CONSTANT_POWER, BOUGH_CONSTANT_TORQUE } bough_above_rated;
 
 typedef struct bough_controller_def {
-    double corner;                  // of the low-pass filter of the speed [rad/s]
-    double cut_in;                  // no torque below [rad/s]
-    double optimal_from;            // torque = gain·speed² from here … [rad/s]
-    double optimal_gain;            // … at the best tip-speed ratio [N m s²/rad²]
-    double rated_speed;             // constant power or torque from here [rad/s]
-    int above_rated;                // bough_above_rated: which of the two
-    double rated_power;             // mechanical [W]
-    double slip;                    // of the line between the two, share of its synchronous speed [-]
-    double most_torque;             // [N m]
+    double corner;       // of the low-pass filter of the speed [rad/s]
+    double cut_in;       // no torque below [rad/s]
+    double optimal_from; // torque = gain·speed² from here … [rad/s]
+    double optimal_gain; // … at the best tip-speed ratio [N m s²/rad²]
+    double rated_speed;  // constant power or torque from here [rad/s]
+    int above_rated;     // bough_above_rated: which of the two
+    double rated_power;  // mechanical [W]
+    double slip;         // of the line between the two, share of its synchronous speed [-]
+    double most_torque;  // [N m]
+    bool motoring; // an induction generator: below its synchronous speed it drives, down to −most_torque
     double torque_rate;             // the most [N m/s]
     double power_pitch;             // pitch above which the power is constant from optimal_from on [rad]
     double reference_speed;         // of the pitch [rad/s]
@@ -43,8 +46,8 @@ typedef struct bough_controller_state {
     double pitch;    // demanded [rad]
 } bough_controller_state;
 
-// The torque at a filtered speed and a pitch, without its limit in time [N m]. It never drives: none at and
-// below cut-in, positive above.
+// The torque at a filtered speed and a pitch, without its limit in time [N m]. Without `motoring` it never
+// drives: none at and below cut-in, positive above.
 double bough_controller_torque(const bough_controller_def *def, double speed, double pitch);
 
 // Advances by `step` [s] with the measured generator speed [rad/s] and pitch [rad]. The demanded torque and

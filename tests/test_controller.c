@@ -77,6 +77,29 @@ static void torque_never_drives(void **state) {
     }
 }
 
+// From the synchronous speed the line of the slip goes both ways, to the most torque of either sign; GenModel
+// 1 of OpenFAST's ServoDyn.
+static void an_induction_generator_drives_below_its_synchronous_speed(void **state) {
+    (void)state;
+    bough_controller_def d = baseline();
+    const double most = 450, synchronous = 600 * rpm, slip = 0.03;
+    d.motoring = true, d.optimal_gain = 0, d.cut_in = 0, d.optimal_from = 1e-3;
+    d.above_rated = BOUGH_CONSTANT_TORQUE, d.slip = slip, d.most_torque = most, d.torque_rate = 1e9;
+    d.rated_speed = synchronous * (1 + slip), d.rated_power = most * d.rated_speed;
+    bough_status status = bough_controller_check(&d);
+    assert_int_equal(status.code, BOUGH_OK);
+    for (double w = -2 * synchronous; w < 2 * synchronous; w += 0.1) {
+        double expected = bough_clamp(most * (w - synchronous) / (slip * synchronous), -most, most);
+        check_near(bough_controller_torque(&d, w, 0), expected, 1e-9, 1e-9);
+    }
+    bough_controller_state s = {0};
+    for (int k = 0; k < 2; k++) bough_controller_advance(&d, 0, 0, 0.02, &s);
+    check_near(s.torque, -most, 1e-12, 0);
+    d.optimal_gain = 1e-3;
+    status = bough_controller_check(&d);
+    assert_int_equal(status.code, BOUGH_INVALID);
+}
+
 // A rotor that something else stops and turns back: the filter and the rate of the torque keep none.
 static void a_rotor_that_reverses_has_no_torque(void **state) {
     (void)state;
@@ -181,6 +204,7 @@ int main(void) {
         cmocka_unit_test(torque_follows_the_regions),
         cmocka_unit_test(torque_never_drives),
         cmocka_unit_test(a_rotor_that_reverses_has_no_torque),
+        cmocka_unit_test(an_induction_generator_drives_below_its_synchronous_speed),
         cmocka_unit_test(torque_may_stay),
         cmocka_unit_test(limits_hold),
         cmocka_unit_test(speed_is_regulated),

@@ -11,8 +11,7 @@ static void steps(trial *t) {
     snprintf(path, sizeof path, "%s/scene.yaml", t->out);
     bough_session *s = bough_session_open(path, NULL, 0);
     assert_string_equal(bough_session_error(s), "");
-    for (int i = 0; i < 2; i++)
-        assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
+    for (int i = 0; i < 2; i++) assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
     bough_session_close(s);
 }
 
@@ -139,7 +138,7 @@ static void blade_elements_reach_root_and_tip(void **context) {
     static const struct {
         const char *from, *to; // of the last row's span
         int rows;
-        double last[2]; // its span and chord
+        double last[2];                                              // its span and chord
     } trials[] = {{"9.0    0.3", "9.004    0.3", 3, {9, 0.5004995}}, // a few mm beyond
                   {"9.0    0.3", "9.0005   0.3", 3, {9, 0.5000625}},
                   {"9.0    0.3", "10.0    0.3", 3, {9, 0.6}},
@@ -272,10 +271,9 @@ static void two_blades_teeter(void **context) {
 
 static void any_number_of_blades_is_taken(void **context) {
     (void)context;
-    static const edit number[] = {
-        {"parts/elasto.dat", "         3    NumBl", "         1    NumBl"},
-        {"parts/elasto.dat", "         3    NumBl",
-         "5 NumBl\n1 BlPitch(4)\n2 BlPitch(5)\n-3 PreCone(4)\n-2 PreCone(5)"}};
+    static const edit number[] = {{"parts/elasto.dat", "         3    NumBl", "         1    NumBl"},
+                                  {"parts/elasto.dat", "         3    NumBl",
+                                   "5 NumBl\n1 BlPitch(4)\n2 BlPitch(5)\n-3 PreCone(4)\n-2 PreCone(5)"}};
     for (int k = 0; k < 2; k++) {
         trial t = import(&number[k]);
         assert_string_equal(t.status.message, "");
@@ -302,6 +300,7 @@ static void induction_generators_are_lines(void **context) {
     check_near(number(law, "slip"), 0.03, 1e-9, 0);
     check_near(number(law, "most_torque"), 450, 1e-9, 0);
     check_near(number(law, "rated_speed"), 600 * 1.03 * acos(-1.0) / 30, 1e-9, 0);
+    assert_string_equal(text(law, "motoring"), "true");
     steps(&t);
     done(&t);
     const edit circuit = {"parts/servo.dat", "1   VSContrl",
@@ -326,6 +325,122 @@ static void induction_generators_are_lines(void **context) {
     assert_string_equal(t.status.message, "");
     assert_true(list_says(&t, "the user's generator of GenModel 3"));
     done(&t);
+}
+
+// On line by time or by speed, off by time or when the power is negative.
+static void generators_are_switched(void **context) {
+    (void)context;
+    const edit light = {"parts/elasto.dat", "2.0    GenIner", "200    GenIner"};
+    const edit timed = {"parts/servo.dat", "1   VSContrl", "2 TimGenOf\nTrue GenTiStp\n0   VSContrl"};
+    const edit fast = {"parts/servo.dat", "1   VSContrl",
+                       "False GenTiStr\n590 SpdGenOn\nFalse GenTiStp\n0   VSContrl"};
+    trial t = import_with(&timed, &light);
+    assert_string_equal(t.status.message, "");
+    const bough_node *events = at(read_file(&t, "scene.yaml"), "control.events");
+    assert_int_equal(events->n, 1);
+    assert_string_equal(text(events, "0.kind"), "grid-loss");
+    assert_string_equal(text(events, "0.at"), "2 s");
+    steps(&t);
+    done(&t);
+    t = import_with(&fast, &light);
+    assert_string_equal(t.status.message, "");
+    events = at(read_file(&t, "scene.yaml"), "control.events");
+    assert_int_equal(events->n, 2);
+    assert_string_equal(text(events, "0.kind"), "start");
+    assert_string_equal(text(events, "0.channel"), "GenSpeed");
+    check_near(number(events, "0.above"), 590, 0, 0);
+    assert_string_equal(text(events, "1.channel"), "GenPwr");
+    check_near(number(events, "1.below"), 0, 0, 0);
+    steps(&t);
+    done(&t);
+}
+
+// The way of a table of speeds in steps of a line.
+static double way_of(const bough_node *motion, int n) {
+    double sum = 0;
+    char time[2][24], value[2][24];
+    for (int i = 1; i < n; i++) {
+        for (int k = 0; k < 2; k++) {
+            snprintf(time[k], sizeof time[k], "speed.times.%d", i - 1 + k);
+            snprintf(value[k], sizeof value[k], "speed.values.%d", i - 1 + k);
+        }
+        double mean = (number(motion, value[0]) + number(motion, value[1])) / 2;
+        sum += mean * (number(motion, time[1]) - number(motion, time[0]));
+    }
+    return sum;
+}
+
+// What the bearing's spring is fixed to turns from 2 to -10 deg at 3 deg/s, from 1 s on or from the start; so
+// do blades that no library steers. Without the yaw's freedom nothing turns, as in OpenFAST.
+static void manoeuvres_are_motions_of_joints(void **context) {
+    (void)context;
+    for (int begin = 0; begin < 2; begin++) {
+        char line[200];
+        snprintf(
+            line, sizeof line,
+            "%d TYawManS\n3 YawManRat\n-10 NacYawF\n2 YawNeut\n%d TPitManS(2)\n8 PitManRat(2)\n90 BlPitchF(2)\n"
+            "1   VSContrl",
+            begin, begin);
+        const edit turn = {"parts/servo.dat", "1   VSContrl", line};
+        trial t = import_with(&turn, NULL);
+        assert_string_equal(t.status.message, "");
+        const bough_node *yaw = body(&t, "yaw"), *nacelle = body(&t, "nacelle"), *blade = body(&t, "blade2");
+        int n = begin > 0 ? 4 : 3;
+        check_near(way_of(at(yaw, "joint.motion"), n), -12, 0, begin > 0 ? 1e-9 : 0.031);
+        check_near(way_of(at(blade, "joint.motion"), n), -85.5, 0, begin > 0 ? 1e-9 : 0.081);
+        assert_string_equal(text(yaw, "joint.angle"), "2 deg");
+        assert_string_equal(text(nacelle, "joint.parent"), "yaw");
+        assert_string_equal(text(nacelle, "joint.angle"), "-2 deg");
+        assert_string_equal(text(nacelle, "joint.rest"), "0 deg");
+        assert_string_equal(text(body(&t, "blade1"), "joint.kind"), "fixed");
+        assert_false(list_says(&t, "LOAD CASE"));
+        steps(&t);
+        done(&t);
+        t = import_with(&turn, &(edit){"parts/elasto.dat", "True          YawDOF", "False         YawDOF"});
+        assert_string_equal(text(body(&t, "nacelle"), "joint.parent"), "tower");
+        assert_true(list_says(&t, "without YawDOF the nacelle does not turn"));
+        done(&t);
+    }
+    trial t = import(
+        &(edit){"parts/servo.dat", "1   VSContrl", "2 TYawManS\n0 YawManRat\n5 NacYawF\n1   VSContrl"});
+    assert_non_null(strstr(t.status.message, "a rate that is not zero"));
+    done(&t);
+}
+
+// What makes another load case of the run stands first.
+static void another_load_case_is_said_first(void **context) {
+    (void)context;
+    trial t = import(&(edit){"parts/servo.dat", "1   VSContrl", "1 HSSBrMode\n3 THSSBrDp\n1   VSContrl"});
+    assert_string_equal(t.status.message, "");
+    char path[SCRATCH_PATH], line[2][200];
+    snprintf(path, sizeof path, "%s/import.txt", t.out);
+    FILE *list = fopen(path, "r");
+    assert_non_null(list);
+    for (int i = 0; i < 2; i++) assert_non_null(fgets(line[i], sizeof line[i], list));
+    fclose(list);
+    assert_string_equal(line[0], "NOT THE MODEL'S LOAD CASE, which also has:\n");
+    assert_string_equal(line[1], "  THSSBrDp: the brake\n");
+    done(&t);
+}
+
+// The generator is a body of its own, so that RotTorq is the hub's; no body has an inertia that none can
+// have.
+static void rigid_drive_trains_have_a_generator(void **context) {
+    (void)context;
+    const edit rigid = {"parts/elasto.dat", "True          DrTrDOF", "False         DrTrDOF"};
+    const edit teeter = {"parts/elasto.dat", "         3    NumBl", "2 NumBl\nTrue TeetDOF"};
+    for (int i = 0; i < 2; i++) {
+        trial t = import_with(&rigid, i == 0 ? NULL : &teeter);
+        assert_string_equal(t.status.message, "");
+        const bough_node *hub = body(&t, "hub"), *generator = body(&t, "generator");
+        assert_string_equal(text(hub, "joint.kind"), i == 0 ? "fixed" : "revolute");
+        assert_string_equal(text(hub, "joint.parent"), "generator");
+        assert_string_equal(text(read_file(&t, "scene.yaml"), "turbine.rotor"), "generator");
+        check_near(number(hub, "inertia.0"), 600, 0, 0);
+        check_near(number(generator, "inertia.0"), 2 * 30 * 30, 0, 0);
+        steps(&t);
+        done(&t);
+    }
 }
 
 static void generators_that_stay_off_have_no_torque(void **context) {
@@ -395,6 +510,10 @@ int main(void) {
         cmocka_unit_test(two_blades_teeter),
         cmocka_unit_test(any_number_of_blades_is_taken),
         cmocka_unit_test(induction_generators_are_lines),
+        cmocka_unit_test(generators_are_switched),
+        cmocka_unit_test(manoeuvres_are_motions_of_joints),
+        cmocka_unit_test(another_load_case_is_said_first),
+        cmocka_unit_test(rigid_drive_trains_have_a_generator),
         cmocka_unit_test(generators_that_stay_off_have_no_torque),
         cmocka_unit_test(structural_control_is_on_the_list),
         cmocka_unit_test(steep_torque_lines_are_taken),

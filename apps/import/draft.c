@@ -256,11 +256,15 @@ static bool close_all(FILE **file, int n) {
 
 // The list with what the trials have told.
 static bough_status write_list(bough_draft *d, const char *folder) {
-    static const char *const head[BOUGH_N_NOTE] = {"taken", "approximated", "left out", "tried"};
+    static const char *const head[BOUGH_N_NOTE] = {"NOT THE MODEL'S LOAD CASE, which also has", "taken",
+                                                   "approximated", "left out", "tried"};
     FILE **list = &d->file[BOUGH_IMPORT_LIST];
     bool good = close_all(d->note, BOUGH_N_NOTE);
-    for (int i = 0; i < BOUGH_N_NOTE && good; i++)
-        fprintf(*list, "%s:\n%s", head[i], d->note_text[i][0] ? d->note_text[i] : "  nothing\n");
+    for (int i = 0; i < BOUGH_N_NOTE && good; i++) {
+        const char *note = d->note_text[i];
+        if (i == BOUGH_OTHER_CASE && !note[0]) continue;
+        fprintf(*list, "%s:\n%s", head[i], note[0] ? note : "  nothing\n");
+    }
     if (!close_all(list, 1) || !good) return bough_fail(BOUGH_OUT_OF_MEMORY, "memory is exhausted");
     return write_file(folder, d, BOUGH_IMPORT_LIST);
 }

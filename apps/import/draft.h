@@ -11,6 +11,7 @@
 #include <stdio.h>
 
 typedef enum bough_import_note {
+    BOUGH_OTHER_CASE, // left out although the run becomes another than the model's; the first lines
     BOUGH_TAKEN,
     BOUGH_APPROXIMATED,
     BOUGH_LEFT_OUT,

@@ -56,7 +56,7 @@ static void lack(bough_openfast *o, const char *format, ...) {
     va_end(list);
     o->lacks_control = bough_arena_string(o->draft.arena, text);
     o->generator = BOUGH_GENERATOR_DRIVEN;
-    bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
+    bough_draft_note(&o->draft, BOUGH_OTHER_CASE,
                      "%s: the generator keeps its initial speed, %g "
                      "rpm of the rotor, and the pitch is constant",
                      text, bough_deck_number(o->elasto, "RotSpeed"));
@@ -91,7 +91,7 @@ static void find_library(bough_openfast *o) {
     if (torque_mode(o) == LIBRARY) {
         lack(o, "a controller, which --controller FILE of the import gives (%s)", why);
     } else {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "PCMode 5: the pitch is held: %s", why);
+        bough_draft_note(&o->draft, BOUGH_OTHER_CASE, "PCMode 5: the pitch is held: %s", why);
     }
 }
 
@@ -106,9 +106,6 @@ static void find_induction(bough_openfast *o) {
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
     if (model == SIMPLE || model == THEVENIN) o->generator = BOUGH_GENERATOR_LAW;
     if (model != SIMPLE && model != THEVENIN) lack(o, "the user's generator of GenModel %d", model);
-    if (!bough_deck_flag_or(o->servo, "GenTiStr", true)) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "SpdGenOn: the generator works from the start");
-    }
 }
 
 void bough_openfast_generator(bough_openfast *o) {
@@ -201,12 +198,15 @@ static torque_line read_line(bough_openfast *o) {
         return read_variable_speed(o);
     }
     int model = bough_deck_whole_or(o->servo, "GenModel", SIMPLE);
+    if (model == SIMPLE) {
+        bough_draft_note(&o->draft, BOUGH_TAKEN,
+                         "GenModel 1: the generator's torque over its slip, of both signs");
+        return read_simple(o);
+    }
     bough_draft_note(&o->draft, BOUGH_APPROXIMATED,
-                     "GenModel %d: torque grows linearly from the synchronous speed to the "
-                     "pull-out torque and is then constant; below the synchronous speed it "
-                     "is zero",
-                     model);
-    return model == SIMPLE ? read_simple(o) : read_thevenin(o);
+                     "GenModel 2: torque grows linearly with the slip to the pull-out torque and is then "
+                     "constant, of both signs: far below the synchronous speed the circuit drives less");
+    return read_thevenin(o);
 }
 
 // Least slip at which the sampled torque does not hunt: the rate at which the line alone would slow
@@ -245,13 +245,41 @@ static void put_law(bough_openfast *o) {
             "  efficiency: %.10g\n  pitch: false\n  law:\n    corner: %.10g rad/s\n    cut_in: 0 rad/s\n"
             "    optimal_from: %g rad/s\n    optimal_gain: %.10g\n    rated_speed: %.10g rad/s\n"
             "    rated_power: %.10g\n    above_rated: torque\n    slip: %.10g\n"
-            "    most_torque: %.10g\n    torque_rate: 1e9\n    power_pitch: 100 rad\n",
+            "    most_torque: %.10g\n    torque_rate: 1e9\n",
             1 / o->draft.macro_step, bough_deck_number(o->elasto, "GBRatio"),
             bough_deck_number_or(o->servo, "GenEff", 100) / 100, 2 / o->draft.macro_step, least_speed, l.gain,
             full, l.most * full, l.slip, l.most);
-    if (bough_deck_number_or(o->servo, "TimGenOn", 0) > 0) {
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "TimGenOn: the generator works from the start");
+    if (torque_mode(o) == NONE) fputs("    motoring: true\n", o->draft.file[BOUGH_IMPORT_SCENE]);
+}
+
+// When the generator goes on line, and off for good.
+static void put_switches(bough_openfast *o) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    const bough_deck *s = o->servo;
+    bool law = o->generator == BOUGH_GENERATOR_LAW;
+    bool timed = bough_deck_flag_or(s, "GenTiStr", true), stops = bough_deck_flag_or(s, "GenTiStp", true);
+    double on = bough_deck_number_or(s, timed ? "TimGenOn" : "SpdGenOn", 0);
+    double end = bough_deck_number(o->main, "TMax"), off = bough_deck_number_or(s, "TimGenOf", end);
+    bool starts = law && on > 0, by_time = stops && off < end,
+         by_power = !stops && law && torque_mode(o) == NONE;
+    if (on > 0 && !law) {
+        bough_draft_note(&o->draft, BOUGH_OTHER_CASE, "%s: the library controls the torque from the start",
+                         timed ? "TimGenOn" : "SpdGenOn");
     }
+    if (!starts && !by_time && !by_power) return;
+    fputs("  events:\n", file);
+    if (starts && timed) fprintf(file, "    - {kind: start, at: %.10g s}\n", on);
+    if (starts && !timed) fprintf(file, "    - {kind: start, channel: GenSpeed, above: %.10g}\n", on);
+    if (by_time) fprintf(file, "    - {kind: grid-loss, at: %.10g s}\n", off);
+    if (by_power) fputs("    - {kind: grid-loss, channel: GenPwr, below: 0}\n", file);
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "the generator's switches: %s%s%s",
+                     !starts ? ""
+                     : timed ? "TimGenOn"
+                             : "SpdGenOn",
+                     starts && (by_time || by_power) ? ", " : "",
+                     by_time    ? "TimGenOf"
+                     : by_power ? "GenTiStp False"
+                                : "");
 }
 
 // -- library --------------------------------------------------------------------------------------
@@ -277,29 +305,26 @@ static void put_library(bough_openfast *o) {
     }
 }
 
-// Manoeuvres that would begin within the run.
+// Manoeuvres that begin within the run.
 static void note_manoeuvres(bough_openfast *o) {
-    static const char *const start[] = {"TPitManS(1)|TPitManS1", "TYawManS", "TimGenOf", "THSSBrDp"};
-    static const char *const what[] = {"TPitManS: the pitch manoeuvre", "TYawManS: the yaw manoeuvre",
-                                       "TimGenOf: the generator stays on", "THSSBrDp: the brake"};
     double end = bough_deck_number(o->main, "TMax");
-    for (size_t i = 0; i < sizeof start / sizeof *start; i++) {
-        if (bough_deck_number_or(o->servo, start[i], end) >= end) continue;
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "%s", what[i]);
-    }
+    bool brake = bough_deck_whole_or(o->servo, "HSSBrMode", 1) != 0;
+    bool library = o->generator == BOUGH_GENERATOR_LIBRARY;
+    if (library && bough_deck_number_or(o->servo, "TPitManS(1)|TPitManS1", end) < end)
+        bough_draft_note(&o->draft, BOUGH_OTHER_CASE, "TPitManS: the pitch manoeuvre");
+    if (brake && bough_deck_number_or(o->servo, "THSSBrDp", end) < end)
+        bough_draft_note(&o->draft, BOUGH_OTHER_CASE, "THSSBrDp: the brake");
+    if (!bough_deck_flag_or(o->elasto, "YawDOF", false) &&
+        bough_deck_number_or(o->servo, "TYawManS", end) < end)
+        bough_draft_note(&o->draft, BOUGH_TAKEN, "TYawManS: without YawDOF the nacelle does not turn");
 }
 
 // Tuned masses and dampers are flags before OpenFAST 2.5.
 static const bough_openfast_rest rest[] = {
-    {"YCMode", "yaw control", 0},
-    {"HSSBrMode", "the brake", 0},
-    {"NumBStC", "structural control", 0},
-    {"NumNStC", "structural control", 0},
-    {"NumTStC", "structural control", 0},
-    {"NumSStC", "structural control", 0},
-    {"CompNTMD", "structural control", 0},
-    {"CompTTMD", "structural control", 0},
-    {"AfCmode", "flaps and other airfoil control", 0},
+    {"YCMode", "yaw control", 0},          {"NumBStC", "structural control", 0},
+    {"NumNStC", "structural control", 0},  {"NumTStC", "structural control", 0},
+    {"NumSStC", "structural control", 0},  {"CompNTMD", "structural control", 0},
+    {"CompTTMD", "structural control", 0}, {"AfCmode", "flaps and other airfoil control", 0},
 };
 
 void bough_openfast_control(bough_openfast *o) {
@@ -307,12 +332,13 @@ void bough_openfast_control(bough_openfast *o) {
     if (o->generator == BOUGH_GENERATOR_LIBRARY) put_library(o);
     if (o->generator == BOUGH_GENERATOR_LAW) put_law(o);
     if (!o->servo) return;
+    if (o->generator == BOUGH_GENERATOR_LIBRARY || o->generator == BOUGH_GENERATOR_LAW) put_switches(o);
     int pitch = pitch_mode(o);
     if (o->generator == BOUGH_GENERATOR_FREE) {
         bough_draft_note(&o->draft, BOUGH_TAKEN, "TimGenOn: no torque acts on the generator");
     }
     if (pitch != NONE && pitch != LIBRARY && o->generator != BOUGH_GENERATOR_LIBRARY)
-        bough_draft_note(&o->draft, BOUGH_LEFT_OUT, "PCMode %d: the pitch is held", pitch);
+        bough_draft_note(&o->draft, BOUGH_OTHER_CASE, "PCMode %d: the pitch is held", pitch);
     note_manoeuvres(o);
     bough_openfast_leave(o, o->servo, rest, sizeof rest / sizeof *rest);
 }

@@ -2,6 +2,7 @@
 #include "apps/import/openfast.h"
 
 #include <math.h>
+#include <string.h>
 
 // -- tower and nacelle ----------------------------------------------------------------------------
 
@@ -15,24 +16,73 @@ static void put_tower(bough_openfast *o, double top_mass) {
     bough_draft_tower(&o->draft, o->tower_base);
 }
 
+static bool yaws(const bough_openfast *o) {
+    return bough_deck_flag_or(o->elasto, "YawDOF", false) && o->servo;
+}
+
+static double neutral_yaw(const bough_openfast *o) { return bough_deck_number_or(o->servo, "YawNeut", 0); }
+
+// Whether the bearing's spring is turned during the run.
+static bool has_yaw_drive(const bough_openfast *o) {
+    double end = bough_deck_number(o->main, "TMax");
+    return yaws(o) && bough_deck_number_or(o->servo, "TYawManS", end) < end &&
+           bough_deck_number_or(o->servo, "NacYawF", neutral_yaw(o)) != neutral_yaw(o);
+}
+
+// The speed of a joint that turns by `way` [deg] from `start` [s] on, at a constant rate [deg/s], which comes
+// and goes within a macro step; `key` is where the deck has them.
+static void put_manoeuvre(bough_openfast *o, const char *key, double way, double start, double rate) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    double speed = copysign(rate, way), lasts = way / speed;
+    double half = fmin(fmin(o->draft.macro_step / 2, lasts / 4), start > 0 ? start / 2 : HUGE_VAL);
+    if (!(fabs(rate) > 0) || !(start >= 0)) {
+        bough_deck_fail(o->servo, bough_deck_line(o->servo, key),
+                        "%.*s: expected a time from 0 on and a rate that is not zero", (int)strcspn(key, "|"),
+                        key);
+    }
+    fputs("motion: {speed: {times: [", file);
+    if (start > 0) fprintf(file, "%.10g, %.10g, ", start - half, start + half);
+    if (start == 0) fputs("0, ", file);
+    fprintf(file, "%.10g, %.10g], values: [", start + lasts - half, start + lasts + half);
+    if (start > 0) fputs("0 deg/s, ", file);
+    fprintf(file, "%.10g deg/s, %.10g deg/s, 0 deg/s]}}", speed, speed);
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "%.*s: turns by %g deg from %g s on", (int)strcspn(key, "|"),
+                     key, fabs(way), start);
+}
+
+// A body that turns what the spring of the yaw bearing is fixed to.
+static void put_yaw_drive(bough_openfast *o) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    fputs("  - name: yaw # drive, against which the nacelle turns\n    fidelity: rigid\n"
+          "    joint: {kind: revolute, axis: z, parent: tower, ",
+          file);
+    if (o->rigid_tower) fprintf(file, "placement: [move z %.10g m], ", o->tower_top);
+    fprintf(file, "angle: %.10g deg,\n            ", neutral_yaw(o));
+    put_manoeuvre(o, "TYawManS", bough_deck_number(o->servo, "NacYawF") - neutral_yaw(o),
+                  bough_deck_number(o->servo, "TYawManS"), bough_deck_number(o->servo, "YawManRat"));
+    fputs("}\n", file);
+}
+
 static void put_yaw(bough_openfast *o) {
     const bough_deck *e = o->elasto;
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     double yaw = bough_deck_number_or(e, "NacYaw", 0);
-    bool turns = bough_deck_flag_or(e, "YawDOF", false) && o->servo;
-    fprintf(file, "    joint: {kind: %s, parent: tower", turns ? "revolute, axis: z" : "fixed");
-    if (o->rigid_tower || (yaw != 0 && !turns)) {
+    bool turns = yaws(o), driven = has_yaw_drive(o), high = o->rigid_tower && !driven;
+    fprintf(file, "    joint: {kind: %s, parent: %s", turns ? "revolute, axis: z" : "fixed",
+            driven ? "yaw" : "tower");
+    if (high || (yaw != 0 && !turns)) {
         fputs(", placement: [", file);
-        if (o->rigid_tower) fprintf(file, "move z %.10g m", o->tower_top);
-        if (o->rigid_tower && yaw != 0 && !turns) fputs(", ", file);
+        if (high) fprintf(file, "move z %.10g m", o->tower_top);
+        if (high && yaw != 0 && !turns) fputs(", ", file);
         if (yaw != 0 && !turns) fprintf(file, "rotate z %.10g deg", yaw);
         fputs("]", file);
     }
     if (turns) {
         fprintf(file, ", stiffness: %.10g, damping: %.10g", bough_deck_number(o->servo, "YawSpr"),
                 bough_deck_number(o->servo, "YawDamp"));
-        fprintf(file, ", angle: %.10g deg, rest: %.10g deg", yaw,
-                bough_deck_number_or(o->servo, "YawNeut", 0));
+        double neutral = neutral_yaw(o);
+        fprintf(file, ", angle: %.10g deg, rest: %.10g deg", driven ? yaw - neutral : yaw,
+                driven ? 0 : neutral);
         bough_draft_note(&o->draft, BOUGH_TAKEN, "yaw bearing with spring and damper");
     } else if (bough_deck_flag_or(e, "YawDOF", false)) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
@@ -58,6 +108,7 @@ static void put_nacelle(bough_openfast *o) {
                          "about the nacelle's centre of mass");
         polar = 0;
     }
+    if (has_yaw_drive(o)) put_yaw_drive(o);
     fputs("  - name: nacelle\n    fidelity: rigid\n", file);
     put_yaw(o);
     fprintf(file, "    mass: %.10g kg\n    centre_of_mass: [%.10g, %.10g, %.10g]\n", sum, x, y, z);
@@ -104,14 +155,13 @@ static void put_main_joint(bough_openfast *o) {
             speed);
 }
 
-static void put_generator(bough_openfast *o) {
+static void put_generator(bough_openfast *o, bool twists) {
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fputs("  - name: generator # on the slow shaft, against which the hub turns\n"
-          "    fidelity: rigid\n",
-          file);
+    fputs("  - name: generator # on the slow shaft\n    fidelity: rigid\n", file);
     put_main_joint(o);
     fprintf(file, "    inertia: [%.10g, 0, 0]\n", bough_openfast_generator_inertia(o));
-    bough_draft_note(&o->draft, BOUGH_TAKEN, "drive train: spring and damper between hub and generator");
+    bough_draft_note(&o->draft, BOUGH_TAKEN, "drive train: %s between hub and generator",
+                     twists ? "spring and damper" : "rigid");
 }
 
 static void put_spring(bough_openfast *o) {
@@ -126,7 +176,7 @@ static bool teeters(const bough_openfast *o) {
 }
 
 // The pin about which a two-bladed hub teeters, on the shaft.
-static void put_teeter(bough_openfast *o) {
+static void put_teeter(bough_openfast *o, const char *shaft) {
     const bough_deck *e = o->elasto;
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
     bool standard = bough_deck_whole_or(e, "TeetMod", 0) == 1;
@@ -134,9 +184,9 @@ static void put_teeter(bough_openfast *o) {
     double stiffness = standard ? bough_deck_number_or(e, "TeetHSSp", 0) : 0;
     double damping = standard ? bough_deck_number_or(e, "TeetDmp", 0) : 0;
     fprintf(file,
-            "    joint: {kind: revolute, axis: y, parent: shaft, placement: [rotate x %.10g deg], "
+            "    joint: {kind: revolute, axis: y, parent: %s, placement: [rotate x %.10g deg], "
             "angle: %.10g deg",
-            -bough_deck_number_or(e, "Delta3", 0), bough_deck_number_or(e, "TeetDefl", 0));
+            shaft, -bough_deck_number_or(e, "Delta3", 0), bough_deck_number_or(e, "TeetDefl", 0));
     if (damping > 0) fprintf(file, ", damping: %.10g", damping);
     if (stop > 0 && stop < 90 && stiffness > 0) {
         fprintf(file, ", stop: [%.10g rad, %.10g rad], stop_stiffness: %.10g", -stop * radian, stop * radian,
@@ -155,28 +205,38 @@ static double undersling(const bough_openfast *o) {
     return o->n_blade == 2 ? bough_deck_number_or(o->elasto, "UndSling", 0) : 0;
 }
 
+static bool has_generator(const bough_openfast *o) { return bough_openfast_generator_inertia(o) > 0; }
+
+// What turns in the nacelle, or against the generator.
+static void put_shaft_joint(bough_openfast *o, bool twists) {
+    if (twists) {
+        put_spring(o);
+    } else if (has_generator(o)) {
+        fputs("    joint: {kind: fixed, parent: generator}\n", o->draft.file[BOUGH_IMPORT_SCENE]);
+    } else {
+        put_main_joint(o);
+    }
+}
+
 // The hub's frame is on the shaft's axis, of a teetering hub at the pin; HubCM counts from the apex.
 static void put_hub(bough_openfast *o, bool twists) {
     const bough_deck *e = o->elasto;
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    double given = bough_deck_number(e, "HubIner"), about_shaft = given;
-    if (!twists) about_shaft += bough_openfast_generator_inertia(o);
-    if (teeters(o)) {
+    double given = bough_deck_number(e, "HubIner");
+    bool generator_is_shaft = has_generator(o) && !twists;
+    if (teeters(o) && !generator_is_shaft) {
         fputs("  - name: shaft\n    fidelity: rigid\n", file);
-        if (twists) put_spring(o);
-        if (!twists) put_main_joint(o);
+        put_shaft_joint(o, twists);
     }
     fputs("  - name: hub\n    fidelity: rigid\n", file);
     if (teeters(o)) {
-        put_teeter(o);
-    } else if (twists) {
-        put_spring(o);
+        put_teeter(o, generator_is_shaft ? "generator" : "shaft");
     } else {
-        put_main_joint(o);
+        put_shaft_joint(o, twists);
     }
     fprintf(file, "    mass: %.10g kg\n    centre_of_mass: [%.10g, 0, 0]\n", bough_deck_number(e, "HubMass"),
             bough_deck_number_or(e, "HubCM", 0) - undersling(o));
-    fprintf(file, "    inertia: [%.10g, %.10g, %.10g]\n", about_shaft, given / 2,
+    fprintf(file, "    inertia: [%.10g, %.10g, %.10g]\n", given, given / 2,
             o->n_blade == 2 ? given : given / 2);
     bough_draft_note(&o->draft, BOUGH_APPROXIMATED, "hub: inertias about its other axes half of HubIner");
 }
@@ -202,15 +262,36 @@ static void put_tip(bough_openfast *o, int k) {
     bough_draft_note(&o->draft, BOUGH_TAKEN, "TipMass(%d): %g kg", k, mass);
 }
 
+// The joint of a blade: steered by a library, turned by a manoeuvre, or fixed. Its angle is that of the pitch
+// with the opposite sign.
+static void put_blade_joint(bough_openfast *o, int k) {
+    FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
+    char pitch[48], start[48], last[48], rate[48];
+    snprintf(pitch, sizeof pitch, "BlPitch(%d)|BlPitch%d", k, k);
+    snprintf(start, sizeof start, "TPitManS(%d)|TPitManS%d", k, k);
+    snprintf(last, sizeof last, "BlPitchF(%d)|BlPitchF%d", k, k);
+    snprintf(rate, sizeof rate, "PitManRat(%d)|PitManRat%d", k, k);
+    double from = bough_deck_number(o->elasto, pitch), end = bough_deck_number(o->main, "TMax");
+    double to = o->servo ? bough_deck_number_or(o->servo, last, from) : from;
+    if (o->generator == BOUGH_GENERATOR_LIBRARY) {
+        fputs("kind: revolute, axis: z, motion: {angle: 0 deg}", file);
+    } else if (o->servo && bough_deck_number_or(o->servo, start, end) < end && to != from) {
+        fputs("kind: revolute, axis: z, ", file);
+        put_manoeuvre(o, start, from - to, bough_deck_number(o->servo, start),
+                      bough_deck_number(o->servo, rate));
+    } else {
+        fputs("kind: fixed", file);
+    }
+}
+
 static void put_blade(bough_openfast *o, int k) {
     char pitch[48], cone[48];
     snprintf(pitch, sizeof pitch, "BlPitch(%d)|BlPitch%d", k, k);
     snprintf(cone, sizeof cone, "PreCone(%d)|PreCone%d", k, k);
-    bool steered = o->generator == BOUGH_GENERATOR_LIBRARY;
     FILE *file = o->draft.file[BOUGH_IMPORT_SCENE];
-    fprintf(file, "  - name: blade%d\n    fidelity: %s\n    joint: {%s, parent: hub, placement: [", k,
-            o->rigid_blade ? "rigid" : "rod",
-            steered ? "kind: revolute, axis: z, motion: {angle: 0 deg}" : "kind: fixed");
+    fprintf(file, "  - name: blade%d\n    fidelity: %s\n    joint: {", k, o->rigid_blade ? "rigid" : "rod");
+    put_blade_joint(o, k);
+    fputs(", parent: hub, placement: [", file);
     if (undersling(o) != 0) fprintf(file, "move x %.10g m, ", -undersling(o));
     fprintf(file,
             "rotate x %.10g deg, rotate y %.10g deg, move z %.10g m]}\n    pitch: %.10g deg\n"
@@ -222,7 +303,7 @@ static void put_blade(bough_openfast *o, int k) {
 
 static void put_rotor(bough_openfast *o) {
     bool twists = bough_openfast_shaft_twists(o);
-    if (twists) put_generator(o);
+    if (has_generator(o)) put_generator(o, twists);
     if (!twists && bough_deck_flag_or(o->elasto, "DrTrDOF", false)) {
         bough_draft_note(&o->draft, BOUGH_LEFT_OUT,
                          "DrTrDOF: the shaft is rigid, because the generator's inertia or the "
@@ -230,7 +311,7 @@ static void put_rotor(bough_openfast *o) {
     }
     put_hub(o, twists);
     for (int k = 1; k <= o->n_blade; k++) put_blade(o, k);
-    bough_draft_turbine(&o->draft, twists ? "generator" : teeters(o) ? "shaft" : "hub", o->n_blade);
+    bough_draft_turbine(&o->draft, has_generator(o) ? "generator" : teeters(o) ? "shaft" : "hub", o->n_blade);
 }
 
 #define START "the run starts undeformed, without initial displacement"

@@ -25,6 +25,9 @@ static const bough_key law_keys[] = {
     LAW(slip, PURE_NUMBER, "0.1", "0.05",
         "slip of the linear transition from the optimal to the rated torque"),
     LAW(most_torque, MOMENT, "47402.91", "47.4 kN m", "largest torque of the generator"),
+    {KEY(BOOLEAN, motoring), .fallback = "false",
+     .help = "an induction generator: below its synchronous speed, rated_speed / (1 + slip), it drives the "
+             "rotor, by the same line down to -most_torque; needs optimal_gain 0"},
     LAW(torque_rate, PURE_NUMBER, "15000", "12e3", "largest rate of the torque, in N m/s"),
     LAW(power_pitch, ANGLE, "0.01745329 rad", "1 deg",
         "pitch above which the power is constant from optimal_from on, if the pitch is controlled"),
@@ -52,7 +55,7 @@ static const bough_key event_keys[] = {
      CHOICES("start", "stop", "emergency-stop", "grid-loss", "pitch-stuck", "pitch-runaway",
              "pitch-to", "yaw-runaway"),
      .required = true,
-     .help = "start: until then the turbine idles with the pitch of its joints; stop: pitch to "
+     .help = "start: until then the turbine idles, without torque, with the pitch of its joints; stop: pitch to "
              "feather, torque to zero in 10 s and as the rotor stops; emergency-stop: pitch to feather at the largest "
              "rate, no torque; grid-loss: no torque, the pitch is controlled; pitch-stuck: one "
              "blade keeps its pitch; pitch-runaway: one blade pitches to 'angle'; pitch-to: all "
@@ -112,7 +115,8 @@ static const bough_key control_keys[] = {
     {KEY(NUMBER, gear_ratio), .range = "> 0", .fallback = "97", .example = "105",
      .help = "generator speed divided by rotor speed"},
     {KEY(NUMBER, efficiency), .range = "[0, 1]", .fallback = "0.944", .example = "0.965",
-     .help = "electrical power divided by mechanical power of the generator"},
+     .help = "electrical power divided by mechanical power of the generator; the inverse where the generator "
+             "drives the rotor"},
     {KEY(BOOLEAN, pitch), .fallback = "true",
      .help = "controls the pitch of the blades, which need joints that can pitch; false: torque "
              "only"},

@@ -153,13 +153,13 @@ static bool has_pitch_joint(const bough_scene_body *b) {
 
 static void link_event(bough_schema_reader *r, bough_scene *s, int i) {
     bough_scene_event *e = &s->control.event[i];
-    bool pitches = e->kind == BOUGH_SCENE_START || e->kind == BOUGH_SCENE_STOP ||
-                   e->kind == BOUGH_SCENE_EMERGENCY_STOP || e->kind == BOUGH_SCENE_PITCH_TO || e->blade > 0;
+    bool pitches = e->kind == BOUGH_SCENE_STOP || e->kind == BOUGH_SCENE_EMERGENCY_STOP ||
+                   e->kind == BOUGH_SCENE_PITCH_TO || e->blade > 0;
     bough_link_at(r, "control.events[%d]", i);
     if (pitches && s->turbine.n_blade > 0 && s->turbine.blade[0] >= 0 &&
         !has_pitch_joint(&s->body[s->turbine.blade[0]])) {
         bough_schema_error(r, e->node, "", "needs blades on pitch joints: revolute with 'motion'");
-    } else if (pitches && e->kind != BOUGH_SCENE_START && !s->control.pitch) {
+    } else if (pitches && !s->control.pitch) {
         bough_schema_error(r, e->node, "", "needs 'control.pitch: true': no pitch is changed else");
     }
     if (e->blade > s->turbine.n_blade) {
@@ -211,12 +211,12 @@ void bough_link_control(bough_schema_reader *r, bough_scene *s) {
         }
         const bough_scene_body *first = &s->body[s->turbine.blade[0]];
         const bough_scene_body *b = &s->body[s->turbine.blade[k]];
-        if (has_pitch_joint(b) != has_pitch_joint(first)) {
+        if (s->control.pitch && has_pitch_joint(b) != has_pitch_joint(first)) {
             bough_schema_error(r, b->node, "",
                                "blades '%s' and '%s': all or none are pitched by a "
                                "joint with 'motion'",
                                first->name, b->name);
-        } else if (has_pitch_joint(b) && b->joint.axis != 2) {
+        } else if (s->control.pitch && has_pitch_joint(b) && b->joint.axis != 2) {
             bough_schema_error(r, b->node, "", "the pitch joint of '%s' must turn about z", b->name);
         }
     }

@@ -158,9 +158,9 @@ static const bough_channel_row element[] = {
     SAME("AB{a}N{b}Fy", "N/m", "force per length in the rotor plane, positive where it drives the rotor"),
 };
 static const bough_channel_row control[] = {
-    SAME("GenSpeed", "rpm", "speed of the generator, at the last sample of the control: speed of the rotor's joint times the gear ratio"),
+    SAME("GenSpeed", "rpm", "speed of the generator: speed of the rotor's joint times the gear ratio"),
     SAME("GenTq", "kN-m", "torque of the generator at the fast shaft, positive when it brakes, as demanded at the last sample of the control"),
-    SAME("GenPwr", "kW", "electrical power"),
+    SAME("GenPwr", "kW", "electrical power, at the last sample of the control"),
 };
 static const bough_channel_row pitch[] = {
     SAME("BldPitch{a}", "deg", "pitch of the blade: the body's pitch minus the joint's angle, positive towards feather"),

@@ -13,10 +13,10 @@ enum { BLADES = BOUGH_MOST_BLADES };
 // Doubles only.
 typedef struct memory {
     bough_controller_state law;
-    double torque;                            // of the generator, reached at the next sample [N m]
-    double speed;                             // of the generator at the last sample [rad/s]
-    bough_motion_point pitch_joint[BLADES];   // reached at the next sample
-    double nacelle[4];                        // its motion at the last sample: see nacelle_motion
+    double torque;                          // of the generator, reached at the next sample [N m]
+    double speed;                           // of the generator at the last sample [rad/s]
+    bough_motion_point pitch_joint[BLADES]; // reached at the next sample
+    double nacelle[4];                      // its motion at the last sample: see nacelle_motion
     double started;
 } memory;
 
@@ -25,15 +25,13 @@ struct bough_control_link {
     const bough_scene_control *control;
     bough_discon *discon; // NULL: the law
     int load, n_blade;
-    bool steers; // the blades are pitched
-    bough_events *events; // NULL: none
+    bool steers;                                // the blades are pitched
+    bough_events *events;                       // NULL: none
     bough_event_state event[BOUGH_MOST_EVENTS]; // as far as there are events
     memory now;
 };
 
-static int blade_body(const bough_control_link *l, int b) {
-    return l->simulation->scene->turbine.blade[b];
-}
+static int blade_body(const bough_control_link *l, int b) { return l->simulation->scene->turbine.blade[b]; }
 
 static bough_motion_point joint_point(const bough_simulation *s, int body) {
     int q, v;
@@ -138,8 +136,13 @@ static void sense_nacelle(bough_control_link *l, double t, bough_discon_sensed *
     memcpy(last, motion, sizeof motion);
 }
 
-static bough_discon_sensed sense(bough_control_link *l, double t, double step, double speed,
-                                 double azimuth) {
+// The generator's losses lower what it gives and add to what it takes [W].
+static double electrical_power(const bough_scene_control *c, double speed, double torque) {
+    bool takes = torque < 0 && c->efficiency > 0;
+    return takes ? speed * torque / c->efficiency : speed * torque * c->efficiency;
+}
+
+static bough_discon_sensed sense(bough_control_link *l, double t, double step, double speed, double azimuth) {
     const bough_simulation *s = l->simulation;
     bough_discon_sensed x = {.time = t,
                              .step = step,
@@ -150,7 +153,7 @@ static bough_discon_sensed sense(bough_control_link *l, double t, double step, d
                              .rotor_speed = speed / l->control->gear_ratio,
                              .torque = l->now.torque,
                              .shaft_power = speed * l->now.torque,
-                             .electrical_power = l->control->efficiency * speed * l->now.torque,
+                             .electrical_power = electrical_power(l->control, speed, l->now.torque),
                              .wind = hub_wind(s),
                              .azimuth = azimuth - 2 * BOUGH_PI * floor(azimuth / 2 / BOUGH_PI)};
     for (int b = 0; b < l->n_blade; b++) {
@@ -172,16 +175,14 @@ static bough_status take_inputs(const bough_control_link *l, bough_discon_demand
     return bough_ok();
 }
 
-static bough_status decide(bough_control_link *l, const bough_discon_sensed *x,
-                           bough_discon_demand *demand) {
+static bough_status decide(bough_control_link *l, const bough_discon_sensed *x, bough_discon_demand *demand) {
     if (l->events && bough_events_idle(l->events, l->event)) return bough_ok();
     if (l->discon) return bough_discon_call(l->discon, x, demand);
     if (l->control->kind == BOUGH_SCENE_EXTERNAL) return take_inputs(l, demand);
     bough_controller_state *law = &l->now.law;
     bough_controller_advance(&l->control->law, x->generator_speed, x->pitch[0], x->step, law);
     demand->torque = law->torque;
-    for (int b = 0; b < BLADES; b++)
-        demand->pitch[b] = law->pitch;
+    for (int b = 0; b < BLADES; b++) demand->pitch[b] = law->pitch;
     return bough_ok();
 }
 
@@ -219,8 +220,7 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     double before = l->now.started != 0 ? l->now.torque : demand.torque;
     bough_tree_steer_load(s->tree, l->load, t, step, -control->gear_ratio * before,
                           -control->gear_ratio * demand.torque);
-    for (int b = 0; b < l->n_blade && l->steers; b++)
-        steer(l, b, t, step, demand.pitch[b]);
+    for (int b = 0; b < l->n_blade && l->steers; b++) steer(l, b, t, step, demand.pitch[b]);
     *jumped = l->now.started == 0;
     l->now.torque = demand.torque;
     l->now.speed = speed;
@@ -232,11 +232,10 @@ bough_sampled_load bough_control_link_load(bough_control_link *link) {
     return (bough_sampled_load){1 / link->control->rate, link, sample, NULL, NULL};
 }
 
-void bough_control_link_generator(const bough_control_link *l, double *speed, double *torque,
-                                  double *power) {
+void bough_control_link_generator(const bough_control_link *l, double *speed, double *torque, double *power) {
     *speed = l->now.speed;
     *torque = l->now.torque;
-    *power = l->control->efficiency * l->now.speed * l->now.torque;
+    *power = electrical_power(l->control, l->now.speed, l->now.torque);
 }
 
 void bough_control_link_snapshot(bough_control_link *link, bough_snapshot *s) {

@@ -460,9 +460,10 @@ static void add_fmus(bough_simulation *s, bough_channels *list) {
 static void sample_control(void *self, double t, double *value) {
     (void)t;
     const bough_simulation *s = self;
-    double speed, torque, power;
+    double angle, speed, torque, power;
     bough_control_link_generator(s->control, &speed, &torque, &power);
-    value[0] = speed / RPM;
+    joint_state(s, s->scene->turbine.rotor, &angle, &speed);
+    value[0] = s->scene->control.gear_ratio * speed / RPM;
     value[1] = torque / 1e3;
     value[2] = power / 1e3;
     for (int b = 0; b < s->scene->turbine.n_blade; b++) {
