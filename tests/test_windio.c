@@ -207,6 +207,11 @@ static void missing_masses_are_asked_for(void **context) {
     t = import_of("turbine-2.yaml", &nacelle);
     assert_non_null(strstr(t.status.message, ": expected the mass of the nacelle"));
     done(&t);
+    t = import_given("turbine-1.yaml", NULL, &(bough_import_options){.hub_mass = 2500, .nacelle_mass = 9000});
+    check_near(number(read_file(&t, "scene.yaml"), "bodies.2.mass"), 3000, 1e-9, 0);
+    assert_true(list_says(&t, "--hub-mass: the file has the mass of the hub"));
+    assert_true(list_says(&t, "--nacelle-mass: the file has the mass of the nacelle"));
+    done(&t);
     t = import_given("turbine-2.yaml", &nacelle, &(bough_import_options){.nacelle_mass = 9000});
     assert_string_equal(t.status.message, "");
     check_near(number(read_file(&t, "scene.yaml"), "bodies.1.mass"), 9000 + 1000, 1e-9, 0);

@@ -254,7 +254,7 @@ static bool close_all(FILE **file, int n) {
     return good;
 }
 
-// The list with what the trials have told.
+// The list, with the lines of the trials.
 static bough_status write_list(bough_draft *d, const char *folder) {
     static const char *const head[BOUGH_N_NOTE] = {"NOT THE MODEL'S LOAD CASE, which also has", "taken",
                                                    "approximated", "left out", "tried"};

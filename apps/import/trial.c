@@ -34,9 +34,9 @@ static bool calls_library(const bough_scene *scene) {
     return scene->control.node && scene->control.kind == BOUGH_SCENE_BLADED;
 }
 
-// Of a process that ended without a result.
+// Of a process that ended without a result: by a signal, or because the library ended it.
 static bough_status crash_of(const bough_scene *scene, int end) {
-    const char *signal = WIFSIGNALED(end) ? strsignal(WTERMSIG(end)) : "it ended the process";
+    const char *signal = WIFSIGNALED(end) ? strsignal(WTERMSIG(end)) : "the program ends";
     if (!calls_library(scene)) return bough_fail(BOUGH_INVALID, "the first steps crash: %s", signal);
     return bough_fail(BOUGH_INVALID,
                       "the controller's library '%.200s' crashes in its first calls: %s; --controller FILE "
@@ -60,8 +60,8 @@ bough_status bough_import_trial(bough_arena *arena, bough_scene *scene, int step
     if (child == 0) {
         silence();
         status = take_steps(arena, scene, steps, bound);
-        bool told = write(ends[1], &status, sizeof status) == (ssize_t)sizeof status;
-        _exit(told ? 0 : 1);
+        bool whole = write(ends[1], &status, sizeof status) == (ssize_t)sizeof status;
+        _exit(whole ? 0 : 1);
     }
     close(ends[1]);
     ssize_t got = child > 0 ? read(ends[0], &status, sizeof status) : 0;

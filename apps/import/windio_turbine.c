@@ -91,9 +91,18 @@ static double given_mass(bough_windio *w, const bough_node *part, const char *na
     return given;
 }
 
+// A mass that the file has counts more than the user's.
+static void leave_given(bough_windio *w, const char *name, double given) {
+    if (!(given > 0)) return;
+    bough_draft_note(&w->draft, BOUGH_LEFT_OUT, "--%s-mass: the file has the mass of the %s", name, name);
+}
+
 static lump hub_lump(bough_windio *w) {
     lump l;
-    if (read_lump(w, w->hub, &l)) return l;
+    if (read_lump(w, w->hub, &l)) {
+        leave_given(w, "hub", w->options->hub_mass);
+        return l;
+    }
     double mass = given_mass(w, w->hub, "hub", w->options->hub_mass);
     double inertia = 2.0 / 3 * mass * w->hub_radius * w->hub_radius;
     bough_draft_note(&w->draft, BOUGH_APPROXIMATED, "hub: its inertia is that of a shell of its radius");
@@ -123,15 +132,20 @@ static bool assembly_lump(bough_windio *w, double overhang, double hub, lump *l)
     return true;
 }
 
+// The file's mass of the nacelle; false: there is none.
+static bool read_nacelle(bough_windio *w, double overhang, double hub, lump *l) {
+    bool own = bough_entry(w->train, "elastic_properties_mb|elastic_properties.system_mass|mass");
+    if (!own && assembly_lump(w, overhang, hub, l)) return true;
+    if (!read_lump(w, w->train, l)) return false;
+    if (w->second && !bough_entry(w->train, "elastic_properties.inertia_tt")) move_to_centre(l);
+    add_yaw(w, l);
+    return true;
+}
+
 static lump nacelle_lump(bough_windio *w, double overhang, double hub) {
     lump l;
-    if (!bough_entry(w->train, "elastic_properties_mb|elastic_properties.system_mass|mass") &&
-        assembly_lump(w, overhang, hub, &l)) {
-        return l;
-    }
-    if (read_lump(w, w->train, &l)) {
-        if (w->second && !bough_entry(w->train, "elastic_properties.inertia_tt")) move_to_centre(&l);
-        add_yaw(w, &l);
+    if (read_nacelle(w, overhang, hub, &l)) {
+        leave_given(w, "nacelle", w->options->nacelle_mass);
         return l;
     }
     double mass = given_mass(w, w->train, "nacelle", w->options->nacelle_mass);
