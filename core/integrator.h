@@ -46,16 +46,11 @@ typedef struct bough_ode {
     void *self;
     // f: rate (n)
     bool (*derivative)(void *self, double t, const double *y, double *rate);
-    // The same at another time, y being that of the last call: may be cheaper. NULL: it is not.
-    bool (*derivative_again)(void *self, double t, const double *y, double *rate);
+    // f at two times, rate[0] and rate[1] (n): may be cheaper than twice the above. NULL: it is not.
+    bool (*derivative_twice)(void *self, const double t[2], const double *y, double *const rate[2]);
     bool (*linearise)(void *self, double t, const double *y); // tangents of f
     bool (*factor)(void *self, double gamma);                 // I − γ ∂f/∂y of the last tangents
     void (*solve)(void *self, double *x);                     // in place
-    // x ← (I − γ ∂f/∂y)⁻¹ r, r made of f in x by `right`, and work on parts: see system.h. NULL: by the three
-    // of them, and there is one part.
-    bool (*stage)(void *self, double t, const double *y, bough_stage_terms terms, double *x);
-    void (*each)(void *self, bough_part_work work, void *data);
-    int n_part;
 } bough_ode;
 
 typedef enum bough_integrator_kind {

@@ -12,41 +12,34 @@
 
 #include <stdbool.h>
 
-// A stage's state and right side, entries first … last − 1 at a time.
-typedef struct bough_stage_terms {
-    void *self;
-    void (*set_state)(void *self, int first, int last); // before it is used
-    void (*set_right)(void *self, int first, int last); // of the rates that stand in its place
-    bool again; // the state is that of the last evaluation
-} bough_stage_terms;
-
-// Work on part `part` of the states, entries first … last − 1.
-typedef void (*bough_part_work)(void *data, int part, int first, int last);
+// One evaluation of f and h together.
+typedef struct bough_evaluation {
+    double t;            // [s]
+    const double *input; // (n_input)
+    double *rate;        // (n_state) f
+    double *output;      // (n_output) h; NULL: not asked for
+} bough_evaluation;
 
 typedef struct bough_system_ops {
     // f: rate (n_state). False when the value is not finite.
-    bool (*derivative)(void *self, double t, const double *state, const double *input,
-                       double *rate);
+    bool (*derivative)(void *self, double t, const double *state, const double *input, double *rate);
 
     // h: output (n_output).
     void (*output)(void *self, double t, const double *state, const double *input, double *output);
 
     // ∂h/∂y·state_rate + ∂h/∂u·input_rate: output_rate (n_output). Either rate may be NULL for 0.
     void (*output_tangent)(void *self, double t, const double *state, const double *input,
-                           const double *state_rate, const double *input_rate,
-                           double *output_rate);
+                           const double *state_rate, const double *input_rate, double *output_rate);
 
     // ∂f/∂u: column (n_input × n_state), column j = ∂f/∂u_j as row j of the array.
-    void (*input_columns)(void *self, double t, const double *state, const double *input,
-                          double *column);
+    void (*input_columns)(void *self, double t, const double *state, const double *input, double *column);
 
     // Memory for one linearisation and its factors in the arena. It belongs to the caller: no
     // other call changes it.
     void *(*factors)(void *self, bough_arena *arena);
 
     // Linearises f about (t, state, input). False when the tangents are not finite.
-    bool (*linearise)(void *self, double t, const double *state, const double *input,
-                      void *factors);
+    bool (*linearise)(void *self, double t, const double *state, const double *input, void *factors);
 
     // Factors I − γ ∂f/∂y of the last linearisation. False when singular.
     bool (*factor)(void *self, void *factors, double gamma);
@@ -56,31 +49,18 @@ typedef struct bough_system_ops {
 
     // -- optional: may be NULL ------------------------------------------------------------------
 
-    // f at another time and input, for the state of the last call of derivative. Cheaper than
-    // derivative. Between both calls only outputs may be evaluated.
-    bool (*derivative_again)(void *self, double t, const double *state, const double *input,
-                             double *rate);
-
-    // h at the time, state and input of the last call of derivative or derivative_again. Cheaper than output.
-    void (*output_again)(void *self, double t, const double *state, const double *input, double *output);
-
-    // x ← (I − γJ)⁻¹ r, r made of f in x by `terms`, as is the state: derivative, right side and solve for
-    // one part after the other. For systems without inputs. x is complete in the terms of the next stage, and
-    // after each.
-    bool (*stage)(void *self, void *factors, double t, const double *state, bough_stage_terms terms,
-                  double *x);
-
-    // Completes the x of the last stage, and then does work on each part, in parallel. With stage only.
-    void (*each)(void *self, void *factors, bough_part_work work, void *data);
+    // f and h of one state at n times and inputs; cheaper than one call for each. False when a rate is not
+    // finite. The first is as from derivative and output; in the others a system may neglect some of the
+    // change of its inner forces with time, and documents what.
+    bool (*evaluate)(void *self, const double *state, int n, const bough_evaluation *at);
 
     // ∂h/∂t: drift (n_output). NULL: 0.
-    void (*output_drift)(void *self, double t, const double *state, const double *input,
-                         double *drift);
+    void (*output_drift)(void *self, double t, const double *state, const double *input, double *drift);
 
     // As output_tangent at the point where `factors` were last linearised, computed from what they store.
     // False when they do not store it.
-    bool (*kept_tangent)(void *self, const void *factors, const double *state_rate,
-                         const double *input_rate, double *output_rate);
+    bool (*kept_tangent)(void *self, const void *factors, const double *state_rate, const double *input_rate,
+                         double *output_rate);
 
     // Projects a state that was integrated to t onto its constraints: prescribed motions, quaternions
     // of length 1. True when the change is so large that a multistep method must restart.
@@ -92,18 +72,17 @@ typedef struct bough_system_ops {
 } bough_system_ops;
 
 // The required operations, for static functions that have the names above.
-#define BOUGH_SYSTEM_REQUIRED                                                              \
-    .derivative = derivative, .output = output, .output_tangent = output_tangent,          \
-    .input_columns = input_columns, .factors = factors, .linearise = linearise,            \
-    .factor = factor, .solve = solve
+#define BOUGH_SYSTEM_REQUIRED                                                                                \
+    .derivative = derivative, .output = output, .output_tangent = output_tangent,                            \
+    .input_columns = input_columns, .factors = factors, .linearise = linearise, .factor = factor,            \
+    .solve = solve
 
 typedef struct bough_system {
-    const char *name;      // as the scene names it, for messages
-    const char *kind;      // "tree", "rod", …
+    const char *name; // as the scene names it, for messages
+    const char *kind; // "tree", "rod", …
     int n_state, n_input, n_output;
     const double *scale;   // error scale of each state (n_state): tolerance = rtol · scale
     const double *initial; // (n_state) where a run starts
-    int n_part;            // of stage and each
     const bough_system_ops *ops;
     void *self;
 } bough_system;

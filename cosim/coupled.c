@@ -20,8 +20,7 @@ static void run_member(void *data, int k) {
     w->work(w->coupled, i);
 }
 
-// Followers first: what a leader gets from one that failed means nothing.
-static bough_status first_failure(const bough_coupled *coupled) {
+bough_status bough_coupled_failure(const bough_coupled *coupled) {
     for (int k = 0; k < coupled->assembly->n_member; k++) {
         const bough_status *status = &coupled->status[coupled->order[k]];
         if (!bough_is_ok(status)) return *status;
@@ -35,18 +34,16 @@ static bough_status each(bough_coupled *a, int whom, void (*work)(bough_coupled 
     int n = whom == ALL ? n_member : whom == LEADERS ? n_leader : a->n_follower;
     member_work w = {a, whom == LEADERS ? a->order + a->n_follower : a->order, work};
     bough_pool_run(a->pool, n, run_member, &w);
-    return first_failure(a);
+    return bough_coupled_failure(a);
 }
 
 // -- evaluation -----------------------------------------------------------------------------------
 
-static void find_output(bough_coupled *coupled, int i, bool again) {
+static void find_output(bough_coupled *coupled, int i) {
     const bough_assembly *a = coupled->assembly;
     const bough_system *s = &a->member[i]->system;
-    void (*h)(void *, double, const double *, const double *, double *) = s->ops->output;
-    if (again && s->ops->output_again) h = s->ops->output_again;
-    h(s->self, coupled->time, coupled->at + a->state_offset[i], coupled->input + a->input_offset[i],
-      coupled->output + a->output_offset[i]);
+    s->ops->output(s->self, coupled->time, coupled->at + a->state_offset[i],
+                   coupled->input + a->input_offset[i], coupled->output + a->output_offset[i]);
 }
 
 // In an order that needs no iteration: of the leaders only, or of all.
@@ -56,7 +53,7 @@ static void find_outputs(bough_coupled *coupled, bool all) {
         int i = a->order[n];
         if (!all && !a->leads[i]) continue;
         bough_assembly_gather(a, i, coupled->output, coupled->input);
-        find_output(coupled, i, false);
+        find_output(coupled, i);
     }
 }
 
@@ -68,42 +65,53 @@ void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state)
         bough_assembly_gather(coupled->assembly, i, coupled->output, coupled->input);
 }
 
-static void begin_rates(bough_coupled *coupled, double t, const double *state, double *rate) {
+void bough_coupled_begin_rates(bough_coupled *coupled, double t, const double *state, double *rate) {
     coupled->time = t;
     coupled->at = state;
     coupled->x = rate;
     find_outputs(coupled, !coupled->assembly->followers_last);
 }
 
-// The member's rate, and a follower's outputs with it, on which the leaders' inputs wait.
-static void evaluate_by(bough_coupled *coupled, int i,
-                        bool (*f)(void *self, double t, const double *state, const double *input,
-                                  double *rate)) {
-    const bough_assembly *a = coupled->assembly;
-    const bough_system *s = &a->member[i]->system;
-    bough_assembly_gather(a, i, coupled->output, coupled->input);
-    if (!f(s->self, coupled->time, coupled->at + a->state_offset[i],
-           coupled->input + a->input_offset[i], coupled->x + a->state_offset[i])) {
-        coupled->status[i] =
-            bough_fail(BOUGH_FAILED, "%s: no finite rate of change at %.6g s", s->name, a->member[i]->time);
+bool bough_coupled_outputs_first(const bough_coupled *coupled, int i) {
+    return !coupled->assembly->followers_last || coupled->assembly->leads[i];
+}
+
+// Both by one call where the system has one.
+static bool evaluate_separately(const bough_system *s, const double *state, int n,
+                                const bough_evaluation *at) {
+    for (int k = 0; k < n; k++) {
+        if (!s->ops->derivative(s->self, at[k].t, state, at[k].input, at[k].rate)) return false;
+        if (at[k].output) s->ops->output(s->self, at[k].t, state, at[k].input, at[k].output);
     }
-    if (a->followers_last && !a->leads[i]) find_output(coupled, i, true);
+    return true;
 }
 
-static void evaluate(bough_coupled *coupled, int i) {
-    evaluate_by(coupled, i, coupled->assembly->member[i]->system.ops->derivative);
+void bough_coupled_rates_of(bough_coupled *const *which, int n, int i) {
+    const bough_assembly *a = which[0]->assembly;
+    const bough_member *m = a->member[i];
+    const double *state = which[0]->at + a->state_offset[i];
+    bool waited_for = !bough_coupled_outputs_first(which[0], i);
+    bough_evaluation at[BOUGH_COUPLED_TIMES];
+    for (int k = 0; k < n; k++) {
+        bough_coupled *c = which[k];
+        bough_assembly_gather(a, i, c->output, c->input);
+        at[k] = (bough_evaluation){c->time, c->input + a->input_offset[i], c->x + a->state_offset[i],
+                                   waited_for ? c->output + a->output_offset[i] : NULL};
+        c->status[i].code = BOUGH_OK;
+    }
+    bool finite = m->system.ops->evaluate ? m->system.ops->evaluate(m->system.self, state, n, at)
+                                          : evaluate_separately(&m->system, state, n, at);
+    if (finite) return;
+    which[0]->status[i] =
+        bough_fail(BOUGH_FAILED, "%s: no finite rate of change at %.6g s", m->system.name, m->time);
 }
 
-static void evaluate_again(bough_coupled *coupled, int i) {
-    const bough_system_ops *ops = coupled->assembly->member[i]->system.ops;
-    evaluate_by(coupled, i, ops->derivative_again ? ops->derivative_again : ops->derivative);
-}
+static void rate_of(bough_coupled *coupled, int i) { bough_coupled_rates_of(&coupled, 1, i); }
 
-bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state,
-                                double *rate) {
-    begin_rates(coupled, t, state, rate);
-    bough_status status = each(coupled, FOLLOWERS, evaluate);
-    return bough_is_ok(&status) ? each(coupled, LEADERS, evaluate) : status;
+bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state, double *rate) {
+    bough_coupled_begin_rates(coupled, t, state, rate);
+    bough_status status = each(coupled, FOLLOWERS, rate_of);
+    return bough_is_ok(&status) ? each(coupled, LEADERS, rate_of) : status;
 }
 
 // -- factors --------------------------------------------------------------------------------------
@@ -143,8 +151,8 @@ static void respond(bough_coupled *coupled, int i) {
 
 static bool factor_border(bough_coupled *coupled);
 
-void bough_coupled_borrow(bough_coupled *coupled, bough_condensed *interface, double t,
-                          const double *state, const double *input, double gamma) {
+void bough_coupled_borrow(bough_coupled *coupled, bough_condensed *interface, double t, const double *state,
+                          const double *input, double gamma) {
     const bough_assembly *a = coupled->assembly;
     memcpy(coupled->setup_state, state, (size_t)a->n_state * sizeof(double));
     memcpy(coupled->setup_input, input, (size_t)a->n_input * sizeof(double));
@@ -153,8 +161,7 @@ void bough_coupled_borrow(bough_coupled *coupled, bough_condensed *interface, do
     coupled->interface = interface;
 }
 
-void bough_coupled_linearise(bough_coupled *coupled, double t, const double *state,
-                             const double *input) {
+void bough_coupled_linearise(bough_coupled *coupled, double t, const double *state, const double *input) {
     bough_coupled_borrow(coupled, coupled->own, t, state, input, coupled->gamma);
     coupled->linearised = false;
 }
@@ -163,7 +170,7 @@ bough_status bough_coupled_factor(bough_coupled *coupled, double gamma) {
     assert(coupled->own != NULL && coupled->interface == coupled->own);
     coupled->gamma = gamma;
     bough_pool_run(coupled->pool, coupled->assembly->n_member, factor, coupled);
-    bough_status status = first_failure(coupled);
+    bough_status status = bough_coupled_failure(coupled);
     if (!bough_is_ok(&status)) return status;
     coupled->linearised = true;
     each(coupled, FOLLOWERS, respond);
@@ -171,8 +178,8 @@ bough_status bough_coupled_factor(bough_coupled *coupled, double gamma) {
     return bough_fail(BOUGH_RETRY, "the interface's Newton matrix is singular");
 }
 
-bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state,
-                                 const double *input, double gamma) {
+bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state, const double *input,
+                                 double gamma) {
     bough_coupled_linearise(coupled, t, state, input);
     return bough_coupled_factor(coupled, gamma);
 }
@@ -180,8 +187,7 @@ bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double 
 // -- solution -------------------------------------------------------------------------------------
 
 // The outputs' change with x and the inputs' change δu, which may be NULL.
-static void find_output_change(bough_coupled *coupled, int i, const double *x,
-                               const double *change) {
+static void find_output_change(bough_coupled *coupled, int i, const double *x, const double *change) {
     bough_operating_point at = operating_point(coupled, i);
     bough_condensed_output_change(coupled->interface, i, &at, x, change,
                                   coupled->output_change + coupled->assembly->output_offset[i]);
@@ -216,23 +222,16 @@ static void solve_follower(bough_coupled *coupled, int i) {
     find_output_change(coupled, i, x, outside);
 }
 
-static void prepare(bough_coupled *coupled, int i) {
-    if (coupled->user.before) coupled->user.before(coupled->user.self, i);
+void bough_coupled_begin_solution(bough_coupled *coupled, const double *outside, double *x) {
+    coupled->x = x;
+    coupled->outside = outside;
 }
 
-// The followers' preparation, their solutions, then the leaders, which may wait for what followers prepare.
-static void prepare_or_solve(void *self, int k) {
-    bough_coupled *coupled = self;
-    int n = coupled->n_follower;
-    if (k < n) {
-        prepare(coupled, coupled->order[k]);
-    } else if (k < 2 * n) {
-        bough_pool_await(coupled->pool, k - n);
-        solve_follower(coupled, coupled->order[k - n]);
+void bough_coupled_solve_of(bough_coupled *coupled, int i) {
+    if (coupled->assembly->leads[i]) {
+        solve_leader(coupled, i);
     } else {
-        for (int j = 0; j < n; j++) bough_pool_await(coupled->pool, j);
-        prepare(coupled, coupled->order[k - n]);
-        solve_leader(coupled, coupled->order[k - n]);
+        solve_follower(coupled, i);
     }
 }
 
@@ -257,88 +256,26 @@ static void gather_all_changes(bough_coupled *coupled) {
     }
 }
 
-void bough_coupled_complete(bough_coupled *coupled, int i) {
-    const bough_assembly *a = coupled->assembly;
-    if (coupled->incomplete == NULL) return;
-    bough_condensed_add_response(coupled->interface, i, coupled->led + a->input_offset[i],
-                                 coupled->incomplete + a->state_offset[i]);
-}
-
-static void solve_free(bough_coupled *coupled, double *x) {
-    coupled->incomplete = NULL;
-    bough_coupled_solve_driven(coupled, NULL, x, (bough_coupled_user){0});
-    bough_coupled_each(coupled, NULL, NULL);
-}
-
-void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
-                                bough_coupled_user user) {
-    coupled->x = x;
-    coupled->outside = outside;
-    coupled->user = user;
-    bough_pool_run(coupled->pool, coupled->assembly->n_member + coupled->n_follower, prepare_or_solve,
-                   coupled);
+void bough_coupled_solve_interface(bough_coupled *coupled) {
     gather_all_changes(coupled);
     bough_condensed_solve(coupled->interface, coupled->change);
     for (int j = 0; j < coupled->assembly->n_input; j++)
-        coupled->led[j] = coupled->change[j] - (outside ? outside[j] : 0);
-    coupled->incomplete = x;
+        coupled->led[j] = coupled->change[j] - (coupled->outside ? coupled->outside[j] : 0);
 }
 
-typedef struct stage_work {
-    bough_coupled *evaluation, *coupled;
-    bough_stage_terms terms;
-} stage_work;
-
-static void set_state(const stage_work *w, int i) {
-    const int *offset = w->evaluation->assembly->state_offset + i;
-    bough_coupled_complete(w->coupled, i);
-    w->terms.set_state(w->terms.self, offset[0], offset[1]);
+void bough_coupled_respond(const bough_coupled *coupled, int i, double *x) {
+    const bough_assembly *a = coupled->assembly;
+    bough_condensed_add_response(coupled->interface, i, coupled->led + a->input_offset[i],
+                                 x + a->state_offset[i]);
 }
 
-// Whether a member's state is set with its rate; else it is needed earlier, for the first outputs.
-static bool comes_late(const bough_assembly *a, int i) { return a->followers_last && !a->leads[i]; }
+static void complete(bough_coupled *coupled, int i) { bough_coupled_respond(coupled, i, coupled->x); }
 
-static void find_right_side(void *self, int i) {
-    const stage_work *w = self;
-    const int *offset = w->evaluation->assembly->state_offset + i;
-    w->evaluation->status[i].code = BOUGH_OK;
-    if (comes_late(w->evaluation->assembly, i)) set_state(w, i);
-    if (w->terms.again) {
-        evaluate_again(w->evaluation, i);
-    } else {
-        evaluate(w->evaluation, i);
-    }
-    w->terms.set_right(w->terms.self, offset[0], offset[1]);
-}
-
-bough_status bough_coupled_stage(bough_coupled *evaluation, bough_coupled *coupled, double t,
-                                 const double *state, bough_stage_terms terms, double *x) {
-    stage_work w = {evaluation, coupled, terms};
-    for (int i = 0; i < evaluation->assembly->n_member; i++)
-        if (!comes_late(evaluation->assembly, i)) set_state(&w, i);
-    begin_rates(evaluation, t, state, x);
-    bough_coupled_solve_driven(coupled, NULL, x, (bough_coupled_user){&w, find_right_side});
-    return first_failure(evaluation);
-}
-
-typedef struct part_work {
-    bough_coupled *coupled;
-    bough_part_work work;
-    void *data;
-} part_work;
-
-static void work_on_part(void *self, int k) {
-    const part_work *w = self;
-    int i = w->coupled->order[k];
-    const int *offset = w->coupled->assembly->state_offset + i;
-    bough_coupled_complete(w->coupled, i);
-    if (w->work) w->work(w->data, i, offset[0], offset[1]);
-}
-
-void bough_coupled_each(bough_coupled *coupled, bough_part_work work, void *data) {
-    part_work w = {coupled, work, data};
-    bough_pool_run(coupled->pool, coupled->assembly->n_member, work_on_part, &w);
-    coupled->incomplete = NULL;
+void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x) {
+    bough_coupled_begin_solution(coupled, outside, x);
+    each(coupled, ALL, bough_coupled_solve_of);
+    bough_coupled_solve_interface(coupled);
+    each(coupled, ALL, complete);
 }
 
 void bough_coupled_close(bough_coupled *coupled, double *outside) {
@@ -362,7 +299,7 @@ static bool factor_border(bough_coupled *coupled) {
         double *column = coupled->border + (size_t)j * n;
         memset(column, 0, (size_t)n * sizeof *column);
         column[coupled->held[j]] = 1;
-        solve_free(coupled, column);
+        bough_coupled_solve_driven(coupled, NULL, column);
         for (int i = 0; i < held; i++) {
             coupled->multiplier[j * held + i] = column[coupled->held[i]];
         }
@@ -372,18 +309,15 @@ static bool factor_border(bough_coupled *coupled) {
 
 void bough_coupled_solve(bough_coupled *coupled, double *x) {
     int n = coupled->assembly->n_state, held = coupled->n_held;
-    solve_free(coupled, x);
+    bough_coupled_solve_driven(coupled, NULL, x);
     if (held == 0) return;
-    for (int i = 0; i < held; i++)
-        coupled->share[i] = x[coupled->held[i]];
+    for (int i = 0; i < held; i++) coupled->share[i] = x[coupled->held[i]];
     bough_dense_solve(held, 1, coupled->multiplier, coupled->held_pivot, coupled->share);
     for (int j = 0; j < held; j++) {
         const double *column = coupled->border + (size_t)j * n;
-        for (int k = 0; k < n; k++)
-            x[k] -= coupled->share[j] * column[k];
+        for (int k = 0; k < n; k++) x[k] -= coupled->share[j] * column[k];
     }
-    for (int i = 0; i < held; i++)
-        x[coupled->held[i]] = 0;
+    for (int i = 0; i < held; i++) x[coupled->held[i]] = 0;
 }
 
 // -- memory ---------------------------------------------------------------------------------------
@@ -419,16 +353,14 @@ bough_coupled *bough_coupled_create_evaluation(bough_arena *arena, const bough_a
     return a;
 }
 
-bough_coupled *bough_coupled_create(bough_arena *arena, const bough_assembly *assembly,
-                                  bough_pool *pool) {
+bough_coupled *bough_coupled_create(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool) {
     bough_coupled *a = bough_coupled_create_evaluation(arena, assembly, pool);
     take_solution(a, arena);
     a->interface = a->own = bough_condensed_create(arena, assembly);
     return a;
 }
 
-void bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n,
-                                const int *held) {
+void bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n, const int *held) {
     size_t count = (size_t)n;
     coupled->n_held = n;
     coupled->held = held;

@@ -8,12 +8,6 @@
 #include "core/pool.h"
 #include "cosim/condense.h"
 
-// Further work for a member by the thread that solves for it: preparing its part of x.
-typedef struct bough_coupled_user {
-    void *self;
-    void (*before)(void *self, int member); // NULL: nothing
-} bough_coupled_user;
-
 typedef struct bough_coupled {
     const bough_assembly *assembly;
     bough_pool *pool;       // NULL: one thread
@@ -26,7 +20,6 @@ typedef struct bough_coupled {
     const double *at; // (n_state)
     double gamma;
     double *x;
-    double *incomplete; // (n_state) the last solution, without the members' responses; NULL: none
 
     // factors
     bool linearised; // at the place of setup
@@ -35,7 +28,6 @@ typedef struct bough_coupled {
     double *setup_input;              // (n_input)
     bough_condensed *interface, *own; // in use, its own
     const double *outside;            // (n_input) of the solution in progress; NULL: 0
-    bough_coupled_user user;          // of the same
     double *change;                   // (n_input) of the inputs with the last solution
     double *led;                      // (n_input) the same without what comes from outside
     double *output_change;            // (n_output) of each member by itself
@@ -50,8 +42,7 @@ typedef struct bough_coupled {
 } bough_coupled;
 
 // Builds the memory in the arena; members are shared out by the pool.
-bough_coupled *bough_coupled_create(bough_arena *arena, const bough_assembly *assembly,
-                                  bough_pool *pool);
+bough_coupled *bough_coupled_create(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool);
 
 // The same without factors: for bough_coupled_inputs and the rates only.
 bough_coupled *bough_coupled_create_evaluation(bough_arena *arena, const bough_assembly *assembly,
@@ -59,8 +50,8 @@ bough_coupled *bough_coupled_create_evaluation(bough_arena *arena, const bough_a
 
 // The assembly as a system without ports, from the members' current states on; `name` is borrowed. Its
 // self is a bough_coupled for evaluations. All members' systems are in use while it is asked.
-bough_system bough_coupled_system(bough_arena *arena, const bough_assembly *assembly,
-                                  bough_pool *pool, const char *name);
+bough_system bough_coupled_system(bough_arena *arena, const bough_assembly *assembly, bough_pool *pool,
+                                  const char *name);
 
 // Solutions keep these states from now on (n, borrowed): x is 0 there, by constraint forces.
 void bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n, const int *held);
@@ -69,24 +60,22 @@ void bough_coupled_hold(bough_arena *arena, bough_coupled *coupled, int n, const
 void bough_coupled_inputs(bough_coupled *coupled, double t, const double *state);
 
 // F: rate (n_state). BOUGH_FAILED names the member whose rate is not finite.
-bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state,
-                                double *rate);
+bough_status bough_coupled_rate(bough_coupled *coupled, double t, const double *state, double *rate);
 
 // The next factors are those about (t, state, input); input (n_input), usually coupled->input.
-void bough_coupled_linearise(bough_coupled *coupled, double t, const double *state,
-                             const double *input);
+void bough_coupled_linearise(bough_coupled *coupled, double t, const double *state, const double *input);
 
 // Factors I − γJ there. BOUGH_RETRY when a tangent is not finite or the matrix singular.
 bough_status bough_coupled_factor(bough_coupled *coupled, double gamma);
 
 // Both.
-bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state,
-                                 const double *input, double gamma);
+bough_status bough_coupled_setup(bough_coupled *coupled, double t, const double *state, const double *input,
+                                 double gamma);
 
 // The next solutions, without held states, are those by another's factors of I − γJ; outputs are
 // linearised about (t, state, input).
-void bough_coupled_borrow(bough_coupled *coupled, bough_condensed *interface, double t,
-                          const double *state, const double *input, double gamma);
+void bough_coupled_borrow(bough_coupled *coupled, bough_condensed *interface, double t, const double *state,
+                          const double *input, double gamma);
 
 // x ← (I − γJ)⁻¹ x, x (n_state); coupled->change is then the change of the inputs with it.
 void bough_coupled_solve(bough_coupled *coupled, double *x);
@@ -94,25 +83,40 @@ void bough_coupled_solve(bough_coupled *coupled, double *x);
 // Takes changes of quaternions' lengths out of a change x (n_state) of `state`.
 void bough_coupled_project(const bough_coupled *coupled, const double *state, double *x);
 
-// The same with `outside` (n_input) added to the inputs' changes, δu = P δo + outside; NULL: 0. x lacks the
-// members' responses to each other until bough_coupled_complete, or until bough_coupled_each.
-void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x,
-                                bough_coupled_user user);
-
-// x ← (I − γJ)⁻¹ r by the factors of `coupled`, r made of F, as `evaluation` finds it, by `terms`,
-// as is the state.
-// BOUGH_FAILED names the member whose rate is not finite. x is completed by the next stage, or by
-// bough_coupled_each.
-bough_status bough_coupled_stage(bough_coupled *evaluation, bough_coupled *coupled, double t,
-                                 const double *state, bough_stage_terms terms, double *x);
-
-// Adds to the last solution, once, what the others do to this member; in the next solution's `before` or later.
-void bough_coupled_complete(bough_coupled *coupled, int member);
-
-// Completes the last solution and does work on each member's states, in parallel; NULL: no work.
-void bough_coupled_each(bough_coupled *coupled, bough_part_work work, void *data);
+// The same with `outside` (n_input) added to the inputs' changes, δu = P δo + outside; NULL: 0.
+void bough_coupled_solve_driven(bough_coupled *coupled, const double *outside, double *x);
 
 // δu for x = 0 and `outside` (n_input) at the leaders' inputs, in place.
 void bough_coupled_close(bough_coupled *coupled, double *outside);
+
+// -- member by member, for a scheme that does several of these in one task -----------------------
+
+// Begins F at a state (n_state) for `rate` (n_state): finds the outputs on which the members' inputs wait.
+void bough_coupled_begin_rates(bough_coupled *coupled, double t, const double *state, double *rate);
+
+// Whether that computes the member's outputs, for which it needs the member's state. The outputs of the other
+// members are computed with their rates.
+bool bough_coupled_outputs_first(const bough_coupled *coupled, int member);
+
+enum { BOUGH_COUPLED_TIMES = 2 };
+
+// The member's rate in n ≤ BOUGH_COUPLED_TIMES evaluations of one state; leaders after all followers. A
+// failure is kept in the status of the first evaluation.
+void bough_coupled_rates_of(bough_coupled *const *evaluation, int n, int member);
+
+// The first failure, followers first: the inputs of leaders mean nothing after one of theirs.
+bough_status bough_coupled_failure(const bough_coupled *coupled);
+
+// Begins a solution of x (n_state) in place; `outside` as above.
+void bough_coupled_begin_solution(bough_coupled *coupled, const double *outside, double *x);
+
+// x_i = (I − γJ_i)⁻¹ r_i of one member by itself.
+void bough_coupled_solve_of(bough_coupled *coupled, int member);
+
+// The changes of all inputs, once every member is solved by itself.
+void bough_coupled_solve_interface(bough_coupled *coupled);
+
+// Adds the member's response to that, which completes its states in x (n_state).
+void bough_coupled_respond(const bough_coupled *coupled, int member, double *x);
 
 #endif

@@ -1,8 +1,7 @@
 // The coupled members behind the contract of core/system.h. It has no ports.
 #include "cosim/coupled.h"
 
-static bool derivative(void *self, double t, const double *state, const double *input,
-                       double *rate) {
+static bool derivative(void *self, double t, const double *state, const double *input, double *rate) {
     (void)input;
     bough_status status = bough_coupled_rate(self, t, state, rate);
     return bough_is_ok(&status);
@@ -18,8 +17,7 @@ static void output_tangent(void *self, double t, const double *state, const doub
     (void)self, (void)t, (void)state, (void)input, (void)state_rate, (void)input_rate, (void)rate;
 }
 
-static void input_columns(void *self, double t, const double *state, const double *input,
-                          double *column) {
+static void input_columns(void *self, double t, const double *state, const double *input, double *column) {
     (void)self, (void)t, (void)state, (void)input, (void)column;
 }
 
@@ -28,8 +26,7 @@ static void *factors(void *self, bough_arena *arena) {
     return bough_coupled_create(arena, coupled->assembly, coupled->pool);
 }
 
-static bool linearise(void *self, double t, const double *state, const double *input,
-                      void *factors) {
+static bool linearise(void *self, double t, const double *state, const double *input, void *factors) {
     (void)self, (void)input;
     bough_coupled *own = factors;
     bough_coupled_inputs(own, t, state);
@@ -48,17 +45,6 @@ static void solve(void *self, void *factors, double *x) {
     bough_coupled_solve(factors, x);
 }
 
-static bool stage(void *self, void *factors, double t, const double *state, bough_stage_terms terms,
-                  double *x) {
-    bough_status status = bough_coupled_stage(self, factors, t, state, terms, x);
-    return bough_is_ok(&status);
-}
-
-static void each(void *self, void *factors, bough_part_work work, void *data) {
-    (void)self;
-    bough_coupled_each(factors, work, data);
-}
-
 static bool constrain(void *self, double t, double *state) {
     const bough_assembly *a = ((const bough_coupled *)self)->assembly;
     bool far = false;
@@ -70,14 +56,10 @@ static bool constrain(void *self, double t, double *state) {
     return far;
 }
 
-static void project(void *self, const double *state, double *x) {
-    bough_coupled_project(self, state, x);
-}
+static void project(void *self, const double *state, double *x) { bough_coupled_project(self, state, x); }
 
 static const bough_system_ops operations = {
     BOUGH_SYSTEM_REQUIRED,
-    .stage = stage,
-    .each = each,
     .constrain = constrain,
     .project = project,
 };
@@ -94,7 +76,6 @@ bough_system bough_coupled_system(bough_arena *arena, const bough_assembly *a, b
                           .n_state = a->n_state,
                           .scale = scale,
                           .initial = initial,
-                          .n_part = a->n_member,
                           .ops = &operations,
                           .self = evaluation};
 }

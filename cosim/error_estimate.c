@@ -34,15 +34,15 @@ struct bough_error_estimate {
     int n_step;
     double start[BATCH], end[BATCH]; // [s]
     double *defect;                  // (BATCH × 4 × n_input) cubics as in bough_signal
-    double *own; // (BATCH × n_state) what the members' own steps erred by
-    double *own_sum; // (n_state) the same over the whole run, magnitudes
+    double *own;                     // (BATCH × n_state) what the members' own steps erred by
+    double *own_sum;                 // (n_state) the same over the whole run, magnitudes
     long batches;
     bool lost; // a member could not be linearised
     // reconstruction of the inputs
-    int n_point;         // synchronisation points before the step that no jump parts from it
-    bough_signal curve;  // (n_input) through them and the step's end
-    double *cubic;       // (n_input) its last coefficient in the step before, where known within
-    double *size;        // (n_input) of a vector's first: its largest norm so far
+    int n_point;        // synchronisation points before the step that no jump parts from it
+    bough_signal curve; // (n_input) through them and the step's end
+    double *cubic;      // (n_input) its last coefficient in the step before, where known within
+    double *size;       // (n_input) of a vector's first: its largest norm so far
     // the error
     double *error, *rate; // (n_state) ε, ε̇
     double *input_worst;  // (n_input) largest |P (C ε + D υ)|
@@ -281,8 +281,7 @@ static void find_mean(bough_error_estimate *e, double t, double h) {
         double a = fmax(t, defect.t0), b = fmin(t + h, defect.t1), share = 0.5 * (b - a) / h;
         for (int g = 0; g < 2; g++) {
             bough_signal_value(&defect, a + node[g] * (b - a), e->outside);
-            for (int j = 0; j < n; j++)
-                e->mean[j] += share * e->outside[j];
+            for (int j = 0; j < n; j++) e->mean[j] += share * e->outside[j];
         }
         if (defect.t1 >= t + h || e->step == e->n_step - 1) return;
     }
@@ -294,48 +293,25 @@ static const double *own_errors(const bough_error_estimate *e, double *time) {
     return e->own + (size_t)e->step * (size_t)e->assembly->n_state;
 }
 
-static void end_member(bough_error_estimate *e, int first, int last) {
+// One step: x is ε at t + α_f h,
+//     (I − g J) x = ε + (α_f h (1 − γ) − g (1 − α_m)) ε̇ + g (B δ + s),
+// s the rate at which the members' own steps err in the macro step in progress.
+static void advance(bough_error_estimate *e) {
     const alpha_method *a = &e->method;
-    double h = a->h, part = a->f, kept = part * h * (1 - part), own = 1 / (part * part * h);
-    const double *restrict x = e->x;
-    double *restrict error = e->error, *restrict rate = e->rate;
+    int n = e->assembly->n_state;
+    double time, h = a->h, part = a->f, kept = part * h * (1 - part), own = 1 / (part * part * h);
+    const double *restrict erring = own_errors(e, &time);
+    double carried = kept - a->factor * (1 - a->m), added = a->factor / time;
+    double *restrict x = e->x, *restrict error = e->error, *restrict rate = e->rate;
 #pragma omp simd
-    for (int k = first; k < last; k++) {
+    for (int k = 0; k < n; k++) x[k] = error[k] + carried * rate[k] + added * erring[k];
+    bough_coupled_solve_driven(e->coupled, e->mean, e->x);
+#pragma omp simd
+    for (int k = 0; k < n; k++) {
         double now = own * (x[k] - error[k] - kept * rate[k]);
         error[k] += h * (rate[k] + part * (now - rate[k]));
         rate[k] = now;
     }
-}
-
-// One step: x is ε at t + α_f h,
-//     (I − g J) x = ε + (α_f h (1 − γ) − g (1 − α_m)) ε̇ + g (B δ + s),
-// s the rate at which the members' own steps err in the macro step in progress.
-static void begin_member(void *self, int member) {
-    bough_error_estimate *e = self;
-    const alpha_method *a = &e->method;
-    const int *offset = e->assembly->state_offset + member;
-    double time, carried = a->f * a->h * (1 - a->f) - a->factor * (1 - a->m);
-    const double *restrict erring = own_errors(e, &time);
-    if (e->coupled->incomplete) { // of the step before
-        bough_coupled_complete(e->coupled, member);
-        end_member(e, offset[0], offset[1]);
-    }
-    double *restrict x = e->x, added = a->factor / time;
-    const double *restrict error = e->error, *restrict rate = e->rate;
-#pragma omp simd
-    for (int k = offset[0]; k < offset[1]; k++) {
-        x[k] = error[k] + carried * rate[k] + added * erring[k];
-    }
-}
-
-static void end_part(void *self, int part, int first, int last) {
-    (void)part;
-    end_member(self, first, last);
-}
-
-static void advance(bough_error_estimate *e) {
-    bough_coupled_user user = {e, begin_member};
-    bough_coupled_solve_driven(e->coupled, e->mean, e->x, user);
     for (int j = 0; j < e->assembly->n_input; j++) {
         e->input_worst[j] = fmax(e->input_worst[j], fabs(e->coupled->change[j] - e->mean[j]));
     }
@@ -351,7 +327,6 @@ static bool propagate(bough_error_estimate *e, bough_coupling *c) {
         find_mean(e, start + k * h, h);
         advance(e);
     }
-    bough_coupled_each(e->coupled, end_part, e);
     return true;
 }
 
@@ -384,9 +359,7 @@ void bough_error_estimate_snapshot(bough_error_estimate *e, bough_snapshot *s) {
 
 long bough_error_estimate_batches(const bough_error_estimate *e) { return e->batches; }
 
-const double *bough_error_estimate_states(const bough_error_estimate *e) {
-    return e->lost ? NULL : e->error;
-}
+const double *bough_error_estimate_states(const bough_error_estimate *e) { return e->lost ? NULL : e->error; }
 
 double bough_error_estimate_own_share(const bough_error_estimate *e) {
     double own = 0, whole = 0;

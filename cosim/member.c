@@ -17,9 +17,13 @@ static bool derivative(void *self, double t, const double *y, double *rate) {
     return m->system.ops->derivative(m->system.self, t, y, input_at(m, t), rate);
 }
 
-static bool derivative_again(void *self, double t, const double *y, double *rate) {
-    const bough_member *m = self;
-    return m->system.ops->derivative_again(m->system.self, t, y, input_at(m, t), rate);
+static bool derivative_twice(void *self, const double t[2], const double *y, double *const rate[2]) {
+    bough_member *m = self;
+    if (m->stop && m->stop()) return false;
+    memcpy(m->first_input, input_at(m, t[0]), (size_t)m->system.n_input * sizeof(double));
+    const bough_evaluation at[2] = {{t[0], m->first_input, rate[0], NULL},
+                                    {t[1], input_at(m, t[1]), rate[1], NULL}};
+    return m->system.ops->evaluate(m->system.self, y, 2, at);
 }
 
 static bool linearise(void *self, double t, const double *y) {
@@ -37,17 +41,6 @@ static void solve(void *self, double *x) {
     m->system.ops->solve(m->system.self, m->factors, x);
 }
 
-static bool stage(void *self, double t, const double *y, bough_stage_terms terms, double *x) {
-    const bough_member *m = self;
-    if (m->stop && m->stop()) return false;
-    return m->system.ops->stage(m->system.self, m->factors, t, y, terms, x);
-}
-
-static void each(void *self, bough_part_work work, void *data) {
-    const bough_member *m = self;
-    m->system.ops->each(m->system.self, m->factors, work, data);
-}
-
 bough_status bough_member_create(bough_arena *arena, const bough_system *system, double start,
                                  const bough_integrator_options *options, bough_member *member) {
     bough_member *m = member;
@@ -57,22 +50,20 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
                         .state = bough_arena_doubles(arena, n),
                         .integrated = bough_arena_doubles(arena, n),
                         .input = bough_arena_doubles(arena, (size_t)system->n_input),
+                        .first_input = bough_arena_doubles(arena, (size_t)system->n_input),
                         .factors = system->ops->factors(system->self, arena)};
     bough_member_set(m, start, system->initial);
     if (n == 0) return bough_ok();
-    bool again = system->ops->derivative_again != NULL;
+    bool twice = system->ops->evaluate != NULL;
     bough_ode ode = {.name = system->name,
                      .n = system->n_state,
                      .scale = system->scale,
                      .self = m,
                      .derivative = derivative,
-                     .derivative_again = again ? derivative_again : NULL,
+                     .derivative_twice = twice ? derivative_twice : NULL,
                      .linearise = linearise,
                      .factor = factor,
-                     .solve = solve,
-                     .stage = system->ops->stage ? stage : NULL,
-                     .each = each,
-                     .n_part = system->n_part};
+                     .solve = solve};
     bough_status status = bough_integrator_create(arena, &ode, options, &m->integrator);
     m->own_error = m->integrator.own_error;
     return status;
@@ -85,8 +76,8 @@ static bool constrain(const bough_member *m) {
     return m->system.ops->constrain(m->system.self, m->time, m->state);
 }
 
-bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
-                                       const bough_signal *input, bool restart) {
+bough_status bough_member_advance_part(bough_member *m, double pause, double t1, const bough_signal *input,
+                                       bool restart) {
     size_t size = (size_t)m->system.n_state * sizeof(double);
     double t = m->time;
     bough_status status = bough_ok();
@@ -96,8 +87,8 @@ bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
     if (m->integrator.ops == NULL) {
         t = t1;
     } else {
-        status = m->integrator.ops->advance(m->integrator.self, &t, pause, t1,
-                                            restart || !m->started, m->integrated);
+        status = m->integrator.ops->advance(m->integrator.self, &t, pause, t1, restart || !m->started,
+                                            m->integrated);
     }
     m->started = bough_is_ok(&status);
     assert(!m->started || (t >= pause && t <= t1));
@@ -109,8 +100,7 @@ bough_status bough_member_advance_part(bough_member *m, double pause, double t1,
     return status;
 }
 
-bough_status bough_member_advance(bough_member *m, double t1, const bough_signal *input,
-                                  bool restart) {
+bough_status bough_member_advance(bough_member *m, double t1, const bough_signal *input, bool restart) {
     return bough_member_advance_part(m, t1, t1, input, restart);
 }
 

@@ -21,6 +21,7 @@ typedef struct bough_member {
     // own steps
     const bough_signal *signal; // the input on the step in progress
     double *input;              // (n_input) at the evaluation's time
+    double *first_input;        // (n_input) at the first of two times
     double *integrated;         // (n_state) the integrator's state, before `constrain`
     void *factors;              // of its Newton matrix
     bool started;               // the integrator's history belongs to the state

@@ -1,16 +1,135 @@
 // All members in one system ẏ = F(t, y), coupled.h, integrated by one method across macro steps: no
-// coupling error. With a one-step method the members are coupled at its stages, each of which costs
-// a member what its own sub-solver would; with an implicit multistep method at a tight tolerance it
-// is the reference of every error figure.
+// coupling error. By the Rosenbrock method the members are coupled at its stages, each of which costs
+// a member what its own sub-solver would; an implicit multistep method at a tight tolerance is the
+// reference of every error figure.
+#include "core/rosenbrock.h"
 #include "cosim/coupled.h"
 #include "cosim/scheme.h"
 
 #include <assert.h>
+#include <math.h>
+
+// -- steps coupled at the stages --------------------------------------------------------------------
+
+typedef struct stages {
+    const bough_assembly *assembly;
+    const bough_member *whole;
+    bough_coupled *end, *now; // evaluations of F: at the step's end, for ∂F/∂t, and in the stage
+    bough_coupled *coupled;   // the factors of I − γhJ
+    double *square;           // (n_member) sums of squares of the step's error
+
+    // in progress
+    bough_rosenbrock_step *step;
+    int stage;
+    bough_coupled *evaluation[BOUGH_COUPLED_TIMES]; // `end` where it is asked for, and `now`
+    int n_evaluation;
+} stages;
+
+// Completes the member's u of the stage before by its response to the others; then the argument of this
+// stage.
+static void set_argument(const stages *s, int i) {
+    const int *offset = s->assembly->state_offset + i;
+    if (s->stage == 0) return;
+    bough_coupled_respond(s->coupled, i, s->step->u[s->stage - 1]);
+    bough_rosenbrock_argument(s->step, s->stage, offset[0], offset[1]);
+}
+
+// The member's argument unless its outputs have needed that already, its rate and its right side.
+static void find_right_side(const stages *s, int i) {
+    const int *offset = s->assembly->state_offset + i;
+    if (!bough_coupled_outputs_first(s->now, i)) set_argument(s, i);
+    bough_coupled_rates_of(s->evaluation, s->n_evaluation, i);
+    bough_rosenbrock_right_side(s->step, s->stage, offset[0], offset[1]);
+}
+
+// The tasks of a stage: right sides of the followers, their solutions, then the leaders, whose inputs wait
+// for the outputs of all followers. With two tasks for each follower, three blades make the same work for
+// both of two threads.
+static void find_and_solve(void *self, int k) {
+    const stages *s = self;
+    const int *order = s->coupled->order, n = s->coupled->n_follower;
+    if (k < n) {
+        find_right_side(s, order[k]);
+    } else if (k < 2 * n) {
+        bough_pool_await(s->coupled->pool, k - n);
+        bough_coupled_solve_of(s->coupled, order[k - n]);
+    } else {
+        for (int j = 0; j < n; j++) bough_pool_await(s->coupled->pool, j);
+        find_right_side(s, order[k - n]);
+        bough_coupled_solve_of(s->coupled, order[k - n]);
+    }
+}
+
+static void finish_member(void *self, int k) {
+    const stages *s = self;
+    int i = s->coupled->order[k];
+    const int *offset = s->assembly->state_offset + i;
+    bough_coupled_respond(s->coupled, i, s->step->u[BOUGH_ROSENBROCK_STAGES - 1]);
+    s->square[i] = bough_rosenbrock_end(s->step, offset[0], offset[1]);
+}
+
+// Evaluates F in the first stage at the step's end too, if ∂F/∂t is asked for.
+static void begin_rates(stages *s, const double *state) {
+    const bough_rosenbrock_step *step = s->step;
+    s->n_evaluation = 0;
+    if (s->stage == 0 && step->drifts) {
+        s->evaluation[s->n_evaluation++] = s->end;
+        bough_coupled_begin_rates(s->end, step->t + step->h, state, step->drift);
+    }
+    s->evaluation[s->n_evaluation++] = s->now;
+    bough_coupled_begin_rates(s->now, bough_rosenbrock_time(step, s->stage), state, step->u[s->stage]);
+}
+
+// One stage of all members. False where a rate is not finite.
+static bool take_stage(stages *s) {
+    const bough_rosenbrock_step *step = s->step;
+    int n_member = s->assembly->n_member;
+    // arguments of the members whose outputs the inputs of others need first
+    for (int i = 0; i < n_member; i++)
+        if (bough_coupled_outputs_first(s->now, i)) set_argument(s, i);
+    begin_rates(s, s->stage == 0 ? step->y : step->at);
+    // every member by itself
+    bough_coupled_begin_solution(s->coupled, NULL, step->u[s->stage]);
+    bough_pool_run(s->coupled->pool, n_member + s->coupled->n_follower, find_and_solve, s);
+    // the interface; the members' responses to it follow with the next stage
+    bough_coupled_solve_interface(s->coupled);
+    bough_status status = bough_coupled_failure(s->evaluation[0]);
+    return bough_is_ok(&status);
+}
+
+static double find(void *self, bough_rosenbrock_step *step) {
+    stages *s = self;
+    double sum = 0;
+    s->step = step;
+    for (s->stage = 0; s->stage < BOUGH_ROSENBROCK_STAGES; s->stage++) {
+        if (s->whole->stop && s->whole->stop()) return (double)NAN;
+        if (!take_stage(s)) return (double)NAN;
+    }
+    bough_pool_run(s->coupled->pool, s->assembly->n_member, finish_member, s);
+    for (int i = 0; i < s->assembly->n_member; i++) sum += s->square[i];
+    return sum;
+}
+
+static void couple_at_stages(bough_arena *arena, bough_coupling *c) {
+    stages *s = bough_arena_take(arena, sizeof *s);
+    *s = (stages){.assembly = c->assembly,
+                  .whole = c->whole,
+                  .now = c->whole->system.self,
+                  .end = bough_coupled_create_evaluation(arena, c->assembly, c->pool),
+                  .coupled = c->whole->factors,
+                  .square = bough_arena_doubles(arena, (size_t)c->assembly->n_member)};
+    bough_rosenbrock_find_by(&c->whole->integrator, find, s);
+}
+
+// -- the scheme -------------------------------------------------------------------------------------
 
 static bough_status create(bough_coupling *c, bough_arena *arena) {
     bough_member *whole = c->whole = bough_arena_take(arena, sizeof *whole);
     bough_system system = bough_coupled_system(arena, c->assembly, c->pool, "monolithic system");
-    return bough_member_create(arena, &system, c->t0, &c->options.integrator, whole);
+    bough_status status = bough_member_create(arena, &system, c->t0, &c->options.integrator, whole);
+    bool stagewise = c->options.integrator.kind == BOUGH_ROSENBROCK && whole->integrator.ops != NULL;
+    if (bough_is_ok(&status) && stagewise) couple_at_stages(arena, c);
+    return status;
 }
 
 // The members' states are set for queries; only the integrator of the whole system runs.

@@ -39,12 +39,6 @@ static bool derivative(void *self, double t, const double *state, const double *
     return b->inner.ops->derivative(b->inner.self, t, state, input, rate);
 }
 
-static bool derivative_again(void *self, double t, const double *state, const double *input, double *rate) {
-    bough_ground_body *b = self;
-    bough_ground_body_turn(b, input + b->inner.n_input);
-    return b->inner.ops->derivative_again(b->inner.self, t, state, input, rate);
-}
-
 static void output(void *self, double t, const double *state, const double *input, double *out) {
     bough_ground_body *b = self;
     bough_ground_body_turn(b, input + b->inner.n_input);
@@ -131,7 +125,6 @@ bough_ground_body *bough_ground_body_create(bough_arena *arena, const bough_syst
                              .out = bough_arena_doubles(arena, (size_t)inner->n_output),
                              .zero = bough_arena_doubles(arena, inputs),
                              .probe = bough_arena_doubles(arena, inputs)};
-    if (inner->ops->derivative_again != NULL) b->ops.derivative_again = derivative_again;
     if (inner->ops->constrain != NULL) b->ops.constrain = constrain;
     if (inner->ops->project != NULL) b->ops.project = project;
     return b;

@@ -20,11 +20,6 @@ static bool derivative(void *self, double t, const double *state, const double *
     return bough_rod_derivative(b->model, &b->loads, t, state, input, &b->scratch, rate);
 }
 
-static bool derivative_again(void *self, double t, const double *state, const double *input, double *rate) {
-    bough_rod_body *b = self;
-    return bough_rod_derivative_again(b->model, &b->loads, t, state, input, &b->scratch, rate);
-}
-
 static void output(void *self, double t, const double *state, const double *input, double *wrench) {
     bough_rod_body *b = self;
     bough_rod_root_wrench(b->model, &b->loads, t, state, input, &b->scratch, wrench);
@@ -32,12 +27,21 @@ static void output(void *self, double t, const double *state, const double *inpu
     bough_rod_end_wrench(b->model, &b->loads, t, state, input, &b->scratch, wrench + BOUGH_ROD_OUTPUTS);
 }
 
-static void output_again(void *self, double t, const double *state, const double *input, double *wrench) {
-    (void)t, (void)state, (void)input;
-    const bough_rod_body *b = self;
-    bough_rod_present_root_wrench(b->model, &b->scratch, wrench);
-    if (!bough_rod_carries(b->model)) return;
-    bough_rod_present_end_wrench(b->model, &b->scratch, wrench + BOUGH_ROD_OUTPUTS);
+// The wrenches by the forces of the derivative just evaluated, and of the second derivative what the first
+// has.
+static bool evaluate(void *self, const double *state, int n, const bough_evaluation *at) {
+    bough_rod_body *b = self;
+    bool ok = true;
+    for (int k = 0; k < n && ok; k++) {
+        bool (*f)(const bough_rod_model *, const bough_rod_loads *, double, const double *, const double *,
+                  bough_rod_scratch *, double *) = k == 0 ? bough_rod_derivative : bough_rod_derivative_again;
+        ok = f(b->model, &b->loads, at[k].t, state, at[k].input, &b->scratch, at[k].rate);
+        if (at[k].output == NULL) continue;
+        bough_rod_present_root_wrench(b->model, &b->scratch, at[k].output);
+        if (!bough_rod_carries(b->model)) continue;
+        bough_rod_present_end_wrench(b->model, &b->scratch, at[k].output + BOUGH_ROD_OUTPUTS);
+    }
+    return ok;
 }
 
 static void output_tangent(void *self, double t, const double *state, const double *input,
@@ -141,9 +145,8 @@ bough_rod_body *bough_rod_body_create(bough_arena *arena, const bough_rod_model 
 
 bough_system bough_rod_body_system(bough_rod_body *body) {
     static const bough_system_ops ops = {
-        BOUGH_SYSTEM_REQUIRED,        .derivative_again = derivative_again,
-        .output_again = output_again, .kept_tangent = kept_tangent,
-        .constrain = constrain,       .project = project,
+        BOUGH_SYSTEM_REQUIRED,  .evaluate = evaluate, .kept_tangent = kept_tangent,
+        .constrain = constrain, .project = project,
     };
     return (bough_system){.name = body->model->name,
                           .kind = "rod",

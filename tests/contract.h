@@ -299,9 +299,35 @@ static inline void contract_no_memory(const bough_system *s, contract_point at, 
     bough_arena_destroy(arena);
 }
 
+// f and h asked for together, at two near times, are those of the single calls: the first to the bit.
+static inline void contract_evaluate_together(const bough_system *s, contract_point at) {
+    const double t[2] = {at.t + 1e-3, at.t};
+    if (s->ops->evaluate == NULL) return;
+    double *rate[2], *output[2], *expected = contract_doubles(s->n_state + s->n_output);
+    double *input = contract_doubles(s->n_input);
+    contract_direction(NULL, s->n_input, 2, input);
+    contract_shifted(at.input, 1e-3, input, s->n_input, input);
+    for (int k = 0; k < 2; k++) {
+        rate[k] = contract_doubles(s->n_state);
+        output[k] = contract_doubles(s->n_output);
+    }
+    const bough_evaluation both[2] = {{t[0], input, rate[0], output[0]},
+                                      {t[1], at.input, rate[1], output[1]}};
+    assert_true(s->ops->evaluate(s->self, at.state, 2, both));
+    for (int k = 0; k < 2; k++) {
+        contract_evaluate(s, CONTRACT_RATE, t[k], at.state, both[k].input, expected);
+        contract_near(rate[k], expected, s->n_state, k == 0 ? 0 : at.tolerance, "rate of evaluate");
+        contract_evaluate(s, CONTRACT_OUTPUT, t[k], at.state, both[k].input, expected);
+        contract_near(output[k], expected, s->n_output, at.tolerance, "output of evaluate");
+        free(rate[k]), free(output[k]);
+    }
+    free(expected), free(input);
+}
+
 // What needs no member.
 static inline void contract_check_system(const bough_system *s, contract_point at, double gamma) {
     contract_no_memory(s, at, gamma);
+    contract_evaluate_together(s, at);
     contract_output_tangent(s, at);
     contract_input_columns(s, at);
     contract_newton(s, at, gamma);

@@ -19,8 +19,7 @@ typedef struct member {
 
 static void add_product(int rows, int columns, const double *m, const double *x, double *sum) {
     for (int i = 0; i < rows && x != NULL; i++) {
-        for (int j = 0; j < columns; j++)
-            sum[i] += m[i * MOST + j] * x[j];
+        for (int j = 0; j < columns; j++) sum[i] += m[i * MOST + j] * x[j];
     }
 }
 
@@ -42,8 +41,8 @@ static void output(void *self, double t, const double *y, const double *u, doubl
 }
 
 // NOLINTNEXTLINE(readability-function-size): the contract fixes the parameters
-static void output_tangent(void *self, double t, const double *y, const double *u,
-                           const double *state_rate, const double *input_rate, double *rate) {
+static void output_tangent(void *self, double t, const double *y, const double *u, const double *state_rate,
+                           const double *input_rate, double *rate) {
     (void)y, (void)u;
     output(self, t, state_rate, input_rate, rate);
 }
@@ -52,8 +51,7 @@ static void input_columns(void *self, double t, const double *y, const double *u
     (void)t, (void)y, (void)u;
     const member *m = self;
     for (int j = 0; j < m->s.n_input; j++) {
-        for (int i = 0; i < m->s.n_state; i++)
-            *column++ = m->b[i * MOST + j];
+        for (int i = 0; i < m->s.n_state; i++) *column++ = m->b[i * MOST + j];
     }
 }
 
@@ -72,8 +70,7 @@ static bool factor(void *self, void *factors, double gamma) {
     member *m = self;
     int n = m->s.n_state;
     for (int j = 0; j < n; j++) {
-        for (int i = 0; i < n; i++)
-            m->matrix[j * n + i] = (i == j) - gamma * m->a[i * MOST + j];
+        for (int i = 0; i < n; i++) m->matrix[j * n + i] = (i == j) - gamma * m->a[i * MOST + j];
     }
     return n == 0 || bough_dense_factor(n, m->matrix, m->pivot);
 }
@@ -89,8 +86,7 @@ static double noise(unsigned *seed) {
     return (double)(*seed >> 8) / (1 << 23) - 1;
 }
 
-static void make(member *m, int n_state, int n_input, int n_output, bool feedthrough,
-                 unsigned seed) {
+static void make(member *m, int n_state, int n_input, int n_output, bool feedthrough, unsigned seed) {
     static const bough_system_ops ops = {BOUGH_SYSTEM_REQUIRED};
     *m = (member){.s = {.name = "member",
                         .n_state = n_state,
@@ -135,16 +131,13 @@ static void check(const plan *p) {
     unsigned seed = 3;
     double y[STATES], r[STATES], x[STATES], before[STATES], after[STATES];
     double outside[PORTS], input[PORTS], gamma = .2;
-    for (int k = 0; k < a->n_state; k++)
-        y[k] = noise(&seed), r[k] = x[k] = noise(&seed);
-    for (int j = 0; j < a->n_input; j++)
-        outside[j] = noise(&seed);
+    for (int k = 0; k < a->n_state; k++) y[k] = noise(&seed), r[k] = x[k] = noise(&seed);
+    for (int j = 0; j < a->n_input; j++) outside[j] = noise(&seed);
     bough_coupled_rate(coupled, 0, y, before);
     memcpy(input, coupled->input, (size_t)a->n_input * sizeof(double));
     status = bough_coupled_setup(coupled, 0, y, input, gamma);
     assert_true(bough_is_ok(&status));
-    bough_coupled_solve_driven(coupled, outside, x, (bough_coupled_user){0});
-    bough_coupled_each(coupled, NULL, NULL);
+    bough_coupled_solve_driven(coupled, outside, x);
 
     // x = r + γ (A x + B δu) member by member, δu = P (C x + D δu) + outside
     double change[PORTS], answer[PORTS];
@@ -153,12 +146,9 @@ static void check(const plan *p) {
         output(&m[i], 0, dx, du, answer + a->output_offset[i]);
         derivative(&m[i], 0, dx, du, after + a->state_offset[i]);
     }
-    for (int j = 0; j < a->n_input; j++)
-        change[j] = answer[a->source[j]] + outside[j];
-    for (int j = 0; j < a->n_input; j++)
-        check_near(coupled->change[j], change[j], 0, 1e-9);
-    for (int k = 0; k < a->n_state; k++)
-        check_near(x[k] - gamma * after[k], r[k], 0, 1e-9);
+    for (int j = 0; j < a->n_input; j++) change[j] = answer[a->source[j]] + outside[j];
+    for (int j = 0; j < a->n_input; j++) check_near(coupled->change[j], change[j], 0, 1e-9);
+    for (int k = 0; k < a->n_state; k++) check_near(x[k] - gamma * after[k], r[k], 0, 1e-9);
     bough_arena_destroy(arena);
 }
 
@@ -167,66 +157,64 @@ static const bough_connection star[] = {{0, 0, 1, 0, 4, true},  {0, 4, 2, 0, 4, 
                                         {0, 8, 3, 0, 4, true},  {1, 0, 0, 0, 3, false},
                                         {2, 0, 0, 3, 3, false}, {3, 0, 0, 6, 3, false}};
 
-static const plan plans[] = {
-    {.what = "three on a leader of two states, along these",
-     .n_state = {2, 7, 6, 5},
-     .n_input = {9, 4, 4, 4},
-     .n_output = {12, 3, 3, 3},
-     .stage = {0, 1, 1, 1},
-     .feedthrough = {false, true, true, false},
-     .n_connection = 6,
-     .unknowns = 2,
-     .connection = star},
-    {.what = "a leader of many states, by its inputs",
-     .n_state = {12, 7, 6, 5},
-     .n_input = {9, 4, 4, 4},
-     .n_output = {12, 3, 3, 3},
-     .stage = {0, 1, 1, 2},
-     .feedthrough = {false, true, true, false},
-     .n_connection = 6,
-     .unknowns = 9,
-     .connection = star},
-    {.what = "a leader that answers at once",
-     .n_state = {2, 7, 6, 5},
-     .n_input = {9, 4, 4, 4},
-     .n_output = {12, 3, 3, 3},
-     .stage = {0, 1, 1, 1},
-     .feedthrough = {true, false, false, false},
-     .n_connection = 6,
-     .unknowns = 9,
-     .connection = star},
-    {.what = "two leaders, one follower on both, one leader without states",
-     .n_state = {2, 0, 6, 5},
-     .n_input = {3, 3, 4, 4},
-     .n_output = {6, 2, 4, 2},
-     .stage = {0, 0, 1, 1},
-     .feedthrough = {false, false, true, true},
-     .n_connection = 6,
-     .unknowns = 2,
-     .connection = (const bough_connection[]){{0, 0, 2, 0, 2, true},
-                                              {1, 0, 2, 2, 2, true},
-                                              {0, 2, 3, 0, 4, true},
-                                              {2, 0, 0, 0, 3, false},
-                                              {2, 3, 1, 0, 1, false},
-                                              {3, 0, 1, 1, 2, false}}},
-    {.what = "followers connected with each other lead",
-     .n_state = {2, 7, 6, 5},
-     .n_input = {3, 4, 4, 2},
-     .n_output = {6, 6, 3, 3},
-     .stage = {0, 1, 1, 1},
-     .feedthrough = {false, true, false, false},
-     .n_connection = 5,
-     .unknowns = 2 + 4 + 4,
-     .connection = (const bough_connection[]){{0, 0, 1, 0, 4, true},
-                                              {0, 4, 3, 0, 2, true},
-                                              {1, 0, 2, 0, 4, true},
-                                              {2, 0, 0, 0, 2, false},
-                                              {3, 0, 0, 2, 1, false}}}};
+static const plan plans[] = {{.what = "three on a leader of two states, along these",
+                              .n_state = {2, 7, 6, 5},
+                              .n_input = {9, 4, 4, 4},
+                              .n_output = {12, 3, 3, 3},
+                              .stage = {0, 1, 1, 1},
+                              .feedthrough = {false, true, true, false},
+                              .n_connection = 6,
+                              .unknowns = 2,
+                              .connection = star},
+                             {.what = "a leader of many states, by its inputs",
+                              .n_state = {12, 7, 6, 5},
+                              .n_input = {9, 4, 4, 4},
+                              .n_output = {12, 3, 3, 3},
+                              .stage = {0, 1, 1, 2},
+                              .feedthrough = {false, true, true, false},
+                              .n_connection = 6,
+                              .unknowns = 9,
+                              .connection = star},
+                             {.what = "a leader that answers at once",
+                              .n_state = {2, 7, 6, 5},
+                              .n_input = {9, 4, 4, 4},
+                              .n_output = {12, 3, 3, 3},
+                              .stage = {0, 1, 1, 1},
+                              .feedthrough = {true, false, false, false},
+                              .n_connection = 6,
+                              .unknowns = 9,
+                              .connection = star},
+                             {.what = "two leaders, one follower on both, one leader without states",
+                              .n_state = {2, 0, 6, 5},
+                              .n_input = {3, 3, 4, 4},
+                              .n_output = {6, 2, 4, 2},
+                              .stage = {0, 0, 1, 1},
+                              .feedthrough = {false, false, true, true},
+                              .n_connection = 6,
+                              .unknowns = 2,
+                              .connection = (const bough_connection[]){{0, 0, 2, 0, 2, true},
+                                                                       {1, 0, 2, 2, 2, true},
+                                                                       {0, 2, 3, 0, 4, true},
+                                                                       {2, 0, 0, 0, 3, false},
+                                                                       {2, 3, 1, 0, 1, false},
+                                                                       {3, 0, 1, 1, 2, false}}},
+                             {.what = "followers connected with each other lead",
+                              .n_state = {2, 7, 6, 5},
+                              .n_input = {3, 4, 4, 2},
+                              .n_output = {6, 6, 3, 3},
+                              .stage = {0, 1, 1, 1},
+                              .feedthrough = {false, true, false, false},
+                              .n_connection = 5,
+                              .unknowns = 2 + 4 + 4,
+                              .connection = (const bough_connection[]){{0, 0, 1, 0, 4, true},
+                                                                       {0, 4, 3, 0, 2, true},
+                                                                       {1, 0, 2, 0, 4, true},
+                                                                       {2, 0, 0, 0, 2, false},
+                                                                       {3, 0, 0, 2, 1, false}}}};
 
 static void every_shape_solves_the_whole(void **state) {
     (void)state;
-    for (size_t k = 0; k < sizeof plans / sizeof *plans; k++)
-        check(&plans[k]);
+    for (size_t k = 0; k < sizeof plans / sizeof *plans; k++) check(&plans[k]);
 }
 
 // The gain of the interface.

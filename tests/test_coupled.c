@@ -1,5 +1,4 @@
 #include "cosim/coupled.h"
-#include "tests/contract.h"
 #include "tests/two_mass.h"
 
 enum { N = 4 };
@@ -42,47 +41,6 @@ static void solves_the_coupled_system(void **state) {
     bough_two_mass_destroy(&m);
 }
 
-static void halve_and_add_one(void *self, int first, int last) {
-    double *x = self;
-    for (int k = first; k < last; k++) x[k] = .5 * x[k] + 1;
-}
-
-static void keep(void *self, int first, int last) { (void)self, (void)first, (void)last; }
-
-// A stage is rate, right side and solution, to the bit.
-static void stages_are_rate_and_solution(void **state) {
-    (void)state;
-    bough_coupled *coupled;
-    bough_two_mass m;
-    build(&m, &coupled, 2);
-    bough_coupled *evaluation = bough_coupled_create_evaluation(m.arena, m.master->assembly, coupled->pool);
-    const double y[N] = {.1, -.2, .5, .3};
-    double x[N], expected[N];
-    bough_status status = bough_coupled_rate(coupled, 0, y, expected);
-    assert_true(bough_is_ok(&status));
-    status = bough_coupled_setup(coupled, 0, y, coupled->input, .1);
-    assert_true(bough_is_ok(&status));
-    halve_and_add_one(expected, 0, N);
-    bough_coupled_solve(coupled, expected);
-    status = bough_coupled_stage(evaluation, coupled, 0, y,
-                                 (bough_stage_terms){x, keep, halve_and_add_one, false}, x);
-    assert_true(bough_is_ok(&status));
-    bough_coupled_each(coupled, NULL, NULL);
-    assert_memory_equal(x, expected, sizeof x);
-    bough_two_mass_destroy(&m);
-}
-
-static void connected_members_fulfil_the_contract_of_a_system(void **state) {
-    (void)state;
-    bough_coupled *coupled;
-    bough_two_mass m;
-    build(&m, &coupled, 1);
-    const double y[N] = {.1, -.2, .5, .3}, none[1] = {0};
-    bough_system s = bough_coupled_system(m.arena, m.master->assembly, NULL, "two masses");
-    contract_check_system(&s, (contract_point){0, y, none, 1e-5}, .05);
-    bough_two_mass_destroy(&m);
-}
-
 // F of two masses on springs, by hand.
 static void rates_are_those_of_the_coupled_masses(void **state) {
     (void)state;
@@ -103,8 +61,6 @@ static void rates_are_those_of_the_coupled_masses(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(solves_the_coupled_system),
-        cmocka_unit_test(stages_are_rate_and_solution),
-        cmocka_unit_test(connected_members_fulfil_the_contract_of_a_system),
         cmocka_unit_test(rates_are_those_of_the_coupled_masses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
