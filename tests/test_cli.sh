@@ -248,6 +248,7 @@ complete_run() {
     for key in solver steps derivatives jacobians factorisations iterations starts; do
         [ "$(grep -c "\"$key\": " $out/summary.json)" -eq 3 ] || fail "$said: $key of 2 and the whole"
     done
+    [ "$(grep -o '"solver": .*' $out/summary.json | sort -u | wc -l)" -eq 1 ] || fail "$said: solvers that did not run"
     missing $out/channels.out.partial
     has $out/channels.out '^Complete: 6 rows'
     # t = 0, each interval, and the end that is no multiple of it
@@ -408,6 +409,8 @@ EOF
     near ../sensed "^Spn1MLxb1 " 2 "$(awk "BEGIN { t = 13.308 / 57.29578; print cos(t) * $(value RootMxb1) - sin(t) * $(value RootMyb1) }")" 1e-3
     near ../sensed '^TwHt1MLyt ' 2 "$(value TwrBsMyt)" 1e-3
     near ../sensed '^TwHt2FLzt ' 2 "$(value YawBrFzp)" 1
+    # the tower's two interfaces
+    [ "$(grep -A 1 '"body": "tower"' sensed/summary.json | grep -c '"place": "end"')" -eq 1 ] || fail "$said: one end"
     near ../sensed '^RotTorq ' 2 59.5 1e-3 # 11.9 MN m at a two hundredth of the ramp
     rm -r sensed
 }

@@ -122,6 +122,13 @@ static void write_accuracy(bough_summary *s, const bough_run *run) {
 }
 
 // Per interface: energy, and the largest estimated error of the wrench on the receiver.
+// A body whose end carries others has two interfaces, that of its root first.
+static bool is_far_end(const bough_assembly *a, int interface) {
+    bool again = false;
+    for (int i = 0; i < interface; i++) again = again || a->interface[i].body == a->interface[interface].body;
+    return again;
+}
+
 static void write_interfaces(bough_summary *s, const bough_run *run) {
     const bough_master *m = run->simulation->master;
     const bough_assembly *a = m->assembly;
@@ -130,6 +137,7 @@ static void write_interfaces(bough_summary *s, const bough_run *run) {
         bough_interface_energy energy = bough_monitor_energy(m->monitor, k);
         bough_summary_object(s, NULL);
         bough_summary_text(s, "body", a->member[a->interface[k].body]->system.name);
+        bough_summary_text(s, "place", is_far_end(a, k) ? "end" : "root");
         bough_summary_number(s, "energy_residual", energy.residual);
         bough_summary_number(s, "energy_exchanged", energy.exchanged);
         bough_summary_array(s, "wrench_error_estimate");
@@ -233,11 +241,12 @@ static void write_whole(bough_summary *s, const bough_run *run) {
 
 static void write_member(bough_summary *s, const bough_run *run, int member) {
     const bough_member *m = run->simulation->master->assembly->member[member];
+    const bough_member *whole = run->simulation->master->coupling->whole;
     bough_statistics done = bough_run_statistics(run, member);
     bough_summary_object(s, NULL);
     bough_summary_text(s, "name", m->system.name);
     bough_summary_text(s, "kind", m->system.kind);
-    bough_summary_text(s, "solver", m->solver);
+    bough_summary_text(s, "solver", whole ? whole->solver : m->solver);
     bough_summary_integer(s, "states", m->system.n_state);
     write_work(s, &done);
     bough_summary_end(s);
@@ -315,8 +324,9 @@ static void tell_energy(const bough_run *run, FILE *stream) {
     for (int k = 0; k < a->n_interface; k++) {
         bough_interface_energy energy = bough_monitor_energy(m->monitor, k);
         if (!(energy.exchanged > 0)) continue;
-        fprintf(stream, "%s_energy_residual: %.2g of what the interface exchanged\n",
-                a->member[a->interface[k].body]->system.name, energy.residual / energy.exchanged);
+        fprintf(stream, "%s%s_energy_residual: %.2g of what the interface exchanged\n",
+                a->member[a->interface[k].body]->system.name, is_far_end(a, k) ? "_end" : "",
+                energy.residual / energy.exchanged);
     }
 }
 

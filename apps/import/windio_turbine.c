@@ -186,19 +186,29 @@ static void put_nacelle(bough_windio *w, bool on_rod, const lump *l) {
     put_lump(file, l);
 }
 
-static void put_hub(bough_windio *w, lump l, double overhang, double tilt, double ratio) {
+// The hub, fixed to the generator, which is a body of its own if its inertia is given; the body on the
+// rotor's joint.
+static const char *put_hub(bough_windio *w, const lump *l, double overhang, double tilt, double ratio) {
     FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
-    l.inertia[0] += generator_inertia(w, ratio);
-    w->inertia += l.inertia[0];
+    double generator = generator_inertia(w, ratio);
+    const char *first = generator > 0 ? "generator" : "hub";
+    w->inertia += l->inertia[0] + generator;
     fprintf(file,
-            "  - name: hub\n    fidelity: rigid\n    joint:\n      kind: revolute\n"
+            "  - name: %s\n    fidelity: rigid\n    joint:\n      kind: revolute\n"
             "      parent: nacelle\n      placement: [move z %.10g m, move x %.10g m, "
             "rotate y %.10g deg]\n      axis: x\n      speed: %.10g rad/s\n",
-            w->hub_height, -w->forward * overhang, w->forward * tilt, w->speed);
-    put_lump(file, &l);
+            first, w->hub_height, -w->forward * overhang, w->forward * tilt, w->speed);
+    if (generator > 0) {
+        fprintf(file,
+                "    inertia: [%.10g, 0, 0] # on the slow shaft\n"
+                "  - name: hub\n    fidelity: rigid\n    joint: {kind: fixed, parent: generator}\n",
+                generator);
+    }
+    put_lump(file, l);
+    return first;
 }
 
-static void put_blades(bough_windio *w, double cone, double pitch) {
+static void put_blades(bough_windio *w, const char *rotor, double cone, double pitch) {
     FILE *file = w->draft.file[BOUGH_IMPORT_SCENE];
     bool steered = w->rated_power > 0 || w->options->controller;
     for (int k = 1; k <= w->n_blade; k++) {
@@ -210,7 +220,7 @@ static void put_blades(bough_windio *w, double cone, double pitch) {
                 360.0 * (k - 1) / w->n_blade, -w->forward * cone, w->hub_radius, pitch,
                 bough_import_name[BOUGH_IMPORT_BLADE]);
     }
-    bough_draft_turbine(&w->draft, "hub", w->n_blade);
+    bough_draft_turbine(&w->draft, rotor, w->n_blade);
 }
 
 static double gear_ratio(bough_windio *w) {
@@ -239,8 +249,8 @@ void bough_windio_bodies(bough_windio *w) {
     if (rod) bough_draft_tower(d, w->tower_base); // a rigid one is only a place
     lump hub = hub_lump(w), nacelle = nacelle_lump(w, overhang, hub.mass);
     put_nacelle(w, rod, &nacelle);
-    put_hub(w, hub, overhang, tilt, gear_ratio(w));
-    put_blades(w, cone, pitch * 180 / BOUGH_PI);
+    const char *rotor = put_hub(w, &hub, overhang, tilt, gear_ratio(w));
+    put_blades(w, rotor, cone, pitch * 180 / BOUGH_PI);
     bough_draft_note(d, BOUGH_TAKEN,
                      "hub radius %g m, cone %.4g deg, tilt %.4g deg, overhang %g m, pitch %.4g deg",
                      w->hub_radius, cone, tilt, overhang, pitch * 180 / BOUGH_PI);
