@@ -10,6 +10,7 @@
 #include <stdio.h>
 
 enum { MOST_STEPS = 200000 };
+enum { MOST_AGE = 51 }; // steps with the same tangents, as many as CVODE takes
 
 // ẏ − f; 1 makes IDA try a smaller step
 static int residual(double t, N_Vector y, N_Vector rate, N_Vector out, void *handle) {
@@ -24,17 +25,35 @@ static int residual(double t, N_Vector y, N_Vector rate, N_Vector out, void *han
     return finite ? 0 : 1;
 }
 
+// Whether a setup may keep the tangents of an earlier one: they are young, and Newton's method has not failed
+// since the last setup, neither in this step, which is then set up again at the same time, nor so that the
+// step was made shorter. Changes of cj alone need factors only. CVODE decides in the same way for itself.
+static bool tangents_serve(bough_newton_handle *newton, double t) {
+    const bough_newton_run *run = (const bough_newton_run *)newton; // its first member
+    bough_newton_age *age = &newton->age;
+    long steps = 0, failures = 0;
+    IDAGetNumSteps(run->memory, &steps);
+    IDAGetNumNonlinSolvConvFails(run->memory, &failures);
+    bool serve = age->known && t != age->setup && failures == age->failures && steps < age->step + MOST_AGE;
+    if (!serve) age->step = steps;
+    age->known = true;
+    age->setup = t;
+    age->failures = failures;
+    return serve;
+}
+
 // NOLINTNEXTLINE(readability-function-size): SUNDIALS fixes the parameters
 static int jacobian(double t, double cj, N_Vector y, N_Vector rate, N_Vector r, SUNMatrix j, void *newton,
                     N_Vector t1, N_Vector t2, N_Vector t3) {
     (void)rate, (void)r, (void)j, (void)t1, (void)t2, (void)t3;
     sunbooleantype current;
-    return bough_newton_handle_system(newton, t, y, SUNFALSE, &current, 1 / cj);
+    return bough_newton_handle_system(newton, t, y, tangents_serve(newton, t), &current, 1 / cj);
 }
 
 // With order 1 from y, whose rate is f.
 static int restart(bough_newton_run *run, double t) {
     bough_newton_handle *newton = &run->newton;
+    newton->age.known = false;
     run->past.derivatives++;
     if (bough_newton_handle_rate(t, newton->y, run->beside, newton) != 0 ||
         !bough_all_finite(newton->ode.n, bough_vector_data(run->beside))) {

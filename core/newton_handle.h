@@ -10,6 +10,14 @@
 #include <sundials/sundials_matrix.h>
 #include <sundials/sundials_nvector.h>
 
+// Of the tangents, for an integrator that does not say itself whether old ones serve.
+typedef struct bough_newton_age {
+    bool known;    // there have been tangents since the last start
+    double setup;  // time of the last setup [s]
+    long step;     // steps when they were found
+    long failures; // of Newton's method when the last setup was made
+} bough_newton_age;
+
 typedef struct bough_newton_handle {
     bough_ode ode;
     SUNContext context;
@@ -21,6 +29,7 @@ typedef struct bough_newton_handle {
     bool refused;   // f had no value somewhere since this was cleared
     char text[200]; // the integrator's last complaint
     long jacobians, factorisations;
+    bough_newton_age age;
 } bough_newton_handle;
 
 // False when memory is exhausted; destroy in any case. Tolerance rtol · scale per state.
@@ -53,7 +62,7 @@ typedef struct bough_newton_library {
 } bough_newton_library;
 
 struct bough_newton_run {
-    bough_newton_handle newton;
+    bough_newton_handle newton; // first
     const bough_newton_library *library;
     void *memory;
     int most_steps; // in a macro step

@@ -71,9 +71,7 @@ static double exact_rate(const oscillator *o, double t) {
     return -o->k / omega * exp(-o->d * t) * sin(omega * t);
 }
 
-static oscillator ordinary(void) {
-    return (oscillator){.k = 9, .d = 0.4, .latest = -1, .break_after = 1e9};
-}
+static oscillator ordinary(void) { return (oscillator){.k = 9, .d = 0.4, .latest = -1, .break_after = 1e9}; }
 
 static double error_at(double rtol) {
     oscillator o = ordinary();
@@ -132,8 +130,9 @@ static void restarting_repeats_bit_by_bit(void **state) {
     ida.ops->statistics(ida.self, &after);
     assert_int_equal(after.starts, 2);
     assert_true(after.steps > 2 * count.steps); // counted across the restart
-    assert_int_equal(after.jacobians, o.setups);
     assert_int_equal(after.factorisations, o.setups);
+    assert_true(after.jacobians >= 3 &&
+                3 * after.jacobians < o.setups); // steps of other lengths keep tangents
     bough_arena_destroy(arena);
 }
 
@@ -149,7 +148,7 @@ static void failures_name_body_time_and_cure(void **state) {
     assert_non_null(strstr(status.message, "oscillator at t = 0.5"));
     assert_non_null(strstr(status.message, "IDA"));
     assert_null(strstr(status.message, "try")); // the coupling says it, once
-    o.break_after = 1e9; // a new start is possible after a failure
+    o.break_after = 1e9;                        // a new start is possible after a failure
     y[0] = 1, y[1] = 0;
     advance(&ida, 0, 1, false, y);
     check_near(y[0], exact(&o, 1), 0, 1e-4);
@@ -175,10 +174,8 @@ static void refused_rate_is_retried(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(error_follows_the_tolerance),
-        cmocka_unit_test(nothing_is_evaluated_past_the_end),
-        cmocka_unit_test(restarting_repeats_bit_by_bit),
-        cmocka_unit_test(failures_name_body_time_and_cure),
+        cmocka_unit_test(error_follows_the_tolerance),   cmocka_unit_test(nothing_is_evaluated_past_the_end),
+        cmocka_unit_test(restarting_repeats_bit_by_bit), cmocka_unit_test(failures_name_body_time_and_cure),
         cmocka_unit_test(refused_rate_is_retried),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
