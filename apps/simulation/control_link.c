@@ -142,15 +142,17 @@ static double electrical_power(const bough_scene_control *c, double speed, doubl
     return takes ? speed * torque / c->efficiency : speed * torque * c->efficiency;
 }
 
-static bough_discon_sensed sense(bough_control_link *l, double t, double step, double speed, double azimuth) {
+static bough_discon_sensed sense(bough_control_link *l, double t, double step, double speed) {
     const bough_simulation *s = l->simulation;
+    double azimuth, hub_speed;
+    bough_simulation_hub_turn(s, &azimuth, &hub_speed);
     bough_discon_sensed x = {.time = t,
                              .step = step,
                              .last = t + step > s->master->duration - 1e-6 * step,
                              .n_blade = l->n_blade,
                              .individual = l->control->individual,
                              .generator_speed = speed,
-                             .rotor_speed = speed / l->control->gear_ratio,
+                             .rotor_speed = hub_speed,
                              .torque = l->now.torque,
                              .shaft_power = speed * l->now.torque,
                              .electrical_power = electrical_power(l->control, speed, l->now.torque),
@@ -207,7 +209,7 @@ static bough_status sample(void *self, double t, double t_next, bool *jumped) {
     bough_simulation_update(s);
     bough_motion_point rotor = joint_point(s, s->scene->turbine.rotor);
     double speed = control->gear_ratio * rotor.v;
-    bough_discon_sensed sensed = sense(l, t, step, speed, rotor.q);
+    bough_discon_sensed sensed = sense(l, t, step, speed);
     bough_discon_demand demand = {0};
     if (l->events) {
         bough_events_look(l->events, &sensed, l->event);

@@ -8,9 +8,8 @@ static const double degree = BOUGH_PI / 180, rpm = BOUGH_PI / 30;
 
 typedef struct shaft {
     const bough_simulation *simulation;
-    int n;                 // joints about the rotor's axis, from the hub inwards to the rotor's own
-    int *body;             // (n) that they carry
-    bough_inertia inertia; // of what the first of these joints carries besides the hub, in its link's frame
+    int body;              // carried by the joint about the rotor's axis that is nearest to the hub
+    bough_inertia inertia; // of what this joint carries besides the hub, in its link's frame
 } shaft;
 
 // -- building -------------------------------------------------------------------------------------
@@ -57,15 +56,13 @@ static shaft *build_shaft(bough_arena *arena, const bough_simulation *s) {
     const bough_frame *frame = s->tree->bodies;
     shaft *x = bough_arena_take(arena, sizeof *x);
     int hub = find_hub(scene), rotor = scene->turbine.rotor;
-    *x = (shaft){.simulation = s};
-    x->body = bough_arena_take(arena, (size_t)scene->n_body * sizeof *x->body);
-    for (int i = hub; i >= 0 && i != rotor; i = parent_of(scene, i)) {
-        if (turns_about_rotor_axis(s, i)) x->body[x->n++] = i;
-    }
-    x->body[x->n++] = rotor;
-    for (int i = hub; i >= 0 && i != x->body[0];) {
+    *x = (shaft){.simulation = s, .body = hub};
+    while (x->body >= 0 && x->body != rotor && !turns_about_rotor_axis(s, x->body))
+        x->body = parent_of(scene, x->body);
+    if (x->body < 0) x->body = rotor;
+    for (int i = hub; i >= 0 && i != x->body;) {
         i = parent_of(scene, i);
-        if (i < 0 || frame[i].link != frame[x->body[0]].link) continue;
+        if (i < 0 || frame[i].link != frame[x->body].link) continue;
         bough_inertia own = bough_inertia_to_parent(&frame[i].placement, inertia_of(&scene->body[i]));
         x->inertia = bough_inertia_add(x->inertia, own);
     }
@@ -74,11 +71,12 @@ static shaft *build_shaft(bough_arena *arena, const bough_simulation *s) {
 
 // -- sampling -------------------------------------------------------------------------------------
 
-static void turn_of(const shaft *x, double *angle, double *speed) {
-    const bough_simulation *s = x->simulation;
+void bough_simulation_hub_turn(const bough_simulation *s, double *angle, double *speed) {
+    const bough_scene_turbine *turbine = &s->scene->turbine;
     *angle = *speed = 0;
-    for (int k = 0, q, v; k < x->n; k++) {
-        bough_tree_joint_rows(s->tree, x->body[k], &q, &v);
+    for (int i = turbine->blade[0], q, v; i >= 0; i = i == turbine->rotor ? -1 : parent_of(s->scene, i)) {
+        if (!turns_about_rotor_axis(s, i)) continue;
+        bough_tree_joint_rows(s->tree, i, &q, &v);
         *angle += s->leader.state[q];
         *speed += s->leader.state[v];
     }
@@ -87,7 +85,7 @@ static void turn_of(const shaft *x, double *angle, double *speed) {
 static void sample_turn(void *self, double t, double *value) {
     (void)t;
     double angle, speed;
-    turn_of(self, &angle, &speed);
+    bough_simulation_hub_turn(self, &angle, &speed);
     double turn = fmod(angle / degree, 360);
     value[0] = speed / rpm;
     value[1] = turn < 0 ? turn + 360 : turn;
@@ -113,12 +111,12 @@ static double joint_torque(const bough_simulation *s, int body, double t) {
 static double inertial_torque(const shaft *x) {
     const bough_simulation *s = x->simulation;
     const bough_tree_data *d = s->view;
-    int link = s->tree->bodies[x->body[0]].link;
+    int link = s->tree->bodies[x->body].link;
     bough_twist fall = {d->gravity[link], {0, 0, 0}}, a = d->acceleration[link];
     a.linear = bough_sub(a.linear, fall.linear);
     bough_wrench spun = bough_wrench_cross(d->twist[link], bough_inertia_mul(&x->inertia, d->twist[link]));
     bough_wrench w = bough_wrench_add(bough_inertia_mul(&x->inertia, a), spun);
-    return bough_dot(w.moment, axis_of(s->scene, x->body[0]));
+    return bough_dot(w.moment, axis_of(s->scene, x->body));
 }
 
 static bool has_inertia(const bough_inertia *i) {
@@ -131,17 +129,17 @@ static void sample_torque(void *self, double t, double *value) {
     const bough_simulation *s = x->simulation;
     double angle, speed, torque = 0;
     bool heavy = has_inertia(&x->inertia);
-    if (heavy || s->scene->body[x->body[0]].joint.motion.node != NULL)
+    if (heavy || s->scene->body[x->body].joint.motion.node != NULL)
         bough_tree_forward_dynamics(s->tree, s->view, t, s->master->coupling->input, s->acceleration);
     if (heavy) torque = inertial_torque(x);
-    torque -= joint_torque(s, x->body[0], t);
-    turn_of(x, &angle, &speed);
+    torque -= joint_torque(s, x->body, t);
+    bough_simulation_hub_turn(s, &angle, &speed);
     value[0] = torque / 1e3;
     value[1] = torque * speed / 1e3;
 }
 
 void bough_observe_turn(bough_simulation *s, bough_channels *list) {
-    bough_channels_group(list, sample_turn, build_shaft(list->arena, s));
+    bough_channels_group(list, sample_turn, s);
     bough_channel_family_add(list, BOUGH_CHANNELS_ROTOR, "", "");
 }
 

@@ -113,6 +113,10 @@ typedef struct bough_rotor_place {
 } bough_rotor_place;
 bough_rotor_place bough_simulation_rotor(const bough_simulation *s);
 
+// How the hub has turned about the shaft, and its speed: the sum of the joints about the rotor's axis between the
+// body that carries the rotor and the blades [rad], [rad/s].
+void bough_simulation_hub_turn(const bough_simulation *s, double *angle, double *speed);
+
 // The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);
 
