@@ -81,7 +81,8 @@ static void constant_inputs_are_loads_of_the_scene(void **state) {
         for (int k = 0; cases[i].set[k][0]; k++) set(a, cases[i].set[k][0], cases[i].set[k][1]);
         step_to(a, bough_session_duration(a));
         step_to(b, bough_session_duration(b));
-        check_within(a, b, 1e-8); // the sums are the same, their order is not, and steps follow their rounding
+        check_within(a, b,
+                     1e-8); // the sums are the same, their order is not, and steps follow their rounding
         bough_session_close(a);
         bough_session_close(b);
     }
@@ -139,8 +140,8 @@ static void a_law_outside_is_the_law_inside(void **state) {
 
 static void a_copy_holds_the_inputs(void **state) {
     (void)state;
-    const char *const sets[] = {"simulation.duration=1 s",
-                                "loads=[{joint: bob, torque: 0, input: push}]", NULL};
+    const char *const sets[] = {"simulation.duration=1 s", "loads=[{joint: bob, torque: 0, input: push}]",
+                                NULL};
     bough_session *s = open_scene(APPS "mechanisms/pendulum.yaml", sets);
     set(s, "push", "2 N m");
     step_to(s, 0.3);
@@ -171,6 +172,17 @@ static void bad_inputs_are_refused(void **state) {
     assert_non_null(strstr(bough_session_error(s), "input push: expected a value in N m, got '3 kg'"));
     check_near(bough_session_input_value(s, 0), 1, 0, 0);
     assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
+    bough_session_close(s);
+    const char *const wind[] = {"aero.wind.input=wind", "control.kind=external", "control.pitch=false", NULL};
+    s = open_scene(APPS "turbine/power.yaml", wind);
+    int speed = bough_session_input(s, "wind"), torque = bough_session_input(s, "GenTqCom");
+    double before = bough_session_input_value(s, speed);
+    assert_int_equal(bough_session_set(s, speed, -3), BOUGH_SESSION_INVALID);
+    assert_string_equal(bough_session_error(s), "input wind: must be in [0, 150] m/s, got -3");
+    assert_int_equal(bough_session_set_text(s, speed, "-3 m/s"), BOUGH_SESSION_INVALID);
+    check_near(bough_session_input_value(s, speed), before, 0, 0);
+    assert_int_equal(bough_session_set(s, speed, 0), BOUGH_SESSION_OK);
+    assert_int_equal(bough_session_set(s, torque, -3), BOUGH_SESSION_OK);
     bough_session_close(s);
     static const char *const bad[][2] = {
         {"loads=[{joint: bob, torque: 1, input: a, ramp: [0 s, 1 s]}]", "only without a ramp or a table"},

@@ -65,8 +65,12 @@ class Module(unittest.TestCase):
             rows = run.advance()
             with self.assertRaises(bough.Error):
                 run["push"] = "3 kg"
-            with self.assertRaises(KeyError):
-                run["pull"] = 1
+            self.assertEqual(run["push"], 3)
+            with self.assertRaises(KeyError) as caught:
+                run["psuh"] = 1
+            self.assertIn("no input 'psuh' (did you mean 'push'?)", str(caught.exception))
+            with self.assertRaises(TypeError):
+                run["push"] = None
         with bough.Session(PENDULUM, "simulation.duration=0.5 s", load % "3 N m") as other:
             self.assertEqual(bytes(other.advance()["bobPos"]), bytes(rows["bobPos"]))
 
@@ -78,10 +82,35 @@ class Module(unittest.TestCase):
         with bough.Session(PENDULUM) as pendulum, bough.Session(RUNUP, *FEW) as run:
             with self.assertRaises(bough.Error):
                 run.restore(pendulum.save())
-            with self.assertRaises(KeyError):
-                pendulum["nothing"]
+            for wrong in (lambda: pendulum["bobPoss"], lambda: pendulum.advance(channels=["bobPoss"]),
+                          lambda: pendulum.advance(channels="bobPoss")):
+                with self.assertRaises(KeyError) as caught:
+                    wrong()
+                self.assertIsInstance(caught.exception, bough.Error)
+                self.assertIn("no channel 'bobPoss' (did you mean 'bobPos'?)", str(caught.exception))
+            with self.assertRaises(TypeError):
+                pendulum[3]
+            with self.assertRaises(bough.Error):
+                pendulum.restore(b"no copy")
+            with self.assertRaises(ValueError):
+                pendulum.advance(float("nan"))
         with self.assertRaises(ValueError):
             pendulum.step()
+
+    def test_the_nearest_name_is_the_one_that_begins_alike(self):
+        with self.assertRaises(bough.Error) as caught:
+            bough.Session(RUNUP, "aero.wind.sped=12 m/s")
+        self.assertIn("did you mean 'speed'?", str(caught.exception))
+
+    def test_an_input_takes_what_the_scene_would(self):
+        with bough.Session(RUNUP, *FEW, "aero.wind.input=wind") as run:
+            before = run["wind"]
+            for bad in -3, "-3 m/s", float("nan"), "12 kg":
+                with self.assertRaises(bough.Error):
+                    run["wind"] = bad
+            self.assertEqual(run["wind"], before)
+            run["wind"] = "10 m/s"
+            self.assertEqual(run["wind"], 10)
 
     def test_values_are_a_view_that_outlives_the_session(self):
         with bough.Session(PENDULUM) as session:

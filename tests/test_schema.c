@@ -500,6 +500,9 @@ static void nearest_words_are_found(void **state) {
     assert_null(bough_nearest("general", methods, 3));
     assert_null(bough_nearest("velocity", words, 5));
     assert_null(bough_nearest("abc", words, 5));
+    const char *const equal[] = {"seed", "speed", "sped up"};
+    assert_string_equal(bough_nearest("sped", equal, 3), "speed"); // one slip from each, it begins alike
+    assert_string_equal(bough_nearest("sped", &equal[1], 2), "speed");
     char text[300];
     memset(text, 'a', 299);
     text[299] = '\0';

@@ -49,6 +49,90 @@ static void errors_are_told(void **context) {
     bough_session_close(s);
 }
 
+// -- sessions without a scene ---------------------------------------------------------------------
+
+// Every function of a session whose opening gave that code, for NULL too.
+static void check_without_scene(bough_session *s, int code) {
+    char copy[64];
+    const char *const nothing[] = {bough_session_warning(s), bough_session_name(s, 0),
+                                   bough_session_unit(s, 0), bough_session_input_name(s, 0),
+                                   bough_session_input_unit(s, 0)};
+    const double none[] = {bough_session_time(s), bough_session_duration(s), bough_session_read(s, 0),
+                           bough_session_input_value(s, 0)};
+    for (int k = 0; k < 5; k++) assert_string_equal(nothing[k], "");
+    for (int k = 0; k < 4; k++) assert_true(isnan(none[k]));
+    assert_null(bough_session_values(s));
+    assert_int_equal(bough_session_count(s) + bough_session_inputs(s), 0);
+    assert_int_equal(bough_session_size(s), 0);
+    const struct {
+        const char *name;
+        int code;
+    } calls[] = {{"step", bough_session_step(s)},
+                 {"save", bough_session_save(s, copy)},
+                 {"save", bough_session_save(s, NULL)},
+                 {"restore", bough_session_restore(s, copy)},
+                 {"restore", bough_session_restore(s, NULL)},
+                 {"set", bough_session_set(s, 0, 1)},
+                 {"set", bough_session_set_text(s, 0, "1 m/s")},
+                 {"set", bough_session_set_text(s, -1, NULL)}};
+    for (int k = 0; k < 8; k++) assert_int_equal(calls[k].code, code);
+    assert_int_equal(bough_session_find(s, "any"), -1);
+    assert_int_equal(bough_session_find(s, NULL), -1);
+    assert_int_equal(bough_session_input(s, "any"), -1);
+    assert_int_equal(bough_session_code(s), code);
+}
+
+static void what_is_no_session_is_refused_in_every_call(void **context) {
+    (void)context;
+    check_without_scene(NULL, BOUGH_SESSION_OTHER);
+    assert_non_null(strstr(bough_session_error(NULL), "no session"));
+    bough_session_close(NULL);
+    static const struct {
+        const char *scene, *set[2];
+        int n;
+        const char *message;
+    } openings[] = {
+        {NULL, {NULL}, 0, "no scene is given"},
+        {pendulum, {"simulation.duration=1 s", NULL}, 2, "setting 2 of 2 is NULL"},
+        {pendulum, {NULL}, -1, "number of settings is -1"},
+        {pendulum, {"simulation.duratoin=1 s"}, 1, "did you mean 'duration'"},
+        {"/nowhere/scene.yaml", {NULL}, 0, "/nowhere/scene.yaml"},
+    };
+    for (int k = 0; k < 5; k++) {
+        bough_session *s = bough_session_open(openings[k].scene, openings[k].set, openings[k].n);
+        int code = bough_session_code(s);
+        assert_true(code == BOUGH_SESSION_INVALID || code == BOUGH_SESSION_OTHER);
+        if (!strstr(bough_session_error(s), openings[k].message)) fail_msg("%s", bough_session_error(s));
+        check_without_scene(s, code);
+        bough_session_save(s, NULL);
+        assert_string_equal(bough_session_error(s), "save: the scene could not be opened");
+        bough_session_close(s);
+    }
+    bough_session *s = bough_session_open(pendulum, NULL, 2);
+    assert_int_equal(bough_session_code(s), BOUGH_SESSION_INVALID);
+    bough_session_close(s);
+}
+
+static void an_unknown_name_is_told_with_the_nearest(void **context) {
+    (void)context;
+    const char *const set[] = {"loads=[{joint: bob, torque: 0, input: push}]"};
+    bough_session *s = bough_session_open(pendulum, set, 1);
+    assert_int_equal(bough_session_find(s, "bobPoss"), -1);
+    assert_string_equal(bough_session_error(s),
+                        "the scene has no channel 'bobPoss' (did you mean 'bobPos'?)");
+    assert_int_equal(bough_session_input(s, "psuh"), -1);
+    assert_string_equal(bough_session_error(s), "the scene has no input 'psuh' (did you mean 'push'?)");
+    assert_int_equal(bough_session_input(s, NULL), -1);
+    assert_int_equal(bough_session_step(s), BOUGH_SESSION_OK);
+    assert_string_equal(bough_session_error(s), "");
+    assert_int_equal(bough_session_save(s, NULL), BOUGH_SESSION_INVALID);
+    assert_int_equal(bough_session_restore(s, NULL), BOUGH_SESSION_INVALID);
+    assert_int_equal(bough_session_set_text(s, 0, NULL), BOUGH_SESSION_INVALID);
+    assert_int_equal(bough_session_set(s, 1, 0), BOUGH_SESSION_INVALID);
+    assert_string_equal(bough_session_error(s), "the scene has no input of index 1: it has 1");
+    bough_session_close(s);
+}
+
 static void sessions_live_side_by_side(void **context) {
     (void)context;
     bough_session *a = bough_session_open(pendulum, NULL, 0);
@@ -180,8 +264,8 @@ static void another_wind_makes_a_what_if(void **context) {
 static void a_failed_session_is_restored(void **context) {
     (void)context;
     const char *const set[] = {"simulation.coupling.scheme=frozen", few, "bodies[2].mass=1",
-                               "bodies[2].inertia=[10, 10, 10, 0, 0, 0]"};
-    bough_session *s = bough_session_open(runup, set, 4);
+                               "bodies[2].inertia=[10, 10, 10, 0, 0, 0]", "aero.wind.input=wind"};
+    bough_session *s = bough_session_open(runup, set, 5);
     void *copy = save(s);
     double end[2];
     for (int k = 0; k < 2; k++) {
@@ -190,7 +274,14 @@ static void a_failed_session_is_restored(void **context) {
         assert_int_equal(code, BOUGH_SESSION_FAILED);
         assert_null(bough_session_values(s));
         end[k] = bough_session_time(s);
+        char why[600];
+        snprintf(why, sizeof why, "%s", bough_session_error(s));
         assert_int_equal(bough_session_save(s, copy), BOUGH_SESSION_FAILED);
+        assert_memory_equal(bough_session_error(s), "save: a step has failed", 23);
+        assert_int_equal(bough_session_set(s, 0, 9), BOUGH_SESSION_FAILED);
+        assert_int_equal(bough_session_find(s, "none"), -1);
+        assert_int_equal(bough_session_step(s), BOUGH_SESSION_FAILED); // whatever was called between
+        assert_string_equal(bough_session_error(s), why);
         assert_int_equal(bough_session_restore(s, copy), BOUGH_SESSION_OK);
         assert_string_equal(bough_session_error(s), "");
     }
@@ -224,6 +315,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(steps_to_the_end_and_reads),
         cmocka_unit_test(errors_are_told),
+        cmocka_unit_test(what_is_no_session_is_refused_in_every_call),
+        cmocka_unit_test(an_unknown_name_is_told_with_the_nearest),
         cmocka_unit_test(sessions_live_side_by_side),
         cmocka_unit_test(sessions_run_at_the_same_time),
         cmocka_unit_test(restored_runs_go_on_to_the_same_bits),

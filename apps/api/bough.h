@@ -2,6 +2,9 @@
    its state. Only one thread at a time may use a session; any number of sessions may exist and run in
    parallel. This header needs no other header of bough.
 
+   Every function accepts any session, also NULL and one whose scene could not be opened: then there are no
+   channels, inputs and values, and a call that returns a code returns that of the opening.
+
        bough_session *s = bough_session_open("runup.yaml", NULL, 0);
        int speed = bough_session_find(s, "RotSpeed");
        while (bough_session_step(s) == BOUGH_SESSION_OK)
@@ -41,27 +44,28 @@ enum {
    memory is exhausted; bough_session_code tells whether the scene was built. */
 BOUGH_API bough_session *bough_session_open(const char *scene, const char *const *set, int count);
 
-/* Code of the last open, step, save, restore or set, and the message of a failure: one or more lines,
-   "" after success. */
+/* Code of the last open, step, save, restore, set or failed search of a name, and the message of a failure:
+   one or more lines, "" after success. */
 BOUGH_API int bough_session_code(const bough_session *session);
 BOUGH_API const char *bough_session_error(const bough_session *session);
 
 /* A warning about the scene's coupling, or "". */
 BOUGH_API const char *bough_session_warning(const bough_session *session);
 
-/* Takes one macro step. */
+/* Takes one macro step. After one that has failed, the same code and message again. */
 BOUGH_API int bough_session_step(bough_session *session);
 
 /* Time now and at the end [s]; NaN when the scene could not be opened. */
 BOUGH_API double bough_session_time(const bough_session *session);
 BOUGH_API double bough_session_duration(const bough_session *session);
 
-/* Channels, as in channels.out: number of channels, name, unit, index of a name (-1: no such channel),
-   current value (NaN: no such channel). The first read after a step computes all values. */
+/* Channels, as in channels.out: number of channels, name, unit, index of a name (-1: no such channel; the
+   message names the nearest), current value (NaN: no such channel). The first read after a step computes all
+   values. */
 BOUGH_API int bough_session_count(const bough_session *session);
 BOUGH_API const char *bough_session_name(const bough_session *session, int channel);
 BOUGH_API const char *bough_session_unit(const bough_session *session, int channel);
-BOUGH_API int bough_session_find(const bough_session *session, const char *name);
+BOUGH_API int bough_session_find(bough_session *session, const char *name);
 BOUGH_API double bough_session_read(bough_session *session, int channel);
 
 /* Current values of all channels (count), at an address that does not change; NULL if there are no
@@ -69,18 +73,19 @@ BOUGH_API double bough_session_read(bough_session *session, int channel);
 BOUGH_API const double *bough_session_values(bough_session *session);
 
 /* Inputs, which the scene declares ('input: NAME' of a load, of a joint's motion, of the wind;
-   'control: {kind: external}'): number of inputs, name, unit (SI), index of a name (-1: no such input),
-   current value (NaN: no such input). */
+   'control: {kind: external}'): number of inputs, name, unit (SI), index of a name (-1: no such input; the
+   message names the nearest), current value (NaN: no such input). */
 BOUGH_API int bough_session_inputs(const bough_session *session);
 BOUGH_API const char *bough_session_input_name(const bough_session *session, int input);
 BOUGH_API const char *bough_session_input_unit(const bough_session *session, int input);
-BOUGH_API int bough_session_input(const bough_session *session, const char *name);
+BOUGH_API int bough_session_input(bough_session *session, const char *name);
 BOUGH_API double bough_session_input_value(const bough_session *session, int input);
 
 /* Sets an input from the next step on, in SI, or as text with any suitable unit ("40 kN m"). Loads have
    the value from the beginning of the step, the wind from the next sample of the air; a joint reaches
    the value at the end of the step; demands of the control are sampled at the rate of the control.
-   BOUGH_SESSION_INVALID: no such input, not a finite number, or a wrong unit; nothing is changed. */
+   BOUGH_SESSION_INVALID: no such input, not a finite number, a wrong unit, or a value that the scene would
+   refuse, such as wind of a negative speed; nothing is changed. */
 BOUGH_API int bough_session_set(bough_session *session, int input, double value);
 BOUGH_API int bough_session_set_text(bough_session *session, int input, const char *value);
 

@@ -19,7 +19,8 @@ struct bough_session {
     bough_body *body; // stepped by itself; NULL: the scene is
     uint64_t kind;    // fingerprint of what its copies hold
     size_t size;      // of a copy [bytes]
-    int code;
+    int opening;      // code of the opening
+    int code;         // of the last call that has one
     char error[ERROR_TEXT];
 };
 
@@ -32,6 +33,22 @@ static int conclude(bough_session *s, bough_status status) {
 
 // A step has; the state means nothing.
 static bool failed(const bough_session *s) { return !bough_is_ok(&s->run.outcome); }
+
+static bool is_open(const bough_session *s) { return s && s->open; }
+
+// What a call says that needs a scene, where there is none.
+static int conclude_closed(bough_session *s, const char *call) {
+    if (!s) return BOUGH_SESSION_OTHER;
+    snprintf(s->error, sizeof s->error, "%s: the scene could not be opened", call);
+    return s->code = s->opening;
+}
+
+static int conclude_failed(bough_session *s, const char *call) {
+    return conclude(s, bough_fail(BOUGH_FAILED,
+                                  "%s: a step has failed, and the session can only be restored or closed: "
+                                  "%.300s",
+                                  call, s->run.outcome.message));
+}
 
 // All errors of the scene, a line each; as many as there is room for.
 static void keep_errors(bough_session *s, const bough_errors *errors) {
@@ -88,6 +105,7 @@ static void describe_copy(bough_session *s) {
 
 static bough_status check_copy(const bough_session *s, const void *copy) {
     head h;
+    if (!copy) return bough_fail(BOUGH_INVALID, "restore: no copy is given (NULL)");
     memcpy(&h, copy, sizeof h);
     if (memcmp(h.magic, magic, sizeof magic) != 0) {
         return bough_fail(BOUGH_INVALID, "this is no copy of a session");
@@ -96,10 +114,12 @@ static bough_status check_copy(const bough_session *s, const void *copy) {
     return bough_fail(BOUGH_INVALID, "the copy is of a scene with other parts, coupling or steps");
 }
 
-size_t bough_session_size(const bough_session *s) { return s->size; }
+size_t bough_session_size(const bough_session *s) { return s ? s->size : 0; }
 
 int bough_session_save(bough_session *s, void *copy) {
-    if (!s->open || failed(s)) return s->code;
+    if (!is_open(s)) return conclude_closed(s, "save");
+    if (failed(s)) return conclude_failed(s, "save");
+    if (!copy) return conclude(s, bough_fail(BOUGH_INVALID, "save: no memory is given for the copy (NULL)"));
     bough_status status = s->body ? bough_ok() : bough_run_storable(&s->run);
     if (!bough_is_ok(&status)) return conclude(s, status);
     bough_session_values(s);
@@ -108,7 +128,7 @@ int bough_session_save(bough_session *s, void *copy) {
 }
 
 int bough_session_restore(bough_session *s, const void *copy) {
-    if (!s->open) return s->code;
+    if (!is_open(s)) return conclude_closed(s, "restore");
     bough_status status = check_copy(s, copy);
     if (!bough_is_ok(&status)) return conclude(s, status);
     take(s, &(bough_snapshot){BOUGH_SNAPSHOT_RESTORE, (char *)(uintptr_t)copy, 0});
@@ -128,9 +148,21 @@ typedef struct opening {
     const char *body; // NULL: the whole scene
 } opening;
 
+static bough_status check_opening(const opening *o) {
+    if (!o->path) return bough_fail(BOUGH_INVALID, "no scene is given (NULL)");
+    if (o->n_set < 0) return bough_fail(BOUGH_INVALID, "the number of settings is %d", o->n_set);
+    if (o->n_set > 0 && !o->set) return bough_fail(BOUGH_INVALID, "no list of settings is given (NULL)");
+    for (int k = 0; k < o->n_set; k++) {
+        if (!o->set[k]) return bough_fail(BOUGH_INVALID, "setting %d of %d is NULL", k + 1, o->n_set);
+    }
+    return bough_ok();
+}
+
 static bough_status build(bough_arena *arena, void *self) {
     const opening *o = self;
     bough_session *s = o->session;
+    bough_status given = check_opening(o);
+    if (!bough_is_ok(&given)) return given;
     bough_errors errors = {.arena = arena};
     bough_scene *scene = NULL;
     bough_status status = bough_scene_read(arena, o->path, o->set, o->n_set, &errors, &scene);
@@ -145,9 +177,9 @@ static bough_status build(bough_arena *arena, void *self) {
         status = bough_body_create(arena, s->run.simulation, o->body, &s->body);
     }
     if (!bough_is_ok(&status)) return status;
-    s->open = true;
     bough_pool_region(s->run.simulation->pool, start_threads, NULL);
     describe_copy(s);
+    s->open = true;
     return status;
 }
 
@@ -165,36 +197,40 @@ bough_session *bough_session_open_body(const char *scene, const char *const *set
         return NULL;
     }
     opening o = {s, scene, set, count, body};
-    conclude(s, bough_arena_guard(s->arena, build, &o));
+    s->opening = conclude(s, bough_arena_guard(s->arena, build, &o));
     return s;
 }
 
-int bough_session_code(const bough_session *s) { return s->code; }
+int bough_session_code(const bough_session *s) { return s ? s->code : BOUGH_SESSION_OTHER; }
 
-const char *bough_session_error(const bough_session *s) { return s->error; }
+const char *bough_session_error(const bough_session *s) {
+    return s ? s->error : "there is no session (NULL): its opening ran out of memory";
+}
 
 const char *bough_session_warning(const bough_session *s) {
-    return s->open ? s->run.simulation->master->verdict : "";
+    return is_open(s) ? s->run.simulation->master->verdict : "";
 }
 
 int bough_session_step(bough_session *s) {
-    if (!s->open || failed(s)) return s->code;
+    if (!is_open(s)) return conclude_closed(s, "step");
+    if (failed(s)) return conclude(s, s->run.outcome);
     if (s->body) return conclude(s, s->run.outcome = bough_body_step(s->body));
     if (bough_run_done(&s->run)) return BOUGH_SESSION_DONE;
     return conclude(s, bough_run_step(&s->run));
 }
 
 double bough_session_time(const bough_session *s) {
-    if (s->body) return bough_body_time(s->body);
-    return s->open ? s->run.simulation->master->time : (double)NAN;
+    if (s && s->body) return bough_body_time(s->body);
+    return is_open(s) ? s->run.simulation->master->time : (double)NAN;
 }
 
 double bough_session_duration(const bough_session *s) {
-    if (s->body) return HUGE_VAL;
-    return s->open ? s->run.simulation->master->duration : (double)NAN;
+    if (s && s->body) return HUGE_VAL;
+    return is_open(s) ? s->run.simulation->master->duration : (double)NAN;
 }
 
 int bough_session_count(const bough_session *s) {
+    if (!is_open(s)) return 0;
     return s->body ? BOUGH_BODY_OUTPUTS : s->run.channels.count;
 }
 
@@ -212,16 +248,33 @@ const char *bough_session_unit(const bough_session *s, int channel) {
     return s->body ? bough_body_outputs[channel].unit : s->run.channels.channel[channel].unit;
 }
 
-int bough_session_find(const bough_session *s, const char *name) {
-    for (int k = 0; k < bough_session_count(s); k++) {
-        if (strcmp(bough_session_name(s, k), name) == 0) return k;
+// The index of a name among n; -1 with a message that names the nearest of them.
+static int find_name(bough_session *s, const char *what, const char *name, int n,
+                     const char *(*name_of)(const bough_session *session, int k)) {
+    const char *shown = name ? name : "";
+    for (int k = 0; k < n; k++) {
+        if (strcmp(name_of(s, k), shown) == 0) return k;
     }
+    if (!is_open(s)) {
+        conclude_closed(s, what);
+        return -1;
+    }
+    const char **names = malloc((size_t)(n + 1) * sizeof *names);
+    for (int k = 0; k < n && names; k++) names[k] = name_of(s, k);
+    conclude(s, bough_fail(BOUGH_INVALID, "the scene has no %s '%.80s'%s", what, shown,
+                           bough_suggest(shown, names, names ? n : 0).text));
+    free(names);
     return -1;
 }
 
+int bough_session_find(bough_session *s, const char *name) {
+    return find_name(s, "channel", name, bough_session_count(s), bough_session_name);
+}
+
 const double *bough_session_values(bough_session *s) {
+    if (!is_open(s)) return NULL;
     if (s->body) return failed(s) ? NULL : bough_body_wrench(s->body);
-    return s->open && s->run.channels.count > 0 ? bough_run_values(&s->run) : NULL;
+    return s->run.channels.count > 0 ? bough_run_values(&s->run) : NULL;
 }
 
 double bough_session_read(bough_session *s, int channel) {
@@ -250,8 +303,8 @@ static bough_dimension input_dimension(const bough_session *s, int input) {
 }
 
 int bough_session_inputs(const bough_session *s) {
-    if (s->body) return BOUGH_BODY_INPUTS;
-    return s->open ? s->run.simulation->scene->n_input : 0;
+    if (s && s->body) return BOUGH_BODY_INPUTS;
+    return is_open(s) ? s->run.simulation->scene->n_input : 0;
 }
 
 const char *bough_session_input_name(const bough_session *s, int input) {
@@ -263,11 +316,8 @@ const char *bough_session_input_unit(const bough_session *s, int input) {
     return is_input(s, input) ? bough_dimension_unit(input_dimension(s, input)) : "";
 }
 
-int bough_session_input(const bough_session *s, const char *name) {
-    for (int k = 0; k < bough_session_inputs(s); k++) {
-        if (strcmp(bough_session_input_name(s, k), name) == 0) return k;
-    }
-    return -1;
+int bough_session_input(bough_session *s, const char *name) {
+    return find_name(s, "input", name, bough_session_inputs(s), bough_session_input_name);
 }
 
 double bough_session_input_value(const bough_session *s, int input) {
@@ -275,14 +325,28 @@ double bough_session_input_value(const bough_session *s, int input) {
     return value ? *value : (double)NAN;
 }
 
+// What the scene's keys allow of the same quantity.
+static const char *input_range(const bough_session *s, int input) {
+    return s->body ? NULL : input_at(s, input)->range;
+}
+
 int bough_session_set(bough_session *s, int input, double value) {
+    if (!is_open(s)) return conclude_closed(s, "set");
+    if (failed(s)) return conclude_failed(s, "set");
     double *to = input_value(s, input);
     if (!to) {
-        return conclude(s, bough_fail(BOUGH_INVALID, "the scene has no input of index %d", input));
+        return conclude(s, bough_fail(BOUGH_INVALID, "the scene has no input of index %d: it has %d", input,
+                                      bough_session_inputs(s)));
     }
+    const char *range = input_range(s, input);
     if (!isfinite(value)) {
         return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a finite number, got %g",
                                       bough_session_input_name(s, input), value));
+    }
+    if (!bough_in_range(value, range)) {
+        return conclude(s, bough_fail(BOUGH_INVALID, "input %s: must be %s%s %s, got %g",
+                                      bough_session_input_name(s, input), range[0] == '[' ? "in " : "", range,
+                                      bough_session_input_unit(s, input), value));
     }
     *to = value;
     return conclude(s, bough_ok());
@@ -291,6 +355,7 @@ int bough_session_set(bough_session *s, int input, double value) {
 int bough_session_set_text(bough_session *s, int input, const char *text) {
     double value = (double)NAN;
     char why[160] = "";
+    if (!text) text = "";
     if (is_input(s, input) && !bough_quantity(text, input_dimension(s, input), &value, why)) {
         return conclude(s, bough_fail(BOUGH_INVALID, "input %s: expected a value in %s, got '%.80s'%s%s",
                                       bough_session_input_name(s, input), bough_session_input_unit(s, input),
@@ -300,7 +365,7 @@ int bough_session_set_text(bough_session *s, int input, const char *text) {
 }
 
 void bough_session_begin_body(bough_session *s) {
-    if (s->body) bough_body_begin(s->body);
+    if (s && s->body) bough_body_begin(s->body);
 }
 
 void bough_session_close(bough_session *s) {

@@ -120,6 +120,9 @@ int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, in
 // not one; `why` then receives the reason.
 bool bough_quantity(const char *text, bough_dimension dimension, double *value, char why[160]);
 
+// Whether the value is in a range "> 0", ">= 0", "[0, 2]"; NULL: any is.
+bool bough_in_range(double value, const char *range);
+
 // A whole number of at most nine digits.
 bool bough_whole_number(const char *text, int *value);
 

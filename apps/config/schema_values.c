@@ -101,8 +101,8 @@ int bough_schema_numbers(bough_schema_reader *reader, const bough_node *node, in
     return n;
 }
 
-// Whether the value is in a range "> 0", ">= 0", "[0, 2]"; ranges come from our own tables.
-static bool in_range(double value, const char *range) {
+// Ranges come from our own tables.
+bool bough_in_range(double value, const char *range) {
     if (range == NULL) return true;
     if (range[0] == '[') {
         char *end;
@@ -114,7 +114,7 @@ static bool in_range(double value, const char *range) {
 }
 
 static bool check_range(bough_schema_reader *r, const bough_key *key, const bough_node *node, double value) {
-    if (isnan(value) || in_range(value, key->range)) return true;
+    if (isnan(value) || bough_in_range(value, key->range)) return true;
     char shown[64];
     const char *unit = bough_dimension_unit(key->dimension);
     bough_schema_error(r, node, "", "must be %s%s%s%s, got %s", key->range[0] == '[' ? "in " : "", key->range,

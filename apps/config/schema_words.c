@@ -48,6 +48,13 @@ static bool is_part(const char *word, const char *candidate) {
     return false;
 }
 
+static int same_beginning(const char *a, const char *b) {
+    int n = 0;
+    while (a[n] != '\0' && a[n] == b[n]) n++;
+    return n;
+}
+
+// Of equally near words the one that begins alike: slips are rare at the beginning.
 const char *bough_nearest(const char *word, const char *const *candidates, int n) {
     size_t length = strlen(word);
     if (length >= WORD) return NULL;
@@ -56,7 +63,9 @@ const char *bough_nearest(const char *word, const char *const *candidates, int n
     for (int i = 0; i < n; i++) {
         if (candidates[i] == NULL || strlen(candidates[i]) >= WORD) continue;
         int distance = is_part(word, candidates[i]) ? 1 : edit_distance(word, candidates[i]);
-        if (distance < best) {
+        bool alike = nearest != NULL && distance == best &&
+                     same_beginning(word, candidates[i]) > same_beginning(word, nearest);
+        if (distance < best || alike) {
             best = distance;
             nearest = candidates[i];
         }

@@ -29,6 +29,13 @@ class Error(Exception):
         super().__init__(text)
         self.code = code
 
+    def __str__(self):
+        return self.args[0]
+
+
+class UnknownName(Error, KeyError):
+    """The scene has no channel or input of that name; the message tells the nearest."""
+
 
 def _load():
     here = os.path.dirname(os.path.abspath(__file__))
@@ -49,10 +56,12 @@ def _load():
         ("count", ctypes.c_int, session),
         ("name", text, session, ctypes.c_int),
         ("unit", text, session, ctypes.c_int),
+        ("find", ctypes.c_int, session, text),
         ("values", ctypes.c_void_p, session),
         ("inputs", ctypes.c_int, session),
         ("input_name", text, session, ctypes.c_int),
         ("input_unit", text, session, ctypes.c_int),
+        ("input", ctypes.c_int, session, text),
         ("input_value", real, session, ctypes.c_int),
         ("set", ctypes.c_int, session, ctypes.c_int, real),
         ("set_text", ctypes.c_int, session, ctypes.c_int, text),
@@ -116,10 +125,22 @@ class Session:
             raise ValueError("the session is closed")
         return getattr(_library, "bough_session_" + name)(self._handle.pointer, *arguments)
 
+    def _error(self):
+        return self._call("error").decode().rstrip()
+
     def _check(self, code):
         if code not in (OK, DONE):
-            raise Error(code, self._call("error").decode().rstrip())
+            raise Error(code, self._error())
         return code
+
+    def _find(self, known, call, name):
+        """The index of a channel or an input among those known; the library's call tells what is wrong."""
+        if name in known:
+            return known[name]
+        if not isinstance(name, str):
+            raise TypeError("expected the name of a channel or an input, got %r" % (name,))
+        self._call(call, name.encode())
+        raise UnknownName(INVALID, self._error())
 
     @property
     def time(self):
@@ -151,8 +172,10 @@ class Session:
         return _view(memoryview(doubles).cast("B").cast("d").toreadonly())
 
     def __getitem__(self, name):
-        """Current value of a channel: session["RotSpeed"]."""
-        return float(self.values[self._index[name]])
+        """Current value of a channel, session["RotSpeed"], or of an input as it was last set (SI)."""
+        if name in self._input and name not in self._index:
+            return self._call("input_value", self._input[name])
+        return float(self.values[self._find(self._index, "find", name)])
 
     @property
     def inputs(self):
@@ -161,19 +184,21 @@ class Session:
 
     def __setitem__(self, name, value):
         """Sets an input from the next step on: a number in SI, or a text with a unit, "5 kN m"."""
-        i = self._input[name]
+        i = self._find(self._input, "input", name)
         if isinstance(value, str):
             self._check(self._call("set_text", i, value.encode()))
         else:
-            self._check(self._call("set", i, value))
+            self._check(self._call("set", i, float(value)))
 
     def advance(self, until=None, channels=None):
         """Steps to a time [s], or to the end. Returns a dictionary of columns, "Time" and the channels (None:
-        all), with one row for the start and one for each step."""
-        until = self.duration if until is None else until
-        names = self.names if channels is None else channels
+        all, or names), with one row for the start and one for each step."""
+        until = self.duration if until is None else float(until)
+        if until != until:
+            raise ValueError("expected a time to advance to, got nan")
+        names = self.names if channels is None else [channels] if isinstance(channels, str) else channels
+        index = [self._find(self._index, "find", name) for name in names]
         columns = {name: array.array("d") for name in ["Time", *names]}
-        index = [self._index[name] for name in names]
         while True:
             now, values = self.time, self.values
             columns["Time"].append(now)
@@ -190,6 +215,6 @@ class Session:
 
     def restore(self, copy):
         """Takes the session to where the copy was made, be it of this or of a like session."""
-        if ctypes.sizeof(copy) != self._call("size"):
+        if not isinstance(copy, ctypes.Array) or ctypes.sizeof(copy) != self._call("size"):
             raise Error(INVALID, "the copy is of a scene with other parts, coupling or steps")
         self._check(self._call("restore", ctypes.addressof(copy)))

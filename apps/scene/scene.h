@@ -494,8 +494,9 @@ typedef struct bough_scene_input {
     const bough_node *node; // where it is named
     const char *name;
     bough_scene_input_kind kind;
-    int dimension;  // bough_dimension
-    double initial; // until it is set, SI
+    int dimension;     // bough_dimension
+    const char *range; // of its values, SI: that of the key for which it stands; NULL: any
+    double initial;    // until it is set, SI
     int index;      // of the load, the body on the joint, or the blade
 } bough_scene_input;
 

@@ -1,5 +1,5 @@
 // Inputs: what the scene leaves to whoever steps it, by name.
-#include "apps/scene/scene_internal.h"
+#include "apps/scene/scene_tables.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -108,6 +108,7 @@ static void add_wind(bough_schema_reader *r, bough_scene *s) {
     if (s->aero.node == NULL || wind->input == NULL) return;
     bough_scene_input *input = add(s, wind->node, wind->input, BOUGH_INPUT_WIND);
     input->dimension = BOUGH_SPEED;
+    input->range = WIND_SPEED_RANGE;
     input->initial = wind->def.speed;
     if (wind->kind <= BOUGH_SCENE_WIND_LOG && wind->table.node == NULL) return;
     bough_link_at(r, "aero.wind");

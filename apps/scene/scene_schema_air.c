@@ -78,7 +78,7 @@ static const bough_schema polars_schema = {
 static const bough_key wind_table_keys[] = {
     {NAMED("times", NUMBERS), AT(time), UNIT(TIME), .count = 2, .required = true, COUNT_AT(n_time),
      .example = "[0, 10 s, 12 s]", .help = "strictly increasing"},
-    {NAMED("speeds", NUMBERS), AT(speed), UNIT(SPEED), .range = "[0, 150]", .count = 2,
+    {NAMED("speeds", NUMBERS), AT(speed), UNIT(SPEED), .range = WIND_SPEED_RANGE, .count = 2,
      .required = true, COUNT_AT(n_speed), .example = "[8, 8, 12 m/s]",
      .help = "speed at each time, linear between, constant before and after"},
 };
@@ -137,7 +137,7 @@ static const bough_key wind_keys[] = {
      .help = "period after which the turbulence repeats; auto: the duration, at least 600 s"},
     {NAMED("file", TEXT), AT(def.file), .required = true, WHEN("kind", "wnd|bts"), .example = "turbulence.bts",
      .help = "relative to the scene"},
-    {DEF(speed), UNIT(SPEED), .range = "[0, 150]", .example = "11.4 m/s",
+    {DEF(speed), UNIT(SPEED), .range = WIND_SPEED_RANGE, .example = "11.4 m/s",
      .help = "horizontal speed at the reference height; required unless there is a table or a "
              "file, or the class gives the speed (ewm)"},
     {KEY(TEXT, input), .example = "wind",

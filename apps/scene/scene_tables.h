@@ -7,6 +7,7 @@
 
 // clang-format off
 #define ZERO3 "[0, 0, 0]"
+#define WIND_SPEED_RANGE "[0, 150]"
 #define PLACEMENT_FORM "list of 'move x|y|z LENGTH' and 'rotate x|y|z ANGLE'"
 
 #define RAMP                                                                                       \
