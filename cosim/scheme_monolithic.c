@@ -43,7 +43,7 @@ static void find_right_side(const stages *s, int i) {
 }
 
 // The tasks of a stage: right sides of the followers, their solutions, then the leaders, whose inputs wait
-// for the outputs of all followers. With two tasks for each follower, three blades make the same work for
+// for the outputs of all followers. With two tasks for each follower, three followers make the same work for
 // both of two threads.
 static void find_and_solve(void *self, int k) {
     const stages *s = self;
