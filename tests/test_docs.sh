@@ -1,5 +1,5 @@
 #!/bin/sh
-# Every `ctest -R PATTERN` of the documents names a test that there is: test_docs.sh BUILD SOURCE
+# What the documents name is there: every `ctest -R PATTERN` a test, every file a file. test_docs.sh BUILD SOURCE
 set -u
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
@@ -17,4 +17,45 @@ while read -r pattern; do
     done
 done <"$scratch/patterns"
 [ "$(wc -l <"$scratch/patterns")" -ge 20 ] || { echo 'FAILED: few commands were found'; failures=1; }
+
+# Files: links, relative to the page; `folder/name.ext` of the sources, with "*" or NAME for any text; `name.c`
+# anywhere.
+exists() { # PATTERN
+    # shellcheck disable=SC2086 # a pattern
+    set -- $1
+    [ -e "$1" ]
+}
+cd "$2" || exit 1
+git ls-files '*.[ch]' 2>/dev/null | sed 's,.*/,,' >"$scratch/sources"
+[ -s "$scratch/sources" ] || find . -name build -prune -o -name '*.[ch]' -print | sed 's,.*/,,' >"$scratch/sources"
+n=0
+for page in README.md docs/*.md docs/*/*.md; do
+    grep -o '](\([^)#]*\)' "$page" | sed 's/^](//; /^https*:/d; /^$/d' >"$scratch/links"
+    while read -r link; do
+        n=$((n + 1))
+        exists "$(dirname "$page")/$link" && continue
+        echo "FAILED: $page links to $link, which does not exist"
+        failures=$((failures + 1))
+    done <"$scratch/links"
+    # the words between backquotes; commands have several
+    grep -o '`[^`]*`' "$page" | tr -d '`' | tr ' ' '\n' | sed "s/[,;:']*$//; s/NAME/*/g; s/^\.\///" |
+        grep -E '^[A-Za-z0-9_*./-]+\.(c|h|yaml|md|sh|py|js|csv|cmake|svg|diff)$' | sort -u >"$scratch/named"
+    while read -r name; do
+        case $name in
+        core/* | flexbody/* | aero/* | cosim/* | apps/* | docs/* | tests/*)
+            n=$((n + 1))
+            exists "$name" && continue
+            ;;
+        */*) continue ;;
+        *.[ch])
+            n=$((n + 1))
+            grep -q -x "$(echo "$name" | sed 's/[.]/[.]/g; s/\*/.*/g')" "$scratch/sources" && continue
+            ;;
+        *) continue ;;
+        esac
+        echo "FAILED: $page names $name, which does not exist"
+        failures=$((failures + 1))
+    done <"$scratch/named"
+done
+[ $n -ge 100 ] || { echo "FAILED: only $n files were found"; failures=1; }
 [ $failures -eq 0 ]

@@ -2,9 +2,10 @@
 # A tutorial's commands print what it says. test_tutorial.sh BOUGH SOURCE TUTORIAL.md
 #
 # A block "yaml NAME" is a file; in a block "console", "$ " begins a command, "> " continues it, the
-# rest is its output. There "..." stands for a word or, last in a line, for the rest, "~2e-5" for a
-# number within a factor of three; others agree in all digits shown but for one unit of the last,
-# since machines round differently.
+# rest is its output. There "..." stands for a word or, last in a line, for the rest. Numbers agree in
+# all digits shown but for one unit of the last, since machines round differently. After "~" zeros at the end
+# of a whole number are no digits, "~2970" is 2960 to 2980, and a single digit is a size within a factor of
+# three: "~2e-5".
 set -eu
 bough=$1 source=$2 tutorial=$3
 folder=$(mktemp -d)
@@ -38,8 +39,11 @@ compare='
     function close_by(want, got) {
         if (want == got || want == "...") return 1
         if (want ~ /^~/ && number(got)) {
-            ratio = got / substr(want, 2)
-            return ratio > 1 / 3 && ratio < 3
+            about = substr(want, 2)
+            last = unit(about)
+            if (about !~ /[.eE]/) while (about % (10 * last) == 0) last *= 10
+            if (size(about) > 9.5 * last) return size(about - got) <= 1.001 * last
+            return got / about > 1 / 3 && got / about < 3
         }
         if (!number(want) || !number(got) || want got ~ /^[-+0-9]*$/) return 0
         off = size(want - got)
