@@ -25,13 +25,28 @@ static void choose_micro(double accuracy, bough_scene_solver *micro) {
     if (!is_named(micro->node, "step")) micro->step = usual_step * sqrt(accuracy / usual);
 }
 
-static void choose_master(bough_scene_simulation *s) {
+// A mechanism of rigid bodies in closed loops, small enough for Radau IIA: of its long steps hardly any ends
+// near a position from which the bodies can go on in two ways, where BDF's errors send them the other way.
+static bool is_linkage(const bough_scene *s) {
+    int states = 0;
+    for (int i = 0; i < s->n_body; i++) {
+        const bough_scene_body *b = &s->body[i];
+        if (b->fidelity != BOUGH_SCENE_RIGID) return false;
+        states += bough_joint_n_coordinates(b->joint.kind) + bough_joint_n_speeds(b->joint.kind);
+    }
+    return s->n_closure > 0 && states <= bough_integrator_find(BOUGH_RADAU5)->most_states;
+}
+
+static void choose_master(bough_scene *scene) {
+    bough_scene_simulation *s = &scene->simulation;
     bough_scene_solver *master = &s->master;
     const char *scheme = bough_scheme_name(s->coupling.scheme);
     bool whole = scheme && bough_scheme_find(scheme)->one_system;
     if (!is_named(master->node, "rtol")) master->rtol = s->accuracy / (whole ? whole_error : tree_error);
     if (whole && !is_named(master->node, "solver")) {
-        master->solver = master->rtol < fine_rtol ? BOUGH_IDA : BOUGH_AUTOMATIC;
+        master->solver = is_linkage(scene)          ? BOUGH_RADAU5
+                         : master->rtol < fine_rtol ? BOUGH_IDA
+                                                    : BOUGH_AUTOMATIC;
     }
 }
 
@@ -124,7 +139,7 @@ static void choose_times(bough_scene *s) {
 
 void bough_scene_apply_accuracy(bough_scene *s) {
     if (!(s->simulation.accuracy > 0)) s->simulation.accuracy = usual; // after an error
-    choose_master(&s->simulation);
+    choose_master(s);
     choose_micro(s->simulation.accuracy, &s->simulation.micro);
     for (int i = 0; i < s->n_body; i++) {
         if (s->body[i].micro.node) choose_micro(s->simulation.accuracy, &s->body[i].micro);

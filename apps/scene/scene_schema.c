@@ -19,7 +19,8 @@ static const bough_key master_keys[] = {
              "radau5: Runge-Kutta of order 5, up to 400 states; generalized-alpha: order 2; "
              "rosenbrock: linearly implicit Runge-Kutta of order 3; automatic: rosenbrock, and ida "
              "at a tenth of rtol where that takes fewer evaluations. The monolithic scheme's default "
-             "is automatic, or ida with an rtol below 1e-6"},
+             "is automatic, or ida with an rtol below 1e-6; that of linkages of rigid bodies in closed loops, up "
+             "to 400 states, radau5"},
     RTOL,
     {KEY(NUMBER, step), UNIT(TIME), .range = "[1e-7, 10]", .example = "10 ms",
      .help = "of generalized-alpha, rosenbrock and automatic: longest step; default the macro "
@@ -239,7 +240,8 @@ static const char example[] =
 
 void bough_scene_help(FILE *stream) {
     fputs("# Scenes\n\nThis page lists all keys of a scene. A scene is a YAML file. Paths of files are "
-          "relative to it. Values are SI\nnumbers or have a unit:\n\n", stream);
+          "relative to it. Values are SI\nnumbers or have a unit:\n\n",
+          stream);
     bough_schema_help_units(stream);
     fputs("\nAn angle or an angular speed that is not 0 needs its unit.\n\n"
           "A list of mappings with the same keys may be written as a table. A unit after the name of "
@@ -248,7 +250,8 @@ void bough_scene_help(FILE *stream) {
           "      columns: [span, twist deg, chord]\n"
           "      rows:\n"
           "        - [0, 13.3, 3.5]\n"
-          "        - [10, 11.5, 4.6]\n", stream);
+          "        - [10, 11.5, 4.6]\n",
+          stream);
     fputs("\n## An example\n\n", stream);
     fputs(example, stream);
     fputs("\n## Keys\n\n", stream);
