@@ -99,7 +99,7 @@ typedef struct bough_coupling {
 
     long sweeps;     // by the iterated scheme: runs of all members over a macro step so far
     long unfinished; // macro steps that went on before they had converged
-    bool measured;   // the error of such steps is measured by a second solution
+    bool measured;   // another solution shows the error of such steps
 } bough_coupling;
 
 // Builds the working data and evaluates the outputs at the members' current states; the scheme's own

@@ -44,9 +44,7 @@ static void judge(bough_master *m) {
 }
 
 // Times closer than this are one synchronisation point [s].
-static double resolution(const bough_master *m) {
-    return 1e-9 * m->macro_step;
-}
+static double resolution(const bough_master *m) { return 1e-9 * m->macro_step; }
 
 static bool on_grid(const bough_master *m) {
     return fabs(m->time - (double)m->grid_index * m->macro_step) <= resolution(m);
@@ -69,8 +67,7 @@ static void evaluate_loads(bough_master *m) {
     }
 }
 
-bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
-                                bough_master **master) {
+bough_status bough_master_build(bough_arena *arena, const bough_master_def *def, bough_master **master) {
     assert(def->macro_step > 0 && def->duration > 0 && isfinite(def->duration));
     bough_master *m = bough_arena_take(arena, sizeof *m);
     m->macro_step = def->macro_step;
@@ -84,12 +81,9 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     const bough_scheme *scheme = m->coupling->scheme;
     m->monitor = bough_monitor_create(arena, m->coupling);
     m->breakdown = bough_breakdown_create(arena, m->assembly);
-    m->error = def->error;
-    m->suits_linearised = def->suits_linearised;
     bool controlled = def->control.tolerance > 0 && !scheme->one_system;
     if (controlled) {
         int order = bough_scheme_defect_order(scheme, &def->scheme);
-        m->estimate = bough_error_estimate_create(arena, m->coupling);
         m->control = bough_step_control_create(arena, m->coupling, &def->control, m->macro_step, order);
     }
     begin_loads(m, 0);
@@ -100,9 +94,7 @@ bough_status bough_master_build(bough_arena *arena, const bough_master_def *def,
     return scheme->prepare ? scheme->prepare(m->coupling, arena) : status;
 }
 
-bool bough_master_done(const bough_master *m) {
-    return m->time >= m->duration;
-}
+bool bough_master_done(const bough_master *m) { return m->time >= m->duration; }
 
 // The next synchronisation point: grid point, event or the end, whichever comes first.
 double bough_master_next(const bough_master *m) {
@@ -174,9 +166,9 @@ static bough_status take_controlled_step(bough_master *m) {
         if (!good && (status.code != BOUGH_RETRY || bough_step_control_exhausted(control))) {
             return status;
         }
-        double error = good ? bough_error_estimate_defect(m->estimate, c) : HUGE_VAL;
+        double error = good ? bough_step_control_defect(control, c) : HUGE_VAL;
         bool shortest = bough_step_control_exhausted(control);
-        if (bough_step_control_accept(control, error, c->t1 - c->t0)) return status;
+        if (bough_step_control_accept(control, c, error)) return status;
         if (shortest) return status; // for the monitor to tell
         bough_step_control_restore(control, c);
     }
@@ -196,7 +188,7 @@ static bough_status macro_step(bough_master *m) {
     if (!bough_is_ok(&status)) return status;
 
     bough_breakdown_keep(m->breakdown, c);
-    c->measured = bough_master_measures(m);
+    c->measured = m->compared;
     status = m->control ? take_controlled_step(m) : take_step(m);
     if (!bough_is_ok(&status) && m->stop && m->stop()) {
         bough_breakdown_undo(m->breakdown, c);
@@ -206,15 +198,12 @@ static bough_status macro_step(bough_master *m) {
         return bough_breakdown_explain(m->breakdown, c, &m->advice, status);
     }
 
-    bough_monitor_judge(m->monitor, !bough_master_measures(m));
+    bough_monitor_judge(m->monitor, !m->compared);
     status = bough_monitor_step(m->monitor, c);
     if (!bough_is_ok(&status)) return status;
     set_time(m, c->t1);
     m->steps++;
     evaluate_loads(m);
-    if (m->second && !bough_second_solution_step(m->second, c)) return interrupted(m);
-    if (m->estimate) bough_error_estimate_step(m->estimate, c);
-    if (m->estimate && bough_master_done(m)) bough_error_estimate_finish(m->estimate, c);
     return bough_ok();
 }
 
@@ -232,7 +221,6 @@ void bough_master_stop_by(bough_master *m, bool (*stop)(void)) {
     m->stop = stop;
     for (int i = 0; i < m->assembly->n_member; i++) m->assembly->member[i]->stop = stop;
     if (m->coupling->whole) m->coupling->whole->stop = stop;
-    if (m->second) bough_second_solution_stop_by(m->second, stop);
 }
 
 bough_status bough_step(bough_master *m) {
@@ -257,8 +245,6 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s) {
     bough_snapshot_take(s, &c->unfinished, sizeof c->unfinished);
     if (c->scheme->snapshot) c->scheme->snapshot(c, s);
     bough_monitor_snapshot(m->monitor, c, s);
-    if (m->estimate) bough_error_estimate_snapshot(m->estimate, s);
-    if (m->second) bough_second_solution_snapshot(m->second, s);
     if (m->control) bough_step_control_snapshot(m->control, s);
     if (s->move != BOUGH_SNAPSHOT_RESTORE) return;
     m->next_event = 0;

@@ -4,10 +4,8 @@
 #define BOUGH_COSIM_MASTER_H
 
 #include "cosim/breakdown.h"
-#include "cosim/error_estimate.h"
 #include "cosim/monitor.h"
 #include "cosim/scheme.h"
-#include "cosim/second_solution.h"
 #include "cosim/stability.h"
 #include "cosim/step_control.h"
 
@@ -26,23 +24,12 @@ typedef struct bough_sampled_load {
     void (*begin)(void *self, double t);
 } bough_sampled_load;
 
-// How a run estimates its error.
-typedef enum bough_error_source {
-    BOUGH_ERROR_BY_BEST, // the linearised members where they are known to be reliable, else a second solution
-    BOUGH_ERROR_BY_SECOND_SOLUTION,
-    BOUGH_ERROR_BY_LINEARISED_MEMBERS,
-    BOUGH_ERROR_NOT_TOLD,
-} bough_error_source;
-
 typedef struct bough_master_def {
     bough_assembly_def assembly;
     bough_scheme_options scheme;
     double macro_step;              // H, the longest [s]
     bough_step_control_def control; // shorter ones by error; tolerance 0: none
-    bough_error_source error;
-    bool suits_linearised; // linearised members tell the errors of such a scene, as far as its coupling lets
-                           // them
-    double duration;       // [s]; the run starts at time 0
+    double duration;                // [s]; the run starts at time 0
     int n_load;
     const bough_sampled_load *load; // (n_load), copied
     int n_event;
@@ -60,11 +47,9 @@ typedef struct bough_master {
     bough_assembly *assembly;
     bough_coupling *coupling;
     bough_monitor *monitor;
-    bough_error_estimate *estimate; // NULL: the scheme makes no coupling error
-    bough_second_solution *second;  // NULL: there is none
-    bough_error_source error;       // asked for
-    bool suits_linearised;          // see bough_master_def
-    bough_step_control *control;    // NULL: fixed steps
+    bough_step_control *control; // NULL: fixed steps
+    bool compared; // set by the caller: another solution shows the error, so that growth of forces is not
+                   // judged and steps that have not converged go on
     bough_breakdown *breakdown;
     int n_load;
     bough_sampled_load *load; // (n_load)
@@ -102,42 +87,6 @@ void bough_master_snapshot(bough_master *m, bough_snapshot *s);
 
 // Whether all loads are sampled at `time`, which a snapshot requires.
 bool bough_master_sampled(const bough_master *m);
-
-// Whether a second solution measures the error, which then contains every kind of coupling error.
-bool bough_master_measures(const bough_master *m);
-
-// Number of updates of the states' error so far.
-long bough_master_errors(const bough_master *m);
-
-// Current error of the states (n_state), in their units; NULL if it cannot be estimated.
-const double *bough_master_state_error(const bough_master *m);
-
-// Current error of the inputs (n_input); NULL if it cannot be estimated.
-const double *bough_master_inputs_error(const bough_master *m);
-
-// Factor of the error in results and messages.
-double bough_master_error_safety(const bough_master *m);
-
-// Largest error so far of the value of input j, with that factor, in the port's unit; NaN: unknown.
-double bough_master_input_error(const bough_master *m, int j);
-
-// In a few words: the method of the estimate, and the cause of the error.
-const char *bough_master_error_source(const bough_master *m);
-const char *bough_master_error_cause(const bough_master *m);
-
-enum { BOUGH_MASTER_ADVICE = 120 };
-
-// Settings with an error that is smaller by that factor: words to follow "try".
-void bough_master_advise(const bough_master *m, double factor, char text[BOUGH_MASTER_ADVICE]);
-
-// Leaves the choice of linearised members to the second solution where they are not known to tell the errors.
-void bough_master_choose_estimate(bough_master *m);
-
-// Whether the error is to be measured by a second solution, and by which, without `beside`.
-bool bough_master_wants_second(const bough_master *m, bough_second_solution_def *def);
-
-// Builds the error estimate in the arena; called at time 0. `beside`: see bough_second_solution_def, or NULL.
-bough_status bough_master_watch(bough_master *m, bough_arena *arena, bough_master *beside);
 
 // The next synchronisation point without step control: grid point, event or the end, whichever comes first
 // [s].

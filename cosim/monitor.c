@@ -1,4 +1,4 @@
-// Two watches serve where no second solution measures the error; what each finds on random scenes is in
+// Two watches serve where no other solution shows the error; what each finds on random scenes is in
 // docs/verification.md.
 //
 // A force that has grown by a factor of 100 since its first steps, and that the members do not agree on, is

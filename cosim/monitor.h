@@ -18,8 +18,8 @@ typedef struct bough_coupling_report {
 
 bough_monitor *bough_monitor_create(bough_arena *arena, const bough_coupling *coupling);
 
-// Switches the detection of growth, which is on by default; it is off where a second solution measures the
-// error.
+// Switches the detection of growth, which is on by default; it is off where another solution shows
+// the error.
 void bough_monitor_judge(bough_monitor *m, bool judges);
 
 // Checks the last step: BOUGH_FAILED with a diagnosis when the run has become meaningless.

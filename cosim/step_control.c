@@ -1,5 +1,7 @@
 #include "cosim/step_control.h"
 
+#include "cosim/port.h"
+
 #include <math.h>
 
 bough_step_control *bough_step_control_create(bough_arena *arena, bough_coupling *c,
@@ -13,6 +15,9 @@ bough_step_control *bough_step_control_create(bough_arena *arena, bough_coupling
     bough_snapshot size = {.move = BOUGH_SNAPSHOT_MEASURE};
     bough_coupling_snapshot(c, &size);
     s->copy = bough_arena_take(arena, size.used);
+    s->n_point = 1;
+    s->curve = bough_port_signal(arena, c->assembly->n_input);
+    bough_arena_each(arena, (size_t)c->assembly->n_input, &s->size, &s->obtained, &s->square);
     return s;
 }
 
@@ -34,9 +39,78 @@ void bough_step_control_restore(bough_step_control *s, bough_coupling *c) {
 }
 
 void bough_step_control_snapshot(bough_step_control *s, bough_snapshot *snapshot) {
-    char *copy = s->copy;
+    const bough_step_control own = *s; // its memory
     bough_snapshot_take(snapshot, s, sizeof *s);
-    s->copy = copy;
+    s->copy = own.copy;
+    s->size = own.size;
+    s->curve = own.curve;
+    s->obtained = own.obtained;
+    s->square = own.square;
+    bough_snapshot_doubles(snapshot, s->size, s->curve.n);
+}
+
+// -- defects --------------------------------------------------------------------------------------
+
+// Squares of the vectors' norms, in a vector's first.
+static void square_norms(bough_step_control *s, const bough_assembly *a, const double *x) {
+    for (int j = 0; j < a->n_input; j++) {
+        if (a->vector[j] == j) s->square[j] = 0;
+        s->square[a->vector[j]] += x[j] * x[j];
+    }
+}
+
+// Largest norm of a vector in x (n_input) relative to its size.
+static double worst_relative(bough_step_control *s, const bough_assembly *a, const double *x) {
+    double worst = 0;
+    square_norms(s, a, x);
+    for (int j = 0; j < a->n_input; j++) {
+        if (a->vector[j] != j || !(s->square[j] > 0)) continue;
+        double relative = sqrt(s->square[j]) / s->size[j];
+        worst = relative <= worst ? worst : relative; // a NaN wins
+    }
+    return worst;
+}
+
+// The obtained inputs: the polynomial through the last synchronisation points, none of them before a jump.
+static void reconstruct(bough_step_control *s, const bough_coupling *c) {
+    int past = c->restart ? 1 : s->n_point;
+    const double *value[BOUGH_PAST];
+    for (int p = 0; p <= past; p++) value[p] = c->past[p];
+    s->curve.t0 = c->t0;
+    s->curve.t1 = c->t1;
+    bough_port_polynomial(&s->curve, 0, s->curve.n, past + 1, c->past_time, value);
+}
+
+static double defect_near(bough_step_control *s, const bough_coupling *c, double t) {
+    const bough_assembly *a = c->assembly;
+    bough_signal_value(&s->curve, t, s->obtained);
+    for (int i = 0; i < a->n_member; i++) {
+        double *applied = s->square + a->input_offset[i];
+        bough_signal_value(&c->signal[i], t, applied);
+    }
+    for (int j = 0; j < a->n_input; j++) s->obtained[j] = c->followed[j] ? 0 : s->square[j] - s->obtained[j];
+    return worst_relative(s, a, s->obtained);
+}
+
+// Largest relative change over the step. After a start or a jump no curvature is known yet; a quarter of the
+// change stands in for it.
+static double change_over(bough_step_control *s, const bough_coupling *c) {
+    for (int j = 0; j < s->curve.n; j++) s->obtained[j] = c->followed[j] ? 0 : c->input[j] - c->past[1][j];
+    return worst_relative(s, c->assembly, s->obtained);
+}
+
+double bough_step_control_defect(bough_step_control *s, const bough_coupling *c) {
+    const bough_assembly *a = c->assembly;
+    square_norms(s, a, c->input);
+    for (int j = 0; j < a->n_input; j++) {
+        if (a->vector[j] == j) s->size[j] = fmax(s->size[j], sqrt(s->square[j]));
+    }
+    reconstruct(s, c);
+    double end = defect_near(s, c, c->t1);
+    double middle = defect_near(s, c, 0.5 * (c->t0 + c->t1));
+    if (!isfinite(end) || !isfinite(middle)) return HUGE_VAL;
+    bool first = c->restart || s->n_point == 1;
+    return fmax(fmax(end, middle), first ? 0.25 * change_over(s, c) : 0);
 }
 
 // -- decisions ------------------------------------------------------------------------------------
@@ -49,7 +123,7 @@ static void refine(bough_step_control *s) {
     s->rejected++;
 }
 
-bool bough_step_control_accept(bough_step_control *s, double error, double length) {
+bool bough_step_control_accept(bough_step_control *s, const bough_coupling *c, double error) {
     bool good = error <= s->tolerance;
     if (!good && !bough_step_control_exhausted(s)) {
         refine(s);
@@ -58,7 +132,8 @@ bool bough_step_control_accept(bough_step_control *s, double error, double lengt
     if (!isfinite(error)) return false;
     s->accepted++;
     s->forced += !good;
-    s->shortest = fmin(s->shortest, length);
+    s->shortest = fmin(s->shortest, c->t1 - c->t0);
+    s->n_point = c->restart ? 2 : s->n_point + 1 < BOUGH_PAST ? s->n_point + 1 : BOUGH_PAST - 1;
     s->part++;
     if (s->part == 1 << s->level) s->part = 0;
     if (error < s->easy && s->level > 0 && s->part % 2 == 0) {

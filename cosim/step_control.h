@@ -2,7 +2,7 @@
 // sampled, events occur and results are recorded) is divided into 2ⁿ equal macro steps. A step whose defects
 // exceed the tolerance is undone, by a stored copy of members and coupling, and halved. When the defects
 // are well below the tolerance, the length is doubled again. Halving and doubling keep the factors of
-// sub-solvers and error estimate, and the results for any number of threads.
+// sub-solvers, and the results for any number of threads.
 #ifndef BOUGH_COSIM_STEP_CONTROL_H
 #define BOUGH_COSIM_STEP_CONTROL_H
 
@@ -21,7 +21,12 @@ typedef struct bough_step_control {
     long accepted, rejected;
     long forced;     // accepted above the tolerance, because it was the shortest
     double shortest; // step accepted [s]
+    int n_point;     // synchronisation points before the step that no jump parts from it
     char *copy;      // of the coupling at the start of the step
+    double *size;    // (n_input) of a vector's first: its largest norm so far
+    // scratch
+    bough_signal curve;        // (n_input) through these points and the step's end
+    double *obtained, *square; // (n_input)
 } bough_step_control;
 
 // `order`: of the defects in the macro step. Takes the memory for the copy from the arena.
@@ -35,12 +40,16 @@ double bough_step_control_end(bough_step_control *s, double from, double to);
 void bough_step_control_save(bough_step_control *s, bough_coupling *c);
 void bough_step_control_restore(bough_step_control *s, bough_coupling *c);
 
+// The worst difference of applied and obtained inputs in the step just exchanged, at its middle and its end:
+// of a vector of up to three inputs relative to its largest norm so far [1].
+double bough_step_control_defect(bough_step_control *s, const bough_coupling *c);
+
 // What the control itself remembers.
 void bough_step_control_snapshot(bough_step_control *s, bough_snapshot *snapshot);
 
-// Whether the step of that length is accepted; if not, the next steps are shorter. A step that failed has
+// Whether the step is accepted; if not, the next steps are shorter. A step that failed has
 // an infinite error and is never accepted.
-bool bough_step_control_accept(bough_step_control *s, double error, double length);
+bool bough_step_control_accept(bough_step_control *s, const bough_coupling *c, double error);
 
 // Whether a step cannot become shorter.
 bool bough_step_control_exhausted(const bough_step_control *s);

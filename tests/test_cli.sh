@@ -238,7 +238,7 @@ complete_run() {
     has $out/summary.json '"states": 522,'
     for key in scheme order theta macro_step wall_s cpu_s build_s real_time_factor bodies joints \
         peak_memory_bytes model_bytes defect_max defect_rms energy_residual energy_exchanged \
-        interfaces wrench_error_estimate coupling_error_estimate; do
+        interfaces error_estimate; do
         has $out/summary.json "\"$key\": "
     done
     for key in name kind; do

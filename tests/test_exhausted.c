@@ -3,7 +3,7 @@
 #include "apps/output/frames.h"
 #include "apps/output/recorder.h"
 #include "apps/simulation/build.h"
-#include "apps/simulation/error_probe.h"
+#include "apps/simulation/companion.h"
 #include "apps/simulation/shape.h"
 #include "tests/check.h"
 #include "tests/scratch.h"
@@ -65,8 +65,8 @@ typedef struct subject {
 static bough_status open_output(bough_arena *arena, const subject *x, bough_simulation *s) {
     bough_channels channels = bough_channels_start(arena);
     bough_status status = bough_simulation_channels(s, &channels);
-    bough_error_probe probe;
-    if (bough_is_ok(&status)) status = bough_error_probe_create(arena, s, NULL, &channels, &probe);
+    bough_companion companion;
+    if (bough_is_ok(&status)) status = bough_companion_create(arena, s, &channels, &companion);
     bough_recorder *recorder;
     bough_recorder_def def = {.folder = x->folder, .title = "x", .channels = &channels};
     if (bough_is_ok(&status)) status = bough_recorder_open(arena, &def, &recorder);

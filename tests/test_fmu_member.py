@@ -167,8 +167,6 @@ class Member(unittest.TestCase):
     def test_what_does_not_fit_is_told_with_its_place(self):
         write(self.scene, SCENE.replace("scheme: extrapolated", "scheme: ramp"))
         self.refused("scene.yaml:7:22: error: simulation.coupling.scheme: 'damper' is an FMU")
-        write(self.scene, SCENE.replace("  error_estimate: none\n", ""))
-        self.refused("scene.yaml:4:3: error: simulation.error_estimate: the error cannot be estimated")
         write(self.scene, SCENE)
         self.refused("fixed steps", "simulation.step_control.tolerance=1e-3")
         self.refused("expected undeformed", "simulation.initial=equilibrium")

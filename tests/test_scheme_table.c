@@ -78,7 +78,7 @@ static void it_is_judged_and_diagnosed(void **state) {
     assert_non_null(strstr(m.master->verdict, "scheme toy at a macro step of 0.5 s is unstable"));
     assert_non_null(strstr(m.master->verdict, "scheme: ramp holds"));
     double worst;
-    status = bough_two_mass_error(&m, &worst, NULL);
+    status = bough_two_mass_error(&m, &worst);
     assert_int_equal(status.code, BOUGH_FAILED);
     assert_non_null(strstr(status.message, "scheme toy"));
     assert_non_null(strstr(status.message, "or scheme: monolithic"));

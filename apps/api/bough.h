@@ -72,6 +72,10 @@ BOUGH_API double bough_session_read(bough_session *session, int channel);
    channels or a step has failed. */
 BOUGH_API const double *bough_session_values(bough_session *session);
 
+/* Estimated largest error of a channel so far, in its unit, where the scene or a replacement says
+   'simulation.error_estimate: companion'; NaN: not known. */
+BOUGH_API double bough_session_estimate(const bough_session *session, int channel);
+
 /* Inputs, which the scene declares ('input: NAME' of a load, of a joint's motion, of the wind;
    'control: {kind: external}'): number of inputs, name, unit (SI), index of a name (-1: no such input; the
    message names the nearest), current value (NaN: no such input). */
@@ -98,7 +102,7 @@ BOUGH_API int bough_session_set_text(bough_session *session, int input, const ch
    another wind or stiffness, and then shows what changes from that moment on.
 
    BOUGH_SESSION_INVALID, with the session unchanged: the copy belongs to another kind of scene; the time
-   is between two samples of the air or the control (take further steps first); the scene has a
+   is between two samples of the air or the control, of a companion half as many (take further steps first); the scene has a
    controller's library, whose memory cannot be copied. */
 BOUGH_API size_t bough_session_size(const bough_session *session);
 BOUGH_API int bough_session_save(bough_session *session, void *copy);

@@ -172,6 +172,9 @@ static bough_status build(bough_arena *arena, void *self) {
         if (listed) status.message[0] = '\0';
         return status;
     }
+    // nobody sees the errors unless the scene asks for them
+    if (o->body || !bough_node_find(scene->simulation.node, "error_estimate"))
+        scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     status = bough_run_create(arena, scene, &s->run);
     if (bough_is_ok(&status) && o->body) {
         status = bough_body_create(arena, s->run.simulation, o->body, &s->body);
@@ -280,6 +283,11 @@ const double *bough_session_values(bough_session *s) {
 double bough_session_read(bough_session *s, int channel) {
     const double *value = known(s, channel) ? bough_session_values(s) : NULL;
     return value ? value[channel] : (double)NAN;
+}
+
+double bough_session_estimate(const bough_session *s, int channel) {
+    bool there = s->open && !s->body && known(s, channel) && bough_companion_knows(s->run.companion, channel);
+    return there ? s->run.companion->error[channel] : (double)NAN;
 }
 
 // -- inputs ---------------------------------------------------------------------------------------

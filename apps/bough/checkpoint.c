@@ -38,10 +38,6 @@ static void take_job(bough_job *job, bough_snapshot *s) {
     bough_snapshot_take(s, &job->rows, sizeof job->rows);
     bough_snapshot_take(s, &job->frames_kept, sizeof job->frames_kept);
     bough_snapshot_take(s, job->statistics, (size_t)job->recorded.count * sizeof *job->statistics);
-    if (job->shares.row) {
-        bough_snapshot_take(s, &job->shares.n_row, sizeof job->shares.n_row);
-        bough_snapshot_doubles(s, job->shares.row, job->shares.most * job->shares.n_channel);
-    }
     bough_snapshot_take(s, &run->wall_s, sizeof run->wall_s);
     bough_snapshot_take(s, &run->cpu_s, sizeof run->cpu_s);
 }
@@ -56,6 +52,18 @@ static bough_status read_interval(const char *text, double *interval) {
     char why[160];
     if (bough_quantity(text, BOUGH_TIME, interval, why) && *interval > 0) return bough_ok();
     return bough_fail(BOUGH_INVALID, "--checkpoint expects a time such as 5s, got '%.80s'", text);
+}
+
+static bough_status check_samples(const bough_master *m, const char *of, double interval) {
+    for (int i = 0; i < m->n_load; i++) {
+        double period = m->load[i].period;
+        if (!m->load[i].sample || bough_master_multiple(interval, period) > 0) continue;
+        return bough_fail(BOUGH_INVALID,
+                          "--checkpoint %.9g s is not a multiple of the %.9g s between the samples "
+                          "of the air or the control%s",
+                          interval, period, of);
+    }
+    return bough_ok();
 }
 
 // Between samples a load has a past that is not in the copy.
@@ -77,14 +85,10 @@ static bough_status check_interval(const bough_job *job, double interval) {
         return bough_fail(BOUGH_INVALID, "--checkpoint %.9g s is not a multiple of the macro step %.9g s",
                           interval, m->macro_step);
     }
-    for (int i = 0; i < m->n_load; i++) {
-        if (bough_master_multiple(interval, m->load[i].period) > 0) continue;
-        return bough_fail(BOUGH_INVALID,
-                          "--checkpoint %.9g s is not a multiple of the %.9g s between the samples "
-                          "of the air or the control",
-                          interval, m->load[i].period);
-    }
-    return bough_ok();
+    status = check_samples(m, "", interval);
+    const bough_simulation *companion = job->run.companion->coarser;
+    return bough_is_ok(&status) && companion ? check_samples(companion->master, " of the companion", interval)
+                                             : status;
 }
 
 // Threads and the folder change no result.

@@ -31,9 +31,11 @@ typedef struct bough_job {
     bough_frames *frames;     // NULL: none are stored
     bough_vertices *vertices; // NULL: none are stored
     bough_checkpoint checkpoint;
-    bough_kept rows, frames_kept; // at the last checkpoint
-    bough_error_shares shares;    // of mesh and air
-    double build_s;               // wall time of reading and building [s]
+    bough_kept rows, frames_kept;      // at the last checkpoint
+    bough_error_shares shares;         // of mesh, air and time
+    char warning[BOUGH_ERROR_WARNING]; // about the error of motion, or ""
+    bough_status verdict;              // on the error of a complete run
+    double build_s;                    // wall time of reading and building [s]
 } bough_job;
 
 #endif

@@ -15,8 +15,6 @@
 static bough_status sample_row(void *self, double t) {
     bough_job *job = self;
     bough_status status = bough_recorder_sample(job->recorder, t);
-    bough_error_probe_widen(&job->run.probe, bough_recorder_values(job->recorder));
-    bough_error_shares_note(&job->shares, &job->run);
     const bough_simulation *s = job->run.simulation;
     if (t < s->scene->simulation.output.from - 1e-6 * s->master->macro_step) return status;
     const double *value = bough_recorder_values(job->recorder);
@@ -117,8 +115,6 @@ bough_status bough_job_build(bough_job *job) {
     record(job);
     size_t n = (size_t)job->recorded.count;
     job->statistics = bough_arena_take(job->arena, (n + 1) * sizeof *job->statistics);
-    status =
-        bough_error_shares_create(job->arena, &job->run, scene->simulation.output.interval, &job->shares);
     job->build_s = bough_wall_clock() - began;
     return status;
 }
@@ -158,14 +154,23 @@ static bough_status close_results(bough_job *job) {
     return bough_is_ok(&job->run.outcome) ? status : job->run.outcome;
 }
 
-// After each step. The error is judged at the end, or as soon as going on makes no sense.
+// After each step. The error is judged at the end, but a run that has lost the solution does not go on.
 static bough_status after_step(void *self) {
     bough_job *job = self;
     const bough_run *run = &job->run;
-    double bound = run->simulation->scene->simulation.error_bound;
-    bool now = bough_run_done(run) || bough_error_probe_hopeless(&run->probe);
-    bough_status status = now ? bough_error_probe_judge(&run->probe, bound) : bough_ok();
-    return bough_is_ok(&status) ? bough_checkpoint_update(job) : status;
+    bool lost = run->simulation->scene->simulation.error_bound > 0 && bough_companion_parted(run->companion);
+    return lost ? bough_error_parted(run->companion) : bough_checkpoint_update(job);
+}
+
+// The cause of an error above the bound is looked for by further runs, as the shares are where the scene
+// asks.
+static bough_status judge(bough_job *job) {
+    const bough_scene_simulation *x = &job->run.simulation->scene->simulation;
+    const bough_companion *c = job->run.companion;
+    bough_status status = bough_ok();
+    if (x->error_shares || bough_error_exceeds(c, x->error_bound))
+        status = bough_error_shares_find(job->arena, c, bough_stop_requested, &job->shares);
+    return bough_is_ok(&status) ? bough_error_judge(c, &job->shares, x->error_bound, job->warning) : status;
 }
 
 static void step_all(bough_job *job) {
@@ -185,20 +190,15 @@ static void step_all(bough_job *job) {
 }
 
 bough_status bough_verb_run(bough_arena *arena, const bough_options *options) {
-    bough_job job = {.options = options, .arena = arena};
+    bough_job job = {.options = options, .arena = arena, .verdict = bough_ok()};
     bough_status status = bough_job_build(&job);
     if (!bough_is_ok(&status)) return status;
     bough_stop_listen();
     status = open_results(&job);
     if (!bough_is_ok(&status)) return status;
     step_all(&job);
-    if (bough_is_ok(&job.run.outcome)) {
-        double interval = job.run.simulation->scene->simulation.output.interval;
-        bough_error_shares_find(&job.shares, &job.run, interval);
-        job.run.outcome = bough_error_shares_judge(&job.shares, &job.run.probe,
-                                                   job.run.simulation->scene->simulation.error_bound);
-    }
+    if (bough_is_ok(&job.run.outcome)) job.verdict = judge(&job);
     status = close_results(&job);
     bough_run_report(&job, stdout);
-    return status;
+    return bough_is_ok(&status) ? job.verdict : status;
 }

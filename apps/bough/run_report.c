@@ -34,7 +34,8 @@ static void write_input(bough_summary *s, const bough_job *job) {
     bough_summary_text(s, "status", outcome_name(&job->run));
     const char *verdict = job->run.simulation->master->verdict;
     bough_summary_text(s, "verdict", verdict[0] ? verdict : NULL);
-    bough_summary_text(s, "diagnosis", bough_is_ok(&job->run.outcome) ? NULL : job->run.outcome.message);
+    const bough_status *end = bough_is_ok(&job->run.outcome) ? &job->verdict : &job->run.outcome;
+    bough_summary_text(s, "diagnosis", bough_is_ok(end) ? NULL : end->message);
 }
 
 // Limits of the models that the run has passed: each with body and time of the first passing.
@@ -121,7 +122,6 @@ static void write_accuracy(bough_summary *s, const bough_run *run) {
     bough_summary_number(s, "energy_exchanged", report.energy_exchanged);
 }
 
-// Per interface: energy, and the largest estimated error of the wrench on the receiver.
 // A body whose end carries others has two interfaces, that of its root first.
 static bool is_far_end(const bough_assembly *a, int interface) {
     bool again = false;
@@ -129,6 +129,7 @@ static bool is_far_end(const bough_assembly *a, int interface) {
     return again;
 }
 
+// Per interface: energy.
 static void write_interfaces(bough_summary *s, const bough_run *run) {
     const bough_master *m = run->simulation->master;
     const bough_assembly *a = m->assembly;
@@ -140,63 +141,8 @@ static void write_interfaces(bough_summary *s, const bough_run *run) {
         bough_summary_text(s, "place", is_far_end(a, k) ? "end" : "root");
         bough_summary_number(s, "energy_residual", energy.residual);
         bough_summary_number(s, "energy_exchanged", energy.exchanged);
-        bough_summary_array(s, "wrench_error_estimate");
-        for (int j = 0; j < a->interface[k].count; j++) {
-            int input = a->interface[k].wrench + j;
-            bough_summary_number(s, NULL, bough_master_input_error(m, input));
-        }
-        bough_summary_end(s);
         bough_summary_end(s);
     }
-    bough_summary_end(s);
-}
-
-// Per channel that follows from the states: the largest estimated coupling error, in its unit and
-// relative to its range.
-static void write_estimates(bough_summary *s, const bough_run *run) {
-    const double unknown = (double)NAN;
-    bough_summary_object(s, "coupling_error_estimate");
-    for (int k = 0; k < run->simulation->n_motion_channel; k++) {
-        bool known = bough_error_probe_knows(&run->probe, k);
-        bough_summary_object(s, run->channels.channel[k].name);
-        bough_summary_text(s, "unit", run->channels.channel[k].unit);
-        double error = known ? run->probe.largest[k] : unknown;
-        bough_summary_number(s, "largest", error);
-        bough_summary_number(s, "relative", bough_error_probe_relative(&run->probe, k, error));
-        bough_summary_end(s);
-    }
-    bough_summary_end(s);
-}
-
-// The force or moment with the largest relative error, and a warning above the bound.
-static void write_force_verdict(bough_summary *s, const bough_run *run, double bound) {
-    char warning[BOUGH_ERROR_WARNING];
-    bough_error_verdict v = bough_error_probe_force_verdict(&run->probe);
-    bough_error_probe_warn_of_force(&run->probe, bound, warning);
-    bough_summary_object(s, "force");
-    bough_summary_text(s, "channel", v.channel < 0 ? NULL : run->channels.channel[v.channel].name);
-    bough_summary_number(s, "relative", v.channel < 0 ? (double)NAN : v.relative);
-    bough_summary_integer(s, "not_estimated", v.unknown);
-    bough_summary_text(s, "warning", warning[0] ? warning : NULL);
-    bough_summary_end(s);
-}
-
-// What the errors mean: the worst channel of motion, and a warning below the bound.
-static void write_verdict(bough_summary *s, const bough_run *run) {
-    char warning[BOUGH_ERROR_WARNING];
-    double bound = run->simulation->scene->simulation.error_bound;
-    bough_error_verdict v = bough_error_probe_verdict(&run->probe);
-    bough_error_probe_warn(&run->probe, bound, warning);
-    bough_summary_object(s, "error");
-    bough_summary_text(s, "source", bough_master_error_source(run->simulation->master));
-    bough_summary_text(s, "against", "the same mesh, converged in time");
-    bough_summary_number(s, "bound", bound);
-    bough_summary_text(s, "channel", v.channel < 0 ? NULL : run->channels.channel[v.channel].name);
-    bough_summary_number(s, "relative", v.channel < 0 ? (double)NAN : v.relative);
-    bough_summary_number(s, "from", v.channel < 0 || v.time < 0 ? (double)NAN : v.time);
-    bough_summary_integer(s, "not_estimated", v.unknown);
-    bough_summary_text(s, "warning", warning[0] ? warning : NULL);
-    write_force_verdict(s, run, bound);
     bough_summary_end(s);
 }
 
@@ -265,9 +211,7 @@ bough_status bough_run_summarise(const bough_job *job) {
     write_control(&s, run);
     write_accuracy(&s, run);
     write_interfaces(&s, run);
-    write_verdict(&s, run);
-    write_estimates(&s, run);
-    bough_run_write_shares(&s, job);
+    bough_run_write_error(&s, job);
     write_statistics(&s, job);
     write_whole(&s, run);
     const bough_assembly *assembly = run->simulation->master->assembly;
@@ -293,29 +237,10 @@ static void tell_channels(bough_job *job, FILE *stream) {
         int k = turbine ? bough_channels_find(c, main_channels[i]) : i;
         if (k < 0 || k >= c->count) continue;
         fprintf(stream, "%s: %.6g %s\n", c->channel[k].name, value[k], c->channel[k].unit);
-        bough_run_tell_channel_shares(job, k, stream);
-        if (!bough_error_probe_knows(&run->probe, k)) continue;
-        fprintf(stream, "%s_coupling_error: %.2g %s\n", c->channel[k].name, run->probe.largest[k],
+        if (!bough_companion_knows(run->companion, k)) continue;
+        fprintf(stream, "%s_error: %.2g %s\n", c->channel[k].name, run->companion->error[k],
                 c->channel[k].unit);
     }
-}
-
-static void tell_error(const bough_run *run, FILE *stream) {
-    char warning[BOUGH_ERROR_WARNING];
-    bough_error_verdict v = bough_error_probe_verdict(&run->probe);
-    double bound = run->simulation->scene->simulation.error_bound;
-    const char *source = bough_master_error_source(run->simulation->master);
-    if (v.channel < 0) {
-        bool known = strcmp(source, "not estimated") != 0 && v.unknown == 0;
-        fprintf(stream, "error: %s\n", known ? "none: nothing moves" : "not estimated");
-    } else {
-        fprintf(stream, "error: %.2g of the range of %s, by %s, same mesh\n", v.relative,
-                run->channels.channel[v.channel].name, source);
-    }
-    bough_error_probe_warn(&run->probe, bound, warning);
-    if (warning[0]) fprintf(stream, "warning: %s\n", warning);
-    bough_error_probe_warn_of_force(&run->probe, bound, warning);
-    if (warning[0]) fprintf(stream, "warning: %s\n", warning);
 }
 
 static void tell_energy(const bough_run *run, FILE *stream) {
@@ -352,8 +277,7 @@ void bough_run_report(bough_job *job, FILE *stream) {
     fprintf(stream, "wall_s: %.3g\n", run->wall_s);
     fprintf(stream, "peak_memory_mb: %.1f\n", (double)bough_peak_memory() / 1e6);
     tell_channels(job, stream);
-    tell_error(run, stream);
-    bough_run_tell_shares(job, stream);
+    bough_run_tell_error(job, stream);
     tell_energy(run, stream);
     tell_warnings(run, stream);
     fprintf(stream, "out: %s\n", job->folder);

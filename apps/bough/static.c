@@ -134,7 +134,7 @@ static void write_rod(FILE *file, const bough_steady *x) {
 }
 
 // What the run's channels are in the equilibrium: joints, drives, closures, markers, roots, rotor.
-static bough_status write_channels(const bough_static *x, const bough_error_share *mesh, const char *folder) {
+static bough_status write_channels(const bough_static *x, const bough_mesh_error *mesh, const char *folder) {
     char path[BOUGH_PATH_MAX];
     FILE *file = NULL;
     bough_status status = bough_folder_open(folder, "static-channels.csv", path, &file);
@@ -189,7 +189,7 @@ bough_status bough_verb_static(bough_arena *arena, const bough_options *options)
     const char *folder = bough_out_folder(arena, options);
     if (options->path) return bough_static_path(arena, s, folder);
     bough_static x;
-    bough_error_share mesh;
+    bough_mesh_error mesh;
     status = bough_static_find(arena, s, &x);
     if (!bough_is_ok(&status)) return status;
     const double *error = bough_static_mesh_error(arena, &x, &mesh);

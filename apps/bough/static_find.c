@@ -52,9 +52,11 @@ void bough_static_results(bough_steady *rod, bough_vec3 result[BOUGH_STATIC_RESU
 
 // -- a finer mesh ---------------------------------------------------------------------------------
 
+static const double part = 16.0 / 15; // of the difference that is the error, at order 2
+
 typedef struct comparison {
     bough_static *coarse;
-    bough_error_share *share;
+    bough_mesh_error *mesh;
     double *error; // (n × BOUGH_STATIC_RESULTS)
 } comparison;
 
@@ -64,12 +66,11 @@ static void compare(const comparison *c, bough_static *fine) {
         bough_static_results(&c->coarse->rod[k], here);
         bough_static_results(&fine->rod[k], there);
         for (int i = 0; i < BOUGH_STATIC_RESULTS; i++) {
-            c->error[BOUGH_STATIC_RESULTS * k + i] =
-                c->share->part * bough_norm(bough_sub(here[i], there[i]));
+            c->error[BOUGH_STATIC_RESULTS * k + i] = part * bough_norm(bough_sub(here[i], there[i]));
         }
     }
     for (int i = 0; !fine->apart && i < fine->simulation->n_motion_channel; i++) {
-        c->share->largest[i] = c->share->part * fabs(c->coarse->value[i] - fine->value[i]);
+        c->mesh->largest[i] = part * fabs(c->coarse->value[i] - fine->value[i]);
     }
 }
 
@@ -82,12 +83,45 @@ static void start_near(const bough_simulation *coarse, bough_simulation *fine) {
     memcpy(fine->leader.state, coarse->leader.state, (size_t)fine->leader.system.n_state * sizeof(double));
 }
 
+// Loads on vertices stay at their places.
+static void follow_vertices(bough_arena *arena, bough_scene *scene) {
+    size_t n = (size_t)scene->n_load;
+    bough_scene_load *load = bough_arena_take(arena, n * sizeof *load);
+    for (size_t i = 0; i < n; i++) {
+        load[i] = scene->load[i];
+        if (load[i].place == BOUGH_SCENE_AT_VERTEX) load[i].vertex *= TIMES;
+    }
+    scene->load = load;
+}
+
+// False, with the reason, where no finer mesh tells the error.
+static bool refine(bough_arena *arena, bough_scene *scene, bough_mesh_error *mesh) {
+    size_t n = (size_t)scene->n_body;
+    bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
+    bool any = false;
+    memcpy(body, scene->body, n * sizeof *body);
+    for (size_t i = 0; i < n; i++) {
+        if (!body[i].rod.node || body[i].fidelity == BOUGH_SCENE_RIGID) continue;
+        if (body[i].fidelity != BOUGH_SCENE_ROD) {
+            snprintf(mesh->unknown, sizeof mesh->unknown,
+                     "%.60s is a modal body, whose shapes have errors of their own", body[i].name);
+            return false;
+        }
+        body[i].rod.n_segment *= TIMES;
+        any = true;
+    }
+    if (!any) snprintf(mesh->unknown, sizeof mesh->unknown, "no body has a mesh");
+    follow_vertices(arena, scene);
+    scene->body = body;
+    return any;
+}
+
 static bough_status find_finer(bough_arena *arena, void *self) {
     const comparison *c = self;
     bough_scene scene = *c->coarse->simulation->scene;
     bough_simulation *s;
     bough_static fine;
-    if (!bough_error_share_refine(arena, &scene, TIMES, c->share)) return bough_ok();
+    if (!refine(arena, &scene, c->mesh)) return bough_ok();
     bough_status status = bough_simulation_build(arena, &scene, &s);
     if (!bough_is_ok(&status)) return status;
     start_near(c->coarse->simulation, s);
@@ -96,12 +130,12 @@ static bough_status find_finer(bough_arena *arena, void *self) {
     return status;
 }
 
-double *bough_static_mesh_error(bough_arena *arena, bough_static *x, bough_error_share *share) {
-    *share = (bough_error_share){.largest = bough_arena_doubles(arena, (size_t)x->channels.count + 1)};
-    comparison c = {x, share, bough_arena_doubles(arena, BOUGH_STATIC_RESULTS * ((size_t)x->n + 1))};
+double *bough_static_mesh_error(bough_arena *arena, bough_static *x, bough_mesh_error *mesh) {
+    *mesh = (bough_mesh_error){.largest = bough_arena_doubles(arena, (size_t)x->channels.count + 1)};
+    comparison c = {x, mesh, bough_arena_doubles(arena, BOUGH_STATIC_RESULTS * ((size_t)x->n + 1))};
     bough_status status = bough_arena_use(find_finer, &c);
     if (!bough_is_ok(&status)) {
-        snprintf(share->unknown, sizeof share->unknown, "with %d times the segments: %.120s", TIMES,
+        snprintf(mesh->unknown, sizeof mesh->unknown, "with %d times the segments: %.120s", TIMES,
                  status.message);
     }
     return c.error;

@@ -32,9 +32,14 @@ bough_status bough_static_find(bough_arena *arena, bough_simulation *s, bough_st
 // Displacement and rotation of the tip, force and moment at the root, for BOUGH_STATIC_RESULTS.
 void bough_static_results(bough_steady *rod, bough_vec3 result[BOUGH_STATIC_RESULTS]);
 
+typedef struct bough_mesh_error {
+    char unknown[160]; // why it is not known; "": it is
+    double *largest;   // (channels.count) of each channel, in its unit
+} bough_mesh_error;
+
 // What the mesh errs by: part of the difference to four times the segments. Of each rod (n ×
-// BOUGH_STATIC_RESULTS, norms), in arrays from the arena; of the channels in share->largest. Where it is not
-// known, share->unknown says why.
-double *bough_static_mesh_error(bough_arena *arena, bough_static *x, bough_error_share *share);
+// BOUGH_STATIC_RESULTS, norms), in arrays from the arena; of the channels in mesh->largest. Where it is not
+// known, mesh->unknown says why.
+double *bough_static_mesh_error(bough_arena *arena, bough_static *x, bough_mesh_error *mesh);
 
 #endif

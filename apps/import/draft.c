@@ -141,7 +141,7 @@ void bough_draft_head(bough_draft *d, const char *title, const char *origin, dou
     fprintf(
         file,
         "%s}\n"
-        "  error_estimate: linearised # with a controller: second-solution, at three times the cost\n  threads: 2\n",
+        "  threads: 2\n",
         tolerance[0]);
 }
 

@@ -1,33 +1,32 @@
 #include "apps/import/trial.h"
 
+#include "apps/simulation/error_shares.h"
 #include "apps/simulation/run.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-static bough_status widen(void *self, double t) {
-    bough_run *run = self;
-    (void)t;
-    bough_error_probe_widen(&run->probe, bough_run_values(run));
-    return bough_ok();
-}
-
 static bough_status take_steps(bough_arena *arena, bough_scene *scene, int steps, double bound) {
     bough_run run;
-    scene->simulation.threads = 1;
+    bough_error_shares shares = {0};
+    char warning[BOUGH_ERROR_WARNING];
+    bough_scene_simulation *x = &scene->simulation;
+    x->threads = 1;
+    x->duration = fmin(x->duration, steps * x->macro_step);
+    x->output.from = 0;
     bough_status status = bough_run_create(arena, scene, &run);
-    if (!bough_is_ok(&status)) return status;
-    const double interval = scene->simulation.output.interval;
-    bough_run_record_at(&run, (bough_run_record){interval, true, .sample = widen, .self = &run});
-    status = bough_run_start(&run);
-    for (int i = 0; i < steps && bough_is_ok(&status) && !bough_run_done(&run); i++) {
+    while (bough_is_ok(&status) && !bough_run_done(&run)) {
         status = bough_run_step(&run);
-        if (bough_error_probe_hopeless(&run.probe)) break;
+        if (bough_companion_parted(run.companion)) return bough_error_parted(run.companion);
     }
-    return bough_is_ok(&status) ? bough_error_probe_judge(&run.probe, bound) : status;
+    if (!bough_is_ok(&status)) return status;
+    if (bough_error_exceeds(run.companion, bound))
+        status = bough_error_shares_find(arena, run.companion, NULL, &shares);
+    return bough_is_ok(&status) ? bough_error_judge(run.companion, &shares, bound, warning) : status;
 }
 
 static bool calls_library(const bough_scene *scene) {

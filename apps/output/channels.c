@@ -52,6 +52,38 @@ static void make_room(bough_channels *list) {
     for (int i = 0; i < list->count; i++) *slot_of(list, channel[i].name) = i + 1;
 }
 
+// Units of channels that are compared: other ones have no kind.
+static const struct {
+    const char *unit;
+    bough_quantity_kind kind;
+    double si, turn;
+} units[] = {
+    {"m", BOUGH_KIND_LENGTH, 1, 0},
+    {"deg", BOUGH_KIND_ANGLE, 0.017453292519943295, 360},
+    {"rad", BOUGH_KIND_ANGLE, 1, 6.283185307179586},
+    {"-", BOUGH_KIND_ANGLE, 1, 0},
+    {"m/s", BOUGH_KIND_VELOCITY, 1, 0},
+    {"deg/s", BOUGH_KIND_ANGULAR_VELOCITY, 0.017453292519943295, 0},
+    {"rad/s", BOUGH_KIND_ANGULAR_VELOCITY, 1, 0},
+    {"rpm", BOUGH_KIND_ANGULAR_VELOCITY, 0.10471975511965977, 0},
+    {"N", BOUGH_KIND_FORCE, 1, 0},
+    {"kN", BOUGH_KIND_FORCE, 1e3, 0},
+    {"N-m", BOUGH_KIND_MOMENT, 1, 0},
+    {"kN-m", BOUGH_KIND_MOMENT, 1e3, 0},
+};
+
+static void set_unit(bough_channel *channel, const char *unit) {
+    memcpy(channel->unit, unit, strlen(unit) + 1);
+    channel->kind = BOUGH_KIND_OTHER;
+    channel->si = 1;
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
+        if (strcmp(units[k].unit, unit) != 0) continue;
+        channel->kind = units[k].kind;
+        channel->si = units[k].si;
+        channel->turn = units[k].turn;
+    }
+}
+
 static bool is_word(const char *text, size_t size) {
     size_t length = strlen(text);
     return length > 0 && length < size && !strpbrk(text, " \t\r\n");
@@ -80,9 +112,17 @@ void bough_channels_add(bough_channels *list, const char *unit, const char *form
     make_room(list);
     bough_channel *channel = &list->channel[list->count++];
     memcpy(channel->name, name, BOUGH_CHANNEL_NAME);
-    memcpy(channel->unit, unit, strlen(unit) + 1);
+    set_unit(channel, unit);
+    channel->vector = list->count - 1;
     *slot_of(list, name) = list->count;
     list->group[list->group_count - 1].count++;
+}
+
+void bough_channels_describe(bough_channels *list, int component, bool sampled) {
+    if (!bough_is_ok(&list->status)) return;
+    bough_channel *channel = &list->channel[list->count - 1];
+    if (component > 1) channel->vector = list->count - component;
+    channel->sampled = sampled;
 }
 
 int bough_channels_find(const bough_channels *list, const char *name) {

@@ -10,9 +10,25 @@
 
 enum { BOUGH_CHANNEL_NAME = 48, BOUGH_CHANNEL_UNIT = 16 };
 
+// Kind of a channel's quantity: what is compared with what, and how.
+typedef enum bough_quantity_kind {
+    BOUGH_KIND_OTHER, // coefficients, power, force per length
+    BOUGH_KIND_LENGTH,
+    BOUGH_KIND_ANGLE, // also the component of a direction, which is an angle where it is small
+    BOUGH_KIND_VELOCITY,
+    BOUGH_KIND_ANGULAR_VELOCITY,
+    BOUGH_KIND_FORCE,
+    BOUGH_KIND_MOMENT,
+} bough_quantity_kind;
+
 typedef struct bough_channel {
     char name[BOUGH_CHANNEL_NAME]; // OpenFAST's name where the quantity is the same
     char unit[BOUGH_CHANNEL_UNIT]; // without parentheses: "m", "kN-m", "rpm", "-"
+    bough_quantity_kind kind;
+    double si;    // what one unit is in SI units
+    double turn;  // of an angle: a whole turn in its unit; else 0
+    int vector;   // the first channel of the vector that it is a component of; its own index: a scalar
+    bool sampled; // known at the samples of the air or the control only
 } bough_channel;
 
 // Writes the group's values at time t [s], each in its channel's unit.
@@ -45,6 +61,10 @@ void bough_channels_group(bough_channels *list, bough_channel_sample *sample, vo
 // channel is added after it.
 void bough_channels_add(bough_channels *list, const char *unit, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+
+// Of the channel added last: the component of a vector that it is (1, 2, 3; 0: a scalar), and whether its
+// values belong to the last sample of the air or the control; such a channel of motion is one of the air.
+void bough_channels_describe(bough_channels *list, int component, bool sampled);
 
 // The index of the channel with this name, −1 if there is none.
 int bough_channels_find(const bough_channels *list, const char *name);

@@ -62,6 +62,11 @@ typedef enum bough_scene_initial {
     BOUGH_SCENE_IN_OPERATION,   // in equilibrium at the control law's speed and pitch
 } bough_scene_initial;
 
+typedef enum bough_scene_estimate {
+    BOUGH_SCENE_COMPANION, // by a coarser solution beside the run
+    BOUGH_SCENE_NO_ESTIMATE,
+} bough_scene_estimate;
+
 typedef struct bough_scene_simulation {
     const bough_node *node;
     double duration;   // [s], a multiple of the macro step
@@ -72,8 +77,8 @@ typedef struct bough_scene_simulation {
     bough_scene_coupling coupling;
     bough_scene_solver master, micro;
     double error_bound; // of a channel's error relative to its range; 0: none
-    int error_estimate; // bough_error_source
-    bool error_shares;  // of mesh and air, by two more runs
+    int error_estimate; // bough_scene_estimate
+    bool error_shares;  // of mesh, air and time
     int threads;
     bough_scene_output output;
 } bough_scene_simulation;
@@ -548,6 +553,9 @@ void bough_scene_warn(const bough_scene *scene, FILE *stream);
 
 // The sub-solver of a flexible body: its own or the simulation's.
 const bough_scene_solver *bough_scene_micro(const bough_scene *scene, const bough_scene_body *body);
+
+// Length of a rod's axis, straight between its stations [m].
+double bough_scene_arc_length(const bough_scene_structure *structure);
 
 // Whether a body's frame moves: on its joint, or with a body or a rod that carries it.
 bool bough_scene_moves(const bough_scene *scene, int body);

@@ -117,14 +117,6 @@ static void check_simulation(bough_schema_reader *r, const bough_scene *s, const
     const bough_scene_simulation *x = &s->simulation;
     bough_link_at(r, "simulation");
     check_scheme(r, s, b);
-    if (x->error_estimate != BOUGH_ERROR_NOT_TOLD) {
-        bough_schema_error(r, bough_link_value(x->node, "error_estimate"), "error_estimate",
-                           "the error cannot be estimated through the FMU '%s': expected none", b->name);
-    }
-    if (x->error_shares) {
-        bough_schema_error(r, bough_node_find(x->node, "error_shares"), "error_shares",
-                           "not with an FMU ('%s')", b->name);
-    }
     if (x->step_control.tolerance > 0) {
         bough_schema_error(r, bough_link_value(x->step_control.node, "tolerance"), "step_control.tolerance",
                            "not with an FMU ('%s'): expected fixed steps", b->name);

@@ -147,7 +147,7 @@ void bough_scene_check_load(bough_schema_reader *r, void *item) {
 
 // -- checks against the body ----------------------------------------------------------------------
 
-static double arc_length(const bough_scene_structure *s) {
+double bough_scene_arc_length(const bough_scene_structure *s) {
     double sum = 0;
     if (s->n_station == 1) return s->length;
     for (int k = 1; k < s->n_station; k++) {
@@ -160,7 +160,7 @@ static double arc_length(const bough_scene_structure *s) {
 static void check_place(bough_schema_reader *r, const bough_scene_load *load, const bough_scene_rod *rod) {
     const bough_node *at = bough_node_find(load->node, "at");
     const bough_node *along = bough_node_find(load->node, "along");
-    double length = arc_length(&rod->structure), most = length * (1 + 1e-9);
+    double length = bough_scene_arc_length(&rod->structure), most = length * (1 + 1e-9);
     if (load->place == BOUGH_SCENE_AT_VERTEX && at != NULL &&
         (load->vertex < 0 || load->vertex > rod->n_segment)) {
         bough_schema_error(r, at, "at", "'%s' has the vertices 0 to %d, got %d", load->body_name,

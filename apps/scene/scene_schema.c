@@ -131,17 +131,14 @@ static const bough_key simulation_keys[] = {
      .help = "integrator of the tree of bodies; of the monolithic scheme for all bodies together"},
     {KEY(MAPPING, micro), .of = &bough_scene_micro_schema, .help = "integrator of each rod"},
     {KEY(NUMBER, error_bound), .range = "[0, 1]", .fallback = "0.05", .example = "0.02",
-     .help = "largest estimated error of a channel of motion, relative to the channel's range; a "
-             "run with a larger error ends with exit code 3; 0: no bound"},
-    {KEY(CHOICE, error_estimate), .fallback = "auto",
-     CHOICES("auto", "second-solution", "linearised", "none"),
-     .help = "how the run estimates its error: by a second solution beside the run, or by the "
-             "linearised members driven by the coupling defects, where these are known to be reliable; "
-             "auto: likewise, but only for ramp from 600 states on"},
+     .help = "largest estimated error of a channel of motion, relative to the channel's range; a run with a larger "
+             "error ends with exit code 3 and names the cause, or warns if the mesh alone is the cause; 0: no bound"},
+    {KEY(CHOICE, error_estimate), .fallback = "companion", CHOICES("companion", "none"),
+     .help = "companion: a second solution beside the run that is coarser in everything (half the segments, "
+             "twice the steps, half the sampling rate of the air) tells the whole error of every channel, for "
+             "a third to a half of the run's cost"},
     {KEY(BOOLEAN, error_shares), .fallback = "false",
-     .help = "also estimates the errors of mesh and air, by three more runs with short steps: as "
-             "it is, with twice the segments of each rod, and with twice the aerodynamic sampling "
-             "rate; error_bound holds for these errors too"},
+     .help = "also tells the shares of mesh, air and time in the error, by further runs after the run"},
     {KEY(INTEGER, threads), .range = "[0, 1024]", .fallback = "0", .example = "2",
      .help = "threads for the rods; --threads overrides; 0: OMP_NUM_THREADS, 1 where that is not "
              "set"},

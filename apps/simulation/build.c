@@ -5,12 +5,12 @@
 #include "apps/simulation/build_internal.h"
 #include "apps/simulation/control_link.h"
 #include "apps/simulation/drag_link.h"
+#include "apps/simulation/equilibrium.h"
 #include "apps/simulation/fmu_member.h"
 #include "apps/simulation/input_link.h"
 #include "apps/simulation/jump_link.h"
-#include "apps/simulation/trim.h"
 #include "apps/simulation/load_link.h"
-#include "apps/simulation/equilibrium.h"
+#include "apps/simulation/trim.h"
 #include "apps/simulation/validity.h"
 #include "core/dynamics.h"
 #include "core/linalg.h"
@@ -35,8 +35,8 @@ static void add_motion(bough_builder *b, const bough_scene_motion *motion) {
 // The last of the loads; its two rows are set sample by sample.
 static void add_generator(bough_builder *b) {
     static const double times[2] = {0, 1}, values[2] = {0, 0};
-    b->load[b->n_load++] = (bough_joint_load_def){
-        .body = b->scene->turbine.rotor, .n = 2, .times = times, .values = values};
+    b->load[b->n_load++] =
+        (bough_joint_load_def){.body = b->scene->turbine.rotor, .n = 2, .times = times, .values = values};
 }
 
 static void set_loads(bough_builder *b) {
@@ -51,8 +51,7 @@ static void set_loads(bough_builder *b) {
         for (int i = 0; i < corners; i++) b->event[b->n_event++] = load->times[i];
         if (load->body_name != NULL) continue;
         b->load[b->n_load++] = (bough_joint_load_def){
-            load->joint, load->amount, load->ramp[0], load->ramp[1],
-            load->n_time, load->times, load->values};
+            load->joint, load->amount, load->ramp[0], load->ramp[1], load->n_time, load->times, load->values};
     }
     if (b->scene->aero.node != NULL) add_ramp(b, b->scene->aero.ramp);
     if (b->scene->control.node != NULL) add_generator(b);
@@ -77,38 +76,6 @@ static bough_integrator_options solver_options(const bough_scene_solver *solver)
                                       .rho = solver->rho};
 }
 
-// Where rods are damped by less, the linearised members tell a third of what a second solution tells:
-// measured on the run-up with 1e-4 to 4e-3 s.
-static const double damped = 5e-4; // stress over rate of bending [s]
-
-static bool lightly_damped(const bough_scene *scene) {
-    for (int i = 0; i < scene->n_body; i++) {
-        const bough_scene_rod *rod = &scene->body[i].rod;
-        if (rod->node && fmin(rod->structure.damping[3], rod->structure.damping[4]) < damped) return true;
-    }
-    return false;
-}
-
-// A corner of the load within less than a macro step of another: the force jumps, as seen by the coupling.
-static bool jumps(const bough_scene_load *load, double macro_step) {
-    bool sudden = load->ramp[1] > 0 && load->ramp[1] - load->ramp[0] < macro_step;
-    for (int i = 1; i < load->n_time; i++)
-        sudden = sudden || load->times[i] - load->times[i - 1] < macro_step;
-    return sudden;
-}
-
-// The linearised members are measured on turbines with damped blades. On other random scenes and after jumps
-// of loads they tell a third to a hundredth of the error; where a controller holds the speed, which they let
-// drift, too much.
-static bool suits_linearised(const bough_scene *scene) {
-    if (!scene->turbine.node || !scene->aero.node || scene->control.node || lightly_damped(scene))
-        return false;
-    for (int i = 0; i < scene->n_load; i++) {
-        if (jumps(&scene->load[i], scene->simulation.macro_step)) return false;
-    }
-    return true;
-}
-
 static bough_scheme_options scheme_options(const bough_scene *scene) {
     bough_scheme_options options = scene->simulation.coupling.options;
     options.name = bough_scheme_name(scene->simulation.coupling.scheme);
@@ -120,10 +87,6 @@ static bough_scheme_options scheme_options(const bough_scene *scene) {
     }
     if (!(options.tolerance > 0)) options.tolerance = 3 * noise;
     options.integrator = solver_options(&scene->simulation.master);
-    bool linearised = scene->simulation.error_estimate == BOUGH_ERROR_BY_LINEARISED_MEMBERS;
-    if (linearised && suits_linearised(scene) && options.integrator.kind == BOUGH_AUTOMATIC) {
-        options.integrator.kind = BOUGH_ROSENBROCK; // IDA does not tell its errors
-    }
     return options;
 }
 
@@ -133,8 +96,7 @@ static bough_status build_tree(bough_builder *b) {
     b->s->first_marker = b->force.first_own;
     const bough_scene *scene = b->scene;
     bough_simulation *s = b->s;
-    bough_tree_def def = {.gravity = bough_v3(scene->gravity[0], scene->gravity[1],
-                                              scene->gravity[2]),
+    bough_tree_def def = {.gravity = bough_v3(scene->gravity[0], scene->gravity[1], scene->gravity[2]),
                           .n_bodies = scene->n_body + s->n_end,
                           .n_markers = b->force.n_marker,
                           .n_ports = s->n_rod + s->n_fmu,
@@ -219,13 +181,13 @@ static void connect_end(bough_builder *b, const bough_beam *beam) {
 // The n-th port with axes.
 static void connect_axes(bough_builder *b, const bough_beam *beam, int n) {
     const bough_tree *tree = b->s->tree;
-    b->connection[b->n_connection++] = (bough_connection){
-        .from_offset = BOUGH_PORT_OUTPUTS * tree->n_ports + BOUGH_END_OUTPUTS * tree->n_ends +
-                       BOUGH_GROUND_AXES * n,
-        .to = beam->port + 1,
-        .to_offset = b->s->rod[beam->port].system.n_input - BOUGH_GROUND_AXES,
-        .count = BOUGH_GROUND_AXES,
-        .kinematic = true};
+    b->connection[b->n_connection++] =
+        (bough_connection){.from_offset = BOUGH_PORT_OUTPUTS * tree->n_ports +
+                                          BOUGH_END_OUTPUTS * tree->n_ends + BOUGH_GROUND_AXES * n,
+                           .to = beam->port + 1,
+                           .to_offset = b->s->rod[beam->port].system.n_input - BOUGH_GROUND_AXES,
+                           .count = BOUGH_GROUND_AXES,
+                           .kinematic = true};
 }
 
 // Port k, of a rod or an FMU.
@@ -270,13 +232,10 @@ static bough_status build_master(bough_builder *b) {
     const bough_scene_simulation *sim = &b->scene->simulation;
     bough_master_def def = bough_master_def_default();
     bough_sampled_load load[5];
-    def.assembly = (bough_assembly_def){s->n_rod + s->n_fmu + 1, b->member, b->n_connection,
-                                        b->connection};
+    def.assembly = (bough_assembly_def){s->n_rod + s->n_fmu + 1, b->member, b->n_connection, b->connection};
     def.scheme = scheme_options(b->scene);
     def.macro_step = sim->macro_step;
     def.control = (bough_step_control_def){sim->step_control.tolerance, sim->step_control.min};
-    def.error = (bough_error_source)sim->error_estimate;
-    def.suits_linearised = suits_linearised(b->scene);
     def.duration = sim->duration;
     def.event = b->event;
     def.n_event = b->n_event;
@@ -295,9 +254,7 @@ static bough_status build_master(bough_builder *b) {
         bough_status status = find_equilibrium(b->arena, &def.assembly, s);
         if (!bough_is_ok(&status)) return status;
     }
-    bough_status status = bough_master_build(b->arena, &def, &s->master);
-    if (bough_is_ok(&status)) bough_master_choose_estimate(s->master);
-    return status;
+    return bough_master_build(b->arena, &def, &s->master);
 }
 
 // -- whole ----------------------------------------------------------------------------------------
@@ -321,11 +278,16 @@ static void take_arrays(bough_builder *b) {
 
 bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
                                     bough_simulation **simulation) {
-    bough_builder b = {.arena = arena, .scene = scene};
     int asked = scene->simulation.threads, threads = asked > 0 ? asked : bough_pool_default(1);
     bough_linalg_room(arena, threads);
+    return bough_simulation_build_on(arena, scene, bough_pool_create(arena, threads), simulation);
+}
+
+bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
+                                       bough_simulation **simulation) {
+    bough_builder b = {.arena = arena, .scene = scene};
     take_arrays(&b);
-    b.s->pool = bough_pool_create(arena, threads);
+    b.s->pool = pool;
     bough_status status = bough_build_bodies(&b);
     if (bough_is_ok(&status)) set_loads(&b);
     if (bough_is_ok(&status)) status = build_tree(&b);

@@ -8,4 +8,8 @@
 bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
                                     bough_simulation **simulation);
 
+// The same with the threads of a pool (NULL: one thread), which several simulations may share.
+bough_status bough_simulation_build_on(bough_arena *arena, const bough_scene *scene, bough_pool *pool,
+                                       bough_simulation **simulation);
+
 #endif

@@ -4,50 +4,52 @@
 #include <string.h>
 
 // clang-format off
-// A channel without OpenFAST's name, and with it. Three channels along or about x, y and z, with small letters in their names
-// and with capitals; `text` and `after` enclose the axis.
-#define OURS(name, unit, text) {name, unit, text, NULL}
-#define SAME(name, unit, text) {name, unit, text, name}
+// A channel without OpenFAST's name, and with it; the same as component i of a vector, from 1. Three channels along or
+// about x, y and z, with small letters in their names and with capitals; `text` and `after` enclose the axis.
+#define OURS(name, unit, text) {name, unit, text, NULL, 0}
+#define SAME(name, unit, text) {name, unit, text, name, 0}
+#define OURS_OF(i, name, unit, text) {name, unit, text, NULL, i}
+#define SAME_OF(i, name, unit, text) {name, unit, text, name, i}
 #define XYZ(name, end, unit, text, after)                                                          \
-    OURS(name "x" end, unit, text "x" after), OURS(name "y" end, unit, text "y" after),            \
-    OURS(name "z" end, unit, text "z" after)
+    OURS_OF(1, name "x" end, unit, text "x" after), OURS_OF(2, name "y" end, unit, text "y" after), \
+    OURS_OF(3, name "z" end, unit, text "z" after)
 #define SAME_XYZ(name, end, unit, text, after)                                                     \
-    SAME(name "x" end, unit, text "x" after), SAME(name "y" end, unit, text "y" after),            \
-    SAME(name "z" end, unit, text "z" after)
+    SAME_OF(1, name "x" end, unit, text "x" after), SAME_OF(2, name "y" end, unit, text "y" after), \
+    SAME_OF(3, name "z" end, unit, text "z" after)
 #define AXES(name, unit, text, after)                                                              \
-    OURS(name "X", unit, text "x" after), OURS(name "Y", unit, text "y" after),                    \
-    OURS(name "Z", unit, text "z" after)
+    OURS_OF(1, name "X", unit, text "x" after), OURS_OF(2, name "Y", unit, text "y" after),        \
+    OURS_OF(3, name "Z", unit, text "z" after)
 static const bough_channel_row rotor[] = {
     SAME("RotSpeed", "rpm", "speed of the hub about the shaft, positive about the axis of the rotor's joint: of that joint and of a joint between generator and hub"),
     SAME("Azimuth", "deg", "angle of the hub about the shaft, from 0 to 360; 0 as the scene places the blades (OpenFAST: AzimB1Up 0)"),
 };
 static const bough_channel_row revolute[] = {
-    {"{a}Pos", "deg", "angle of the joint about its axis", NULL},
-    {"{a}Vel", "deg/s", "rate of the angle", NULL},
+    OURS("{a}Pos", "deg", "angle of the joint about its axis"),
+    OURS("{a}Vel", "deg/s", "rate of the angle"),
 };
 static const bough_channel_row prismatic[] = {
-    {"{a}Pos", "m", "displacement of the joint along its axis", NULL},
-    {"{a}Vel", "m/s", "rate of the displacement", NULL},
+    OURS("{a}Pos", "m", "displacement of the joint along its axis"),
+    OURS("{a}Vel", "m/s", "rate of the displacement"),
 };
 static const bough_channel_row cylindrical[] = {
-    {"{a}Pos", "m", "displacement along the axis", NULL},
-    {"{a}Vel", "m/s", "rate of the displacement", NULL},
-    {"{a}AngPos", "deg", "angle about the axis", NULL},
-    {"{a}AngVel", "deg/s", "rate of the angle", NULL},
+    OURS("{a}Pos", "m", "displacement along the axis"),
+    OURS("{a}Vel", "m/s", "rate of the displacement"),
+    OURS("{a}AngPos", "deg", "angle about the axis"),
+    OURS("{a}AngVel", "deg/s", "rate of the angle"),
 };
 static const bough_channel_row universal[] = {
-    {"{a}Ang1Pos", "deg", "angle about the first axis", NULL},
-    {"{a}Ang1Vel", "deg/s", "rate of the first angle", NULL},
-    {"{a}Ang2Pos", "deg", "angle about the second axis", NULL},
-    {"{a}Ang2Vel", "deg/s", "rate of the second angle", NULL},
+    OURS("{a}Ang1Pos", "deg", "angle about the first axis"),
+    OURS("{a}Ang1Vel", "deg/s", "rate of the first angle"),
+    OURS("{a}Ang2Pos", "deg", "angle about the second axis"),
+    OURS("{a}Ang2Vel", "deg/s", "rate of the second angle"),
 };
 static const bough_channel_row planar[] = {
-    {"{a}1Pos", "m", "displacement along the first axis after the normal, in the order x, y, z, x", NULL},
-    {"{a}1Vel", "m/s", "rate of the first displacement", NULL},
-    {"{a}2Pos", "m", "displacement along the second axis after the normal", NULL},
-    {"{a}2Vel", "m/s", "rate of the second displacement", NULL},
-    {"{a}AngPos", "deg", "angle about the normal", NULL},
-    {"{a}AngVel", "deg/s", "rate of the angle", NULL},
+    OURS("{a}1Pos", "m", "displacement along the first axis after the normal, in the order x, y, z, x"),
+    OURS("{a}1Vel", "m/s", "rate of the first displacement"),
+    OURS("{a}2Pos", "m", "displacement along the second axis after the normal"),
+    OURS("{a}2Vel", "m/s", "rate of the second displacement"),
+    OURS("{a}AngPos", "deg", "angle about the normal"),
+    OURS("{a}AngVel", "deg/s", "rate of the angle"),
 };
 static const bough_channel_row free_body[] = {
     AXES("{a}Pos", "m", "position of the body's frame along ground ", ""),
@@ -59,17 +61,17 @@ static const bough_channel_row turning_body[] = {
     AXES("{a}Omega", "deg/s", "angular velocity of the body about ground ", ""),
 };
 static const bough_channel_row drive_torque[] = {
-    {"{a}Trq", "N-m", "torque on the body about the axis that the prescribed motion needs", NULL},
+    OURS("{a}Trq", "N-m", "torque on the body about the axis that the prescribed motion needs"),
 };
 static const bough_channel_row drive_force[] = {
-    {"{a}Frc", "N", "force on the body along the axis that the prescribed motion needs", NULL},
+    OURS("{a}Frc", "N", "force on the body along the axis that the prescribed motion needs"),
 };
 static const bough_channel_row drive_universal[] = {
-    {"{a}Trq{b}", "N-m", "torque on the body about the axis that the prescribed motion needs", NULL},
+    OURS("{a}Trq{b}", "N-m", "torque on the body about the axis that the prescribed motion needs"),
 };
 static const bough_channel_row spring[] = {
-    {"{a}Len", "m", "length of the spring", NULL},
-    {"{a}Frc", "N", "force of the spring, positive in tension", NULL},
+    OURS("{a}Len", "m", "length of the spring"),
+    OURS("{a}Frc", "N", "force of the spring, positive in tension"),
 };
 static const bough_channel_row bushing[] = {
     AXES("{a}Frc", "N", "force on the second body, ", " axis of the first body"),
@@ -83,26 +85,26 @@ static const bough_channel_row marker[] = {
     AXES("{a}", "m", "position of the point along ground ", ""),
 };
 static const bough_channel_row blade[] = {
-    SAME("OoPDefl{a}", "m", "displacement of the tip along x before the pitch: downwind"),
-    SAME("IPDefl{a}", "m", "displacement of the tip along y before the pitch"),
-    {"TwstDefl{a}", "deg", "third component of the rotation vector of the tip's section, blade axes", "TipRDzb{a}"},
+    SAME_OF(1, "OoPDefl{a}", "m", "displacement of the tip along x before the pitch: downwind"),
+    SAME_OF(2, "IPDefl{a}", "m", "displacement of the tip along y before the pitch"),
+    {"TwstDefl{a}", "deg", "third component of the rotation vector of the tip's section, blade axes", "TipRDzb{a}", 0},
     SAME_XYZ("TipD", "b{a}", "m", "displacement of the tip along the blade's ", ""),
     SAME_XYZ("RootF", "b{a}", "kN", "force of the blade on the hub along the blade's ", ""),
-    SAME("RootMxb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's x: edgewise"),
-    SAME("RootMyb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's y: flapwise"),
-    SAME("RootMzb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's z: torsion"),
+    SAME_OF(1, "RootMxb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's x: edgewise"),
+    SAME_OF(2, "RootMyb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's y: flapwise"),
+    SAME_OF(3, "RootMzb{a}", "kN-m", "moment of the blade on the hub at the root, about the blade's z: torsion"),
 };
 static const bough_channel_row tower[] = {
-    SAME("TTDspFA", "m", "displacement of the tower's top along its x"),
-    SAME("TTDspSS", "m", "displacement of the tower's top along its y"),
-    SAME("TTDspAx", "m", "displacement of the tower's top along its z"),
-    SAME("TTDspRoll", "deg", "rotation vector of the tower's top, x component"),
-    SAME("TTDspPtch", "deg", "rotation vector of the tower's top, y component"),
-    SAME("TTDspTwst", "deg", "rotation vector of the tower's top, z component"),
+    SAME_OF(1, "TTDspFA", "m", "displacement of the tower's top along its x"),
+    SAME_OF(2, "TTDspSS", "m", "displacement of the tower's top along its y"),
+    SAME_OF(3, "TTDspAx", "m", "displacement of the tower's top along its z"),
+    SAME_OF(1, "TTDspRoll", "deg", "rotation vector of the tower's top, x component"),
+    SAME_OF(2, "TTDspPtch", "deg", "rotation vector of the tower's top, y component"),
+    SAME_OF(3, "TTDspTwst", "deg", "rotation vector of the tower's top, z component"),
     SAME_XYZ("TwrBsF", "t", "kN", "force of the tower on the foundation along the tower's ", ""),
-    SAME("TwrBsMxt", "kN-m", "moment of the tower on the foundation about the tower's x: side to side"),
-    SAME("TwrBsMyt", "kN-m", "moment of the tower on the foundation about the tower's y: fore and aft"),
-    SAME("TwrBsMzt", "kN-m", "moment of the tower on the foundation about the tower's z: torsion"),
+    SAME_OF(1, "TwrBsMxt", "kN-m", "moment of the tower on the foundation about the tower's x: side to side"),
+    SAME_OF(2, "TwrBsMyt", "kN-m", "moment of the tower on the foundation about the tower's y: fore and aft"),
+    SAME_OF(3, "TwrBsMzt", "kN-m", "moment of the tower on the foundation about the tower's z: torsion"),
 };
 static const bough_channel_row tip[] = {
     AXES("{a}Tip", "m", "position of the rod's end along ground ", ""),
@@ -115,15 +117,15 @@ static const bough_channel_row fmu[] = {
 #define SECTION(P, S, VECTOR, ROW)                                                                 \
     VECTOR(P "TD", S, "m", "displacement along the body's ", ""),                                  \
     VECTOR(P "RD", S, "deg", "rotation vector of the section, ", " component in the body's axes"), \
-    ROW(P "FLx" S, "kN", "force of the outer part on the inner part along x of the section axes"), \
-    ROW(P "FLy" S, "kN", "force of the outer part on the inner part along y of the section axes"), \
-    ROW(P "FLz" S, "kN", "force of the outer part on the inner part along z of the section axes, positive in tension"), \
-    ROW(P "MLx" S, "kN-m", "moment of the outer part on the inner part about x of the section axes"), \
-    ROW(P "MLy" S, "kN-m", "moment of the outer part on the inner part about y of the section axes"), \
-    ROW(P "MLz" S, "kN-m", "moment of the outer part on the inner part about z of the section axes: torsion")
-static const bough_channel_row blade_section[] = {SECTION("Spn{b}", "b{a}", SAME_XYZ, SAME)};
-static const bough_channel_row tower_section[] = {SECTION("TwHt{b}", "t", SAME_XYZ, SAME)};
-static const bough_channel_row section[] = {SECTION("{a}Spn{b}", "", XYZ, OURS)};
+    ROW(1, P "FLx" S, "kN", "force of the outer part on the inner part along x of the section axes"), \
+    ROW(2, P "FLy" S, "kN", "force of the outer part on the inner part along y of the section axes"), \
+    ROW(3, P "FLz" S, "kN", "force of the outer part on the inner part along z of the section axes, positive in tension"), \
+    ROW(1, P "MLx" S, "kN-m", "moment of the outer part on the inner part about x of the section axes"), \
+    ROW(2, P "MLy" S, "kN-m", "moment of the outer part on the inner part about y of the section axes"), \
+    ROW(3, P "MLz" S, "kN-m", "moment of the outer part on the inner part about z of the section axes: torsion")
+static const bough_channel_row blade_section[] = {SECTION("Spn{b}", "b{a}", SAME_XYZ, SAME_OF)};
+static const bough_channel_row tower_section[] = {SECTION("TwHt{b}", "t", SAME_XYZ, SAME_OF)};
+static const bough_channel_row section[] = {SECTION("{a}Spn{b}", "", XYZ, OURS_OF)};
 #undef SECTION
 static const bough_channel_row shaft[] = {
     SAME("RotTorq", "kN-m", "torque of the hub on the shaft, positive when the shaft brakes a rotor that turns forward: that of the spring between generator and hub, or on a rigid shaft that of the generator and what accelerates the bodies between the rotor's joint and the hub"),
@@ -139,9 +141,9 @@ static const bough_channel_row air[] = {
     SAME("RtAeroPwr", "W", "RtAeroMxh times the angular velocity of the hub about the shaft"),
 };
 static const bough_channel_row wind[] = {
-    SAME("Wind1VelX", "m/s", "undisturbed wind at the initial position of the hub, along ground x"),
-    SAME("Wind1VelY", "m/s", "undisturbed wind at the initial position of the hub, along ground y"),
-    SAME("Wind1VelZ", "m/s", "undisturbed wind at the initial position of the hub, along ground z"),
+    SAME_OF(1, "Wind1VelX", "m/s", "undisturbed wind at the initial position of the hub, along ground x"),
+    SAME_OF(2, "Wind1VelY", "m/s", "undisturbed wind at the initial position of the hub, along ground y"),
+    SAME_OF(3, "Wind1VelZ", "m/s", "undisturbed wind at the initial position of the hub, along ground z"),
     SAME_XYZ("RtVAvg", "h", "m/s", "wind relative to the blades, mean over all blade elements, with the tower's influence, along the hub's ", ""),
     SAME("RtTSR", "-", "tip-speed ratio: angular velocity of the hub about the shaft times the undeformed rotor's radius, divided by RtVAvgxh"),
 };
@@ -166,10 +168,10 @@ static const bough_channel_row pitch[] = {
     SAME("BldPitch{a}", "deg", "pitch of the blade: the body's pitch minus the joint's angle, positive towards feather"),
 };
 static const bough_channel_row law[] = {
-    {"LawGenSpeed", "rad/s", "speed of the generator now, as a control law uses it, without rounding", NULL},
+    OURS("LawGenSpeed", "rad/s", "speed of the generator now, as a control law uses it, without rounding"),
 };
 static const bough_channel_row law_pitch[] = {
-    {"LawBldPitch{a}", "rad", "pitch of the blade now, as a control law uses it, without rounding", NULL},
+    OURS("LawBldPitch{a}", "rad", "pitch of the blade now, as a control law uses it, without rounding"),
 };
 
 #define N(rows) (int)(sizeof(rows) / sizeof *(rows)), rows
@@ -207,11 +209,11 @@ const bough_channel_family bough_channel_families[BOUGH_CHANNEL_PARTS] = {
         "of the rod's table, with the initial twist, turned with the deformed section", N(section)},
     [BOUGH_CHANNELS_SHAFT] = {"Shaft of a turbine", NULL, N(shaft)},
     [BOUGH_CHANNELS_YAW_BEARING] = {"Top of a tower", NULL, N(yaw_bearing)},
-    [BOUGH_CHANNELS_AIR] = {"Air on a rotor, at the last aerodynamic sample", NULL, N(air)},
-    [BOUGH_CHANNELS_WIND] = {"Wind", NULL, N(wind)},
+    [BOUGH_CHANNELS_AIR] = {"Air on a rotor, at the last aerodynamic sample", NULL, N(air), .sampled = true},
+    [BOUGH_CHANNELS_WIND] = {"Wind", NULL, N(wind), .sampled = true},
     [BOUGH_CHANNELS_ELEMENT] = {"Blade element that aero.nodes names",
-        "{a}: number of the blade; {b}: number of the element, with three digits", N(element)},
-    [BOUGH_CHANNELS_CONTROL] = {"Control", NULL, N(control)},
+        "{a}: number of the blade; {b}: number of the element, with three digits", N(element), .sampled = true},
+    [BOUGH_CHANNELS_CONTROL] = {"Control", NULL, N(control), .sampled = true},
     [BOUGH_CHANNELS_PITCH] = {"Control of a turbine's blades", numbered, N(pitch)},
     [BOUGH_CHANNELS_LAW] = {"Control of kind external", NULL, N(law)},
     [BOUGH_CHANNELS_LAW_PITCH] = {"Control of kind external, of a turbine's blades", numbered, N(law_pitch)},
@@ -239,6 +241,7 @@ void bough_channel_family_add(bough_channels *list, bough_channel_part part, con
         char name[2 * BOUGH_CHANNEL_NAME];
         fill(family->row[k].name, a, b, name, sizeof name);
         bough_channels_add(list, family->row[k].unit, "%s", name);
+        bough_channels_describe(list, family->row[k].component, family->sampled);
     }
 }
 

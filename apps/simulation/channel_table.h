@@ -5,6 +5,7 @@
 
 #include "apps/output/channels.h"
 
+#include <stdbool.h>
 #include <stdio.h>
 
 typedef struct bough_channel_row {
@@ -12,6 +13,7 @@ typedef struct bough_channel_row {
     const char *unit;
     const char *meaning;  // axes and sign
     const char *openfast; // its name there, NULL: it has none
+    int component;        // 1, 2, 3 of a vector whose components follow each other; 0: none
 } bough_channel_row;
 
 // What one part of a scene gives.
@@ -20,6 +22,7 @@ typedef struct bough_channel_family {
     const char *parts; // what {a} and {b} are; NULL: none
     int n;
     const bough_channel_row *row; // (n), in the order of the values
+    bool sampled; // the values belong to the last sample of the air or the control
 } bough_channel_family;
 
 typedef enum bough_channel_part {

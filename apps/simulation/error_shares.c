@@ -1,16 +1,20 @@
 #include "apps/simulation/error_shares.h"
 
+#include "apps/simulation/build.h"
+#include "apps/simulation/coarser.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <time.h>
 
-// Orders at which the error falls with a segment's length and with the time between samples of the air:
-// those of the rod's segments and of the signal between samples (docs/theory.md).
-static const double mesh_order = 2, linear_air_order = 3, held_air_order = 1;
+// Of the difference, as of the whole error (companion.c).
+static const double share_of_difference = 0.25;
 
 const char *bough_error_share_name(bough_error_share_kind kind) {
-    return kind == BOUGH_SHARE_MESH ? "mesh" : "air";
+    static const char *const names[BOUGH_SHARES] = {"mesh", "air", "time"};
+    return names[kind];
 }
 
 static void unknown(bough_error_share *share, const char *format, ...) {
@@ -20,232 +24,261 @@ static void unknown(bough_error_share *share, const char *format, ...) {
     va_end(arguments);
 }
 
-bough_status bough_error_shares_create(bough_arena *arena, const bough_run *run, double interval,
-                                       bough_error_shares *shares) {
-    const bough_simulation *s = run->simulation;
-    *shares = (bough_error_shares){.n_channel = s->n_motion_channel};
-    for (int k = 0; k < BOUGH_SHARES; k++) {
-        unknown(&shares->share[k], "simulation.error_shares does not ask for it");
-    }
-    if (!s->scene->simulation.error_shares) return bough_ok();
-    double rows = ceil(s->master->duration / interval) + 2;
-    if (rows * shares->n_channel > 1e8) {
-        return bough_fail(BOUGH_INVALID, "simulation.error_shares: %.3g rows of %d channels do not fit"
-                          " into memory; a longer simulation.output.interval", rows, shares->n_channel);
-    }
-    size_t n = (size_t)shares->n_channel + 1;
-    shares->most = (int)rows;
-    shares->row = bough_arena_doubles(arena, (size_t)shares->most * n);
-    for (int k = 0; k < BOUGH_SHARES; k++) shares->share[k].largest = bough_arena_doubles(arena, n);
-    return bough_ok();
+// -- further runs ---------------------------------------------------------------------------------
+
+typedef struct other_run {
+    bough_simulation *simulation; // NULL: there is none
+    bough_channels channels;
+    double *value; // (channels.count)
+} other_run;
+
+static bough_status build(bough_arena *arena, const bough_simulation *run, int parts, other_run *r) {
+    const bough_scene *scene = bough_coarser_scene(arena, run->scene, parts);
+    bough_status status = bough_simulation_build_on(arena, scene, run->pool, &r->simulation);
+    r->channels = bough_channels_start(arena);
+    if (bough_is_ok(&status)) status = bough_simulation_channels(r->simulation, &r->channels);
+    r->value = bough_arena_doubles(arena, (size_t)r->channels.count + 1);
+    if (!bough_is_ok(&status)) r->simulation = NULL;
+    return status;
 }
 
-void bough_error_shares_note(bough_error_shares *shares, bough_run *run) {
-    if (!shares->row || shares->n_row >= shares->most) return;
-    size_t n = (size_t)shares->n_channel;
-    const double *value = bough_run_values(run);
-    if (value) memcpy(shares->row + n * (size_t)shares->n_row++, value, n * sizeof *value);
+static void sample(other_run *r) {
+    bough_simulation_update(r->simulation);
+    bough_channels_sample(&r->channels, r->simulation->master->time, r->value);
 }
 
-// -- other runs -----------------------------------------------------------------------------------
-
-// A run beside which the noted rows pass, or whose rows take their place.
-typedef struct follower {
-    bough_error_shares *shares;
-    bough_error_share *share;
-    bool takes;
-    bough_run run;
-    int row;
-} follower;
-
-static bough_status pass_row(void *self, double t) {
-    follower *f = self;
-    (void)t;
-    const double *value = bough_run_values(&f->run);
-    if (!value || f->row >= f->shares->n_row) return bough_ok();
-    size_t n = (size_t)f->shares->n_channel;
-    double *first = f->shares->row + (size_t)f->row++ * n;
-    if (f->takes) memcpy(first, value, n * sizeof *value);
-    for (int i = 0; i < f->shares->n_channel; i++) {
-        double error = f->share->part * fabs(value[i] - first[i]);
-        f->share->largest[i] = fmax(f->share->largest[i], error);
-    }
-    return bough_ok();
+static bough_status advance(other_run *r, double t) {
+    bough_status status = bough_ok();
+    while (bough_is_ok(&status) && r->simulation->master->time < t)
+        status = bough_step(r->simulation->master);
+    return status;
 }
 
-// The loads on vertices stay at their places.
-static void follow_vertices(bough_arena *arena, bough_scene *scene, int times) {
-    size_t n = (size_t)scene->n_load;
-    bough_scene_load *load = bough_arena_take(arena, n * sizeof *load);
-    for (size_t i = 0; i < n; i++) {
-        load[i] = scene->load[i];
-        if (load[i].place == BOUGH_SCENE_AT_VERTEX) load[i].vertex *= times;
-    }
-    scene->load = load;
-}
-
-static bool repeatable(const bough_scene *scene, bough_error_share *share) {
-    share->unknown[0] = '\0';
-    if (scene->control.node && scene->control.kind == BOUGH_SCENE_BLADED) {
-        unknown(share, "the controller's library keeps a state that a second run would change");
-    }
-    return share->unknown[0] == '\0';
-}
-
-bool bough_error_share_refine(bough_arena *arena, bough_scene *scene, int times, bough_error_share *share) {
-    size_t n = (size_t)scene->n_body;
-    bough_scene_body *body = bough_arena_take(arena, n * sizeof *body);
-    bool any = false;
-    if (!repeatable(scene, share)) return false;
-    follow_vertices(arena, scene, times);
-    memcpy(body, scene->body, n * sizeof *body);
-    for (size_t i = 0; i < n; i++) {
-        if (!body[i].rod.node || body[i].fidelity == BOUGH_SCENE_RIGID) continue;
-        if (body[i].fidelity != BOUGH_SCENE_ROD) {
-            unknown(share, "%s is a modal body, whose shapes have errors of their own", body[i].name);
-            return false;
-        }
-        body[i].rod.n_segment *= times;
-        any = true;
-    }
-    if (!any) unknown(share, "no body has a mesh");
-    share->order = mesh_order;
-    share->part = 1 / (1 - pow(times, -mesh_order));
-    scene->body = body;
-    return any;
-}
-
-// Twice the samples: half of them may be too few to be stable.
-static bool refine_air(bough_scene *scene, bough_error_share *share) {
-    share->order = scene->aero.hold == BOUGH_SCENE_CONSTANT ? held_air_order : linear_air_order;
-    double finer = pow(2, share->order);
-    if (!repeatable(scene, share)) return false;
-    if (!scene->aero.node) unknown(share, "the scene has no air");
-    scene->aero.rate *= 2;
-    share->part = finer / (finer - 1);
-    return scene->aero.node != NULL;
-}
-
-static double tighter(double rtol) { return fmin(rtol, fmax(rtol / 30, 1e-8)); }
-
-// All bodies in one system, because a coupling that holds on the scene's mesh may not hold on a finer one, with
-// small errors of the steps; and macro steps into which twice the samples of the air fit.
-static void refine_time(bough_scene *scene) {
-    bough_scene_simulation *simulation = &scene->simulation;
-    int monolithic = bough_scheme_index("monolithic");
-    if (simulation->coupling.scheme == monolithic && simulation->master.solver != BOUGH_GENERALIZED_ALPHA) {
-        simulation->master.rtol = tighter(simulation->master.rtol);
-    } else {
-        simulation->coupling.scheme = monolithic;
-        simulation->master.solver = BOUGH_AUTOMATIC;
-        simulation->master.rtol = 1e-5;
-    }
-    bool air = scene->aero.node != NULL;
-    if (air && lround(1 / (scene->aero.rate * simulation->macro_step)) % 2 != 0) {
-        simulation->macro_step /= 2;
-        simulation->master.step = fmin(simulation->master.step, simulation->macro_step);
+static void compare(const other_run *base, other_run *finer, bough_error_share *share) {
+    const bough_master *m = finer->simulation->master;
+    if (m->time != base->simulation->master->time) return;
+    sample(finer);
+    for (int i = 0; i < base->channels.count; i++) {
+        const bough_channel *channel = &base->channels.channel[i];
+        if (channel->sampled && !bough_master_sampled(base->simulation->master)) continue;
+        double apart = base->value[i] - finer->value[i];
+        if (channel->turn > 0) apart = remainder(apart, channel->turn);
+        share->largest[i] = fmax(share->largest[i], share_of_difference * fabs(apart));
     }
 }
 
 typedef struct finding {
-    bough_error_share_kind kind;
-    const bough_run *run;
-    double interval;
+    const bough_companion *companion;
+    bool (*stop)(void);
     bough_error_shares *shares;
-    char *failed;  // (sizeof share.unknown) what ended the run with short steps; "": nothing
-    bool *started; // whether there has been one
 } finding;
 
-// Runs a scene from start to end; false with the reason in the share.
-static bool pass(bough_arena *arena, const finding *x, const bough_scene *scene, bool takes) {
-    bough_error_share *share = &x->shares->share[x->kind];
-    follower f = {.shares = x->shares, .share = share, .takes = takes};
-    bough_status status = bough_run_create(arena, scene, &f.run);
-    if (bough_is_ok(&status)) {
-        f.run.stop = x->run->stop;
-        bough_run_record_at(&f.run, (bough_run_record){x->interval, true, .sample = pass_row, .self = &f});
-        bough_run_all(&f.run);
-        status = f.run.outcome;
-        share->cpu_s += f.run.cpu_s;
+static bool has_part(const bough_scene *scene, int kind) {
+    if (kind == BOUGH_SHARE_TIME) return true;
+    if (kind == BOUGH_SHARE_AIR) return scene->aero.node != NULL;
+    for (int i = 0; i < scene->n_body; i++) {
+        if (scene->body[i].rod.node && scene->body[i].fidelity != BOUGH_SCENE_RIGID) return true;
     }
-    if (!bough_is_ok(&status)) {
-        unknown(share, "the run that would tell it failed: %.100s", status.message);
-    } else if (f.row != x->shares->n_row) {
-        unknown(share, "the run was resumed: its rows before are not in memory");
-    }
-    return share->unknown[0] == '\0';
+    return false;
 }
 
-// The run with short steps, whose rows take the place of the run's own; once for both shares.
-static bool pass_base(bough_arena *arena, const finding *x, const bough_scene *scene) {
-    bough_error_share *share = &x->shares->share[x->kind];
-    if (*x->started) {
-        unknown(share, "%s", x->failed);
-        return share->unknown[0] == '\0';
+static void build_finer(bough_arena *arena, const finding *x, other_run finer[BOUGH_SHARES]) {
+    static const int coarser[BOUGH_SHARES] = {BOUGH_COARSER_MESH, BOUGH_COARSER_AIR, BOUGH_COARSER_TIME};
+    const bough_simulation *run = x->companion->run;
+    for (int k = 0; k < BOUGH_SHARES; k++) {
+        bough_error_share *share = &x->shares->share[k];
+        if (!has_part(run->scene, k)) {
+            unknown(share, "the scene has no %s", bough_error_share_name((bough_error_share_kind)k));
+            continue;
+        }
+        bough_status status = build(arena, run, BOUGH_COARSER_ALL & ~coarser[k], &finer[k]);
+        if (!bough_is_ok(&status)) unknown(share, "%.150s", status.message);
     }
-    *x->started = true;
-    bool passed = pass(arena, x, scene, true);
-    memcpy(x->failed, share->unknown, sizeof share->unknown);
-    return passed;
 }
 
+// From start to end; a run that fails leaves its share unknown.
 static bough_status find(bough_arena *arena, void *self) {
     const finding *x = self;
-    bough_error_share *share = &x->shares->share[x->kind];
-    bough_scene base = *x->run->simulation->scene;
-    base.simulation.error_estimate = BOUGH_ERROR_NOT_TOLD;
-    base.simulation.error_bound = 0;
-    base.simulation.error_shares = false;
-    refine_time(&base);
-    bough_scene scene = base;
-    // Twice the segments: half of them may be too few for the order to hold.
-    bool mesh = x->kind == BOUGH_SHARE_MESH;
-    bool ready = mesh ? bough_error_share_refine(arena, &scene, 2, share) : refine_air(&scene, share);
-    if (ready && pass_base(arena, x, &base)) pass(arena, x, &scene, false);
+    other_run base, finer[BOUGH_SHARES] = {{0}};
+    bough_status status = build(arena, x->companion->run, BOUGH_COARSER_ALL, &base);
+    if (bough_is_ok(&status)) build_finer(arena, x, finer);
+    while (bough_is_ok(&status) && !bough_master_done(base.simulation->master)) {
+        if (x->stop && x->stop())
+            return bough_fail(BOUGH_INTERRUPTED, "interrupted while the error's cause was looked for");
+        status = bough_step(base.simulation->master);
+        if (!bough_is_ok(&status)) break;
+        sample(&base);
+        for (int k = 0; k < BOUGH_SHARES; k++) {
+            bough_error_share *share = &x->shares->share[k];
+            if (!finer[k].simulation || share->unknown[0]) continue;
+            bough_status own = advance(&finer[k], base.simulation->master->time);
+            if (bough_is_ok(&own))
+                compare(&base, &finer[k], share);
+            else
+                unknown(share, "%.150s", own.message);
+        }
+    }
+    return status;
+}
+
+static double cpu_clock(void) {
+    struct timespec now;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+bough_status bough_error_shares_find(bough_arena *arena, const bough_companion *c, bool (*stop)(void),
+                                     bough_error_shares *shares) {
+    finding x = {c, stop, shares};
+    double cpu = cpu_clock();
+    *shares = (bough_error_shares){.found = true, .n_channel = c->channels->count};
+    for (int k = 0; k < BOUGH_SHARES; k++)
+        shares->share[k].largest = bough_arena_doubles(arena, (size_t)c->channels->count + 1);
+    bough_status status = bough_ok();
+    if (!c->coarser) {
+        status = bough_fail(BOUGH_FAILED, "%s", c->reason);
+    } else if (c->run->inputs) {
+        status = bough_fail(BOUGH_FAILED, "the run has inputs, which are not known any more");
+    } else {
+        status = bough_arena_use(find, &x);
+    }
+    shares->cpu_s = cpu_clock() - cpu;
+    if (status.code == BOUGH_INTERRUPTED) return status;
+    for (int k = 0; k < BOUGH_SHARES && !bough_is_ok(&status); k++)
+        unknown(&shares->share[k], "%.150s", status.message);
     return bough_ok();
 }
 
-void bough_error_shares_find(bough_error_shares *shares, const bough_run *run, double interval) {
-    char failed[sizeof shares->share[0].unknown] = "";
-    bool started = false;
-    for (int k = 0; k < BOUGH_SHARES && shares->row; k++) {
-        finding f = {(bough_error_share_kind)k, run, interval, shares, failed, &started};
-        bough_status status = bough_arena_use(find, &f);
-        if (!bough_is_ok(&status)) unknown(&shares->share[k], "%s", status.message);
+// -- cause and remedy -----------------------------------------------------------------------------
+
+enum { ADVICE = 160 };
+static const double mesh_order = 2, air_order = 2, time_order = 2; // at least
+static const double margin = 1.1;                                  // of the settings that are proposed
+
+// The segments that divide the mesh's error by a factor: their number where all rods have the same.
+static void advise_mesh(const bough_scene *scene, double factor, char text[ADVICE]) {
+    double times = margin * pow(factor, 1 / mesh_order);
+    int n = 0;
+    bool equal = true;
+    for (int i = 0; i < scene->n_body; i++) {
+        if (!scene->body[i].rod.node || scene->body[i].fidelity == BOUGH_SCENE_RIGID) continue;
+        equal = equal && (n == 0 || n == scene->body[i].rod.n_segment);
+        n = scene->body[i].rod.n_segment;
+    }
+    if (equal) {
+        snprintf(text, ADVICE, "rod.segments: %.0f", ceil(times * n));
+    } else {
+        snprintf(text, ADVICE, "%.2g times as many rod.segments", times);
     }
 }
 
-// -- what they mean -------------------------------------------------------------------------------
-
-// Above `least` and up to `most`, of the channel's range.
-static void describe(const bough_error_shares *shares, bough_error_share_kind kind,
-                     const bough_error_probe *probe, double least, double most,
-                     char text[BOUGH_ERROR_WARNING]) {
-    const bough_error_share *share = &shares->share[kind];
-    text[0] = '\0';
-    if (share->unknown[0]) return;
-    bough_error_verdict v = bough_error_probe_verdict_of(probe, share->largest);
-    if (v.channel < 0 || v.relative <= least || v.relative > most) return;
-    bool mesh = kind == BOUGH_SHARE_MESH;
-    const bough_channel *channel = &probe->channels->channel[v.channel];
-    snprintf(text, BOUGH_ERROR_WARNING,
-             "%s errs by %.2g %s, %.2g of its range; cause: the %s; try %s, %.2g times as %s", channel->name,
-             share->largest[v.channel], channel->unit, v.relative, mesh ? "mesh" : "sampling of the air",
-             mesh ? "rod.segments" : "aero.rate", 1.1 * pow(v.relative / least, 1 / share->order),
-             mesh ? "many" : "high");
+// Doubled until it suffices; a sample of the air needs a macro step of its own.
+static void advise_air(const bough_scene *scene, double factor, char text[ADVICE]) {
+    double times = exp2(ceil(log2(pow(factor, 1 / air_order)))), rate = times * scene->aero.rate;
+    int n = snprintf(text, ADVICE, "aero.rate: %.4g Hz", rate);
+    if (rate * scene->simulation.macro_step > 1 + 1e-9)
+        snprintf(text + n, (size_t)(ADVICE - n), " with macro_step: %.4g s", 1 / rate);
 }
 
-void bough_error_share_warn(const bough_error_shares *shares, bough_error_share_kind kind,
-                            const bough_error_probe *probe, double bound, char text[BOUGH_ERROR_WARNING]) {
-    describe(shares, kind, probe, BOUGH_ERROR_NOTICEABLE, bound > 0 ? bound : HUGE_VAL, text);
-}
-
-bough_status bough_error_shares_judge(const bough_error_shares *shares, const bough_error_probe *probe,
-                                      double bound) {
-    char text[BOUGH_ERROR_WARNING];
-    for (int k = 0; k < BOUGH_SHARES && bound > 0; k++) {
-        describe(shares, (bough_error_share_kind)k, probe, bound, HUGE_VAL, text);
-        if (text[0]) return bough_fail(BOUGH_FAILED, "the error bound %.3g is exceeded: %s", bound, text);
+static void advise_time(const bough_scene *scene, double factor, char text[ADVICE]) {
+    const bough_scene_simulation *x = &scene->simulation;
+    bool one_system = bough_scheme_find(bough_scheme_name(x->coupling.scheme))->one_system;
+    double shorter = pow(factor, -1 / time_order) / margin;
+    if (!one_system) {
+        snprintf(text, ADVICE, "scheme: monolithic or macro_step: %.2g s", shorter * x->macro_step);
+    } else if (x->master.solver == BOUGH_GENERALIZED_ALPHA) {
+        double step = x->master.step > 0 ? fmin(x->master.step, x->macro_step) : x->macro_step;
+        snprintf(text, ADVICE, "master.step: %.2g s or master.solver: rosenbrock", shorter * step);
+    } else {
+        int n = snprintf(text, ADVICE, "master.rtol: %.1g", 0.5 * x->master.rtol / fmin(factor, 1e3));
+        if (x->master.step > 0)
+            snprintf(text + n, (size_t)(ADVICE - n), " and master.step: %.2g s", shorter * x->master.step);
     }
+}
+
+static void advise(const bough_scene *scene, int kind, double factor, char text[ADVICE]) {
+    if (kind == BOUGH_SHARE_MESH) advise_mesh(scene, factor, text);
+    if (kind == BOUGH_SHARE_AIR) advise_air(scene, factor, text);
+    if (kind == BOUGH_SHARE_TIME) advise_time(scene, factor, text);
+}
+
+static const char *cause_name(const bough_scene *scene, int kind) {
+    if (kind == BOUGH_SHARE_MESH) return "the mesh";
+    if (kind == BOUGH_SHARE_AIR) return "the sampling of the air";
+    bool one_system = bough_scheme_find(bough_scheme_name(scene->simulation.coupling.scheme))->one_system;
+    return one_system ? "the integrator's steps" : "the coupling or the sub-solvers' steps";
+}
+
+static int describe(const bough_companion *c, const bough_error_verdict *v, char *text, size_t size) {
+    const bough_channel *channel = &c->channels->channel[v->channel];
+    return snprintf(text, size, "%s errs by %.2g %s, %.2g of its range, noticeably from %.6g s on",
+                    channel->name, c->error[v->channel], channel->unit, v->relative, v->time);
+}
+
+bool bough_error_exceeds(const bough_companion *c, double bound) {
+    bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
+    return bound > 0 && v.channel >= 0 && v.relative > bound;
+}
+
+// The largest share; the mesh only if time and air alone stay below the bound.
+static int cause_of(const bough_companion *c, const bough_error_shares *shares, double bound,
+                    double *relative) {
+    int cause = -1;
+    *relative = 0;
+    for (int k = 0; k < BOUGH_SHARES; k++) {
+        const bough_error_share *share = &shares->share[k];
+        if (share->unknown[0]) continue;
+        bough_error_verdict v = bough_error_verdict_of(c, true, share->largest);
+        double own = v.channel < 0 ? 0 : v.relative;
+        bool before = cause == BOUGH_SHARE_MESH && own > bound;
+        if (!before && own <= *relative) continue;
+        cause = k;
+        *relative = own;
+    }
+    return cause;
+}
+
+static bough_status judge_excess(const bough_companion *c, const bough_error_shares *shares, double bound,
+                                 const bough_error_verdict *v, char warning[BOUGH_ERROR_WARNING]) {
+    const bough_scene *scene = c->run->scene;
+    char what[240], remedy[ADVICE];
+    double relative;
+    int cause = cause_of(c, shares, bound, &relative);
+    describe(c, v, what, sizeof what);
+    if (cause < 0) {
+        return bough_fail(BOUGH_FAILED, "the error bound %.3g is exceeded: %s; the cause was not found: %s",
+                          bound, what, shares->share[BOUGH_SHARE_TIME].unknown);
+    }
+    advise(scene, cause, fmax(fmax(relative, v->relative) / bound, 1), remedy);
+    snprintf(warning, BOUGH_ERROR_WARNING, "%s; cause: %s; try %s", what, cause_name(scene, cause), remedy);
+    if (cause == BOUGH_SHARE_MESH) return bough_ok();
+    bough_status failed = bough_fail(BOUGH_FAILED, "the error bound %.3g is exceeded: %s", bound, warning);
+    warning[0] = '\0';
+    return failed;
+}
+
+static void warn_of_loss(const bough_companion *c, char warning[BOUGH_ERROR_WARNING]) {
+    snprintf(warning, BOUGH_ERROR_WARNING, "errors are not known from %.6g s on: %s", c->from, c->reason);
+}
+
+bough_status bough_error_judge(const bough_companion *c, const bough_error_shares *shares, double bound,
+                               char warning[BOUGH_ERROR_WARNING]) {
+    warning[0] = '\0';
+    bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
+    if (c->compared > 0 && c->reason[0]) warn_of_loss(c, warning);
+    if (v.channel < 0) return bough_ok();
+    if (bound > 0 && v.relative > bound) return judge_excess(c, shares, bound, &v, warning);
+    if (v.relative > BOUGH_ERROR_NOTICEABLE && !warning[0]) describe(c, &v, warning, BOUGH_ERROR_WARNING);
     return bough_ok();
+}
+
+bough_status bough_error_parted(const bough_companion *c) {
+    char what[240], remedy[ADVICE];
+    bough_error_verdict v = bough_error_verdict_of(c, true, c->error);
+    if (v.channel < 0) return bough_ok();
+    describe(c, &v, what, sizeof what);
+    advise_time(c->run->scene, 16, remedy);
+    return bough_fail(BOUGH_FAILED,
+                      "the run has lost the solution at %.6g s: %s, by a coarser solution beside it; try %s",
+                      c->run->master->time, what, remedy);
 }

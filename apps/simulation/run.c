@@ -1,7 +1,6 @@
 #include "apps/simulation/run.h"
 
 #include "apps/simulation/build.h"
-#include "apps/simulation/second_model.h"
 #include "apps/simulation/validity.h"
 
 #include <assert.h>
@@ -20,20 +19,17 @@ bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, boug
     size_t n = (size_t)run->simulation->master->assembly->n_member;
     run->value = bough_arena_doubles(arena, (size_t)run->channels.count + 1);
     run->earlier = bough_arena_take(arena, (n + 1) * sizeof *run->earlier);
-    // the run may be copied by its caller: the probe keeps a list of its own
+    // the run may be copied by its caller: the companion keeps a list of its own
     bough_channels *channels = bough_arena_take(arena, sizeof *channels);
     *channels = run->channels;
-    status = bough_second_model_build(arena, run->simulation, &run->second);
-    if (!bough_is_ok(&status)) return status;
-    return bough_error_probe_create(arena, run->simulation, run->second, channels, &run->probe);
+    run->companion = bough_arena_take(arena, sizeof *run->companion);
+    return bough_companion_create(arena, run->simulation, channels, run->companion);
 }
 
 // -- recording ------------------------------------------------------------------------------------
 
 // Times closer than this are one [s].
-static double resolution(const bough_run *run) {
-    return 1e-6 * run->simulation->master->macro_step;
-}
+static double resolution(const bough_run *run) { return 1e-6 * run->simulation->master->macro_step; }
 
 void bough_run_record_at(bough_run *run, bough_run_record record) {
     assert(run->n_record < BOUGH_RUN_RECORDS && record.interval > 0);
@@ -91,8 +87,10 @@ const double *bough_run_values(bough_run *run) {
 
 bough_status bough_run_step(bough_run *run) {
     run->sampled = false;
+    bool due = bough_companion_due(run->companion);
     run->outcome = bough_step(run->simulation->master);
-    if (bough_is_ok(&run->outcome)) bough_error_probe_update(&run->probe);
+    if (due) bough_companion_step(run->companion);
+    if (bough_is_ok(&run->outcome)) bough_companion_compare(run->companion);
     bough_validity_check(run->simulation);
     if (bough_is_ok(&run->outcome)) run->outcome = record_due(run);
     return run->outcome;
@@ -117,8 +115,7 @@ void bough_run_update_clock(bough_run *run) {
 static bough_status step(bough_run *run) {
     const bough_master *m = run->simulation->master;
     if (run->stop && run->stop()) {
-        return bough_fail(BOUGH_INTERRUPTED, "interrupted at %.9g s of %.9g s", m->time,
-                          m->duration);
+        return bough_fail(BOUGH_INTERRUPTED, "interrupted at %.9g s of %.9g s", m->time, m->duration);
     }
     bough_status status = bough_run_step(run);
     return bough_is_ok(&status) && run->after ? run->after(run->self) : status;
@@ -129,6 +126,7 @@ static void step_all(void *self) {
     run->wall_from = bough_wall_clock();
     run->cpu_from = cpu_clock(run);
     bough_master_stop_by(run->simulation->master, run->stop);
+    bough_companion_stop_by(run->companion, run->stop);
     bough_status status = bough_run_start(run);
     while (bough_is_ok(&status) && !bough_run_done(run)) {
         status = step(run);
@@ -168,22 +166,10 @@ static void take_statistics(bough_run *run, bough_snapshot *s) {
     }
 }
 
-static void take_probe(bough_error_probe *probe, int n, bough_snapshot *s) {
-    bough_snapshot_take(s, &probe->batches, sizeof probe->batches);
-    bough_snapshot_doubles(s, probe->largest, n);
-    bough_snapshot_doubles(s, probe->low, n);
-    bough_snapshot_doubles(s, probe->high, n);
-    bough_snapshot_doubles(s, probe->true_low, n);
-    bough_snapshot_doubles(s, probe->true_high, n);
-    bough_snapshot_doubles(s, probe->passed, n);
-    bough_snapshot_take(s, &probe->lost_for, sizeof probe->lost_for);
-}
-
 void bough_run_snapshot(bough_run *run, bough_snapshot *s) {
     bough_simulation_snapshot(run->simulation, s);
-    if (run->second) bough_simulation_snapshot(run->second, s);
+    bough_companion_snapshot(run->companion, s);
     take_statistics(run, s);
-    take_probe(&run->probe, run->channels.count, s);
     for (int i = 0; i < run->n_record; i++) {
         bough_snapshot_take(s, &run->record[i].next, sizeof run->record[i].next);
         bough_snapshot_take(s, &run->record[i].last, sizeof run->record[i].last);
@@ -195,7 +181,8 @@ void bough_run_snapshot(bough_run *run, bough_snapshot *s) {
 
 bough_status bough_run_storable(const bough_run *run) {
     const bough_master *m = run->simulation->master;
-    if (bough_master_sampled(m)) return bough_simulation_storable(run->simulation);
+    if (bough_master_sampled(m) && bough_companion_storable(run->companion))
+        return bough_simulation_storable(run->simulation);
     return bough_fail(BOUGH_INVALID,
                       "at %.9g s the air or the control is between two samples; a copy can be "
                       "made at their next sample",

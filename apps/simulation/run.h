@@ -4,15 +4,15 @@
 #define BOUGH_APPS_SIMULATION_RUN_H
 
 #include "apps/output/progress.h"
-#include "apps/simulation/error_probe.h"
+#include "apps/simulation/companion.h"
 
 enum { BOUGH_RUN_RECORDS = 4 };
 
 // What is taken of the run at the multiples of an interval: at the first synchronisation point at or
 // after each.
 typedef struct bough_run_record {
-    double interval; // [s]
-    bool at_end;     // also where the run ends
+    double interval;                              // [s]
+    bool at_end;                                  // also where the run ends
     bough_status (*sample)(void *self, double t); // the simulation's `view` is at t
     void *self;
     long next;   // multiple of the interval that is due next
@@ -21,25 +21,24 @@ typedef struct bough_run_record {
 
 typedef struct bough_run {
     bough_simulation *simulation;
-    bough_simulation *second; // beside it, to measure its error; NULL: none
     bough_channels channels;
-    double *value; // (channels.count) see bough_run_values
-    bool sampled;  // `value` belongs to the present time
-    bough_error_probe probe; // what the channels err by
+    double *value;              // (channels.count) see bough_run_values
+    bool sampled;               // `value` belongs to the present time
+    bough_companion *companion; // what the channels err by
     int n_record;
     bough_run_record record[BOUGH_RUN_RECORDS];
-    bough_statistics *earlier; // (n_member + 1) work of the processes that this one continues, last
-                               // that of the integrator of all members together
+    bough_statistics *earlier;  // (n_member + 1) work of the processes that this one continues, last
+                                // that of the integrator of all members together
     double wall_from, cpu_from; // of the clocks, counted below so far [s]
-    double wall_s, cpu_s; // of the stepping: wall time, CPU time of all threads [s]
-    bough_status outcome; // how the last step ended
+    double wall_s, cpu_s;       // of the stepping: wall time, CPU time of all threads [s]
+    bough_status outcome;       // how the last step ended
 
     // by the caller, before the first step
-    bool beside;               // others run at the same time: CPU time of the calling thread
-    bool (*stop)(void);        // asked before each step; NULL: nobody stops the run
+    bool beside;                       // others run at the same time: CPU time of the calling thread
+    bool (*stop)(void);                // asked before each step; NULL: nobody stops the run
     bough_status (*after)(void *self); // called after each step; NULL: nobody is
     void *self;                        // for `after`
-    bough_progress *progress;  // the terminal's line; NULL: none
+    bough_progress *progress;          // the terminal's line; NULL: none
 } bough_run;
 
 // Builds the scene's model and its channels in the arena; the run is then at time 0.
@@ -51,8 +50,8 @@ void bough_run_record_at(bough_run *run, bough_run_record record);
 // Records the results of the present time, the start.
 bough_status bough_run_start(bough_run *run);
 
-// One macro step, then error estimates and results. After a failure the state is not valid, and the run can
-// continue only from a copy.
+// One macro step, of the companion beside it where one is due, then the comparison and results. After a
+// failure the state is not valid, and the run can continue only from a copy.
 bough_status bough_run_step(bough_run *run);
 
 // Whether the duration is reached.

@@ -2,6 +2,7 @@
 
 #include "apps/output/folder.h"
 #include "apps/output/recorder.h"
+#include "apps/simulation/error_shares.h"
 #include "apps/simulation/run.h"
 #include "apps/study/study_run.h"
 
@@ -76,6 +77,16 @@ static bough_status build(bough_arena *arena, const bough_load_case *c, const ch
     return bough_is_ok(&status) ? open_series(arena, c, folder, r) : status;
 }
 
+static bough_status judge(bough_arena *arena, const case_run *r) {
+    const bough_companion *c = r->run.companion;
+    double bound = r->run.simulation->scene->simulation.error_bound;
+    bough_error_shares shares = {0};
+    char warning[BOUGH_ERROR_WARNING];
+    bough_status status = bough_ok();
+    if (bough_error_exceeds(c, bound)) status = bough_error_shares_find(arena, c, r->stop, &shares);
+    return bough_is_ok(&status) ? bough_error_judge(c, &shares, bound, warning) : status;
+}
+
 static bough_status run_in(bough_arena *arena, void *self) {
     case_run *r = self;
     bough_case_result *result = r->result;
@@ -86,8 +97,7 @@ static bough_status run_in(bough_arena *arena, void *self) {
     r->run.beside = true;
     r->run.stop = r->stop;
     bough_run_all(&r->run);
-    double bound = r->run.simulation->scene->simulation.error_bound;
-    if (bough_is_ok(&r->run.outcome)) r->run.outcome = bough_error_probe_judge(&r->run.probe, bound);
+    if (bough_is_ok(&r->run.outcome)) r->run.outcome = judge(arena, r);
     bough_counts_finish(r->counts);
     result->time = r->run.simulation->master->time;
     result->counted = result->time - r->set->from;

@@ -18,9 +18,7 @@ typedef struct cell_run {
     int *column; // (n_channel) of the study's channels among the run's
     bough_study_series *series;
     bough_recorder *recorder; // of all channels; NULL: none
-    long batches;             // of the estimate, seen so far
     double *gathered, *zero;  // (n_channel) scratch
-    double *estimate;         // (n_measure)
 } cell_run;
 
 // -- sampling -------------------------------------------------------------------------------------
@@ -62,30 +60,22 @@ static double difference(const double *a, const double *b, int n, int norm) {
 
 // -- the run's own estimate -----------------------------------------------------------------------
 
-// A channel that does not follow from the states has none.
-static void gather_estimate(cell_run *r) {
+// Of each measure: the norm of the largest errors of its channels, which may have been at different times.
+static void gather_estimates(cell_run *r, double *estimate) {
+    const bough_companion *c = r->run.companion;
     for (int i = 0; i < r->study->n_channel; i++) {
-        bool known = r->column[i] < r->run.simulation->n_motion_channel;
-        r->gathered[i] = known ? r->run.probe.difference[r->column[i]] : (double)NAN;
+        bool known = bough_companion_knows(c, r->column[i]);
+        r->gathered[i] = known ? c->error[r->column[i]] : (double)NAN;
     }
-}
-
-// After a step.
-static bough_status update_estimates(void *self) {
-    cell_run *r = self;
-    if (r->run.probe.batches == r->batches) return bough_ok();
-    r->batches = r->run.probe.batches;
-    gather_estimate(r);
     int first = 0;
     for (int i = 0; i < r->study->n_measure; i++) {
         const bough_study_measure *m = &r->study->measure[i];
-        double worst = 0;
+        estimate[i] = 0;
         for (int k = 0; k < m->channels.n; first += m->channels.item[k++].n) {
-            worst = larger(worst, difference(r->gathered + first, r->zero, m->channels.item[k].n, m->norm));
+            double norm = difference(r->gathered + first, r->zero, m->channels.item[k].n, m->norm);
+            estimate[i] = larger(estimate[i], m->scale * norm);
         }
-        r->estimate[i] = larger(r->estimate[i], m->scale * worst);
     }
-    return bough_ok();
 }
 
 // -- one run --------------------------------------------------------------------------------------
@@ -121,16 +111,6 @@ bough_status bough_study_same_files(bough_arena *arena, const bough_scene *scene
     return now == files ? bough_ok() : changed(scene->file, "");
 }
 
-// Chooses the cheapest error estimate for the cells, whose true error against the reference is known: by
-// linearised members where the scene names no other, and none where all bodies are one system.
-static void estimate_cheaply(bough_scene *scene) {
-    int *estimate = &scene->simulation.error_estimate;
-    if (*estimate != BOUGH_ERROR_BY_BEST) return;
-    int scheme = scene->simulation.coupling.scheme;
-    bool one_system = bough_scheme_find(bough_scheme_name(scheme))->one_system;
-    *estimate = one_system ? BOUGH_ERROR_NOT_TOLD : BOUGH_ERROR_BY_LINEARISED_MEMBERS;
-}
-
 static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell_run *r) {
     bough_scene *scene;
     bough_study_source source = {r->study->scene, cell->n_set, cell->set, cell->files};
@@ -140,7 +120,7 @@ static bough_status build(bough_arena *arena, const bough_study_cell *cell, cell
         scene->simulation.threads = 1;
     else if (r->study->threads > 0)
         scene->simulation.threads = r->study->threads;
-    estimate_cheaply(scene);
+    if (cell == r->study->reference_cell) scene->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;
     bough_status built = bough_run_create(arena, scene, &r->run);
     status = bough_study_same_files(arena, scene, cell->files);
     if (!bough_is_ok(&status) || !bough_is_ok(&built)) return bough_is_ok(&status) ? built : status;
@@ -163,16 +143,12 @@ static bough_status run_in(bough_arena *arena, void *self) {
     bough_run *run = &r->run;
     const bough_master *m = run->simulation->master;
     r->series->filled = 0;
-    for (int i = 0; i < r->study->n_measure; i++) result->estimate[i] = m->estimate ? 0 : (double)NAN;
-    r->estimate = result->estimate;
     bough_run_record_at(run, (bough_run_record){r->study->interval, .sample = sample, .self = r});
     run->beside = r->study->kind == BOUGH_STUDY_STABILITY; // these have one thread each
     run->stop = drive->stop;
-    run->after = update_estimates;
-    run->self = r;
     run->progress = &drive->progress;
     bough_run_all(run);
-    update_estimates(r); // of a step that failed
+    gather_estimates(r, result->estimate);
     result->cpu = run->cpu_s;
     result->wall = run->wall_s;
     result->time = m->time;

@@ -186,7 +186,7 @@ static void run(const added_mass_study *s, const way *w, double ratio, outcome *
     def.macro_step = s->macro_step;
     def.duration = s->steps * s->macro_step;
     o->status = bough_two_mass_build(&m, def);
-    if (bough_is_ok(&o->status)) o->status = bough_two_mass_error(&m, &o->error, NULL);
+    if (bough_is_ok(&o->status)) o->status = bough_two_mass_error(&m, &o->error);
     if (m.master) {
         o->time = m.master->time;
         o->sweeps = fmax(1, (double)m.master->coupling->sweeps / fmax(1, (double)m.master->steps));

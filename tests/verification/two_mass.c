@@ -81,9 +81,7 @@ bough_status bough_two_mass_build(bough_two_mass *m, bough_master_def def) {
                                         .connection = connection[m->cut]};
     m->arena = bough_arena_create();
     if (!m->arena) return bough_fail(BOUGH_OUT_OF_MEMORY, "out of memory");
-    def.error = BOUGH_ERROR_BY_LINEARISED_MEMBERS;
-    bough_status status = bough_master_build(m->arena, &def, &m->master);
-    return bough_is_ok(&status) ? bough_master_watch(m->master, m->arena, NULL) : status;
+    return bough_master_build(m->arena, &def, &m->master);
 }
 
 void bough_two_mass_destroy(bough_two_mass *m) {
@@ -114,24 +112,16 @@ void bough_two_mass_history(bough_two_mass *m) {
     }
 }
 
-static double estimated_error(const bough_two_mass *m) {
-    const bough_error_estimate *e = m->master->estimate;
-    const double *error = e ? bough_error_estimate_states(e) : NULL;
-    return error ? BOUGH_ERROR_SAFETY * fmax(fabs(error[0]), fabs(error[2])) : (double)NAN;
-}
-
-bough_status bough_two_mass_error(bough_two_mass *m, double *worst, double *told) {
+bough_status bough_two_mass_error(bough_two_mass *m, double *worst) {
     double y[4];
     memcpy(y, m->y0, sizeof y);
     *worst = 0;
-    if (told) *told = estimated_error(m);
     while (!bough_master_done(m->master)) {
         double t = m->master->time;
         bough_status status = bough_step(m->master);
         if (!bough_is_ok(&status)) return status;
         bough_two_mass_exact(m, m->master->time - t, y);
         *worst = fmax(*worst, fmax(fabs(m->mass[0].y[0] - y[0]), fabs(m->mass[1].y[0] - y[2])));
-        if (told) *told = fmax(*told, estimated_error(m));
     }
     return bough_ok();
 }

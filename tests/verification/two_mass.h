@@ -42,9 +42,8 @@ void bough_two_mass_destroy(bough_two_mass *m);
 // Replaces the start-up by exact history.
 void bough_two_mass_history(bough_two_mass *m);
 
-// Runs to the end: the largest error of either position at the synchronisation points, and what the
-// run itself tells of it (NaN where the scheme makes none; NULL: not wanted).
-bough_status bough_two_mass_error(bough_two_mass *m, double *worst, double *told);
+// Runs to the end: the largest error of either position at the synchronisation points.
+bough_status bough_two_mass_error(bough_two_mass *m, double *worst);
 
 // Largest modulus of the eigenvalues of one macro step, of any length, as a map of states and
 // remembered inputs. The run's state is lost.
