@@ -35,6 +35,7 @@ typedef struct bough_job {
     bough_error_shares shares;         // of mesh, air and time
     char warning[BOUGH_ERROR_WARNING]; // about the error of motion, or ""
     bough_status verdict;              // on the error of a complete run
+    bool warned;                       // of the work, while it runs
     double build_s;                    // wall time of reading and building [s]
 } bough_job;
 

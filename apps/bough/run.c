@@ -9,6 +9,7 @@
 #include "apps/output/binary.h"
 #include "apps/output/folder.h"
 #include "apps/output/lock.h"
+#include "apps/simulation/validity.h"
 
 // -- recording ------------------------------------------------------------------------------------
 
@@ -154,10 +155,22 @@ static bough_status close_results(bough_job *job) {
     return bough_is_ok(&job->run.outcome) ? status : job->run.outcome;
 }
 
+// What makes a run slow is known while it runs.
+static void warn_of_work(bough_job *job) {
+    const bough_simulation *s = job->run.simulation;
+    if (job->warned || !s->validity->limit[BOUGH_LIMIT_STEPS].passed) return;
+    char text[512];
+    job->warned = true;
+    bough_validity_describe(s, BOUGH_LIMIT_STEPS, text, sizeof text);
+    if (job->run.progress) bough_progress_clear(job->run.progress);
+    fprintf(stderr, "bough: warning: %s\n", text);
+}
+
 // After each step. The error is judged at the end, but a run that has lost the solution does not go on.
 static bough_status after_step(void *self) {
     bough_job *job = self;
     const bough_run *run = &job->run;
+    warn_of_work(job);
     bool lost = run->simulation->scene->simulation.error_bound > 0 && bough_companion_parted(run->companion);
     return lost ? bough_error_parted(run->companion) : bough_checkpoint_update(job);
 }

@@ -14,9 +14,7 @@ enum { SAMPLES = 60 }; // of the air, most
 // Changes between samples of the air below it are none, in units of the states' scales.
 static const double still = 1e-8;
 
-bool bough_equilibrium_apart(const bough_simulation *s) {
-    return s->tree->n_v == 0 && s->aero == NULL;
-}
+bool bough_equilibrium_apart(const bough_simulation *s) { return s->tree->n_v == 0 && s->aero == NULL; }
 
 double bough_equilibrium_time(const bough_simulation *s) {
     double last = 0;
@@ -24,8 +22,7 @@ double bough_equilibrium_time(const bough_simulation *s) {
     return last;
 }
 
-void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly,
-                                 const double *state) {
+void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, const double *state) {
     for (int i = 0; i < assembly->n_member; i++) {
         bough_member_set(assembly->member[i], 0, state + assembly->state_offset[i]);
     }
@@ -47,22 +44,6 @@ int bough_equilibrium_held(const bough_tree *tree, bool turning, int *row) {
     return n;
 }
 
-// The body that a row of the states belongs to.
-static const char *body_of(const bough_simulation *s, const bough_assembly *assembly, int row) {
-    const bough_tree *tree = s->tree;
-    int member = 0;
-    while (row >= assembly->state_offset[member + 1]) member++;
-    if (member > 0) return assembly->member[member]->system.name;
-    for (int i = 0; i < tree->n_links; i++) {
-        const bough_link *link = &tree->links[i];
-        int q = row - link->first_coordinate, v = row - tree->n_q - link->first_speed;
-        if ((q >= 0 && q < link->n_coordinates) || (v >= 0 && v < link->n_speeds)) {
-            return tree->bodies[link->body].name;
-        }
-    }
-    return assembly->member[0]->system.name;
-}
-
 static bough_status explain(const bough_simulation *s, const bough_assembly *assembly,
                             const bough_equilibrium_report *report) {
     return bough_fail(BOUGH_FAILED,
@@ -70,7 +51,7 @@ static bough_status explain(const bough_simulation *s, const bough_assembly *ass
                       "in a step, at a rate of %.3g; a free joint needs a spring, a speed or "
                       "a motion; or the load is too large (try a part of it, or 'bough static --path'), "
                       "or the mesh too coarse",
-                      body_of(s, assembly, report->row), report->steps, report->change,
+                      bough_simulation_body_of(s, assembly, report->row), report->steps, report->change,
                       report->rate);
 }
 
@@ -99,8 +80,7 @@ static bough_status balance(bough_arena *arena, bough_simulation *s, bough_coupl
 }
 
 static bough_status balance_in_air(bough_arena *arena, bough_simulation *s, bough_coupled *coupled,
-                                  bough_equilibrium_def *def, double *state,
-                                  bough_equilibrium_work *work) {
+                                   bough_equilibrium_def *def, double *state, bough_equilibrium_work *work) {
     double *before = bough_arena_doubles(arena, (size_t)coupled->assembly->n_state), change = 0;
     while (work->samples < SAMPLES) {
         memcpy(before, state, (size_t)coupled->assembly->n_state * sizeof *state);
@@ -133,8 +113,7 @@ static double move(void *self, const double *state, const double *change, double
     const bough_simulation *s = x->simulation;
     const bough_assembly *a = x->coupled->assembly;
     double turn = 0;
-    for (int k = 0; k < a->n_state; k++)
-        moved[k] = state[k] + change[k];
+    for (int k = 0; k < a->n_state; k++) moved[k] = state[k] + change[k];
     for (int k = 0; k < s->n_beam; k++) {
         const bough_beam *beam = &s->beam[k];
         if (!beam->rod) continue;
@@ -164,8 +143,7 @@ static void bring_to_rest(void *self, double *state) {
     const bough_tree *tree = s->tree;
     for (int k = tree->n_q; k < tree->n_q + tree->n_v; k++) {
         bool held = false;
-        for (int i = 0; i < x->coupled->n_held; i++)
-            held = held || x->coupled->held[i] == k;
+        for (int i = 0; i < x->coupled->n_held; i++) held = held || x->coupled->held[i] == k;
         if (!held) state[k] = 0;
     }
     bough_coupled_inputs(x->coupled, x->time, state);
@@ -173,8 +151,7 @@ static void bring_to_rest(void *self, double *state) {
         const bough_beam *beam = &s->beam[k];
         int member = beam->port + 1;
         if (beam->port < 0) continue;
-        bough_beam_ride(beam, x->coupled->input + a->input_offset[member],
-                        state + a->state_offset[member]);
+        bough_beam_ride(beam, x->coupled->input + a->input_offset[member], state + a->state_offset[member]);
     }
 }
 
@@ -203,8 +180,8 @@ typedef struct balance_setup {
     bool rests; // whether states are brought to rest in between
 } balance_setup;
 
-static void set_up(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly,
-                   double time, balance_setup *b) {
+static void set_up(bough_arena *arena, bough_simulation *s, const bough_assembly *assembly, double time,
+                   balance_setup *b) {
     b->state = bough_arena_doubles(arena, (size_t)assembly->n_state + 1);
     int *row = bough_arena_take(arena, ((size_t)s->leader.system.n_state + 1) * sizeof *row);
     b->coupled = bough_coupled_create(arena, assembly, NULL);

@@ -20,8 +20,7 @@ void bough_simulation_update(bough_simulation *s) {
 
 int bough_simulation_n_joints(const bough_simulation *s) {
     int n = 0;
-    for (int i = 0; i < s->scene->n_body; i++)
-        n += s->scene->body[i].joint.kind != BOUGH_JOINT_FIXED;
+    for (int i = 0; i < s->scene->n_body; i++) n += s->scene->body[i].joint.kind != BOUGH_JOINT_FIXED;
     return n;
 }
 
@@ -85,10 +84,7 @@ static vertex rod_vertex(const bough_beam *beam, const double *state, int i) {
     bough_quaternion p = {y[3 * n], y[4 * n], y[5 * n], y[6 * n]};
     bough_mat3 r = bough_rotation_matrix(bough_quaternion_normalised(p));
     bough_vec3 w = {y[10 * n], y[11 * n], y[12 * n]};
-    return (vertex){{y[0], y[n], y[2 * n]},
-                    {y[7 * n], y[8 * n], y[9 * n]},
-                    bough_mat3_mul(r, w),
-                    r};
+    return (vertex){{y[0], y[n], y[2 * n]}, {y[7 * n], y[8 * n], y[9 * n]}, bough_mat3_mul(r, w), r};
 }
 
 // The last vertex of a rod that carries bodies; its velocity is resolved in its own axes.
@@ -101,8 +97,8 @@ static vertex end_vertex(const bough_simulation *s, const bough_beam *beam) {
 }
 
 // state: of the vertices, NULL of a rigid body.
-static vertex vertex_of(const bough_simulation *s, const bough_beam *beam, const double *state,
-                        int i, bough_twist twist) {
+static vertex vertex_of(const bough_simulation *s, const bough_beam *beam, const double *state, int i,
+                        bough_twist twist) {
     if (i == 0 || state == NULL) return rigid_vertex(beam, i, twist);
     if (i > bough_beam_mesh(beam)->n) return end_vertex(s, beam);
     return rod_vertex(beam, state, i);
@@ -121,8 +117,8 @@ bough_vec3 bough_simulation_beam_tip(const bough_simulation *s, const bough_beam
         x = s->leader.state + s->tree->links[s->tree->ends[beam->end].link].first_coordinate;
     }
     const double *p = x + 3 * stride;
-    *rotation = bough_quaternion_normalised(
-        (bough_quaternion){p[0], p[stride], p[2 * stride], p[3 * stride]});
+    *rotation =
+        bough_quaternion_normalised((bough_quaternion){p[0], p[stride], p[2 * stride], p[3 * stride]});
     return bough_v3(x[0], x[stride], x[2 * stride]);
 }
 
@@ -148,9 +144,8 @@ void bough_simulation_beam_motion(const bough_simulation *s, const bough_beam *b
 
 static void put_vertex(vertex v, bough_quaternion p, int i, int n, double *rows) {
     bough_vec3 w = bough_mat3_tmul(v.rotation, v.angular);
-    const double values[BOUGH_BLADE_ROWS] = {v.position.x, v.position.y, v.position.z, p.w, p.x,
-                                             p.y, p.z, v.velocity.x, v.velocity.y, v.velocity.z,
-                                             w.x, w.y, w.z};
+    const double values[BOUGH_BLADE_ROWS] = {v.position.x, v.position.y, v.position.z, p.w, p.x, p.y, p.z,
+                                             v.velocity.x, v.velocity.y, v.velocity.z, w.x, w.y, w.z};
     for (int c = 0; c < BOUGH_BLADE_ROWS; c++) rows[c * n + i] = values[c];
 }
 
@@ -165,7 +160,21 @@ void bough_simulation_beam_rows(const bough_simulation *s, const bough_beam *bea
     put_vertex(rigid_vertex(beam, 0, twist), beam->def.rotation[0], 0, n, rows);
     for (int i = inner + 1; i < n; i++) {
         vertex v = vertex_of(s, beam, state, i, twist);
-        put_vertex(v, state ? bough_quaternion_of_matrix(v.rotation) : beam->def.rotation[i], i, n,
-                   rows);
+        put_vertex(v, state ? bough_quaternion_of_matrix(v.rotation) : beam->def.rotation[i], i, n, rows);
     }
+}
+
+const char *bough_simulation_body_of(const bough_simulation *s, const bough_assembly *assembly, int row) {
+    const bough_tree *tree = s->tree;
+    int member = 0;
+    while (row >= assembly->state_offset[member + 1]) member++;
+    if (member > 0) return assembly->member[member]->system.name;
+    for (int i = 0; i < tree->n_links; i++) {
+        const bough_link *link = &tree->links[i];
+        int q = row - link->first_coordinate, v = row - tree->n_q - link->first_speed;
+        if ((q >= 0 && q < link->n_coordinates) || (v >= 0 && v < link->n_speeds)) {
+            return tree->bodies[link->body].name;
+        }
+    }
+    return assembly->member[0]->system.name;
 }

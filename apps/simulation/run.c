@@ -85,6 +85,19 @@ const double *bough_run_values(bough_run *run) {
 
 // -- stepping -------------------------------------------------------------------------------------
 
+// Of all solvers, with those that failed
+static double steps_of(const bough_simulation *s) {
+    const bough_master *m = s->master;
+    bough_statistics sum = {0};
+    for (int i = 0; i <= m->assembly->n_member; i++) {
+        const bough_member *member = i < m->assembly->n_member ? m->assembly->member[i] : m->coupling->whole;
+        if (member == NULL) continue;
+        bough_statistics own = bough_member_statistics(member);
+        bough_statistics_add(&sum, &own);
+    }
+    return (double)sum.steps + (double)sum.failed_steps;
+}
+
 bough_status bough_run_step(bough_run *run) {
     run->sampled = false;
     bool due = bough_companion_due(run->companion);
@@ -92,6 +105,7 @@ bough_status bough_run_step(bough_run *run) {
     if (due) bough_companion_step(run->companion);
     if (bough_is_ok(&run->outcome)) bough_companion_compare(run->companion);
     bough_validity_check(run->simulation);
+    if (bough_is_ok(&run->outcome)) bough_validity_check_work(run->simulation, steps_of(run->simulation));
     if (bough_is_ok(&run->outcome)) run->outcome = record_due(run);
     return run->outcome;
 }

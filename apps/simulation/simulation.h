@@ -117,6 +117,9 @@ bough_rotor_place bough_simulation_rotor(const bough_simulation *s);
 // body that carries the rotor and the blades [rad], [rad/s].
 void bough_simulation_hub_turn(const bough_simulation *s, double *angle, double *speed);
 
+// The name of the body, or of the group of bodies, with that state of the assembly.
+const char *bough_simulation_body_of(const bough_simulation *s, const bough_assembly *assembly, int row);
+
 // The pitch of a blade: its body's, and what its pitch joint adds, positive by −z [rad].
 double bough_simulation_pitch(const bough_simulation *s, const bough_beam *beam);
 

@@ -2,9 +2,11 @@
 
 #include "apps/simulation/aero_link.h"
 #include "core/loop.h"
+#include "cosim/coupled.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 // Incompressible polars err by a seventh in the slope of lift there.
 static const double most_mach = 0.5, speed_of_sound = 340;
@@ -19,6 +21,10 @@ static const double least_margin = 0.01, least_share = 0.1;
 static const double most_uneven = BOUGH_PI / 180; // of the gap between two blades
 // Cosine of the angle between axis and wind, 60°: beyond every yaw error of operation.
 static const double least_along = 0.5;
+// Steps of solvers in a macro step, and the work in such macro steps, steps times states, of which a hundred
+// count at least: some seconds.
+static const double many_steps = 100, most_work = 3e6;
+static const int least_states = 100;
 static const double small_turn = 0.98; // cosine of a quarter of most_turn
 
 // Each sentence ends with the value in its unit.
@@ -50,6 +56,9 @@ static const struct {
     [BOUGH_LIMIT_SINGULAR] = {"singular_position",
                               "its closed loop is near a position from which its bodies can go on in two"
                               " ways, and takes one of them by the smallest difference; margin %.2g"},
+    [BOUGH_LIMIT_STEPS] =
+        {"solver_steps", "motions so fast that a solver takes %.3g steps in a macro step make most of the"
+                         " cost: damping, a larger rtol or another solver (radau5, cvode-bdf) may end that"},
 };
 
 const char *bough_limit_name(bough_limit limit) { return limits[limit].name; }
@@ -222,6 +231,53 @@ void bough_validity_check(bough_simulation *s) {
     if (s->aero) check_air(s);
     check_turns(s);
     check_speed(s);
+}
+
+// -- work -----------------------------------------------------------------------------------------
+
+typedef struct fastest {
+    const bough_simulation *simulation;
+    int body; // of the scene
+} fastest;
+
+// The body of the name, or the first of the group of that name.
+static int find_body(const bough_scene *scene, const char *name) {
+    for (int i = 0; i < scene->n_body; i++)
+        if (strncmp(scene->body[i].name, name, strlen(scene->body[i].name)) == 0) return i;
+    return 0;
+}
+
+// The body whose state changes fastest, measured by the tolerance.
+static bough_status find_fastest(bough_arena *arena, void *self) {
+    fastest *f = self;
+    const bough_master *m = f->simulation->master;
+    size_t n = (size_t)m->assembly->n_state;
+    double *state, *rate, *scale, largest = 0;
+    bough_arena_each(arena, n, &state, &rate, &scale);
+    bough_assembly_states(m->assembly, state);
+    bough_assembly_scales(m->assembly, scale);
+    bough_coupled *coupled = bough_coupled_create_evaluation(arena, m->assembly, NULL);
+    bough_status status = bough_coupled_rate(coupled, m->time, state, rate);
+    for (int k = 0; bough_is_ok(&status) && k < (int)n; k++) {
+        if (!(fabs(rate[k]) / scale[k] > largest)) continue;
+        largest = fabs(rate[k]) / scale[k];
+        f->body = find_body(f->simulation->scene, bough_simulation_body_of(f->simulation, m->assembly, k));
+    }
+    return status;
+}
+
+void bough_validity_check_work(bough_simulation *s, double steps) {
+    bough_validity *v = s->validity;
+    double taken = steps < v->steps ? steps : steps - v->steps; // a resumed run counts anew
+    v->steps = steps;
+    if (taken < many_steps || v->limit[BOUGH_LIMIT_STEPS].passed) return;
+    int states = s->master->assembly->n_state;
+    v->work += taken * (states > least_states ? states : least_states);
+    if (v->work < most_work) return;
+    fastest f = {s, 0};
+    bough_status status = bough_arena_use(find_fastest, &f);
+    (void)status; // no rate: the first body stands for the scene
+    bough_validity_pass(v, BOUGH_LIMIT_STEPS, f.body, s->master->time, taken);
 }
 
 void bough_validity_describe(const bough_simulation *s, bough_limit limit, char *text, size_t size) {

@@ -15,6 +15,7 @@ typedef enum bough_limit {
     BOUGH_LIMIT_ACROSS,      // the rotor's axis is across the wind, or faces away from it
     BOUGH_LIMIT_MESH,        // a rod has one segment
     BOUGH_LIMIT_SINGULAR,    // a closed loop is near a position in which its bodies can go on in two ways
+    BOUGH_LIMIT_STEPS,       // macro steps of very many steps of a solver have become costly
     BOUGH_LIMITS,
 } bough_limit;
 
@@ -30,6 +31,8 @@ typedef struct bough_validity {
     bough_passing limit[BOUGH_LIMITS];
     double looked; // time of the last sample of the air seen [s]
     double margin; // largest of the closed loops so far, see bough_loops_margin
+    double steps;  // of all solvers up to the last look
+    double work;   // steps in macro steps of very many steps, times states
 } bough_validity;
 
 // Notes that a limit is passed, if it is the first time.
@@ -40,6 +43,9 @@ void bough_validity_start(bough_simulation *s);
 
 // Checks the state after a step, without changing a result.
 void bough_validity_check(bough_simulation *s);
+
+// Notes macro steps of very many steps; `steps` of all solvers since the process began.
+void bough_validity_check_work(bough_simulation *s, double steps);
 
 // The name of a limit in summary.json, and the sentence about its passing, at most `size` bytes.
 const char *bough_limit_name(bough_limit limit);
