@@ -14,7 +14,8 @@ typedef struct trace {
     double limit[8];
 } trace;
 
-static bough_status note(void *self, double share, bool limit) {
+static bough_status note(void *self, double time, double share, bool limit) {
+    (void)time;
     trace *t = self;
     const double *q = t->simulation->leader.state;
     assert_true(t->n < MOST && t->n_limit < 8);
@@ -65,6 +66,42 @@ static void slides_snap_through_and_back(void **context) {
     check_near(10 * t->limit[1], -bar_limit(), 1e-6, 0);
     check_near(t->share[t->n - 1], 1, 0, 1e-12);
     assert_true(t->q[t->n - 1][0] < -0.6);
+    bough_arena_destroy(arena);
+}
+
+typedef struct reaction {
+    bough_simulation *simulation;
+    bough_channels channels;
+    int n;
+} reaction;
+
+static bough_status check_reaction(void *self, double time, double share, bool limit) {
+    reaction *r = self;
+    (void)limit;
+    double value[64];
+    int index = bough_channels_find(&r->channels, "propFz");
+    assert_true(index >= 0 && r->channels.count <= 64);
+    bough_channels_sample(&r->channels, time, value);
+    check_near(value[index], -50 * share, 1e-5, 1e-8);
+    r->n++;
+    return bough_ok();
+}
+
+// A beam between two walls, pressed along by 300 N on each of its first metre of three: the far wall carries
+// 300 1²/(2 3) of it, at every point of the path.
+static void closures_carry_the_load_of_the_point(void **context) {
+    (void)context;
+    const char *sets[] = {"loads=[{body: beam, along: [0 m, 1 m], force: [300, 0, 0], ramp: [0 s, 1 s]}]",
+                          "gravity=[0, 0, 0]", NULL};
+    bough_arena *arena = bough_arena_create();
+    reaction r = {scene_build(arena, "tests/scenes/prop.yaml", sets), bough_channels_start(arena), 0};
+    bough_status status = bough_simulation_channels(r.simulation, &r.channels);
+    assert_int_equal(status.code, BOUGH_OK);
+    bough_path_report report;
+    bough_path_listener listener = {&r, check_reaction};
+    status = bough_simulation_path(r.simulation, r.simulation->master->assembly, listener, &report);
+    assert_string_equal(status.message, "");
+    assert_true(r.n > 3);
     bough_arena_destroy(arena);
 }
 
@@ -122,6 +159,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slides_snap_through_and_back),
         cmocka_unit_test(short_of_the_limit),
+        cmocka_unit_test(closures_carry_the_load_of_the_point),
         cmocka_unit_test(lee_frame),
         cmocka_unit_test(other_scenes_are_refused),
     };

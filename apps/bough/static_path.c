@@ -18,9 +18,9 @@ static void write_head(const table *t) {
     fputc('\n', t->file);
 }
 
-static bough_status write_point(void *self, double share, bool limit) {
+static bough_status write_point(void *self, double time, double share, bool limit) {
     table *t = self;
-    bough_channels_sample(t->channels, 0, t->value);
+    bough_channels_sample(t->channels, time, t->value);
     fprintf(t->file, "%d,%d,%.10g", t->point, limit, share);
     for (int i = 0; i < t->channels->count; i++) fprintf(t->file, ",%.10g", t->value[i]);
     fputc('\n', t->file);

@@ -250,7 +250,10 @@ static bough_status tell_point(void *self, double share, const double *state, bo
     for (int i = 0; i < w->assembly->n_member; i++)
         bough_member_set(w->assembly->member[i], time, state + w->assembly->state_offset[i]);
     bough_simulation_update(w->simulation);
-    return w->listener.point(w->listener.self, share, limit);
+    bough_coupled_inputs(w->search.coupled, time, state);
+    size_t size = (size_t)w->assembly->n_input * sizeof(double);
+    memcpy(w->simulation->master->coupling->input, w->search.coupled->input, size);
+    return w->listener.point(w->listener.self, time, share, limit);
 }
 
 static bough_status refuse_path(const bough_simulation *s) {

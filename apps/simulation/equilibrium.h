@@ -31,11 +31,12 @@ double bough_equilibrium_time(const bough_simulation *s);
 bough_status bough_simulation_equilibrium(bough_simulation *s, const bough_assembly *assembly, double time,
                                           bough_equilibrium_work *work);
 
-// Called at each point of a path, where the members and the simulation's view then are. `limit`: the loads
-// have a local maximum or minimum there. A failure ends the path.
+// Called at each point of a path, where the members, their inputs and the simulation's view then are; `time`:
+// when the loads are those of the point [s]. `limit`: they have a local maximum or minimum there. A failure
+// ends the path.
 typedef struct bough_path_listener {
     void *self;
-    bough_status (*point)(void *self, double share, bool limit);
+    bough_status (*point)(void *self, double time, double share, bool limit);
 } bough_path_listener;
 
 // Follows the equilibria of the assembly as the loads grow from those at time 0 to those at
@@ -45,7 +46,6 @@ bough_status bough_simulation_path(bough_simulation *s, const bough_assembly *as
                                    bough_path_listener listener, bough_path_report *report);
 
 // Sets the states of all members (n_state); their clocks are set to 0, and `view` follows.
-void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly,
-                                 const double *state);
+void bough_equilibrium_set_state(bough_simulation *s, const bough_assembly *assembly, const double *state);
 
 #endif
