@@ -51,6 +51,7 @@ typedef struct bough_ode {
     bool (*linearise)(void *self, double t, const double *y); // tangents of f
     bool (*factor)(void *self, double gamma);                 // I − γ ∂f/∂y of the last tangents
     void (*solve)(void *self, double *x);                     // in place
+    double elastic_rate;                                      // [1/s] as in system.h
 } bough_ode;
 
 typedef enum bough_integrator_kind {

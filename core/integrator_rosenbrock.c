@@ -14,6 +14,7 @@ enum { STAGES = BOUGH_ROSENBROCK_STAGES, MOST_STEPS = 100000 };
 enum { YOUNG = 8 };        // age of tangents [steps] up to which a failed step keeps them
 enum { MOST_DRIFTED = 4 }; // the same of ∂f/∂t, and anew in every macro step
 enum { MOST_AGE = 24 };    // steps with the same tangents; on a blade, up to 64 cost no accuracy
+enum { UNDAMPED_AGE = 2 }; // the same at the start, without damping
 
 // The published coefficients α, Γ, b, b̂ in the form that needs no product with J: a = A Γ⁻¹,
 // c = E − γ Γ⁻¹, m = bᵀ Γ⁻¹, e = (b − b̂)ᵀ Γ⁻¹. The last row of a is m without its last entry, 1.
@@ -34,6 +35,13 @@ static const double own_share = 0.05; // of the embedded error that the
 // method makes: measured on blades, whose stiffness takes both orders down, the run errs by 0.04 to
 // 0.1 of it at steps of 2.5 to 20 ms
 
+// Old tangents let vibrations of stiff bodies grow, by damping ratios down to −9e-4. A viscosity, as a time,
+// of more than `least_viscosity` steps covers that. With less, the age of the tangents is chosen so that
+// renewed ones change a step by `most_change` of it: −2e-5 for a rod whose tip moves by 1/1000 of its length,
+// −2e-4 for three times as much, which tangents of every step have too.
+static const double least_viscosity = 0.03; // [-]
+static const double most_change = 0.002;    // [-]
+
 typedef struct rosenbrock {
     bough_ode ode;
     bough_rosenbrock_find find; // of the stages
@@ -43,12 +51,13 @@ typedef struct rosenbrock {
     int most_steps;             // in a macro step, and after a fifth of them their number is foreseen
     double longest;             // step allowed next [s]
     double factored;            // γh of the factors; 0: none
-    int age;                    // steps since the tangents were found
+    int age, most_age;          // steps since the tangents were found, and after which they are renewed
     bool started;
     int drifted;               // steps since ∂f/∂t was found
     double end;                // of the macro step in progress [s]
     bough_rosenbrock_step now; // the step in progress
     double *error;             // (n)
+    double *old, *fresh;       // (n) the last increment under old and under renewed tangents
     double *own_error;         // (n)
     bough_statistics sum;
 } rosenbrock;
@@ -168,6 +177,7 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
     m->step = options->step > 0 ? options->step : (double)INFINITY;
     m->most_steps = options->most_steps > 0 ? options->most_steps : MOST_STEPS;
     bough_arena_each(arena, n, &m->weight, &m->now.drift, &m->error, &m->now.at, &m->own_error);
+    bough_arena_each(arena, n, &m->old, &m->fresh);
     for (int i = 0; i < STAGES; i++) m->now.u[i] = bough_arena_doubles(arena, n);
     for (size_t k = 0; k < n; k++) m->weight[k] = 1 / (options->rtol * ode->scale[k]);
     m->now.weight = m->weight;
@@ -176,14 +186,46 @@ static void *create(bough_arena *arena, const bough_ode *ode, const bough_integr
 
 // -- the error of a step --------------------------------------------------------------------------
 
+static bool undamped(const rosenbrock *m, double h) { return m->ode.elastic_rate * h * least_viscosity > 1; }
+
+// (I − γhJ)⁻¹ (y₁ − y₀) of the last step
+static void filter_increment(rosenbrock *m, double *restrict x) {
+#pragma omp simd
+    for (int k = 0; k < m->ode.n; k++) x[k] = stages_before(&m->now, 3, a[3], k) + m->now.u[3][k];
+    m->ode.solve(m->ode.self, x);
+}
+
+// The age from the change of the last step by renewed tangents, which goes with it.
+static void choose_age(rosenbrock *m) {
+    double change = 0, whole = 0;
+    for (int k = 0; k < m->ode.n; k++) {
+        double difference = m->weight[k] * (m->fresh[k] - m->old[k]), fresh = m->weight[k] * m->fresh[k];
+        change += difference * difference;
+        whole += fresh * fresh;
+    }
+    double wanted = m->age * most_change * sqrt(whole / fmax(change, 1e-300));
+    m->most_age = (int)fmax(1, fmin(fmin(MOST_AGE, m->age + 1), wanted));
+}
+
+static bool renew_tangents(rosenbrock *m, double t, const double *y, double gamma) {
+    bool compare = undamped(m, gamma / gamma_h) && m->age == m->most_age && m->factored > 0;
+    if (compare) filter_increment(m, m->old);
+    m->sum.jacobians++;
+    m->sum.factorisations++;
+    if (!m->ode.linearise(m->ode.self, t, y) || !m->ode.factor(m->ode.self, gamma)) return false;
+    if (!undamped(m, gamma / gamma_h)) m->most_age = MOST_AGE;
+    if (compare && fabs(m->factored - gamma) <= 1e-9 * gamma) {
+        filter_increment(m, m->fresh);
+        choose_age(m);
+    }
+    m->age = 0;
+    m->factored = gamma;
+    return true;
+}
+
 static bool renew_factors(rosenbrock *m, double t, const double *y, double h) {
     double gamma = gamma_h * h;
-    if (m->age >= MOST_AGE) {
-        m->sum.jacobians++;
-        if (!m->ode.linearise(m->ode.self, t, y)) return false;
-        m->age = 0;
-        m->factored = 0;
-    }
+    if (m->age >= m->most_age) return renew_tangents(m, t, y, gamma);
     // equal steps differ by rounding of the time
     if (fabs(m->factored - gamma) <= 1e-9 * gamma) return true;
     m->sum.factorisations++;
@@ -280,6 +322,7 @@ static bough_status advance(void *self, double *t, double pause, double t1, bool
         m->sum.starts++;
         m->started = true;
         m->age = MOST_AGE;
+        m->most_age = UNDAMPED_AGE;
         m->drifted = MOST_DRIFTED;
         m->longest = m->step;
     }

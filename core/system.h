@@ -83,6 +83,8 @@ typedef struct bough_system {
     int n_state, n_input, n_output;
     const double *scale;   // error scale of each state (n_state): tolerance = rtol · scale
     const double *initial; // (n_state) where a run starts
+    double elastic_rate;   // greatest ratio of stiffness to viscosity of its flexible bodies [1/s]: infinite
+                           // without damping, 0 where nothing deforms
     const bough_system_ops *ops;
     void *self;
 } bough_system;

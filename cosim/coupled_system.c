@@ -1,6 +1,8 @@
 // The coupled members behind the contract of core/system.h. It has no ports.
 #include "cosim/coupled.h"
 
+#include <math.h>
+
 static bool derivative(void *self, double t, const double *state, const double *input, double *rate) {
     (void)input;
     bough_status status = bough_coupled_rate(self, t, state, rate);
@@ -71,11 +73,15 @@ bough_system bough_coupled_system(bough_arena *arena, const bough_assembly *a, b
     double *initial = bough_arena_doubles(arena, (size_t)a->n_state);
     bough_assembly_scales(a, scale);
     bough_assembly_states(a, initial);
+    double elastic_rate = 0;
+    for (int i = 0; i < a->n_member; i++)
+        elastic_rate = fmax(elastic_rate, a->member[i]->system.elastic_rate);
     return (bough_system){.name = name,
                           .kind = "coupled",
                           .n_state = a->n_state,
                           .scale = scale,
                           .initial = initial,
+                          .elastic_rate = elastic_rate,
                           .ops = &operations,
                           .self = evaluation};
 }

@@ -63,7 +63,8 @@ bough_status bough_member_create(bough_arena *arena, const bough_system *system,
                      .derivative_twice = twice ? derivative_twice : NULL,
                      .linearise = linearise,
                      .factor = factor,
-                     .solve = solve};
+                     .solve = solve,
+                     .elastic_rate = system->elastic_rate};
     bough_status status = bough_integrator_create(arena, &ode, options, &m->integrator);
     m->own_error = m->integrator.own_error;
     return status;

@@ -1,5 +1,6 @@
 #include "flexbody/rod_system.h"
 
+#include "core/symmetric6.h"
 #include "flexbody/rod_tangent.h"
 
 #include <math.h>
@@ -143,6 +144,18 @@ bough_rod_body *bough_rod_body_create(bough_arena *arena, const bough_rod_model 
     return b;
 }
 
+// The greatest ratio of stiffness to viscosity over segments and strains.
+static double elastic_rate(const bough_rod_model *m) {
+    double greatest = 0;
+    for (int n = 0; n < m->n_segment; n++) {
+        for (int i = 0; i < 6; i++) {
+            int k = bough_symmetric6_index(i, i) * m->stride + n;
+            greatest = fmax(greatest, m->damping[k] > 0 ? m->stiffness[k] / m->damping[k] : (double)INFINITY);
+        }
+    }
+    return greatest;
+}
+
 bough_system bough_rod_body_system(bough_rod_body *body) {
     static const bough_system_ops ops = {
         BOUGH_SYSTEM_REQUIRED,  .evaluate = evaluate, .kept_tangent = kept_tangent,
@@ -155,6 +168,7 @@ bough_system bough_rod_body_system(bough_rod_body *body) {
                           .n_output = bough_rod_n_outputs(body->model),
                           .scale = body->scale,
                           .initial = body->initial,
+                          .elastic_rate = elastic_rate(body->model),
                           .ops = &ops,
                           .self = body};
 }

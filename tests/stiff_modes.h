@@ -99,7 +99,7 @@ static problem *create_scaled(bough_integrator_kind kind, const double *scale, d
     assert_non_null(p);
     p->arena = bough_arena_create();
     p->wall = (double)INFINITY;
-    bough_ode ode = {"stiff", N, scale, p, derivative, NULL, linearise, factor, solve};
+    bough_ode ode = {"stiff", N, scale, p, derivative, NULL, linearise, factor, solve, 0};
     bough_integrator_options options = {.kind = kind, .rtol = rtol};
     bough_status status = bough_integrator_create(p->arena, &ode, &options, &p->micro);
     assert_int_equal(status.code, BOUGH_OK);

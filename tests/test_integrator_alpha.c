@@ -63,7 +63,7 @@ static void start(double *y) {
 static bough_arena *build(problem *p, double step, double rho) {
     static const double scale[3] = {1, 1, 1};
     bough_arena *arena = bough_arena_create();
-    bough_ode ode = {"sample", 3, scale, p, derivative, NULL, linearise, factor, solve};
+    bough_ode ode = {"sample", 3, scale, p, derivative, NULL, linearise, factor, solve, 0};
     bough_integrator_options options = {BOUGH_GENERALIZED_ALPHA, 1e-10, step, rho, 0};
     bough_status status = bough_integrator_create(arena, &ode, &options, &p->micro);
     assert_int_equal(status.code, BOUGH_OK);
@@ -114,7 +114,7 @@ static void its_own_error_is_told(void **context) {
         problem p = {0};
         double y[1] = {1}, end = 2, h = 0.01;
         bough_arena *arena = bough_arena_create();
-        bough_ode ode = {"decay", 1, scale, &p, decay, NULL, linearise, factor, solve_decay};
+        bough_ode ode = {"decay", 1, scale, &p, decay, NULL, linearise, factor, solve_decay, 0};
         bough_integrator_options options = {BOUGH_GENERALIZED_ALPHA, 1e-10, h, rho, 0};
         bough_status status = bough_integrator_create(arena, &ode, &options, &p.micro);
         assert_true(bough_is_ok(&status));

@@ -47,7 +47,7 @@ static void solve(void *self, double *x) {
 static const double unit[2] = {1, 1};
 
 static bough_integrator create(bough_arena *arena, oscillator *o, double rtol) {
-    bough_ode ode = {"oscillator", 2, unit, o, derivative, NULL, linearise, factor, solve};
+    bough_ode ode = {"oscillator", 2, unit, o, derivative, NULL, linearise, factor, solve, 0};
     bough_integrator_options options = {.kind = BOUGH_IDA, .rtol = rtol};
     bough_integrator ida;
     bough_status status = bough_integrator_create(arena, &ode, &options, &ida);
