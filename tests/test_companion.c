@@ -153,6 +153,27 @@ static void a_scene_is_coarser_in_everything(void **state) {
     bough_arena_destroy(arena);
 }
 
+// Rods that can have no fewer segments get more, all blades as many, and the part of the difference follows.
+static void meshes_differ_as_far_as_they_can(void **state) {
+    (void)state;
+    static const struct {
+        const char *segments;
+        int other;
+        double share;
+    } cases[] = {{"bodies[3-5].rod.segments=8", 4, 0.25},
+                 {"bodies[3-5].rod.segments=3", 2, 0.6},
+                 {"bodies[3-5].rod.segments=1", 2, 1}};
+    bough_arena *arena = bough_arena_create();
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        const char *const sets[] = {cases[k].segments, NULL};
+        bough_scene *scene = scene_read(arena, "apps/turbine/runup.yaml", sets);
+        const bough_scene *c = bough_coarser_scene(arena, scene, BOUGH_COARSER_ALL);
+        for (int i = 3; i <= 5; i++) assert_int_equal(c->body[i].rod.n_segment, cases[k].other);
+        check_near(bough_coarser_share(scene, c), cases[k].share, 1e-12, 0);
+    }
+    bough_arena_destroy(arena);
+}
+
 // Another scheme than one system leaves the companion no error of a coupling, but the sub-solvers' steps,
 // twice as long.
 static void a_coupling_has_a_monolithic_companion(void **state) {
@@ -209,6 +230,7 @@ int main(void) {
         cmocka_unit_test(every_channel_has_an_error),
         cmocka_unit_test(a_library_is_copied),
         cmocka_unit_test(a_scene_is_coarser_in_everything),
+        cmocka_unit_test(meshes_differ_as_far_as_they_can),
         cmocka_unit_test(a_coupling_has_a_monolithic_companion),
         cmocka_unit_test(what_hardly_moves_does_not_count),
     };

@@ -6,6 +6,7 @@ bough=$1
 turbine=$2/apps/turbine/runup.yaml
 land=$2/apps/turbine/land.yaml
 power=$2/apps/turbine/power.yaml
+rod=$2/tests/scenes/free-rod.yaml
 . "$(dirname "$0")/scratch.sh"
 unset OMP_NUM_THREADS OMP_THREAD_LIMIT
 
@@ -31,6 +32,8 @@ same() {
             --set simulation.error_bound=0 "$@"
         grep -q "\"threads\": $n," out$n/summary.json || fail "$n threads are not told"
         cmp out1/channels.out out$n/channels.out || fail "1 and $n threads differ: $scene $*"
+        for out in out1 out$n; do sed -n '/"error": {/,/"statistics_from"/p' $out/summary.json >$out/errors; done
+        cmp out1/errors out$n/errors || fail "errors by 1 and $n threads differ: $scene $*"
     done
     [ "$(wc -l <out1/channels.out)" -ge 10 ] || fail "too few rows to compare: $scene $*"
 }
@@ -55,6 +58,9 @@ same "$turbine" '0.2 s' "$few" 'simulation.step_control.tolerance=1e-3'
 same "$turbine" '0.2 s' "$few" 'bodies[3].fidelity=modal' 'bodies[4].fidelity=segmented-modal'
 same "$land" '0.2 s'
 same "$power" '0.2 s' 'aero.dynamic_stall=hgm'
+
+# A single rod: the companion beside it has a thread of its own.
+same "$rod" '0.5 s'
 
 # Where neither the scene nor the command says a number, OpenMP's environment does.
 of_environment() {

@@ -180,7 +180,7 @@ static bough_status build(bough_arena *arena, void *self) {
         status = bough_body_create(arena, s->run.simulation, o->body, &s->body);
     }
     if (!bough_is_ok(&status)) return status;
-    bough_pool_region(s->run.simulation->pool, start_threads, NULL);
+    bough_pool_region(s->run.pool, start_threads, NULL);
     describe_copy(s);
     s->open = true;
     return status;

@@ -74,7 +74,7 @@ static void write_method(bough_summary *s, const bough_run *run) {
     bough_summary_number(s, "macro_step", m->macro_step);
     bough_summary_number(s, "master_rtol", sim->master.rtol);
     bough_summary_number(s, "micro_rtol", sim->micro.rtol);
-    bough_summary_integer(s, "threads", bough_pool_threads(m->coupling->pool));
+    bough_summary_integer(s, "threads", bough_pool_threads(run->pool));
 }
 
 static void write_cost(bough_summary *s, const bough_job *job) {

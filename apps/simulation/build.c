@@ -276,9 +276,13 @@ static void take_arrays(bough_builder *b) {
     b->s->rod = bough_arena_take(b->arena, bodies * sizeof *b->s->rod);
 }
 
+int bough_simulation_threads(const bough_scene *scene) {
+    return scene->simulation.threads > 0 ? scene->simulation.threads : bough_pool_default(1);
+}
+
 bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
                                     bough_simulation **simulation) {
-    int asked = scene->simulation.threads, threads = asked > 0 ? asked : bough_pool_default(1);
+    int threads = bough_simulation_threads(scene);
     bough_linalg_room(arena, threads);
     return bough_simulation_build_on(arena, scene, bough_pool_create(arena, threads), simulation);
 }

@@ -4,6 +4,9 @@
 
 #include "apps/simulation/simulation.h"
 
+// Number of threads that the scene asks for, or the environment.
+int bough_simulation_threads(const bough_scene *scene);
+
 // Builds everything the scene names, and nothing else, in the arena.
 bough_status bough_simulation_build(bough_arena *arena, const bough_scene *scene,
                                     bough_simulation **simulation);

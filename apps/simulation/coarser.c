@@ -39,15 +39,53 @@ static void copy_loads(bough_arena *arena, const bough_scene *scene, bough_scene
     }
 }
 
-static void halve_segments(bough_arena *arena, const bough_scene *scene, bough_scene *to) {
+static bool has_mesh(const bough_scene_body *b) { return b->rod.node && b->fidelity != BOUGH_SCENE_RIGID; }
+
+// About half of n segments. A rod that cannot have much fewer gets twice as many: what lies between tells the
+// error, too.
+static int other_number(int n, int least) {
+    int half = (n + 1) / 2, fewer = half > least ? half : least;
+    return 4 * fewer <= 3 * n ? fewer : 2 * n;
+}
+
+static bool is_blade(const bough_scene *scene, int body) {
+    for (int k = 0; scene->turbine.node && k < scene->turbine.n_blade; k++) {
+        if (scene->turbine.blade[k] == body) return true;
+    }
+    return false;
+}
+
+// All blades keep one number of segments, which the air needs.
+static int least_of_blades(const bough_scene *scene) {
+    int most = 1;
+    for (int k = 0; scene->turbine.node && k < scene->turbine.n_blade; k++) {
+        int least = least_segments(scene, scene->turbine.blade[k]);
+        most = least > most ? least : most;
+    }
+    return most;
+}
+
+static void change_segments(bough_arena *arena, const bough_scene *scene, bough_scene *to) {
     size_t size = (size_t)scene->n_body * sizeof *to->body;
+    int blades = least_of_blades(scene);
     to->body = bough_arena_take(arena, size);
     memcpy(to->body, scene->body, size);
     for (int i = 0; i < scene->n_body; i++) {
-        int *n = &to->body[i].rod.n_segment, least = least_segments(scene, i);
-        int half = (*n + 1) / 2;
-        if (to->body[i].rod.node && half >= least) *n = half;
+        if (!scene->body[i].rod.node) continue;
+        int least = is_blade(scene, i) ? blades : least_segments(scene, i);
+        to->body[i].rod.n_segment = other_number(scene->body[i].rod.n_segment, least);
     }
+}
+
+// At order 2 the error of n segments is 1/|r² − 1| of the difference to n/r segments.
+double bough_coarser_share(const bough_scene *scene, const bough_scene *other) {
+    double least = 3;
+    for (int i = 0; i < scene->n_body; i++) {
+        if (!has_mesh(&scene->body[i])) continue;
+        double r = (double)scene->body[i].rod.n_segment / other->body[i].rod.n_segment;
+        least = r != 1 ? fmin(least, fabs(r * r - 1)) : least;
+    }
+    return 0.75 / least;
 }
 
 // -- time -----------------------------------------------------------------------------------------
@@ -73,7 +111,7 @@ static bough_scene_solver all_sub_solvers(const bough_scene *scene) {
     bough_scene_solver all = {.solver = BOUGH_ROSENBROCK};
     bool limited = true;
     for (int i = 0; i < scene->n_body; i++) {
-        if (!scene->body[i].rod.node || scene->body[i].fidelity == BOUGH_SCENE_RIGID) continue;
+        if (!has_mesh(&scene->body[i])) continue;
         const bough_scene_solver *micro = bough_scene_micro(scene, &scene->body[i]);
         limited = limited && micro->step > 0;
         all.rtol = fmax(all.rtol, micro->rtol);
@@ -106,7 +144,7 @@ bough_scene *bough_coarser_scene(bough_arena *arena, const bough_scene *scene, i
     bough_scene *to = bough_arena_take(arena, sizeof *to);
     *to = *scene;
     copy_loads(arena, scene, to);
-    if (parts & BOUGH_COARSER_MESH) halve_segments(arena, scene, to);
+    if (parts & BOUGH_COARSER_MESH) change_segments(arena, scene, to);
     if (parts & BOUGH_COARSER_AIR) to->aero.rate /= 2;
     if (parts & BOUGH_COARSER_TIME) lengthen_steps(to);
     to->simulation.error_estimate = BOUGH_SCENE_NO_ESTIMATE;

@@ -9,9 +9,6 @@
 #include <stdio.h>
 #include <string.h>
 
-// Of the difference, that the run is taken to err by: between a third (order 2) and a seventh (order 3).
-static const double share = 0.25;
-
 // -- building -------------------------------------------------------------------------------------
 
 static void take(bough_companion *c, bough_arena *arena) {
@@ -33,6 +30,7 @@ static void give_up(bough_companion *c, const char *reason) {
 static bough_status build(bough_arena *arena, bough_companion *c) {
     const bough_scene *scene = bough_coarser_scene(arena, c->run->scene, BOUGH_COARSER_ALL);
     bough_status status = bough_simulation_build_on(arena, scene, c->run->pool, &c->coarser);
+    c->share = bough_coarser_share(c->run->scene, scene);
     if (bough_is_ok(&status)) {
         c->own = bough_channels_start(arena);
         status = bough_simulation_channels(c->coarser, &c->own);
@@ -118,7 +116,7 @@ static void compare(bough_companion *c) {
     for (int i = 0; i < c->channels->count; i++) {
         const bough_channel *channel = &c->channels->channel[i];
         if (channel->sampled && !sampled) continue;
-        double error = share * fabs(difference(channel, c->value[i], c->other[i]));
+        double error = c->share * fabs(difference(channel, c->value[i], c->other[i]));
         if (!(error <= c->error[i])) c->error[i] = error; // a NaN wins
     }
     bough_error_notice(c, c->run->master->time);
@@ -129,12 +127,21 @@ static void compare(bough_companion *c) {
 static const double several = 10; // ranges
 enum { PARTED_FOR = 16 };
 
+// Of the vector that the channel is a component of: the largest range of one of the two simulations.
+static double range_of(const bough_companion *c, int channel, const double *low, const double *high) {
+    const bough_channel *list = c->channels->channel;
+    double range = 0;
+    for (int i = list[channel].vector; i < c->channels->count && list[i].vector == list[channel].vector; i++)
+        range = fmax(range, high[i] - low[i]);
+    return range;
+}
+
 // The one with the much larger range has left the other behind.
 static void watch(bough_companion *c) {
     bool run = false, companion = false;
     for (int i = 0; i < c->channels->count; i++) {
         if (!bough_error_is_motion(&c->channels->channel[i])) continue;
-        double own = c->high[i] - c->low[i], other = c->other_high[i] - c->other_low[i];
+        double own = range_of(c, i, c->low, c->high), other = range_of(c, i, c->other_low, c->other_high);
         double apart = fabs(difference(&c->channels->channel[i], c->value[i], c->other[i]));
         if (!(apart > several * fmin(own, other)) || !bough_error_counts(c, i)) continue;
         run = run || own > several * other;

@@ -9,8 +9,7 @@
 #include <string.h>
 #include <time.h>
 
-// Of the difference, as of the whole error (companion.c).
-static const double share_of_difference = 0.25;
+static const double usual_share = 0.25; // of the difference, as of the whole error (coarser.h)
 
 const char *bough_error_share_name(bough_error_share_kind kind) {
     static const char *const names[BOUGH_SHARES] = {"mesh", "air", "time"};
@@ -54,7 +53,7 @@ static bough_status advance(other_run *r, double t) {
     return status;
 }
 
-static void compare(const other_run *base, other_run *finer, bough_error_share *share) {
+static void compare(const other_run *base, other_run *finer, double part, bough_error_share *share) {
     const bough_master *m = finer->simulation->master;
     if (m->time != base->simulation->master->time) return;
     sample(finer);
@@ -63,7 +62,7 @@ static void compare(const other_run *base, other_run *finer, bough_error_share *
         if (channel->sampled && !bough_master_sampled(base->simulation->master)) continue;
         double apart = base->value[i] - finer->value[i];
         if (channel->turn > 0) apart = remainder(apart, channel->turn);
-        share->largest[i] = fmax(share->largest[i], share_of_difference * fabs(apart));
+        share->largest[i] = fmax(share->largest[i], part * fabs(apart));
     }
 }
 
@@ -113,7 +112,7 @@ static bough_status find(bough_arena *arena, void *self) {
             if (!finer[k].simulation || share->unknown[0]) continue;
             bough_status own = advance(&finer[k], base.simulation->master->time);
             if (bough_is_ok(&own))
-                compare(&base, &finer[k], share);
+                compare(&base, &finer[k], k == BOUGH_SHARE_MESH ? x->companion->share : usual_share, share);
             else
                 unknown(share, "%.150s", own.message);
         }

@@ -2,6 +2,7 @@
 
 #include "apps/simulation/build.h"
 #include "apps/simulation/validity.h"
+#include "core/linalg.h"
 
 #include <assert.h>
 #include <math.h>
@@ -9,9 +10,22 @@
 
 // -- building -------------------------------------------------------------------------------------
 
+// Two flexible bodies and more share threads better among themselves.
+static bool fits_side_by_side(const bough_scene *scene) {
+    int n = 0;
+    for (int i = 0; i < scene->n_body; i++)
+        n += scene->body[i].rod.node && scene->body[i].fidelity != BOUGH_SCENE_RIGID;
+    return scene->simulation.error_estimate == BOUGH_SCENE_COMPANION && n < 2;
+}
+
 bough_status bough_run_create(bough_arena *arena, const bough_scene *scene, bough_run *run) {
     *run = (bough_run){.outcome = bough_ok()};
-    bough_status status = bough_simulation_build(arena, scene, &run->simulation);
+    int threads = bough_simulation_threads(scene);
+    bough_linalg_room(arena, threads);
+    run->pool = bough_pool_create(arena, threads);
+    run->side_by_side = run->pool && fits_side_by_side(scene);
+    bough_pool *own = run->side_by_side ? NULL : run->pool;
+    bough_status status = bough_simulation_build_on(arena, scene, own, &run->simulation);
     if (!bough_is_ok(&status)) return status;
     run->channels = bough_channels_start(arena);
     status = bough_simulation_channels(run->simulation, &run->channels);
@@ -98,11 +112,21 @@ static double steps_of(const bough_simulation *s) {
     return (double)sum.steps + (double)sum.failed_steps;
 }
 
+// 0: of the run, 1: of the companion; neither touches the other.
+static void step_one(void *self, int which) {
+    bough_run *run = self;
+    if (which == 0) run->outcome = bough_step(run->simulation->master);
+    if (which == 1) bough_companion_step(run->companion);
+}
+
 bough_status bough_run_step(bough_run *run) {
     run->sampled = false;
     bool due = bough_companion_due(run->companion);
-    run->outcome = bough_step(run->simulation->master);
-    if (due) bough_companion_step(run->companion);
+    if (due && run->side_by_side) {
+        bough_pool_run(run->pool, 2, step_one, run);
+    } else {
+        for (int k = 0; k <= due; k++) step_one(run, k);
+    }
     if (bough_is_ok(&run->outcome)) bough_companion_compare(run->companion);
     bough_validity_check(run->simulation);
     if (bough_is_ok(&run->outcome)) bough_validity_check_work(run->simulation, steps_of(run->simulation));
@@ -150,7 +174,7 @@ static void step_all(void *self) {
     bough_run_update_clock(run);
 }
 
-void bough_run_all(bough_run *run) { bough_pool_region(run->simulation->pool, step_all, run); }
+void bough_run_all(bough_run *run) { bough_pool_region(run->pool, step_all, run); }
 
 // -- copies ---------------------------------------------------------------------------------------
 

@@ -21,6 +21,8 @@ typedef struct bough_run_record {
 
 typedef struct bough_run {
     bough_simulation *simulation;
+    bough_pool *pool;  // NULL: one thread
+    bool side_by_side; // the companion's steps are a second task beside the run's, which then have one thread
     bough_channels channels;
     double *value;              // (channels.count) see bough_run_values
     bool sampled;               // `value` belongs to the present time
