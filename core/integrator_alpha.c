@@ -4,6 +4,9 @@
 //
 //     ẏ_m = f(t + α_f h, y_f),  ẏ_m = ẏ₀ + α_m(ẏ₁ − ẏ₀),  y_f = y₀ + α_f(y₁ − y₀),
 //     y₁ = y₀ + h ẏ₀ + γ h(ẏ₁ − ẏ₀)
+//
+// Momentum that is not linear in the states, as that of a spinning body whose velocity is resolved in its own
+// axes, is kept to second order only: docs/coupling.md.
 #include "core/integrator.h"
 
 #include <math.h>
